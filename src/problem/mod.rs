@@ -1,0 +1,79 @@
+//! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
+
+use crate::mesh::Triangulation;
+use crate::scene::Scene;
+
+/// A scene and a mesh that fit together.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// The scene as written.
+    pub scene: Scene,
+    /// The triangles.
+    pub mesh: Triangulation,
+    /// Condition on each edge of the mesh.
+    pub conditions: Vec<Condition>,
+    /// Contacts, in scene order.
+    pub interfaces: Vec<Interface>,
+    /// What the reader of the report has to know about how the mesh and the data were represented.
+    pub notes: Vec<Note>,
+}
+
+/// What holds on one edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Condition {
+    /// Shared by two triangles: traction is continuous.
+    Interior,
+    /// T = P, given by its values at the two ends of the edge (in the order of [`crate::mesh::Edge::vertices`]).
+    /// A free edge has P = 0.
+    Traction([[f64; 2]; 2]),
+    /// u = u0.
+    Clamped([f64; 2]),
+    /// u_n = 0, T_t = 0.
+    Roller,
+    /// Side 0 or 1 of `interfaces[interface].pairs[pair]`.
+    Contact {
+        /// Index into [`Problem::interfaces`].
+        interface: usize,
+        /// Index into [`Interface::pairs`].
+        pair: usize,
+        /// 0 for the first side, 1 for the second.
+        side: usize,
+    },
+}
+
+/// One contact of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interface {
+    /// `first|second` or `first|rigid`.
+    pub name: String,
+    /// Matched edges, ordered along the first side from the end that comes first in (x, y) order.
+    pub pairs: Vec<ContactPair>,
+}
+
+/// Two edges that face each other, or one that faces a rigid obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPair {
+    /// Edge of the first side, and of the second where it is a body.
+    pub edges: [Option<usize>; 2],
+    /// Vertices of the first side at the two ends of the pair, in the order of increasing arc length.
+    pub first: [usize; 2],
+    /// The vertices of the second side opposite `first`.
+    pub second: Option<[usize; 2]>,
+    /// Outward unit normal n' of the first side; n'' = −n'.
+    pub normal: [f64; 2],
+    /// Length of the edge.
+    pub length: f64,
+    /// Arc length of the two ends.
+    pub arc: [f64; 2],
+    /// Gap g at the two ends; linear between.
+    pub gap: [f64; 2],
+}
+
+/// A remark about the representation of the scene.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
+pub struct Note {
+    /// Whether it makes the bounds less than guaranteed for the scene as written.
+    pub weakens_guarantee: bool,
+    /// The remark, one sentence or two.
+    pub text: String,
+}

@@ -1,0 +1,190 @@
+//! The scene: what the user wrote in `scene.toml`, once it has been checked.
+//!
+//! A [`Scene`] that exists is valid in everything that can be judged without a mesh: every number is finite, every
+//! material is admissible, no boundary carries two conditions, every key is known. What only the mesh can tell
+//! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
+//! [`crate::problem`].
+
+use std::path::PathBuf;
+
+/// A valid scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// File stem of the scene file; names the output folder.
+    pub name: String,
+    /// `title`, or the name where none was given.
+    pub title: String,
+    /// The scene file; mesh paths are relative to its folder.
+    pub path: PathBuf,
+    /// Plane strain or plane stress.
+    pub kinematics: Kinematics,
+    /// Thickness t > 0 of the plate; multiplies energies and resultants.
+    pub thickness: f64,
+    /// Where the triangles come from.
+    pub mesh: MeshSource,
+    /// Bodies in the order of the file.
+    pub bodies: Vec<Body>,
+    /// Γ_u and Γ_0.
+    pub supports: Vec<Support>,
+    /// Γ_τ.
+    pub tractions: Vec<Traction>,
+    /// Γ_K.
+    pub contacts: Vec<Contact>,
+}
+
+/// The plane state, which fixes the compliance constants α, β, γ after (3.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kinematics {
+    /// ε_33 = 0.
+    PlaneStrain,
+    /// σ_33 = 0.
+    PlaneStress,
+}
+
+/// `[mesh]` or `[geometry]`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MeshSource {
+    /// A mesh file, path already resolved against the scene's folder.
+    File(PathBuf),
+    /// Polygons, meshed by the program.
+    Geometry {
+        /// Target edge length; `None` asks for the coarsest mesh that represents geometry and data.
+        size: Option<f64>,
+        /// The polygons in the order of the file.
+        polygons: Vec<Polygon>,
+    },
+}
+
+/// One simple polygon of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    /// Name of the body it belongs to.
+    pub body: String,
+    /// Corners, in either orientation.
+    pub points: Vec<[f64; 2]>,
+    /// Name of the edge from corner i to corner i + 1; empty means free and unnamed.
+    pub edges: Vec<String>,
+}
+
+/// A homogeneous isotropic body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Its name, equal to the physical surface or `geometry.polygons.body`.
+    pub name: String,
+    /// Young's modulus E > 0.
+    pub young: f64,
+    /// Poisson's ratio ν in (−1, ½).
+    pub poisson: f64,
+    /// Constant body force F (force per volume).
+    pub body_force: [f64; 2],
+}
+
+/// A supported boundary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// Name of the boundary.
+    pub on: String,
+    /// What is held.
+    pub kind: SupportKind,
+}
+
+/// Γ_u or Γ_0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SupportKind {
+    /// u = displacement.
+    Clamped {
+        /// u0, constant along the boundary.
+        displacement: [f64; 2],
+    },
+    /// u_n = 0, T_t = 0.
+    Roller,
+}
+
+/// A loaded boundary.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Traction {
+    /// Name of the boundary.
+    pub on: String,
+    /// The load.
+    pub load: Load,
+}
+
+/// Load on Γ_τ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// P(x) = value + gradient · x (gradient\[i\]\[j\] = ∂P_i/∂x_j).
+    Affine {
+        /// P at the origin.
+        value: [f64; 2],
+        /// Constant gradient of P.
+        gradient: [[f64; 2]; 2],
+    },
+    /// P = −pressure · n with the outward normal n.
+    Pressure(f64),
+}
+
+/// A frictionless unilateral contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// The two boundaries, or the one that meets a rigid obstacle.
+    pub sides: ContactSides,
+    /// Initial gap g ≥ 0.
+    pub gap: Gap,
+}
+
+/// The sides of one contact.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ContactSides {
+    /// Two boundaries that coincide as polylines; forces are reported on the first.
+    Between([String; 2]),
+    /// One boundary against a rigid, fixed obstacle of the same shape.
+    Rigid(String),
+}
+
+impl Contact {
+    /// Name used in reports and check names: `first|second`, or `first|rigid`.
+    pub fn name(&self) -> String {
+        match &self.sides {
+            ContactSides::Between([a, b]) => format!("{a}|{b}"),
+            ContactSides::Rigid(a) => format!("{a}|rigid"),
+        }
+    }
+
+    /// Name of the first side.
+    pub fn first(&self) -> &str {
+        match &self.sides {
+            ContactSides::Between([a, _]) => a,
+            ContactSides::Rigid(a) => a,
+        }
+    }
+}
+
+/// Initial gap along the first side.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Gap {
+    /// The same everywhere.
+    Constant(f64),
+    /// Piecewise linear: (s, g) with s ascending, s being the arc length from the end of the first side that comes
+    /// first in (x, y) order. Constant beyond the first and the last entry.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Gap {
+    /// g at arc length `s`.
+    pub fn at(&self, s: f64) -> f64 {
+        match self {
+            Gap::Constant(g) => *g,
+            Gap::Table(rows) => {
+                let after = rows.partition_point(|row| row[0] <= s);
+                if after == 0 {
+                    rows[0][1]
+                } else if after == rows.len() {
+                    rows[after - 1][1]
+                } else {
+                    let ([s0, g0], [s1, g1]) = (rows[after - 1], rows[after]);
+                    g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
+                }
+            }
+        }
+    }
+}
