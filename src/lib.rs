@@ -1,5 +1,9 @@
 //! hypercircle: guaranteed two-sided energy bounds for plane frictionless contact.
 
+pub mod compare;
+pub mod dual;
+pub mod element;
 pub mod mesh;
 pub mod problem;
+pub mod report;
 pub mod scene;

@@ -1,0 +1,159 @@
+//! Fields on the split triangulation: piecewise polynomial stresses and quadratic displacements.
+//!
+//! Every triangle a_0 a_1 a_2 is split at its centroid 0 into three subtriangles; subtriangle i is opposite vertex i
+//! and has the corners (a_{i+1}, a_{i+2}, 0). Barycentric coordinates on a subtriangle follow that order.
+
+/// A stress or traction-like field of degree p on every subtriangle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StressField {
+    degree: usize,
+    values: Vec<[f64; 3]>,
+}
+
+impl StressField {
+    /// A zero field of the given degree on `triangles` triangles.
+    pub fn zeros(degree: usize, triangles: usize) -> Self {
+        StressField { degree, values: vec![[0.0; 3]; triangles * 3 * lattice_len(degree)] }
+    }
+
+    /// Polynomial degree p on each subtriangle.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.values.len() / self.stride()
+    }
+
+    /// Whether there are no triangles.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Values (xx, yy, xy) at the lattice nodes of triangle `t`, subtriangle by subtriangle; for degree 1 the nodes
+    /// are the corners (a_{i+1}, a_{i+2}, 0).
+    pub fn block(&self, t: usize) -> &[[f64; 3]] {
+        &self.values[t * self.stride()..(t + 1) * self.stride()]
+    }
+
+    /// Mutable access to [`Self::block`].
+    pub fn block_mut(&mut self, t: usize) -> &mut [[f64; 3]] {
+        let stride = self.stride();
+        &mut self.values[t * stride..(t + 1) * stride]
+    }
+
+    /// All blocks, for filling in parallel: chunks of [`Self::stride`].
+    pub fn values_mut(&mut self) -> &mut [[f64; 3]] {
+        &mut self.values
+    }
+
+    /// Values per triangle.
+    pub fn stride(&self) -> usize {
+        3 * lattice_len(self.degree)
+    }
+
+    /// Stress (xx, yy, xy) at barycentric coordinates `bary` of subtriangle `sub` of triangle `t`.
+    pub fn at(&self, t: usize, sub: usize, bary: [f64; 3]) -> [f64; 3] {
+        let nodes = lattice_len(self.degree);
+        let block = &self.block(t)[sub * nodes..(sub + 1) * nodes];
+        let mut stress = [0.0; 3];
+        for (value, (k, weight)) in block.iter().zip(lattice_shape(self.degree, bary)) {
+            debug_assert!(k < nodes);
+            for c in 0..3 {
+                stress[c] += weight * value[c];
+            }
+        }
+        stress
+    }
+
+    /// Mean of the stress over triangle `t`, weighted by area (subtriangles are equal).
+    pub fn mean(&self, t: usize) -> [f64; 3] {
+        // Exact for degree 1; for higher degree the centroid rule of the lattice would not be, so integrate.
+        let mut mean = [0.0; 3];
+        for sub in 0..3 {
+            for (bary, weight) in crate::element::quadrature::triangle_rule(self.degree) {
+                let value = self.at(t, sub, *bary);
+                for c in 0..3 {
+                    mean[c] += weight * value[c] / 3.0;
+                }
+            }
+        }
+        mean
+    }
+}
+
+/// Number of nodes of the principal lattice of degree p on a triangle.
+pub fn lattice_len(degree: usize) -> usize {
+    (degree + 1) * (degree + 2) / 2
+}
+
+/// Lagrange shape functions of the principal lattice, as (node, value); for degree 1 node k is corner k.
+///
+/// Nodes are ordered by corners first for degree 1, and lexicographically by (i, j) of p·bary = (i, j, k) otherwise.
+fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item = (usize, f64)> {
+    let p = degree;
+    let factor = move |n: usize, x: f64| (0..n).map(|m| (p as f64 * x - m as f64) / (n - m) as f64).product::<f64>();
+    let mut node = 0;
+    (0..=p).rev().flat_map(move |i| (0..=p - i).rev().map(move |j| (i, j))).map(move |(i, j)| {
+        let value = factor(i, bary[0]) * factor(j, bary[1]) * factor(p - i - j, bary[2]);
+        node += 1;
+        (node - 1, value)
+    })
+}
+
+/// A displacement, quadratic on every subtriangle: the space that carries P1, P2 and the free upper bound alike.
+///
+/// Nodes of a triangle: corners a_0, a_1, a_2; midpoints of the edges opposite a_0, a_1, a_2; centroid 0; midpoints of
+/// 0a_0, 0a_1, 0a_2.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Displacement {
+    /// Ten nodal values per triangle.
+    pub values: Vec<[[f64; 2]; 10]>,
+}
+
+impl Displacement {
+    /// From values at vertices, linear on each triangle.
+    pub fn from_p1(mesh: &crate::mesh::Triangulation, vertex: &[[f64; 2]]) -> Self {
+        let mid = |e: usize| {
+            let [a, b] = mesh.edges[e].vertices;
+            mean2(vertex[a], vertex[b])
+        };
+        Self::from_p2(mesh, vertex, &(0..mesh.edges.len()).map(mid).collect::<Vec<_>>())
+    }
+
+    /// From values at vertices and edge midpoints, quadratic on each triangle.
+    pub fn from_p2(mesh: &crate::mesh::Triangulation, vertex: &[[f64; 2]], edge: &[[f64; 2]]) -> Self {
+        let values = (0..mesh.triangles.len())
+            .map(|t| {
+                let u = mesh.triangles[t].map(|v| vertex[v]);
+                let m = mesh.triangle_edges[t].map(|e| edge[e]);
+                // Barycentric interpolation: N_i = λ_i (2λ_i − 1), N_{jk} = 4 λ_j λ_k.
+                let at = |l: [f64; 3]| {
+                    let mut w = [0.0; 2];
+                    for c in 0..2 {
+                        for i in 0..3 {
+                            w[c] +=
+                                l[i] * (2.0 * l[i] - 1.0) * u[i][c] + 4.0 * l[(i + 1) % 3] * l[(i + 2) % 3] * m[i][c];
+                        }
+                    }
+                    w
+                };
+                let (t1, t2, s) = (1.0 / 3.0, 2.0 / 3.0, 1.0 / 6.0);
+                [u[0], u[1], u[2], m[0], m[1], m[2], at([t1, t1, t1]), at([t2, s, s]), at([s, t2, s]), at([s, s, t2])]
+            })
+            .collect();
+        Displacement { values }
+    }
+
+    /// The six nodes of subtriangle `sub` of triangle `t`: corners (a_{i+1}, a_{i+2}, 0), then the midpoints opposite them.
+    pub fn sub(&self, t: usize, sub: usize) -> [[f64; 2]; 6] {
+        let u = &self.values[t];
+        let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
+        [u[j], u[k], u[6], u[7 + k], u[7 + j], u[3 + sub]]
+    }
+}
+
+fn mean2(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+}

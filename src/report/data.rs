@@ -1,0 +1,266 @@
+//! The data structure behind every output file.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::compare::Check;
+use crate::dual::{DualSolution, Phases};
+use crate::element::Displacement;
+use crate::problem::{Note, Problem};
+
+/// `report.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Report {
+    /// Version of this format.
+    pub schema_version: u32,
+    /// Scene name.
+    pub scene: String,
+    /// Scene title.
+    pub title: String,
+    /// The command that made it: `verify`, `solve`, `certify`.
+    pub command: String,
+    /// The verdict.
+    pub status: Status,
+    /// One sentence that says the verdict in words.
+    pub verdict: String,
+    /// The energy bracket; `null` where no dual solution exists.
+    pub energy: Option<Energy>,
+    /// The dual solve.
+    pub dual: Option<DualSummary>,
+    /// Displacement solutions.
+    pub primal: Vec<PrimalSummary>,
+    /// Contacts, in scene order.
+    pub contact: Vec<ContactSummary>,
+    /// Stress comparison; `null` without a primal solution.
+    pub stress: Option<StressSummary>,
+    /// Every check made, or that could not be made.
+    pub checks: Vec<Check>,
+    /// What the reader has to know.
+    pub notes: Vec<Note>,
+    /// How adaptive refinement went, one row per mesh; empty without it.
+    pub history: Vec<HistoryRow>,
+    /// What made the numbers.
+    pub provenance: Provenance,
+}
+
+/// The verdict.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// All checks passed.
+    Agree,
+    /// At least one check did not.
+    Disagree,
+    /// The scene has no equilibrium.
+    Infeasible,
+    /// A solver failed.
+    Failed,
+}
+
+/// The two-sided bound of the exact energy 𝓛(u).
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Energy {
+    /// −Π(λ_h), less what rounding can have cost.
+    pub lower: f64,
+    /// The best admissible 𝓛(v), plus what rounding can have cost.
+    pub upper: f64,
+    /// upper − lower.
+    pub gap: f64,
+    /// √(gap / 𝒮(λ_h)).
+    pub relative_error_bound: f64,
+    /// Which displacement gives `upper`: `free`, `FEniCSx P1`, `FEniCSx P2`, `certified field`.
+    pub upper_from: String,
+    /// The upper bound from the dual solve alone; `null` where none could be built.
+    pub free_upper: Option<f64>,
+    /// The gap of the free bound from its local terms: constitutive-relation error plus contact complementarity.
+    pub gap_local: Option<f64>,
+    /// 𝒮(λ_h) = ½∫ a λ_h : λ_h.
+    pub complementary: f64,
+    /// By how much rounding and residual equilibrium widened the bracket, already contained in `lower` and `upper`.
+    pub widening: f64,
+    /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
+    pub guaranteed: bool,
+}
+
+/// The dual solve in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct DualSummary {
+    /// `condensed`, `clarabel`, `uzawa` or `active-set`.
+    pub method: String,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Steps of the contact iteration.
+    pub iterations: usize,
+    /// Largest violation of equilibrium relative to the applied load.
+    pub equilibrium_residual: f64,
+    /// Seconds by phase.
+    pub seconds: Phases,
+}
+
+/// One displacement solution.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PrimalSummary {
+    /// `FEniCSx P1`, `FEniCSx P2`, or the file of a certified field.
+    pub name: String,
+    /// Program.
+    pub solver: String,
+    /// Its version.
+    pub version: String,
+    /// Polynomial degree.
+    pub degree: usize,
+    /// 𝓛(u_h).
+    pub energy: f64,
+    /// Whether the field is admissible everywhere, so that its energy is an upper bound.
+    pub admissible: bool,
+    /// Guaranteed relative energy-norm error of its stress, √((𝓛(u_h) + Π(λ_h)) / 𝒮(λ_h)).
+    pub relative_error_bound: Option<f64>,
+    /// Nonlinear iterations.
+    pub iterations: usize,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Seconds by phase, as reported by the program; `total` is always there.
+    pub seconds: std::collections::BTreeMap<String, f64>,
+}
+
+/// A pair of values, one from each side.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct TwoSides<T> {
+    /// From λ_h.
+    pub dual: T,
+    /// From the best displacement solution; `null` without one.
+    pub primal: Option<T>,
+}
+
+/// One contact.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ContactSummary {
+    /// `first|second`.
+    pub name: String,
+    /// Force on the first side.
+    pub resultant: TwoSides<[f64; 2]>,
+    /// Moment about the origin on the first side.
+    pub moment: TwoSides<f64>,
+    /// Largest pressure.
+    pub pressure_max: TwoSides<f64>,
+    /// Where it is.
+    pub pressure_max_at: TwoSides<[f64; 2]>,
+    /// Fraction of the length that carries no pressure.
+    pub open_fraction: f64,
+    /// The same from the displacement solution.
+    pub open_fraction_primal: Option<f64>,
+    /// Arc length of each end of contact (where pressure falls to zero between the two ends of the interface).
+    pub contact_ends: Vec<f64>,
+    /// L² norm of the pressure difference relative to the L² norm of the dual pressure.
+    pub pressure_l2_difference: Option<f64>,
+    /// Total length of the interface.
+    pub length: f64,
+    /// Pressure along the interface from every model, for the picture.
+    pub profiles: Vec<Profile>,
+}
+
+/// Pressure along one interface from one model.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Profile {
+    /// `dual`, `FEniCSx P2 reactions`, `FEniCSx P2 trace`, …
+    pub model: String,
+    /// (arc length, pressure ≥ 0 in compression); consecutive points with equal arc length are jumps.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Stress of the dual against stress of the best displacement solution.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct StressSummary {
+    /// Which displacement solution.
+    pub against: String,
+    /// ‖λ_h − σ(u_h)‖_a / ‖λ_h‖_a.
+    pub relative_energy_norm_difference: f64,
+    /// Triangle that contributes most.
+    pub worst_triangle: usize,
+    /// Centroid of that triangle.
+    pub worst_at: [f64; 2],
+    /// Its share of the squared difference.
+    pub worst_share: f64,
+    /// Largest von Mises stress, at triangle centroids.
+    pub von_mises_max: TwoSides<f64>,
+    /// Relative L² difference of σ_xx, σ_yy, σ_xy and von Mises, each relative to the L² norm of the whole dual stress.
+    pub component_l2_difference: ComponentDifference,
+}
+
+/// Relative L² differences.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct ComponentDifference {
+    /// σ_xx.
+    pub xx: f64,
+    /// σ_yy.
+    pub yy: f64,
+    /// σ_xy.
+    pub xy: f64,
+    /// Von Mises stress.
+    pub von_mises: f64,
+}
+
+/// One mesh of an adaptive run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct HistoryRow {
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// −Π(λ_h).
+    pub lower: f64,
+    /// 𝓛(v).
+    pub upper: f64,
+    /// √(gap / 𝒮).
+    pub relative_error_bound: f64,
+    /// Seconds since the start.
+    pub seconds: f64,
+}
+
+/// What made the numbers.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct Provenance {
+    /// Version of hypercircle.
+    pub version: String,
+    /// Versions of the libraries and programs that took part.
+    pub components: std::collections::BTreeMap<String, String>,
+    /// SHA-256 of the scene file.
+    pub scene_sha256: String,
+    /// SHA-256 of the mesh (points, triangles, bodies) as solved.
+    pub mesh_sha256: String,
+    /// SHA-256 of the committed Cargo.lock.
+    pub lock_sha256: String,
+    /// Threads used.
+    pub threads: usize,
+    /// Seconds by phase of the whole run.
+    pub seconds: std::collections::BTreeMap<String, f64>,
+}
+
+/// Everything a run produced: the report and the fields behind its pictures.
+#[derive(Debug)]
+pub struct Dossier<'a> {
+    /// The numbers.
+    pub report: Report,
+    /// Scene and mesh.
+    pub problem: &'a Problem,
+    /// λ_h; `None` where no dual solution exists.
+    pub dual: Option<&'a DualSolution>,
+    /// Displacements by name; the first is the free upper bound where there is one.
+    pub displacements: Vec<(String, &'a Displacement)>,
+    /// Scalar fields on triangles for maps and VTU: name, one value per triangle.
+    pub maps: Vec<Map>,
+    /// A rigid motion to show, for a scene without equilibrium: displacement per vertex.
+    pub motion: Option<Vec<[f64; 2]>>,
+}
+
+/// A scalar per triangle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// Key used in the VTU.
+    pub key: &'static str,
+    /// Title in words.
+    pub title: &'static str,
+    /// One value per triangle.
+    pub values: Vec<f64>,
+}
