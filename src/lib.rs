@@ -1,5 +1,6 @@
 //! hypercircle: guaranteed two-sided energy bounds for plane frictionless contact.
 
+pub mod bounds;
 pub mod compare;
 pub mod dual;
 pub mod element;

@@ -1,6 +1,29 @@
 //! The dual problem: minimise the complementary energy over self-equilibrated stresses.
+//!
+//! A [`DualMethod`] finds the unique λ_h; [`solve`] measures what it found. Methods differ in how they get there and in
+//! nothing else, so every one of them is tested against the others.
+
+mod active_set;
+mod condensed;
+pub mod equilibrium;
+mod factor;
+mod hybrid;
+mod method;
+pub mod modes;
+pub mod qp;
+mod system;
+mod unknowns;
+
+use std::time::Instant;
+
+pub use active_set::ActiveSet;
+pub use condensed::Condensed;
+pub use equilibrium::Equilibrium;
+pub use hybrid::Motion;
+pub use method::{DualError, DualMethod, Found, Options};
 
 use crate::element::StressField;
+use crate::problem::{ContactPair, Problem};
 
 /// An equilibrated stress field λ_h that minimises Π, and what is known about how well it does so.
 #[derive(Debug, Clone)]
@@ -12,14 +35,16 @@ pub struct DualSolution {
     /// Moments m_{e,p} = ∫_e u q_p ds of the edge displacement, conjugate to the traction end values: for each edge of
     /// the mesh and each of its two end vertices a vector in Cartesian components.
     pub moments: Vec<[[f64; 2]; 2]>,
-    /// Normal traction T_n ≤ 0 at the two ends of every contact pair (ends as in [`crate::problem::ContactPair::first`]).
+    /// Normal traction T_n ≤ 0 at the two ends of every contact pair (ends as in [`ContactPair::first`]).
     pub contact_traction: Vec<Vec<[f64; 2]>>,
-    /// Number of traction unknowns or multipliers solved for.
+    /// Which contact ends are closed: two per pair, interface by interface.
+    pub closed: Vec<bool>,
+    /// Number of unknowns solved for.
     pub unknowns: usize,
     /// Steps of the contact iteration.
     pub iterations: usize,
-    /// Largest violation of equilibrium, measured on the stresses and relative to the applied load.
-    pub equilibrium_residual: f64,
+    /// Violation of equilibrium, measured on the stresses and relative to the applied load.
+    pub equilibrium: Equilibrium,
     /// Seconds by phase.
     pub seconds: Phases,
     /// What the method wants the reader to know.
@@ -41,4 +66,52 @@ pub struct Phases {
     pub recover: f64,
     /// The whole dual solve with its bracket.
     pub total: f64,
+}
+
+/// Solves the dual problem and measures the solution.
+///
+/// `motions` are the rigid motions that neither the supports nor the closed contacts resist; the loads do no work on
+/// them.
+///
+/// # Errors
+/// As [`DualMethod::solve`].
+pub fn solve(
+    method: &dyn DualMethod,
+    problem: &Problem,
+    motions: &[Motion],
+    options: &Options,
+) -> Result<DualSolution, DualError> {
+    let start = Instant::now();
+    let found = method.solve(problem, motions, options)?;
+    let measure = Instant::now();
+    let equilibrium = Equilibrium::measure(problem, &found.stress);
+    let contact_traction = contact_traction(problem, &found.stress);
+    let mut seconds = found.seconds;
+    seconds.recover += measure.elapsed().as_secs_f64();
+    seconds.total = start.elapsed().as_secs_f64();
+    Ok(DualSolution {
+        method: method.name(),
+        stress: found.stress,
+        moments: found.moments,
+        contact_traction,
+        closed: found.closed,
+        unknowns: found.unknowns,
+        iterations: found.iterations,
+        equilibrium,
+        seconds,
+        notes: found.notes,
+    })
+}
+
+/// T_n at the two ends of every pair, as the first side feels it.
+fn contact_traction(problem: &Problem, stress: &StressField) -> Vec<Vec<[f64; 2]>> {
+    let value = |pair: &ContactPair| {
+        let Some(e) = pair.edges[0] else { return [0.0; 2] };
+        let t = equilibrium::edge_traction(problem, stress, e, 0);
+        pair.first.map(|v| {
+            let end = usize::from(problem.mesh.edges[e].vertices[0] != v);
+            t[end][0] * pair.normal[0] + t[end][1] * pair.normal[1]
+        })
+    };
+    problem.interfaces.iter().map(|i| i.pairs.iter().map(value).collect()).collect()
 }

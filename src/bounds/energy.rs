@@ -1,0 +1,246 @@
+//! Complementary and potential energy, and the gap between them term by term.
+//!
+//! −Π(λ) = −½∫ a λ:λ + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g, 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫_{Γτ} P·v, and
+//!
+//! 𝓛(v) + Π(λ) = ½‖c e(v) − λ‖²_a + ∫_{ΓK} (−T_n(λ)) (g − v_n' − v_n'') ds
+//!
+//! for equilibrated λ and admissible v. The two sides share no arithmetic.
+
+use rayon::prelude::*;
+
+use super::strain::{strains, sub_area};
+use super::sum::Sum;
+use crate::dual::equilibrium::edge_traction;
+use crate::dual::modes::materials;
+use crate::element::quadrature::triangle_rule;
+use crate::element::{Displacement, StressField};
+use crate::problem::{Condition, ContactPair, Problem};
+
+/// Complementary energy of a stress field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Complementary {
+    /// 𝒮(λ) = ½∫ a λ:λ.
+    pub strain: f64,
+    /// ∫_{Γu} T·u0.
+    pub support_work: f64,
+    /// ∫_{ΓK} T_n g ≤ 0.
+    pub gap_work: f64,
+    /// Sum of the absolute values of all terms.
+    pub magnitude: f64,
+}
+
+impl Complementary {
+    /// −Π(λ), the lower bound.
+    pub fn lower(&self) -> f64 {
+        (self.support_work + self.gap_work) - self.strain
+    }
+}
+
+/// Computes the complementary energy of `stress`, thickness included.
+pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let rule = triangle_rule(2 * stress.degree());
+    let strain: Vec<f64> = (0..mesh.triangles.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|t| {
+            let material = &materials[mesh.body[t]];
+            let third = mesh.area(t) / 3.0;
+            let mut sum = 0.0;
+            for sub in 0..3 {
+                for (bary, weight) in rule {
+                    let value = stress.at(t, sub, *bary);
+                    sum += 0.5 * weight * third * material.product(value, value);
+                }
+            }
+            sum
+        })
+        .collect();
+    let strain: Sum = strain.into_iter().collect();
+    let mut support = Sum::default();
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        if let Condition::Clamped(u0) = condition {
+            let (length, _) = mesh.edge_frame(e);
+            for t in edge_traction(problem, stress, e, 0) {
+                support.add(0.5 * length * (t[0] * u0[0] + t[1] * u0[1]));
+            }
+        }
+    }
+    let mut gap = Sum::default();
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let [ta, tb] = normal_traction(problem, stress, pair);
+        let [ga, gb] = pair.gap;
+        gap.add(pair.length / 6.0 * (2.0 * ta * ga + ta * gb + tb * ga + 2.0 * tb * gb));
+    }
+    let t = problem.scene.thickness;
+    Complementary {
+        strain: t * strain.value(),
+        support_work: t * support.value(),
+        gap_work: t * gap.value(),
+        magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
+    }
+}
+
+/// T_n of the first side at the two ends of a pair.
+pub fn normal_traction(problem: &Problem, stress: &StressField, pair: &ContactPair) -> [f64; 2] {
+    let Some(e) = pair.edges[0] else { return [0.0; 2] };
+    let t = edge_traction(problem, stress, e, 0);
+    pair.first.map(|v| {
+        let end = usize::from(problem.mesh.edges[e].vertices[0] != v);
+        t[end][0] * pair.normal[0] + t[end][1] * pair.normal[1]
+    })
+}
+
+/// Potential energy of a displacement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Potential {
+    /// ½∫ c e(v):e(v).
+    pub strain: f64,
+    /// ∫F·v + ∫P·v.
+    pub work: f64,
+    /// Sum of the absolute values of all terms.
+    pub magnitude: f64,
+}
+
+impl Potential {
+    /// 𝓛(v).
+    pub fn total(&self) -> f64 {
+        self.strain - self.work
+    }
+}
+
+/// Computes the potential energy of `v`, thickness included.
+pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|t| {
+            let body = mesh.body[t];
+            let force = problem.scene.bodies[body].body_force;
+            let corners = mesh.corners(t);
+            let (mut strain, mut work) = (0.0, 0.0);
+            for sub in 0..3 {
+                let area = sub_area(corners);
+                for e in strains(corners, sub, &v.sub(t, sub)) {
+                    strain += 0.5 * area / 3.0 * materials[body].strain_product(e, e);
+                }
+                for u in &v.sub(t, sub)[3..] {
+                    work += area / 3.0 * (force[0] * u[0] + force[1] * u[1]);
+                }
+            }
+            (strain, work)
+        })
+        .collect();
+    let strain: Sum = terms.iter().map(|t| t.0).collect();
+    let mut work: Sum = terms.iter().map(|t| t.1).collect();
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        if let Condition::Traction([pa, pb]) = condition
+            && (*pa != [0.0; 2] || *pb != [0.0; 2])
+        {
+            let (length, _) = mesh.edge_frame(e);
+            let [ua, um, ub] = edge_values(problem, v, e);
+            for c in 0..2 {
+                work.add(length / 6.0 * (pa[c] * ua[c] + 2.0 * (pa[c] + pb[c]) * um[c] + pb[c] * ub[c]));
+            }
+        }
+    }
+    let t = problem.scene.thickness;
+    Potential {
+        strain: t * strain.value(),
+        work: t * work.value(),
+        magnitude: t * (strain.magnitude() + work.magnitude()),
+    }
+}
+
+/// Values of `v` at the first end, the middle and the second end of a boundary edge.
+pub fn edge_values(problem: &Problem, v: &Displacement, e: usize) -> [[f64; 2]; 3] {
+    let mesh = &problem.mesh;
+    let edge = &mesh.edges[e];
+    let t = edge.triangles[0].unwrap_or(0);
+    let side = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+    let u = &v.values[t];
+    // From triangles[0] the edge runs from corner side + 1 to corner side + 2.
+    [u[(side + 1) % 3], u[3 + side], u[(side + 2) % 3]]
+}
+
+/// v_n' + v_n'' at the first end, the middle and the second end of a contact pair.
+pub fn jump_values(problem: &Problem, v: &Displacement, pair: &ContactPair) -> [f64; 3] {
+    let n = pair.normal;
+    let side = |e: usize, start: usize| {
+        let values = edge_values(problem, v, e).map(|u| u[0] * n[0] + u[1] * n[1]);
+        if problem.mesh.edges[e].vertices[0] == start { values } else { [values[2], values[1], values[0]] }
+    };
+    let own = pair.edges[0].map_or([0.0; 3], |e| side(e, pair.first[0]));
+    match (pair.edges[1], pair.second) {
+        (Some(e), Some(second)) => {
+            let other = side(e, second[0]);
+            [own[0] - other[0], own[1] - other[1], own[2] - other[2]]
+        }
+        _ => own,
+    }
+}
+
+/// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalGap {
+    /// ½‖c e(v) − λ‖²_a on each triangle.
+    pub triangles: Vec<f64>,
+    /// ∫ (−T_n)(g − v_n' − v_n'') ds on each contact pair, interface by interface.
+    pub pairs: Vec<Vec<f64>>,
+    /// Their sum.
+    pub total: f64,
+}
+
+/// Integrates the local terms of the gap, thickness included.
+pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> LocalGap {
+    let thickness = problem.scene.thickness;
+    let triangles = constitutive_error(problem, stress, v);
+    let pairs: Vec<Vec<f64>> = problem
+        .interfaces
+        .iter()
+        .map(|interface| {
+            interface
+                .pairs
+                .iter()
+                .map(|pair| {
+                    let [ta, tb] = normal_traction(problem, stress, pair);
+                    let [ga, gb] = pair.gap;
+                    let j = jump_values(problem, v, pair);
+                    let open = [ga - j[0], 0.5 * (ga + gb) - j[1], gb - j[2]];
+                    // Simpson's rule is exact for the cubic T_n · (g − jump).
+                    -thickness * pair.length / 6.0 * (ta * open[0] + 2.0 * (ta + tb) * open[1] + tb * open[2])
+                })
+                .collect()
+        })
+        .collect();
+    let total: Sum = triangles.iter().copied().chain(pairs.iter().flatten().copied()).collect();
+    LocalGap { triangles, pairs, total: total.value() }
+}
+
+/// ½‖c e(v) − λ‖²_a on each triangle, thickness included.
+pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacement) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let thickness = problem.scene.thickness;
+    (0..mesh.triangles.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map(|t| {
+            let material = &materials[mesh.body[t]];
+            let corners = mesh.corners(t);
+            let mut sum = 0.0;
+            for sub in 0..3 {
+                let strain = strains(corners, sub, &v.sub(t, sub));
+                for (e, (bary, weight)) in strain.iter().zip(triangle_rule(2)) {
+                    let of_stress = material.strain(stress.at(t, sub, *bary));
+                    let d = [e[0] - of_stress[0], e[1] - of_stress[1], e[2] - of_stress[2]];
+                    sum += 0.5 * weight * sub_area(corners) * material.strain_product(d, d);
+                }
+            }
+            thickness * sum
+        })
+        .collect()
+}

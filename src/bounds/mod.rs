@@ -1,0 +1,10 @@
+//! Two-sided bounds: complementary and potential energy, the free upper bound, and the gap in local terms.
+
+pub mod energy;
+pub mod strain;
+mod sum;
+pub mod upper;
+
+pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+pub use sum::Sum;
+pub use upper::{NoUpperBound, admissible};

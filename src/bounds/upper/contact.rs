@@ -1,0 +1,140 @@
+//! Admissible jumps on Γ_K.
+//!
+//! Along a contact edge d = v_n' + v_n'' − g is quadratic with Bernstein coefficients b0, b1, b2 and mean
+//! d̄ = (b0 + b1 + b2)/3 ≤ 0 known from the dual solve. With b0, b2 in [1.5 d̄, 0] the middle coefficient
+//! b1 = 3d̄ − b0 − b2 is at most zero as well: the jump is admissible everywhere and no volume is lost.
+
+use super::NoUpperBound;
+use super::holds::Hold;
+use crate::dual::DualSolution;
+use crate::problem::{Condition, ContactPair, Problem};
+
+/// Bounds on the jump at one end of one pair.
+struct End {
+    first: usize,
+    second: Option<usize>,
+    normal: [f64; 2],
+    low: f64,
+    high: f64,
+}
+
+/// Sweeps over all ends; ends that share no vertex are settled by the first.
+const MOST_SWEEPS: usize = 200;
+
+/// Moves vertex values so that every vertex jump lies within its bounds.
+///
+/// # Errors
+/// [`NoUpperBound::ForcedPenetration`] where supports leave no room for that.
+pub fn restrict_vertices(
+    problem: &Problem,
+    dual: &DualSolution,
+    holds: &[Hold],
+    vertex: &mut [[f64; 2]],
+) -> Result<(), NoUpperBound> {
+    let ends = ends(problem, dual);
+    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let tolerance = 1e-13 * size;
+    for _ in 0..MOST_SWEEPS {
+        let mut moved = false;
+        for end in &ends {
+            let off = excess(end, vertex);
+            if off == 0.0 {
+                continue;
+            }
+            let own = holds[end.first].project(end.normal);
+            let other = end.second.map_or([0.0; 2], |v| holds[v].project(end.normal));
+            let weight = dot(own, end.normal) + dot(other, end.normal);
+            if weight < 1e-12 {
+                continue;
+            }
+            let step = off / weight;
+            shift(&mut vertex[end.first], own, -step);
+            if let Some(v) = end.second {
+                shift(&mut vertex[v], other, step);
+            }
+            moved |= off.abs() > tolerance;
+        }
+        if !moved {
+            break;
+        }
+    }
+    for end in &ends {
+        let by = excess(end, vertex);
+        if by > tolerance.max(1e-12 * size) {
+            let [x, y] = problem.mesh.points[end.first];
+            return Err(NoUpperBound::ForcedPenetration { x, y, by });
+        }
+    }
+    Ok(())
+}
+
+/// By how much the jump is above (positive) or below (negative) its bounds.
+fn excess(end: &End, vertex: &[[f64; 2]]) -> f64 {
+    let jump = dot(vertex[end.first], end.normal) - end.second.map_or(0.0, |v| dot(vertex[v], end.normal));
+    if jump > end.high { jump - end.high } else { (jump - end.low).min(0.0) }
+}
+
+/// Both ends of all pairs, with the lower bounds of neighbouring pairs merged.
+fn ends(problem: &Problem, dual: &DualSolution) -> Vec<End> {
+    let mut ends = Vec::new();
+    for interface in &problem.interfaces {
+        let mean: Vec<f64> = interface.pairs.iter().map(|pair| mean_excess(dual, pair).min(0.0)).collect();
+        for (k, pair) in interface.pairs.iter().enumerate() {
+            for end in 0..2 {
+                // The neighbour that shares this vertex, where the interface goes on.
+                let neighbour = if end == 0 { k.checked_sub(1) } else { Some(k + 1) };
+                let shared = neighbour
+                    .and_then(|n| interface.pairs.get(n).map(|p| (n, p)))
+                    .filter(|(_, p)| p.first.contains(&pair.first[end]));
+                let low = shared.map_or(mean[k], |(n, _)| mean[k].max(mean[n]));
+                ends.push(End {
+                    first: pair.first[end],
+                    second: pair.second.map(|s| s[end]),
+                    normal: pair.normal,
+                    low: pair.gap[end] + 1.5 * low,
+                    high: pair.gap[end],
+                });
+            }
+        }
+    }
+    ends
+}
+
+/// Mean of v_n' + v_n'' − g over a pair, from the moments of the dual solve.
+fn mean_excess(dual: &DualSolution, pair: &ContactPair) -> f64 {
+    let total = |e: usize| {
+        let [a, b] = dual.moments[e];
+        dot([a[0] + b[0], a[1] + b[1]], pair.normal)
+    };
+    let jump = pair.edges[0].map_or(0.0, total) - pair.edges[1].map_or(0.0, total);
+    jump / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
+}
+
+/// Draws midpoints back where supports at the vertices or rounding left b1 above zero.
+pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f64; 2]]) {
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let [Some(own), other] = pair.edges else { continue };
+        let n = pair.normal;
+        let ends = [0, 1].map(|k| dot(vertex[pair.first[k]], n) - pair.second.map_or(0.0, |s| dot(vertex[s[k]], n)));
+        let centre = dot(middle[own], n) - other.map_or(0.0, |e| dot(middle[e], n));
+        let b1 = 2.0 * centre - 0.5 * (ends[0] + ends[1]) - 0.5 * (pair.gap[0] + pair.gap[1]);
+        if b1 <= 0.0 {
+            continue;
+        }
+        debug_assert!(matches!(problem.conditions[own], Condition::Contact { .. }));
+        let share = if other.is_some() { 0.25 } else { 0.5 };
+        shift(&mut middle[own], n, -share * b1);
+        if let Some(e) = other {
+            shift(&mut middle[e], n, share * b1);
+        }
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn shift(u: &mut [f64; 2], direction: [f64; 2], step: f64) {
+    u[0] += step * direction[0];
+    u[1] += step * direction[1];
+}

@@ -1,0 +1,76 @@
+//! The free upper bound: an admissible displacement from the dual solve alone.
+//!
+//! The edge moments of the dual solve say how every edge moves on average, its stresses how every triangle strains.
+//! From these: vertex values by a local fit ([`fit`]); edge midpoints such that ∫_e u ds is the dual one, so that every
+//! triangle changes its volume as the dual solution says and nothing locks; vertex jumps on Γ_K restricted so that the
+//! quadratic jump stays admissible between its nodes too ([`contact`]); and the inside of each triangle by minimising
+//! its energy on the three subtriangles ([`interior`]). Quadratics on that split can follow an incompressible field
+//! (Arnold & Qin 1992), which keeps the bound uniform as ν → ½.
+
+mod contact;
+mod fit;
+mod holds;
+mod interior;
+
+use self::holds::{Hold, holds};
+use crate::dual::DualSolution;
+use crate::element::Displacement;
+use crate::problem::{Condition, Problem};
+
+/// Why no admissible displacement could be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoUpperBound {
+    /// Supports that meet in a vertex prescribe different displacements there.
+    #[error(
+        "the supports that meet at ({x}, {y}) prescribe different displacements, which no displacement of finite energy \
+         can follow"
+    )]
+    SupportsDisagree {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
+    /// Supports hold a contact apart from what the gap allows.
+    #[error("the supports force a penetration of {by:.3e} at ({x}, {y})")]
+    ForcedPenetration {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+        /// How deep.
+        by: f64,
+    },
+}
+
+/// Builds the displacement.
+///
+/// # Errors
+/// [`NoUpperBound`] where supports contradict each other or the contact.
+pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement, NoUpperBound> {
+    let mesh = &problem.mesh;
+    let holds = holds(problem)?;
+    let mut vertex = fit::vertex_values(problem, dual);
+    for (value, hold) in vertex.iter_mut().zip(&holds) {
+        *value = hold.impose(*value);
+    }
+    contact::restrict_vertices(problem, dual, &holds, &mut vertex)?;
+    let mut middle: Vec<[f64; 2]> = (0..mesh.edges.len())
+        .map(|e| {
+            if let Condition::Clamped(u0) = problem.conditions[e] {
+                return u0;
+            }
+            let (length, normal) = mesh.edge_frame(e);
+            let [a, b] = mesh.edges[e].vertices.map(|v| vertex[v]);
+            let [ma, mb] = dual.moments[e];
+            // Simpson: l/6 (u_a + 4 u_mid + u_b) = m_a + m_b.
+            let u = [0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c]));
+            match problem.conditions[e] {
+                Condition::Roller => Hold::Line { normal, value: 0.0 }.impose(u),
+                _ => u,
+            }
+        })
+        .collect();
+    contact::restrict_middles(problem, &vertex, &mut middle);
+    Ok(interior::fill(problem, &vertex, &middle))
+}

@@ -1,0 +1,148 @@
+//! Equilibrium, measured on the stresses themselves.
+
+use crate::element::StressField;
+use crate::problem::{Condition, Problem};
+
+/// How well a stress field balances the loads. All figures are relative to the applied load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equilibrium {
+    /// Largest jump of traction across an interior edge or a closed pair, and largest shear on rollers and contacts.
+    pub jump: f64,
+    /// Largest difference between traction and applied traction.
+    pub applied: f64,
+    /// Largest resultant of boundary tractions and body force on any body.
+    pub resultant: f64,
+    /// The traction that the first two are relative to.
+    pub scale: f64,
+}
+
+impl Equilibrium {
+    /// The largest of the three.
+    pub fn residual(&self) -> f64 {
+        self.jump.max(self.applied).max(self.resultant)
+    }
+
+    /// Measures `stress` on `problem`.
+    pub fn measure(problem: &Problem, stress: &StressField) -> Self {
+        let mesh = &problem.mesh;
+        let bodies = problem.scene.bodies.len();
+        let scale = load_scale(problem, stress);
+        let (mut jump, mut applied) = (0.0_f64, 0.0_f64);
+        let mut force = vec![[0.0; 2]; bodies];
+        let mut gross = vec![0.0; bodies];
+        for (e, edge) in mesh.edges.iter().enumerate() {
+            let own = edge_traction(problem, stress, e, 0);
+            let (length, normal) = mesh.edge_frame(e);
+            let tangential = |t: [f64; 2]| (t[1] * normal[0] - t[0] * normal[1]).abs();
+            match problem.conditions[e] {
+                Condition::Interior => {
+                    let other = edge_traction(problem, stress, e, 1);
+                    for end in 0..2 {
+                        jump = jump.max(norm([own[end][0] + other[end][0], own[end][1] + other[end][1]]));
+                    }
+                }
+                Condition::Traction(p) => {
+                    for end in 0..2 {
+                        applied = applied.max(norm([own[end][0] - p[end][0], own[end][1] - p[end][1]]));
+                    }
+                }
+                Condition::Clamped(_) => {}
+                Condition::Roller => jump = jump.max(tangential(own[0])).max(tangential(own[1])),
+                Condition::Contact { .. } => jump = jump.max(tangential(own[0])).max(tangential(own[1])),
+            }
+            let sides = usize::from(!edge.is_boundary()) + 1;
+            for (side, triangle) in edge.triangles.iter().take(sides).enumerate() {
+                // Interior edges between two bonded bodies count for both.
+                let Some(t) = *triangle else { continue };
+                let body = mesh.body[t];
+                let between =
+                    edge.triangles[1].is_some_and(|o| mesh.body[o] != mesh.body[edge.triangles[0].unwrap_or(o)]);
+                if edge.is_boundary() || between {
+                    let t = edge_traction(problem, stress, e, side);
+                    for c in 0..2 {
+                        force[body][c] += 0.5 * length * (t[0][c] + t[1][c]);
+                    }
+                    gross[body] += 0.5 * length * (norm(t[0]) + norm(t[1]));
+                }
+            }
+        }
+        for interface in &problem.interfaces {
+            for pair in &interface.pairs {
+                if let ([Some(a), Some(b)], Some(second)) = (pair.edges, pair.second) {
+                    let (ta, tb) = (edge_traction(problem, stress, a, 0), edge_traction(problem, stress, b, 0));
+                    let at = |e: usize, t: [[f64; 2]; 2], v: usize| t[usize::from(mesh.edges[e].vertices[0] != v)];
+                    for end in 0..2 {
+                        let (p, q) = (at(a, ta, pair.first[end]), at(b, tb, second[end]));
+                        jump = jump.max(norm([p[0] + q[0], p[1] + q[1]]));
+                    }
+                }
+            }
+        }
+        for t in 0..mesh.triangles.len() {
+            let body = mesh.body[t];
+            let f = problem.scene.bodies[body].body_force;
+            let area = mesh.area(t);
+            for c in 0..2 {
+                force[body][c] += f[c] * area;
+            }
+            gross[body] += norm(f) * area;
+        }
+        let resultant =
+            (0..bodies).map(|b| if gross[b] > 0.0 { norm(force[b]) / gross[b] } else { 0.0 }).fold(0.0, f64::max);
+        let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
+        Equilibrium { jump: relative(jump), applied: relative(applied), resultant, scale }
+    }
+}
+
+/// Traction of the stress on edge `e` at its two ends, as seen from its first or second triangle (outward normal of
+/// that triangle).
+pub fn edge_traction(problem: &Problem, stress: &StressField, e: usize, side: usize) -> [[f64; 2]; 2] {
+    let mesh = &problem.mesh;
+    let edge = &mesh.edges[e];
+    let Some(t) = edge.triangles[side] else { return [[0.0; 2]; 2] };
+    let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+    let (_, n) = mesh.edge_frame(e);
+    let sign = if side == 0 { 1.0 } else { -1.0 };
+    let start = mesh.triangles[t][(sub + 1) % 3];
+    [0, 1].map(|end| {
+        let first = edge.vertices[end] == start;
+        let tau = stress.at(t, sub, if first { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
+        [sign * (tau[0] * n[0] + tau[2] * n[1]), sign * (tau[2] * n[0] + tau[1] * n[1])]
+    })
+}
+
+/// The largest applied traction: P on Γ_τ, or what a body force adds up to across its body; where nothing is applied
+/// (prescribed displacements alone), the largest stress.
+fn load_scale(problem: &Problem, stress: &StressField) -> f64 {
+    let mut scale = 0.0_f64;
+    for condition in &problem.conditions {
+        if let Condition::Traction(p) = condition {
+            scale = scale.max(norm(p[0])).max(norm(p[1]));
+        }
+    }
+    let mut bounds =
+        vec![[f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY]; problem.scene.bodies.len()];
+    for t in 0..problem.mesh.triangles.len() {
+        let b = &mut bounds[problem.mesh.body[t]];
+        for p in problem.mesh.corners(t) {
+            *b = [b[0].min(p[0]), b[1].min(p[1]), b[2].max(p[0]), b[3].max(p[1])];
+        }
+    }
+    for (body, b) in problem.scene.bodies.iter().zip(&bounds) {
+        if b[0].is_finite() {
+            scale = scale.max(norm(body.body_force) * (b[2] - b[0]).min(b[3] - b[1]));
+        }
+    }
+    if scale == 0.0 {
+        for t in 0..stress.len() {
+            for value in stress.block(t).as_flattened() {
+                scale = scale.max(value.abs());
+            }
+        }
+    }
+    scale
+}
+
+fn norm(v: [f64; 2]) -> f64 {
+    v[0].hypot(v[1])
+}

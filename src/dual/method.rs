@@ -1,0 +1,97 @@
+//! The seam between the dual problem and the methods that solve it.
+
+use faer::Par;
+
+use super::{Motion, Phases};
+use crate::element::{Block, EquilibriumElement, StressField};
+use crate::problem::Problem;
+
+/// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
+pub trait DualMethod: Sync {
+    /// Name on the command line and in reports.
+    fn name(&self) -> &'static str;
+
+    /// Solves `problem`; `motions` are the rigid motions that neither supports nor closed contacts resist, on which the
+    /// loads are known to do no work.
+    ///
+    /// # Errors
+    /// [`DualError`] where the method did not arrive; a stop on the way is never a solution.
+    fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError>;
+}
+
+/// What a method hands back before it is measured.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// λ_h.
+    pub stress: StressField,
+    /// Edge moments, as in [`super::DualSolution::moments`].
+    pub moments: Vec<[[f64; 2]; 2]>,
+    /// Closed contact ends: two per pair, interface by interface.
+    pub closed: Vec<bool>,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Steps of the contact iteration.
+    pub iterations: usize,
+    /// Seconds by phase; `read` and `total` are the caller's.
+    pub seconds: Phases,
+    /// What the reader should know.
+    pub notes: Vec<String>,
+}
+
+/// Choices of a dual solve.
+#[derive(Clone)]
+pub struct Options {
+    /// The element.
+    pub element: &'static dyn EquilibriumElement,
+    /// Threads; one gives bit-identical results.
+    pub threads: usize,
+    /// First guess of the closed contact ends, from a similar problem.
+    pub closed: Option<Vec<bool>>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { element: &Block, threads: 1, closed: None }
+    }
+}
+
+impl Options {
+    /// Parallelism of the dense and sparse kernels.
+    pub fn par(&self) -> Par {
+        if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq }
+    }
+}
+
+/// Why there is no dual solution.
+#[derive(Debug, thiserror::Error)]
+pub enum DualError {
+    /// The sparse factorisation broke down.
+    #[error(
+        "the stiffness matrix could not be factorised ({reason}): the supports may not hold the bodies, or triangles are \
+         degenerate"
+    )]
+    Factorisation {
+        /// What the factorisation reported.
+        reason: String,
+    },
+    /// The contact state is not determined by the energy.
+    #[error("the contact state could not be determined: the open part of the contact leaves a body without hold")]
+    ContactUndetermined,
+    /// An iteration did not arrive.
+    #[error(
+        "{method} stopped after {iterations} iterations with a residual of {residual:.2e} where {wanted:.2e} was asked: \
+         {advice}"
+    )]
+    NotConverged {
+        /// Name of the method.
+        method: &'static str,
+        /// Iterations made.
+        iterations: usize,
+        /// Residual reached.
+        residual: f64,
+        /// Residual asked.
+        wanted: f64,
+        /// What to do.
+        advice: String,
+    },
+}

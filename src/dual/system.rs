@@ -1,0 +1,281 @@
+//! The hybrid form: element matrices and the sparse system they add up to.
+//!
+//! Eliminating the stresses element by element from the saddle-point problem leaves
+//!
+//! min ½ mᵀKm − fᵀm over moments m with jumps at most ∫ g q_p, K = Σ T Tᵀ, f = ∫P·(…) − T̄,
+//!
+//! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
+
+use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMat};
+use rayon::prelude::*;
+
+use super::Options;
+use super::modes::ModeTable;
+use super::unknowns::Unknowns;
+use crate::problem::{Condition, Problem};
+
+/// The assembled problem.
+#[derive(Debug)]
+pub struct System {
+    /// Numbering.
+    pub unknowns: Unknowns,
+    /// Element matrices.
+    pub modes: ModeTable,
+    /// Lower triangle of K.
+    pub matrix: SparseColMat<usize, f64>,
+    /// f, given moments included.
+    pub rhs: Vec<f64>,
+    /// The part of f that comes from applied tractions.
+    pub external: Vec<f64>,
+    /// Upper bound ∫ g q_p of each jump.
+    pub jump_bound: Vec<f64>,
+}
+
+/// Moments of a triangle in terms of unknowns, for the twelve traction values.
+struct Local {
+    rows: [[f64; 9]; 12],
+    terms: [[(usize, f64); 2]; 12],
+    len: [usize; 12],
+}
+
+impl System {
+    /// Numbers the unknowns of `problem` and assembles K and f.
+    pub fn new(problem: &Problem, options: &Options) -> Self {
+        Self::assemble(problem, Unknowns::new(problem), ModeTable::new(problem, options.element))
+    }
+
+    fn assemble(problem: &Problem, unknowns: Unknowns, modes: ModeTable) -> Self {
+        let mesh = &problem.mesh;
+        let pattern = Pattern::new(problem, &unknowns);
+        let mut values = vec![0.0; pattern.rows.len()];
+        let mut rhs = vec![0.0; unknowns.count];
+        // Element contributions are computed in parallel in chunks and added in order: the sum does not depend on
+        // the number of threads.
+        const CHUNK: usize = 4096;
+        let count = mesh.triangles.len();
+        for start in (0..count).step_by(CHUNK) {
+            let locals: Vec<(Local, [f64; 12])> = (start..(start + CHUNK).min(count))
+                .into_par_iter()
+                .with_min_len(64)
+                .map(|t| local(problem, &unknowns, &modes, t))
+                .collect();
+            for (local, load) in &locals {
+                for a in 0..12 {
+                    for &(dof, coefficient) in &local.terms[a][..local.len[a]] {
+                        rhs[dof] += coefficient * load[a];
+                    }
+                    for b in 0..=a {
+                        if local.len[a] == 0 || local.len[b] == 0 {
+                            continue;
+                        }
+                        let k: f64 = (0..9).map(|i| local.rows[a][i] * local.rows[b][i]).sum();
+                        for &(i, ci) in &local.terms[a][..local.len[a]] {
+                            for &(j, cj) in &local.terms[b][..local.len[b]] {
+                                // (a, b) stands for (b, a) too: twice on the diagonal, once below it.
+                                let twice = if i == j && a != b { 2.0 } else { 1.0 };
+                                if a != b || i >= j {
+                                    values[pattern.position(i.max(j), i.min(j))] += twice * ci * cj * k;
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let external = external_load(problem, &unknowns);
+        rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
+        let jump_bound = problem
+            .interfaces
+            .iter()
+            .flat_map(|i| &i.pairs)
+            .flat_map(|pair| {
+                let [a, b] = pair.gap;
+                [pair.length * (2.0 * a + b) / 6.0, pair.length * (a + 2.0 * b) / 6.0]
+            })
+            .collect();
+        let symbolic = SymbolicSparseColMat::new_checked(
+            unknowns.count,
+            unknowns.count,
+            pattern.columns.clone(),
+            None,
+            pattern.rows.clone(),
+        );
+        System { unknowns, modes, matrix: SparseColMat::new(symbolic, values), rhs, external, jump_bound }
+    }
+
+    /// Takes the given unknowns out of a copy of K: their rows and columns become those of a diagonal matrix.
+    pub fn isolate(&self, matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> bool) {
+        let (symbolic, values) = matrix.parts_mut();
+        let (columns, rows) = (symbolic.col_ptr(), symbolic.row_idx());
+        for j in 0..self.unknowns.count {
+            let own = given(j);
+            for k in columns[j]..columns[j + 1] {
+                if rows[k] != j && (own || given(rows[k])) {
+                    values[k] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// y = K x.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        symmetric_multiply(self.matrix.as_ref(), x)
+    }
+}
+
+/// ∫P q_p on every unknown of Γ_τ: the end values P_p themselves, by the choice of the moments.
+fn external_load(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
+    let mut load = vec![0.0; unknowns.count];
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        let Condition::Traction(p) = condition else { continue };
+        for (end, value) in p.iter().enumerate() {
+            for component in unknowns.components(e, end, [0.0; 2]) {
+                for &(dof, c) in component.terms() {
+                    load[dof] += c * (component.direction[0] * value[0] + component.direction[1] * value[1]);
+                }
+            }
+        }
+    }
+    load
+}
+
+/// y = A x for a symmetric matrix given by its lower triangle.
+pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; x.len()];
+    let (columns, rows, values) = (a.col_ptr(), a.row_idx(), a.val());
+    for j in 0..x.len() {
+        let mut sum = 0.0;
+        for k in columns[j]..columns[j + 1] {
+            let (i, v) = (rows[k], values[k]);
+            sum += v * x[i];
+            if i != j {
+                y[i] += v * x[j];
+            }
+        }
+        y[j] += sum;
+    }
+    y
+}
+
+/// Rows of T in the components of the numbering, and minus the load of the particular field and of given moments.
+fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) -> (Local, [f64; 12]) {
+    let mesh = &problem.mesh;
+    let element = modes.of(t);
+    let (traction, particular) = (element.traction(), element.particular_traction());
+    let mut local = Local { rows: [[0.0; 9]; 12], terms: [[(0, 0.0); 2]; 12], len: [0; 12] };
+    let mut load = [0.0; 12];
+    let mut fixed = [0.0; 9];
+    for side in 0..3 {
+        let e = mesh.triangle_edges[t][side];
+        let flipped = mesh.edges[e].triangles[0] != Some(t);
+        let (_, normal) = mesh.edge_frame(e);
+        for node in 0..2 {
+            let end = if flipped { 1 - node } else { node };
+            let row = 4 * side + 2 * node;
+            for (c, component) in unknowns.components(e, end, normal).into_iter().enumerate() {
+                let [dx, dy] = component.direction;
+                let (tx, ty) = (&traction[row * 9..][..9], &traction[(row + 1) * 9..][..9]);
+                let target = &mut local.rows[row + c];
+                for k in 0..9 {
+                    target[k] = dx * tx[k] + dy * ty[k];
+                    fixed[k] += component.fixed * target[k];
+                }
+                local.terms[row + c] = component.terms;
+                local.len[row + c] = component.len;
+                load[row + c] = -(dx * particular[row] + dy * particular[row + 1]);
+            }
+        }
+    }
+    if fixed != [0.0; 9] {
+        for a in 0..12 {
+            load[a] -= (0..9).map(|k| local.rows[a][k] * fixed[k]).sum::<f64>();
+        }
+    }
+    (local, load)
+}
+
+/// Sparsity pattern of the lower triangle, block by block.
+struct Pattern {
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    block_of: Vec<u32>,
+    blocks: Vec<super::unknowns::Block>,
+    /// For each block, its later neighbours with the offset of their rows behind the block's own.
+    neighbours: Vec<(u32, u32)>,
+    neighbour_start: Vec<u32>,
+}
+
+impl Pattern {
+    fn new(problem: &Problem, unknowns: &Unknowns) -> Self {
+        let blocks = unknowns.blocks.clone();
+        let mut block_of = vec![0_u32; unknowns.count];
+        for (b, block) in blocks.iter().enumerate() {
+            block_of[block.start..block.start + block.len].fill(b as u32);
+        }
+        let mut touching: Vec<(u32, u32)> = Vec::new();
+        for edges in &problem.mesh.triangle_edges {
+            let mut all = [0; 9];
+            let mut n = 0;
+            for &e in edges {
+                let (list, len) = unknowns.blocks_of_edge(e, &block_of);
+                all[n..n + len].copy_from_slice(&list[..len]);
+                n += len;
+            }
+            for &a in &all[..n] {
+                for &b in &all[..n] {
+                    if b > a {
+                        touching.push((a as u32, b as u32));
+                    }
+                }
+            }
+        }
+        touching.sort_unstable();
+        touching.dedup();
+        let mut neighbour_start = vec![0_u32; blocks.len() + 1];
+        for &(a, _) in &touching {
+            neighbour_start[a as usize + 1] += 1;
+        }
+        for b in 0..blocks.len() {
+            neighbour_start[b + 1] += neighbour_start[b];
+        }
+        let mut neighbours = Vec::with_capacity(touching.len());
+        let mut columns = Vec::with_capacity(unknowns.count + 1);
+        let mut rows = Vec::new();
+        columns.push(0);
+        for (b, block) in blocks.iter().enumerate() {
+            let list = &touching[neighbour_start[b] as usize..neighbour_start[b + 1] as usize];
+            let mut offset = 0_u32;
+            for &(_, n) in list {
+                neighbours.push((n, offset));
+                offset += blocks[n as usize].len as u32;
+            }
+            for own in 0..block.len {
+                rows.extend(block.start + own..block.start + block.len);
+                for &(_, n) in list {
+                    let other = blocks[n as usize];
+                    rows.extend(other.start..other.start + other.len);
+                }
+                columns.push(rows.len());
+            }
+        }
+        Pattern { columns, rows, block_of, blocks, neighbours, neighbour_start }
+    }
+
+    /// Where entry (i, j), i ≥ j, is stored.
+    fn position(&self, i: usize, j: usize) -> usize {
+        let (bi, bj) = (self.block_of[i], self.block_of[j]);
+        if bi == bj {
+            return self.columns[j] + (i - j);
+        }
+        let block = self.blocks[bj as usize];
+        let behind = self.columns[j] + (block.start + block.len - j);
+        let list = &self.neighbours
+            [self.neighbour_start[bj as usize] as usize..self.neighbour_start[bj as usize + 1] as usize];
+        for &(n, offset) in list {
+            if n == bi {
+                return behind + offset as usize + (i - self.blocks[n as usize].start);
+            }
+        }
+        unreachable!("entry ({i}, {j}) is not in the pattern")
+    }
+}

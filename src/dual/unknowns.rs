@@ -1,0 +1,237 @@
+//! Numbering of the edge moments.
+//!
+//! The unknowns of the hybrid form are the moments m_{e,p} = ∫_e u q_p ds of the edge displacement against the two hat
+//! functions of each edge, conjugate to the traction end values. Moments given by a support drop out; on Γ_K the normal
+//! moments of the first side are replaced by the jump j_p = ∫(v_n' + v_n'') q_p ds, and all jumps are numbered last.
+
+use crate::problem::{Condition, Problem};
+
+/// Unknowns that belong together: consecutive numbers that share one sparsity pattern.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Block {
+    /// First unknown.
+    pub start: usize,
+    /// Number of unknowns, at most four.
+    pub len: usize,
+}
+
+/// What the moments of one edge are made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EdgeMoments {
+    /// Four unknowns: x and y at the first end, x and y at the second.
+    Free(usize),
+    /// Γ_u: the moments of u0, the same for both ends.
+    Given([f64; 2]),
+    /// Γ_0: the tangential moments at the two ends are unknown, the normal ones zero.
+    Tangential(usize),
+    /// Γ_K, as blocks.
+    Contact {
+        /// Block of the two tangential moments of this side.
+        tangential: usize,
+        /// Block of the two jumps.
+        jump: usize,
+        /// Block of the two normal moments of the second side, where that is a body.
+        second_normal: Option<usize>,
+        /// 0 on the first side, 1 on the second.
+        side: usize,
+        /// Whether the pair runs against the edge, so that its first end is the edge's second.
+        reversed: bool,
+    },
+}
+
+/// A moment component at one end of an edge, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
+#[derive(Debug, Clone, Copy)]
+pub struct Component {
+    /// Unit vector.
+    pub direction: [f64; 2],
+    /// Contributing unknowns.
+    pub terms: [(usize, f64); 2],
+    /// How many of `terms` count.
+    pub len: usize,
+    /// Part that is given.
+    pub fixed: f64,
+}
+
+impl Component {
+    fn unknown(direction: [f64; 2], dof: usize) -> Self {
+        Component { direction, terms: [(dof, 1.0), (0, 0.0)], len: 1, fixed: 0.0 }
+    }
+
+    fn given(direction: [f64; 2], fixed: f64) -> Self {
+        Component { direction, terms: [(0, 0.0); 2], len: 0, fixed }
+    }
+
+    /// The contributing unknowns with their coefficients.
+    pub fn terms(&self) -> &[(usize, f64)] {
+        &self.terms[..self.len]
+    }
+}
+
+/// The numbering.
+#[derive(Debug, Clone)]
+pub struct Unknowns {
+    /// Blocks in the order of their numbers; those of the jumps come last.
+    pub blocks: Vec<Block>,
+    /// Moments of each edge of the mesh.
+    pub edges: Vec<EdgeMoments>,
+    /// Block of the jumps of each contact pair, interface by interface.
+    pub jump_blocks: Vec<Vec<usize>>,
+    /// Number of unknowns.
+    pub count: usize,
+    /// First jump; all unknowns from here on are jumps.
+    pub first_jump: usize,
+}
+
+impl Unknowns {
+    /// Numbers the unknowns of `problem`.
+    pub fn new(problem: &Problem) -> Self {
+        let mut blocks = Vec::with_capacity(problem.mesh.edges.len());
+        let mut next = 0;
+        let mut push = |len: usize| {
+            blocks.push(Block { start: next, len });
+            next += len;
+            blocks.len() - 1
+        };
+        // Placeholders for contact blocks are filled in once all other numbers are known.
+        let mut tangential = vec![usize::MAX; problem.mesh.edges.len()];
+        let mut second_normal: Vec<Vec<Option<usize>>> =
+            problem.interfaces.iter().map(|i| vec![None; i.pairs.len()]).collect();
+        let mut starts = vec![usize::MAX; problem.mesh.edges.len()];
+        for (e, condition) in problem.conditions.iter().enumerate() {
+            match *condition {
+                Condition::Interior | Condition::Traction(_) => starts[e] = push(4),
+                Condition::Roller => starts[e] = push(2),
+                Condition::Clamped(_) => {}
+                Condition::Contact { interface, pair, side } => {
+                    tangential[e] = push(2);
+                    if side == 1 {
+                        second_normal[interface][pair] = Some(push(2));
+                    }
+                }
+            }
+        }
+        let jump_blocks: Vec<Vec<usize>> =
+            problem.interfaces.iter().map(|i| i.pairs.iter().map(|_| push(2)).collect()).collect();
+        let first_jump = jump_blocks.iter().flatten().next().map_or(next, |&b| blocks[b].start);
+        let edges = problem
+            .conditions
+            .iter()
+            .enumerate()
+            .map(|(e, condition)| match *condition {
+                Condition::Interior | Condition::Traction(_) => EdgeMoments::Free(blocks[starts[e]].start),
+                Condition::Roller => EdgeMoments::Tangential(blocks[starts[e]].start),
+                Condition::Clamped(u0) => {
+                    let half = 0.5 * problem.mesh.edge_frame(e).0;
+                    EdgeMoments::Given([u0[0] * half, u0[1] * half])
+                }
+                Condition::Contact { interface, pair, side } => {
+                    let matched = &problem.interfaces[interface].pairs[pair];
+                    let own = if side == 0 { matched.first } else { matched.second.unwrap_or(matched.first) };
+                    EdgeMoments::Contact {
+                        tangential: tangential[e],
+                        jump: jump_blocks[interface][pair],
+                        second_normal: second_normal[interface][pair],
+                        side,
+                        reversed: own[0] != problem.mesh.edges[e].vertices[0],
+                    }
+                }
+            })
+            .collect();
+        Unknowns { blocks, edges, jump_blocks, count: next, first_jump }
+    }
+
+    /// The two components of the moment at end `end` (0 or 1, in the order of the edge's vertices) of an edge with
+    /// outward unit normal `normal`.
+    pub fn components(&self, e: usize, end: usize, normal: [f64; 2]) -> [Component; 2] {
+        const X: [f64; 2] = [1.0, 0.0];
+        const Y: [f64; 2] = [0.0, 1.0];
+        let tangent = [-normal[1], normal[0]];
+        match self.edges[e] {
+            EdgeMoments::Free(first) => {
+                [Component::unknown(X, first + 2 * end), Component::unknown(Y, first + 2 * end + 1)]
+            }
+            EdgeMoments::Given(m) => [Component::given(X, m[0]), Component::given(Y, m[1])],
+            EdgeMoments::Tangential(first) => [Component::given(normal, 0.0), Component::unknown(tangent, first + end)],
+            EdgeMoments::Contact { tangential, jump, second_normal, side, reversed } => {
+                let at = if reversed { 1 - end } else { end };
+                let along = Component::unknown(tangent, self.blocks[tangential].start + end);
+                let jump = self.blocks[jump].start + at;
+                let across = match (side, second_normal) {
+                    // m_n' = j − m_n'': outward normals point against each other.
+                    (0, Some(other)) => Component {
+                        direction: normal,
+                        terms: [(jump, 1.0), (self.blocks[other].start + at, -1.0)],
+                        len: 2,
+                        fixed: 0.0,
+                    },
+                    (1, Some(own)) => Component::unknown(normal, self.blocks[own].start + at),
+                    _ => Component::unknown(normal, jump),
+                };
+                [across, along]
+            }
+        }
+    }
+
+    /// Blocks that the moments of edge `e` depend on, and how many.
+    pub fn blocks_of_edge(&self, e: usize, block_of: &[u32]) -> ([usize; 3], usize) {
+        match self.edges[e] {
+            EdgeMoments::Given(_) => ([0; 3], 0),
+            EdgeMoments::Free(first) | EdgeMoments::Tangential(first) => ([block_of[first] as usize, 0, 0], 1),
+            EdgeMoments::Contact { tangential, jump, second_normal, side, .. } => match (side, second_normal) {
+                (0, Some(other)) => ([tangential, jump, other], 3),
+                (1, Some(own)) => ([tangential, own, 0], 2),
+                _ => ([tangential, jump, 0], 2),
+            },
+        }
+    }
+
+    /// The Cartesian moments at both ends of every edge, from the values of the unknowns.
+    pub fn moments(&self, problem: &Problem, x: &[f64]) -> Vec<[[f64; 2]; 2]> {
+        (0..self.edges.len())
+            .map(|e| {
+                let (_, normal) = problem.mesh.edge_frame(e);
+                [0, 1].map(|end| {
+                    let mut m = [0.0; 2];
+                    for component in self.components(e, end, normal) {
+                        let value = component.fixed + component.terms().iter().map(|&(dof, c)| c * x[dof]).sum::<f64>();
+                        m[0] += value * component.direction[0];
+                        m[1] += value * component.direction[1];
+                    }
+                    m
+                })
+            })
+            .collect()
+    }
+
+    /// Values of the unknowns of a displacement that is a rigid motion on each edge: `at(e, end)` gives the vector
+    /// moment at an end. Jumps and rollers take the components they stand for.
+    pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
+        let mut x = vec![0.0; self.count];
+        for e in 0..self.edges.len() {
+            let (_, normal) = problem.mesh.edge_frame(e);
+            for end in 0..2 {
+                let m = at(e, end);
+                for component in self.components(e, end, normal) {
+                    if component.len == 1 {
+                        let (dof, _) = component.terms[0];
+                        x[dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
+                    }
+                }
+            }
+        }
+        // Jumps of two-body contacts need the second side's normal moments first.
+        for e in 0..self.edges.len() {
+            let (_, normal) = problem.mesh.edge_frame(e);
+            for end in 0..2 {
+                let m = at(e, end);
+                for component in self.components(e, end, normal) {
+                    if component.len == 2 {
+                        let ((jump, _), (other, _)) = (component.terms[0], component.terms[1]);
+                        x[jump] = m[0] * component.direction[0] + m[1] * component.direction[1] + x[other];
+                    }
+                }
+            }
+        }
+        x
+    }
+}
