@@ -5,7 +5,25 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod conditions;
+pub mod error;
+mod fault;
+mod geometry;
+mod nearest;
+mod parse;
+mod polygon;
+mod raw;
+mod read;
+mod validate;
+
 use std::path::PathBuf;
+
+pub use error::{Fault, SceneError};
+pub use raw::schema;
+pub use read::BoundaryUse;
+
+/// Most bytes a scene file may have; a device that never ends is not read for ever.
+const MAX_BYTES: u64 = 64 << 20;
 
 /// A valid scene.
 #[derive(Debug, Clone, PartialEq)]

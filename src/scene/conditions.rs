@@ -1,0 +1,200 @@
+//! Supports, tractions and contacts: every boundary exists and carries one condition.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::error::{Fault, SceneError};
+use super::fault::names;
+use super::raw::{At, RawContact, RawGap, RawScene, RawSupport, RawTraction, Table};
+use super::validate::{Source, counted};
+use super::{Contact, ContactSides, Gap, Load, MeshSource, Support, SupportKind, Traction};
+
+const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
+
+/// Checks the three lists, in the order of the file within each.
+pub(super) fn conditions(
+    raw: &RawScene,
+    mesh: &MeshSource,
+    source: &Source,
+) -> Result<(Vec<Support>, Vec<Traction>, Vec<Contact>), SceneError> {
+    let mut taken = Taken::new(mesh, source);
+    let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
+    let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
+    let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
+    Ok((supports, tractions, contacts))
+}
+
+fn each<R, T>(
+    list: &[At<Table<R>>],
+    key: &str,
+    mut check: impl FnMut(&At<Table<R>>, &str) -> Result<T, SceneError>,
+) -> Result<Vec<T>, SceneError> {
+    list.iter().enumerate().map(|(i, raw)| check(raw, &format!("[[{key}]] number {}", i + 1))).collect()
+}
+
+/// The boundaries that have a condition already.
+struct Taken<'a> {
+    source: &'a Source<'a>,
+    /// Names of the polygon edges; `None` where only a mesh file knows them.
+    known: Option<Vec<String>>,
+    by: HashMap<String, (String, Range<usize>)>,
+}
+
+impl<'a> Taken<'a> {
+    fn new(mesh: &MeshSource, source: &'a Source<'a>) -> Self {
+        let known = match mesh {
+            MeshSource::File(_) => None,
+            MeshSource::Geometry { polygons, .. } => {
+                Some(names(polygons.iter().flat_map(|p| p.edges.iter().map(String::as_str))))
+            }
+        };
+        Self { source, known, by: HashMap::new() }
+    }
+
+    /// The name, if it exists and is free; from now on it belongs to `table`.
+    fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
+        let on = self.source.name(name, (table, key), NAME_A_BOUNDARY)?;
+        if let Some(known) = &self.known
+            && known.binary_search(&on).is_err()
+        {
+            let fault = Fault::UnknownBoundary { name: on, table: table.to_owned(), known: known.clone() };
+            return Err(self.source.error(name.span(), fault));
+        }
+        if let Some((first, span)) = self.by.get(&on) {
+            let line = self.source.line(span.start);
+            let fault = Fault::TwoConditions { name: on, first: first.clone(), line, second: table.to_owned() };
+            return Err(self.source.error(name.span(), fault).with_related(span.clone(), "the first condition"));
+        }
+        self.by.insert(on.clone(), (table.to_owned(), name.span()));
+        Ok(on)
+    }
+}
+
+fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Result<Support, SceneError> {
+    let Table(support) = &raw.value;
+    let source = taken.source;
+    let kind = match (support.kind.value.as_str(), &support.displacement) {
+        ("clamped", None) => SupportKind::Clamped { displacement: [0.0; 2] },
+        ("clamped", Some(u)) => SupportKind::Clamped { displacement: source.vector(u, (table, "displacement"))? },
+        ("roller", None) => SupportKind::Roller,
+        ("roller", Some(u)) => {
+            let remedy = "delete `displacement`, or write type = \"clamped\"";
+            let (table, other) = (table.to_owned(), "type = \"roller\", which holds the normal displacement at zero");
+            return Err(source.error(u.span(), Fault::Misplaced { key: "displacement", table, other, remedy }));
+        }
+        (other, _) => {
+            let known = ["clamped", "roller"].map(String::from).to_vec();
+            let fault = Fault::UnknownWord { key: "type", table: table.to_owned(), found: other.to_owned(), known };
+            return Err(source.error(support.kind.span(), fault));
+        }
+    };
+    Ok(Support { on: taken.claim(&support.on, table, "on")?, kind })
+}
+
+fn traction(raw: &At<Table<RawTraction>>, table: &str, taken: &mut Taken) -> Result<Traction, SceneError> {
+    let Table(traction) = &raw.value;
+    let source = taken.source;
+    let one_of = |both| Fault::OneOf { table: table.to_owned(), first: "`value`", second: "`pressure`", both };
+    let misplaced = |other, remedy| Fault::Misplaced { key: "gradient", table: table.to_owned(), other, remedy };
+    let load = match (&traction.value, &traction.gradient, &traction.pressure) {
+        (Some(value), _, Some(pressure)) => {
+            return Err(source.error(pressure.span(), one_of(true)).with_related(value.span(), "the other one"));
+        }
+        (None, Some(gradient), Some(_)) => {
+            let remedy = "delete `gradient`, or write the load as `value` and `gradient`";
+            return Err(source.error(gradient.span(), misplaced("`pressure`, which is constant", remedy)));
+        }
+        (None, Some(gradient), None) => {
+            let remedy = "add value = [0.0, 0.0], the traction at the origin";
+            return Err(source.error(gradient.span(), misplaced("a missing `value`", remedy)));
+        }
+        (None, None, None) => return Err(source.error(raw.span(), one_of(false))),
+        (None, None, Some(pressure)) => {
+            Load::Pressure(source.number(pressure, (table, "pressure"), |_| true, ("", ""))?)
+        }
+        (Some(value), gradient, None) => {
+            let value = source.vector(value, (table, "value"))?;
+            let gradient = gradient.as_ref().map_or(Ok([[0.0; 2]; 2]), |rows| matrix(rows, table, source))?;
+            Load::Affine { value, gradient }
+        }
+    };
+    Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load })
+}
+
+fn matrix(rows: &At<Vec<At<Vec<f64>>>>, table: &str, source: &Source) -> Result<[[f64; 2]; 2], SceneError> {
+    let [first, second] = rows.value.as_slice() else {
+        let (key, found) = ("gradient".to_owned(), counted(rows.value.len(), "row"));
+        let remedy = "write the two rows [[∂Px/∂x, ∂Px/∂y], [∂Py/∂x, ∂Py/∂y]]";
+        let fault = Fault::Count { key, table: table.to_owned(), found, expected: "2".to_owned(), remedy };
+        return Err(source.error(rows.span(), fault));
+    };
+    Ok([source.vector(first, (table, "gradient[0]"))?, source.vector(second, (table, "gradient[1]"))?])
+}
+
+fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Result<Contact, SceneError> {
+    let Table(contact) = &raw.value;
+    let source = taken.source;
+    let one_of = |both| Fault::OneOf { table: table.to_owned(), first: "`between`", second: "`on`", both };
+    let gap = contact.gap.as_ref().map_or(Ok(Gap::Constant(0.0)), |raw| gap(raw, table, source))?;
+    let sides = match (&contact.between, &contact.on) {
+        (Some(between), Some(on)) => {
+            return Err(source.error(on.span(), one_of(true)).with_related(between.span(), "the other one"));
+        }
+        (None, None) => return Err(source.error(raw.span(), one_of(false))),
+        (None, Some(on)) => ContactSides::Rigid(taken.claim(on, table, "on")?),
+        (Some(between), None) => {
+            let [first, second] = between.value.as_slice() else {
+                let found = counted(between.value.len(), "name");
+                let remedy = "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle";
+                let (key, expected) = ("between".to_owned(), "2".to_owned());
+                return Err(source
+                    .error(between.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
+            };
+            if first.value == second.value && !first.value.trim().is_empty() {
+                let fault = Fault::SelfContact { name: first.value.clone(), table: table.to_owned() };
+                return Err(source.error(second.span(), fault));
+            }
+            ContactSides::Between([taken.claim(first, table, "between")?, taken.claim(second, table, "between")?])
+        }
+    };
+    Ok(Contact { sides, gap })
+}
+
+fn gap(raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError> {
+    const NEGATIVE: (&str, &str) =
+        ("bodies must not overlap at the start", "write a gap of zero or more, or move the bodies apart");
+    const ARC: (&str, &str) = (
+        "an arc length is not negative",
+        "measure s along the first side, from its end that comes first in (x, y) order",
+    );
+    let rows = match &raw.value {
+        RawGap::Constant(g) => {
+            let number = At { value: *g, start: raw.start, end: raw.end };
+            return source.number(&number, (table, "gap"), |g| g >= 0.0, NEGATIVE).map(Gap::Constant);
+        }
+        RawGap::Table(rows) => rows,
+    };
+    if rows.is_empty() {
+        let remedy = "write at least one row [s, g], or a number";
+        let (key, found, expected) = ("gap".to_owned(), "0 rows".to_owned(), "at least one".to_owned());
+        return Err(source.error(raw.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
+    }
+    let mut checked: Vec<[f64; 2]> = Vec::with_capacity(rows.len());
+    for (i, row) in rows.iter().enumerate() {
+        let key = format!("gap[{i}]");
+        let [s, g] = source.vector(row, (table, &key))?;
+        for (value, words) in [(s, ARC), (g, NEGATIVE)] {
+            let number = At { value, start: row.start, end: row.end };
+            source.number(&number, (table, &key), |x| x >= 0.0, words)?;
+        }
+        if let Some([before, _]) = checked.last()
+            && s <= *before
+        {
+            let relation = if s == *before { "the same as" } else { "less than" };
+            let fault = Fault::GapOrder { row: i + 1, table: table.to_owned(), s: format!("{s:?}"), relation };
+            return Err(source.error(row.span(), fault));
+        }
+        checked.push([s, g]);
+    }
+    Ok(Gap::Table(checked))
+}

@@ -1,0 +1,124 @@
+//! `[geometry]`: polygons that bound regions, each with a body, and bodies that each have a polygon.
+
+use super::error::{Fault, SceneError};
+use super::fault::names;
+use super::polygon::{Defect, EXTENT, defect};
+use super::raw::{At, RawGeometry, RawPolygon, RawScene, Table};
+use super::validate::{Source, counted};
+use super::{Body, MeshSource, Polygon};
+
+pub(super) fn geometry(
+    raw: &At<Table<RawGeometry>>,
+    scene: &RawScene,
+    bodies: &[Body],
+    source: &Source,
+) -> Result<MeshSource, SceneError> {
+    let Table(geometry) = &raw.value;
+    let size = match &geometry.size {
+        None => None,
+        Some(number) => {
+            let words = (
+                "an edge length must be positive",
+                "write a positive number, or leave `size` out for the coarsest mesh that fits",
+            );
+            Some(source.number(number, ("[geometry]", "size"), |h| h > 0.0, words)?)
+        }
+    };
+    if geometry.polygons.value.is_empty() {
+        let remedy = "add at least one [[geometry.polygons]] with `body`, `points` and `edges`".into();
+        let fault = Fault::MissingKey { key: "polygons".into(), table: "[geometry]".into(), remedy };
+        return Err(source.error(geometry.polygons.span(), fault));
+    }
+    let mut polygons = Vec::with_capacity(geometry.polygons.value.len());
+    for (i, raw) in geometry.polygons.value.iter().enumerate() {
+        polygons.push(polygon(&raw.value.0, i + 1, bodies, source)?);
+    }
+    every_body_has_a_polygon(scene, &polygons, source)?;
+    Ok(MeshSource::Geometry { size, polygons })
+}
+
+fn polygon(raw: &RawPolygon, number: usize, bodies: &[Body], source: &Source) -> Result<Polygon, SceneError> {
+    let table = format!("[[geometry.polygons]] number {number}");
+    let body = source.name(&raw.body, (&table, "body"), "name the body that the polygon belongs to")?;
+    if bodies.iter().all(|b| b.name != body) {
+        let known = names(bodies.iter().map(|b| b.name.as_str()));
+        return Err(source.error(raw.body.span(), Fault::UnknownBody { name: body, polygon: number, known }));
+    }
+    let mut points = Vec::with_capacity(raw.points.value.len());
+    for (i, point) in raw.points.value.iter().enumerate() {
+        points.push(source.vector(point, (&table, &format!("points[{i}]")))?);
+    }
+    if let Some(defect) = defect(&points) {
+        return Err(shape_error(raw, number, &points, defect, source));
+    }
+    if raw.edges.value.len() != points.len() {
+        let (found, expected) = (counted(raw.edges.value.len(), "name"), format!("{}", points.len()));
+        let remedy = "write one name per corner: edge i runs from corner i to corner i + 1; \"\" leaves it free";
+        let fault = Fault::Count { key: "edges".into(), table, found, expected, remedy };
+        return Err(source
+            .error(raw.edges.span(), fault)
+            .with_related(raw.points.span(), counted(points.len(), "corner")));
+    }
+    let edges = raw.edges.value.iter().map(|name| name.value.clone()).collect();
+    Ok(Polygon { body, points, edges })
+}
+
+fn shape_error(raw: &RawPolygon, number: usize, points: &[[f64; 2]], defect: Defect, source: &Source) -> SceneError {
+    let corner = |i: usize| format!("[{:?}, {:?}]", points[i][0], points[i][1]);
+    let edge = |i: usize| match raw.edges.value.get(i) {
+        Some(name) if !name.value.is_empty() => format!("{} (\"{}\")", i + 1, name.value),
+        _ => (i + 1).to_string(),
+    };
+    let at_corner = |i: usize| raw.points.value[i].span();
+    let (span, problem, remedy) = match defect {
+        Defect::TooFew => (
+            raw.points.span(),
+            format!("has {}, but a region needs at least 3", counted(points.len(), "corner")),
+            "add the missing corners",
+        ),
+        Defect::Repeated(0, j) if j + 1 == points.len() => (
+            at_corner(j),
+            format!("repeats its first corner {} at the end", corner(0)),
+            "delete the last corner; a polygon closes by itself",
+        ),
+        Defect::Repeated(i, j) => (
+            at_corner(j),
+            format!("has corner {} twice, as number {} and number {}", corner(i), i + 1, j + 1),
+            "delete one of the two, or split the polygon where it touches itself",
+        ),
+        Defect::Extent => (
+            raw.points.span(),
+            format!("leaves the range of lengths from {:?} to {EXTENT:?}", 1.0 / EXTENT),
+            "choose another unit of length",
+        ),
+        Defect::NoArea => (
+            raw.points.span(),
+            "has no area: its corners lie on one line".to_owned(),
+            "correct the corners; listed in order they must go round a region",
+        ),
+        Defect::Spike(i) => (
+            at_corner(i),
+            format!("turns back on itself at corner {} {}", i + 1, corner(i)),
+            "delete the corner, or move it off the line of its neighbours",
+        ),
+        Defect::Crossing(i, j) => (
+            at_corner(j),
+            format!("crosses or touches itself: edges {} and {} meet", edge(i), edge(j)),
+            "list the corners in order round the region, or split it into several polygons of the same body",
+        ),
+    };
+    let fault = Fault::Polygon { polygon: number, body: raw.body.value.clone(), problem, remedy };
+    source.error(span, fault)
+}
+
+fn every_body_has_a_polygon(scene: &RawScene, polygons: &[Polygon], source: &Source) -> Result<(), SceneError> {
+    let alone =
+        scene.bodies.keys().filter(|key| polygons.iter().all(|p| p.body != key.value)).min_by_key(|key| key.start);
+    match alone {
+        None => Ok(()),
+        Some(key) => {
+            let known = names(polygons.iter().map(|p| p.body.as_str()));
+            Err(source.error(key.span(), Fault::BodyWithoutPolygon { name: key.value.clone(), known }))
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! The scene file as TOML types: every key, no meaning yet.
+//!
+//! These structs are the one description of the format: the reader and the JSON Schema both come from them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use toml::Spanned;
+
+/// A value and where it stands in the file.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct At<T> {
+    pub value: T,
+    pub start: usize,
+    pub end: usize,
+}
+
+impl<T> At<T> {
+    pub fn span(&self) -> Range<usize> {
+        self.start..self.end
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let spanned = Spanned::<T>::deserialize(deserializer)?;
+        let Range { start, end } = spanned.span();
+        Ok(At { value: spanned.into_inner(), start, end })
+    }
+}
+
+/// A TOML table; serde alone would also take the fields in order from a list.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Table<T>(pub T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OnlyMap<T>(std::marker::PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for OnlyMap<T> {
+            type Value = Table<T>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a table")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Table<T>, A::Error> {
+                T::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(Table)
+            }
+        }
+        deserializer.deserialize_map(OnlyMap(std::marker::PhantomData))
+    }
+}
+
+macro_rules! schema_of_content {
+    ($wrapper:ident) => {
+        impl<T: JsonSchema> JsonSchema for $wrapper<T> {
+            fn inline_schema() -> bool {
+                T::inline_schema()
+            }
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                T::schema_name()
+            }
+            fn schema_id() -> std::borrow::Cow<'static, str> {
+                T::schema_id()
+            }
+            fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+                T::json_schema(generator)
+            }
+        }
+    };
+}
+schema_of_content!(At);
+schema_of_content!(Table);
+
+/// A list of numbers, whose length is checked later; in the schema it has two.
+type Pair = At<Vec<f64>>;
+
+/// A scene of hypercircle: bodies, their conditions, and where the triangles come from.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Scene")]
+pub(super) struct RawScene {
+    /// A title for the report; the file name where it is missing.
+    pub title: Option<String>,
+    /// The mechanical model.
+    pub model: At<Table<RawModel>>,
+    /// A mesh file. Either this or `geometry`.
+    pub mesh: Option<At<Table<RawMesh>>>,
+    /// Polygons to be meshed by the program. Either this or `mesh`.
+    pub geometry: Option<At<Table<RawGeometry>>>,
+    /// One table per body, by its name.
+    pub bodies: BTreeMap<At<String>, At<Table<RawBody>>>,
+    /// Boundaries that are held.
+    #[serde(default)]
+    pub supports: Vec<At<Table<RawSupport>>>,
+    /// Boundaries that are loaded.
+    #[serde(default)]
+    pub tractions: Vec<At<Table<RawTraction>>>,
+    /// Boundaries that may touch, without friction.
+    #[serde(default)]
+    pub contacts: Vec<At<Table<RawContact>>>,
+}
+
+/// The mechanical model.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Model")]
+pub(super) struct RawModel {
+    /// Plane strain or plane stress.
+    #[schemars(extend("enum" = ["plane-strain", "plane-stress"]))]
+    pub kinematics: At<String>,
+    /// Thickness of the plate, 1 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub thickness: Option<At<f64>>,
+}
+
+/// A mesh file: a physical surface is a body, a physical curve a boundary, both matched by name.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Mesh")]
+pub(super) struct RawMesh {
+    /// Path relative to the scene. Gmsh MSH 2.2 and 4.1 are read natively, anything else through meshio.
+    #[schemars(length(min = 1))]
+    pub file: At<String>,
+}
+
+/// Polygons to be meshed by the program.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Geometry")]
+pub(super) struct RawGeometry {
+    /// Target edge length; without it the mesh is the coarsest that represents geometry and data.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub size: Option<At<f64>>,
+    /// The polygons; several may belong to one body.
+    #[schemars(length(min = 1))]
+    pub polygons: At<Vec<At<Table<RawPolygon>>>>,
+}
+
+/// A simple polygon.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Polygon")]
+pub(super) struct RawPolygon {
+    /// The body it belongs to.
+    pub body: At<String>,
+    /// Corners in either orientation.
+    #[schemars(with = "Vec<[f64; 2]>", length(min = 3))]
+    pub points: At<Vec<Pair>>,
+    /// Name of the edge from corner i to corner i + 1; "" means free and unnamed.
+    #[schemars(length(min = 3))]
+    pub edges: At<Vec<At<String>>>,
+}
+
+/// A homogeneous isotropic body.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Body")]
+pub(super) struct RawBody {
+    /// Young's modulus.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub young: At<f64>,
+    /// Poisson's ratio.
+    #[schemars(extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 0.5))]
+    pub poisson: At<f64>,
+    /// Constant force per volume, none where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub body_force: Option<Pair>,
+}
+
+/// A boundary that is held.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Support")]
+pub(super) struct RawSupport {
+    /// The boundary.
+    #[schemars(length(min = 1))]
+    pub on: At<String>,
+    /// `clamped`: u = displacement. `roller`: no normal displacement, no tangential traction.
+    #[serde(rename = "type")]
+    #[schemars(extend("enum" = ["clamped", "roller"]))]
+    pub kind: At<String>,
+    /// Prescribed displacement of a clamped boundary, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub displacement: Option<Pair>,
+}
+
+/// A boundary that is loaded, by `value` (with or without `gradient`) or by `pressure`.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Traction")]
+pub(super) struct RawTraction {
+    /// The boundary.
+    #[schemars(length(min = 1))]
+    pub on: At<String>,
+    /// Traction at the origin.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub value: Option<Pair>,
+    /// Rows of the constant gradient: P(x) = value + gradient · x.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub gradient: Option<At<Vec<Pair>>>,
+    /// Pressure along the inward normal.
+    pub pressure: Option<At<f64>>,
+}
+
+/// A frictionless contact, `between` two boundaries or `on` one against a rigid obstacle.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Contact")]
+pub(super) struct RawContact {
+    /// Two boundaries that coincide as polylines.
+    #[schemars(with = "Option<[String; 2]>")]
+    pub between: Option<At<Vec<At<String>>>>,
+    /// One boundary that meets a rigid obstacle of its own shape.
+    pub on: Option<At<String>>,
+    /// Initial gap, zero where it is missing.
+    pub gap: Option<At<RawGap>>,
+}
+
+/// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
+/// (x, y) order.
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Gap")]
+pub(super) enum RawGap {
+    /// The same everywhere.
+    Constant(#[schemars(range(min = 0))] f64),
+    /// Rows [s, g] with s increasing.
+    Table(#[schemars(with = "Vec<[f64; 2]>", length(min = 1))] Vec<Pair>),
+}
+
+impl<'de> Deserialize<'de> for RawGap {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrRows;
+        impl<'de> Visitor<'de> for NumberOrRows {
+            type Value = RawGap;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number or rows [[s, g], ...]")
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawGap, E> {
+                Ok(RawGap::Constant(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawGap, E> {
+                Ok(RawGap::Constant(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut rows: A) -> Result<RawGap, A::Error> {
+                let mut table = Vec::new();
+                while let Some(row) = rows.next_element()? {
+                    table.push(row);
+                }
+                Ok(RawGap::Table(table))
+            }
+        }
+        deserializer.deserialize_any(NumberOrRows)
+    }
+}
+
+/// JSON Schema of the scene file. What a schema cannot say (names that must exist, one condition per boundary) is
+/// left to [`super::Scene::parse`].
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(RawScene).to_value()
+}

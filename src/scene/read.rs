@@ -1,0 +1,88 @@
+//! Reading a scene, and the names it uses.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use super::error::{FileFault, SceneError};
+use super::{ContactSides, MAX_BYTES, Scene, parse, validate};
+
+/// What a boundary is named for; the index counts from 0 in the list of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BoundaryUse {
+    /// `supports[i]`.
+    Support(usize),
+    /// `tractions[i]`.
+    Traction(usize),
+    /// `contacts[i]`.
+    Contact(usize),
+}
+
+impl fmt::Display for BoundaryUse {
+    /// As scene messages name it: `[[supports]] number 2`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (table, i) = match self {
+            BoundaryUse::Support(i) => ("supports", i),
+            BoundaryUse::Traction(i) => ("tractions", i),
+            BoundaryUse::Contact(i) => ("contacts", i),
+        };
+        write!(f, "[[{table}]] number {}", i + 1)
+    }
+}
+
+impl Scene {
+    /// Reads and checks the scene file at `path`.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, or does not describe a valid scene; the error names the place and the
+    /// remedy.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let file = |fault| SceneError::file(path, fault);
+        let broken = |error: std::io::Error| match error.kind() {
+            ErrorKind::NotFound => file(FileFault::Missing),
+            ErrorKind::IsADirectory => file(FileFault::Directory),
+            _ => file(FileFault::Unreadable(error)),
+        };
+        let input = File::open(path).map_err(broken)?;
+        if input.metadata().map_err(broken)?.is_dir() {
+            return Err(file(FileFault::Directory));
+        }
+        let mut bytes = Vec::new();
+        input.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(broken)?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(file(FileFault::TooLarge));
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::parse(&text, path),
+            Err(error) => {
+                let offset = error.utf8_error().valid_up_to();
+                let line = error.as_bytes().iter().take(offset).filter(|&&b| b == b'\n').count() + 1;
+                Err(file(FileFault::NotText { line, offset }))
+            }
+        }
+    }
+
+    /// Checks the scene in `text`; `path` names it in messages, gives it its name, and its folder is where a relative
+    /// mesh path starts.
+    ///
+    /// # Errors
+    /// As [`Scene::read`], without those of the file.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, SceneError> {
+        validate::validate(parse::parse(text, path)?, text, path)
+    }
+
+    /// Every boundary that a condition names, in the order of the scene: what a mesh has to provide.
+    pub fn boundary_names_used(&self) -> Vec<(String, BoundaryUse)> {
+        let supports = self.supports.iter().enumerate().map(|(i, s)| (s.on.clone(), BoundaryUse::Support(i)));
+        let tractions = self.tractions.iter().enumerate().map(|(i, t)| (t.on.clone(), BoundaryUse::Traction(i)));
+        let contacts = self.contacts.iter().enumerate().flat_map(|(i, contact)| {
+            let sides = match &contact.sides {
+                ContactSides::Between([first, second]) => vec![first.clone(), second.clone()],
+                ContactSides::Rigid(side) => vec![side.clone()],
+            };
+            sides.into_iter().map(move |side| (side, BoundaryUse::Contact(i)))
+        });
+        supports.chain(tractions).chain(contacts).collect()
+    }
+}

@@ -1,0 +1,187 @@
+//! TOML types → [`Scene`]: everything that can be judged without a mesh.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::error::{Fault, SceneError};
+use super::raw::{At, RawModel, RawScene, Table};
+use super::{Body, Kinematics, MeshSource, Scene, conditions, geometry};
+
+/// The text under examination; makes errors that point into it.
+pub(super) struct Source<'a> {
+    pub text: &'a str,
+    pub path: &'a Path,
+}
+
+impl Source<'_> {
+    pub fn error(&self, span: Range<usize>, fault: Fault) -> SceneError {
+        SceneError::at(self.path, self.text, span, fault)
+    }
+
+    /// The value as the user wrote it, cut if long.
+    pub fn written(&self, span: Range<usize>) -> String {
+        let text = self.text.get(span).unwrap_or_default().trim();
+        if text.chars().count() > 40 { text.chars().take(39).chain(['…']).collect() } else { text.to_owned() }
+    }
+
+    /// The line of a byte, from 1.
+    pub fn line(&self, at: usize) -> usize {
+        self.text.bytes().take(at).filter(|&b| b == b'\n').count() + 1
+    }
+
+    /// `number`, if it is finite and `holds`; the error says that `rule` does not hold.
+    pub fn number(
+        &self,
+        number: &At<f64>,
+        (table, key): (&str, &str),
+        holds: impl Fn(f64) -> bool,
+        (rule, remedy): (&'static str, &'static str),
+    ) -> Result<f64, SceneError> {
+        let value = number.value;
+        let (rule, remedy) = match () {
+            _ if !value.is_finite() => NOT_FINITE,
+            _ if !holds(value) => (rule, remedy),
+            _ => return Ok(value),
+        };
+        let (table, key, found) = (table.to_owned(), key.to_owned(), self.written(number.span()));
+        Err(self.error(number.span(), Fault::Number { key, table, found, rule, remedy }))
+    }
+
+    /// `N` finite numbers.
+    pub fn vector<const N: usize>(
+        &self,
+        list: &At<Vec<f64>>,
+        (table, key): (&str, &str),
+    ) -> Result<[f64; N], SceneError> {
+        let (table, key) = (table.to_owned(), key.to_owned());
+        let Ok(vector) = <[f64; N]>::try_from(list.value.as_slice()) else {
+            let found = counted(list.value.len(), "component");
+            let remedy = "write one number per direction, [x, y]; in a gap table, [s, g]";
+            return Err(self.error(list.span(), Fault::Count { key, table, found, expected: N.to_string(), remedy }));
+        };
+        if vector.iter().all(|x| x.is_finite()) {
+            return Ok(vector);
+        }
+        let (rule, remedy) = NOT_FINITE;
+        let found = self.written(list.span());
+        Err(self.error(list.span(), Fault::Number { key, table, found, rule, remedy }))
+    }
+
+    /// A non-empty name.
+    pub fn name(
+        &self,
+        name: &At<String>,
+        (table, key): (&str, &str),
+        remedy: &'static str,
+    ) -> Result<String, SceneError> {
+        if name.value.trim().is_empty() {
+            let (table, key) = (table.to_owned(), key.to_owned());
+            return Err(self.error(name.span(), Fault::EmptyName { key, table, remedy }));
+        }
+        Ok(name.value.clone())
+    }
+}
+
+const NOT_FINITE: (&str, &str) = ("every number must be finite", "write a finite number");
+
+/// `1 point`, `3 points`.
+pub(super) fn counted(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Checks the whole scene; the first fault found is the error.
+pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, SceneError> {
+    let source = Source { text, path };
+    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let (kinematics, thickness) = model(&raw.model, &source)?;
+    let bodies = bodies(&raw, &source)?;
+    let mesh = mesh(&raw, &bodies, &source)?;
+    let (supports, tractions, contacts) = conditions::conditions(&raw, &mesh, &source)?;
+    let title = raw.title.unwrap_or_else(|| name.clone());
+    let path = path.to_owned();
+    Ok(Scene { name, title, path, kinematics, thickness, mesh, bodies, supports, tractions, contacts })
+}
+
+fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64), SceneError> {
+    let table = "[model]";
+    let Table(model) = &raw.value;
+    let kinematics = match model.kinematics.value.as_str() {
+        "plane-strain" => Kinematics::PlaneStrain,
+        "plane-stress" => Kinematics::PlaneStress,
+        other => {
+            let known = ["plane-strain", "plane-stress"].map(String::from).to_vec();
+            let fault = Fault::UnknownWord { key: "kinematics", table: table.into(), found: other.to_owned(), known };
+            return Err(source.error(model.kinematics.span(), fault));
+        }
+    };
+    let thickness = match &model.thickness {
+        None => 1.0,
+        Some(number) => {
+            let words = ("a thickness must be positive", "write a positive number, or leave `thickness` out for 1");
+            source.number(number, (table, "thickness"), |t| t > 0.0, words)?
+        }
+    };
+    Ok((kinematics, thickness))
+}
+
+fn bodies(raw: &RawScene, source: &Source) -> Result<Vec<Body>, SceneError> {
+    if raw.bodies.is_empty() {
+        return Err(source.error(0..0, Fault::NoBodies));
+    }
+    let mut bodies: Vec<_> = raw.bodies.iter().collect();
+    bodies.sort_by_key(|(name, _)| name.start);
+    let body = |(name, table): (&At<String>, &At<Table<super::raw::RawBody>>)| {
+        let Table(raw) = &table.value;
+        let label = format!("[bodies.{}]", name.value);
+        let name =
+            source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
+        let words = ("Young's modulus must be positive", "write a positive number, in units of stress");
+        let young = source.number(&raw.young, (&label, "young"), |e| e > 0.0, words)?;
+        let words = poisson_words(raw.poisson.value);
+        let poisson = source.number(&raw.poisson, (&label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
+        let body_force = match &raw.body_force {
+            None => [0.0; 2],
+            Some(force) => source.vector(force, (&label, "body_force"))?,
+        };
+        Ok(Body { name, young, poisson, body_force })
+    };
+    bodies.into_iter().map(body).collect()
+}
+
+/// Why a Poisson's ratio outside (−1, ½) is none.
+fn poisson_words(nu: f64) -> (&'static str, &'static str) {
+    if nu == 0.5 {
+        ("ν must lie in (−1, 0.5): at 0.5 the body is incompressible", "write a value below 0.5, for instance 0.4999")
+    } else if nu > 0.5 {
+        (
+            "ν must lie in (−1, 0.5): beyond the incompressible limit 0.5 the strain energy is not positive",
+            "write a value below 0.5, for instance 0.3",
+        )
+    } else {
+        (
+            "ν must lie in (−1, 0.5): at −1 and below the strain energy is not positive",
+            "write a value above −1, for instance 0.3",
+        )
+    }
+}
+
+fn mesh(raw: &RawScene, bodies: &[Body], source: &Source) -> Result<MeshSource, SceneError> {
+    let one_of = |both| Fault::OneOf { table: "the scene".into(), first: "[mesh]", second: "[geometry]", both };
+    match (&raw.mesh, &raw.geometry) {
+        (Some(mesh), Some(geometry)) => {
+            let (early, late) = if mesh.start < geometry.start {
+                (mesh.span(), geometry.span())
+            } else {
+                (geometry.span(), mesh.span())
+            };
+            Err(source.error(late, one_of(true)).with_related(early, "the other one"))
+        }
+        (None, None) => Err(source.error(0..0, one_of(false))),
+        (Some(mesh), None) => {
+            let Table(raw) = &mesh.value;
+            let file = source.name(&raw.file, ("[mesh]", "file"), "name the mesh file, relative to the scene")?;
+            Ok(MeshSource::File(source.path.parent().unwrap_or(Path::new("")).join(file)))
+        }
+        (None, Some(geometry)) => geometry::geometry(geometry, raw, bodies, source),
+    }
+}
