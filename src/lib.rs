@@ -1,6 +1,7 @@
 //! hypercircle: guaranteed two-sided energy bounds for plane frictionless contact.
 
 pub mod bounds;
+pub mod cli;
 pub mod compare;
 pub mod dual;
 pub mod element;

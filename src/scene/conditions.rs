@@ -11,17 +11,20 @@ use super::{Contact, ContactSides, Gap, Load, MeshSource, Support, SupportKind, 
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
 
+/// What holds on the boundaries.
+pub(super) struct Conditions {
+    pub supports: Vec<Support>,
+    pub tractions: Vec<Traction>,
+    pub contacts: Vec<Contact>,
+}
+
 /// Checks the three lists, in the order of the file within each.
-pub(super) fn conditions(
-    raw: &RawScene,
-    mesh: &MeshSource,
-    source: &Source,
-) -> Result<(Vec<Support>, Vec<Traction>, Vec<Contact>), SceneError> {
+pub(super) fn conditions(raw: &RawScene, mesh: &MeshSource, source: &Source) -> Result<Conditions, SceneError> {
     let mut taken = Taken::new(mesh, source);
     let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
     let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
     let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
-    Ok((supports, tractions, contacts))
+    Ok(Conditions { supports, tractions, contacts })
 }
 
 fn each<R, T>(

@@ -8,9 +8,16 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use miette::{
+    Diagnostic, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode, SourceSpan, SpanContents,
+};
 
 pub use super::fault::Fault;
+
+/// Bytes of the longest line that is drawn whole.
+const LONGEST_LINE: usize = 300;
+/// Characters drawn on either side of a place in a text with longer lines.
+const WINDOW: usize = 60;
 
 /// Why a scene was refused.
 #[derive(Debug, thiserror::Error)]
@@ -123,8 +130,52 @@ impl Place {
         self.before().rsplit('\n').next().unwrap_or_default().chars().count() + 1
     }
 
+    /// Whether some line is too long to be drawn.
+    fn has_long_lines(&self) -> bool {
+        self.source.inner().lines().any(|line| line.len() > LONGEST_LINE)
+    }
+
+    /// The bytes to underline.
+    fn marked(&self) -> Range<usize> {
+        if self.has_long_lines() { self.span.start..self.window().end.min(self.span.end) } else { self.span() }
+    }
+
+    /// The neighbourhood of the span in its line, short enough to be drawn.
+    fn window(&self) -> Range<usize> {
+        let text = self.source.inner();
+        let (before, after) = (self.before(), text.get(self.span.start..).unwrap_or_default());
+        let back: usize = before.chars().rev().take(WINDOW).take_while(|&c| c != '\n').map(char::len_utf8).sum();
+        let ahead: usize = after.chars().take(WINDOW).take_while(|&c| c != '\n').map(char::len_utf8).sum();
+        self.span.start - back..self.span.start + ahead
+    }
+
     fn before(&self) -> &str {
         self.source.inner().get(..self.span.start).unwrap_or_default()
+    }
+}
+
+/// A text with a line of any length is drawn as the neighbourhood of the place only.
+impl SourceCode for Place {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        if !self.has_long_lines() {
+            return self.source.read_span(span, lines_before, lines_after);
+        }
+        let window = self.window();
+        let text = self.source.inner().get(window.clone()).unwrap_or_default();
+        let column = self.before().get(..window.start).unwrap_or_default().rsplit('\n').next().unwrap_or_default();
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.source.name().to_owned(),
+            text.as_bytes(),
+            window.into(),
+            self.line() - 1,
+            column.chars().count(),
+            1,
+        )))
     }
 }
 
@@ -185,13 +236,14 @@ impl Diagnostic for SceneError {
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.place().map(|place| &place.source as &dyn SourceCode)
+        self.place().map(|place| place as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let SceneError::Content(located) = self else { return None };
-        let primary = LabeledSpan::new_primary_with_span(Some(located.fault.label()), located.place.span());
-        let related = located.related.iter().map(|(span, words)| {
+        let primary = LabeledSpan::new_primary_with_span(Some(located.fault.label()), located.place.marked());
+        // Two places of a text with long lines have no drawing in common.
+        let related = located.related.iter().filter(|_| !located.place.has_long_lines()).map(|(span, words)| {
             let length = span.len();
             LabeledSpan::new(Some(words.clone()), span.start, length)
         });

@@ -112,7 +112,18 @@ fn reword(message: &str, at: Named, written: &str) -> Fault {
         Some((found, expected)) => (type_name(found.trim_start_matches("invalid type: ")), type_name(expected)),
         None => (format!("{written} ({message})"), "a value within the range of double precision".to_owned()),
     };
-    let (table, key) = at.own.unwrap_or((at.table, at.key));
+    let Some((table, key)) = at.own else {
+        return Fault::WrongType { key: at.key, table: at.table, found, expected };
+    };
+    let header = at.table.split(" number").next().unwrap_or_default();
+    let expected = match (header.starts_with("[["), expected.as_str()) {
+        (true, "a table") if key == "bodies" => "one table for each body, headed [bodies.NAME]".to_owned(),
+        (true, "a table") => {
+            format!("one table, headed {} in single brackets", header.replace("[[", "[").replace("]]", "]"))
+        }
+        (false, "a list in [ ]") => format!("a list of tables, each headed [{header}] in double brackets"),
+        _ => expected,
+    };
     Fault::WrongType { key, table, found, expected }
 }
 

@@ -79,7 +79,7 @@ type Pair = At<Vec<f64>>;
 /// A scene of hypercircle: bodies, their conditions, and where the triangles come from.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Scene")]
+#[schemars(rename = "Scene", extend("oneOf" = [{"required": ["mesh"]}, {"required": ["geometry"]}]))]
 pub(super) struct RawScene {
     /// A title for the report; the file name where it is missing.
     pub title: Option<String>,
@@ -189,7 +189,7 @@ pub(super) struct RawSupport {
 /// A boundary that is loaded, by `value` (with or without `gradient`) or by `pressure`.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Traction")]
+#[schemars(rename = "Traction", extend("oneOf" = [{"required": ["value"]}, {"required": ["pressure"]}]))]
 pub(super) struct RawTraction {
     /// The boundary.
     #[schemars(length(min = 1))]
@@ -207,7 +207,7 @@ pub(super) struct RawTraction {
 /// A frictionless contact, `between` two boundaries or `on` one against a rigid obstacle.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Contact")]
+#[schemars(rename = "Contact", extend("oneOf" = [{"required": ["between"]}, {"required": ["on"]}]))]
 pub(super) struct RawContact {
     /// Two boundaries that coincide as polylines.
     #[schemars(with = "Option<[String; 2]>")]

@@ -3,9 +3,10 @@
 use std::ops::Range;
 use std::path::Path;
 
+use super::conditions::{Conditions, conditions};
 use super::error::{Fault, SceneError};
 use super::raw::{At, RawModel, RawScene, Table};
-use super::{Body, Kinematics, MeshSource, Scene, conditions, geometry};
+use super::{Body, Kinematics, MeshSource, Scene, geometry};
 
 /// The text under examination; makes errors that point into it.
 pub(super) struct Source<'a> {
@@ -96,7 +97,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let (kinematics, thickness) = model(&raw.model, &source)?;
     let bodies = bodies(&raw, &source)?;
     let mesh = mesh(&raw, &bodies, &source)?;
-    let (supports, tractions, contacts) = conditions::conditions(&raw, &mesh, &source)?;
+    let Conditions { supports, tractions, contacts } = conditions(&raw, &mesh, &source)?;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene { name, title, path, kinematics, thickness, mesh, bodies, supports, tractions, contacts })

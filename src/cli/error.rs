@@ -1,0 +1,64 @@
+//! Why a command gave no answer.
+
+use std::fmt;
+
+use miette::{Diagnostic, LabeledSpan, SourceCode};
+
+use super::exit::Exit;
+use crate::scene::SceneError;
+
+/// An error to show, with its exit code.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The scene was refused.
+    #[error("{}", .0.found())]
+    Scene(#[from] SceneError),
+    /// The command, for an answer that ends with `exit`.
+    #[error("{message}")]
+    Stopped {
+        /// What was found, with the file it concerns.
+        message: String,
+        /// What to do.
+        remedy: String,
+        /// One of the codes from 2 on.
+        exit: Exit,
+    },
+}
+
+impl CliError {
+    /// An error that is not about the text of a scene.
+    pub fn stopped(exit: Exit, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        CliError::Stopped { message: message.into(), remedy: remedy.into(), exit }
+    }
+
+    /// The exit code that belongs to it.
+    pub fn exit(&self) -> Exit {
+        match self {
+            CliError::Scene(_) => Exit::BadInput,
+            CliError::Stopped { exit, .. } => *exit,
+        }
+    }
+}
+
+impl Diagnostic for CliError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        match self {
+            CliError::Scene(error) => error.help(),
+            CliError::Stopped { remedy, .. } => (!remedy.is_empty()).then(|| Box::new(remedy) as Box<dyn fmt::Display>),
+        }
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        match self {
+            CliError::Scene(error) => error.source_code(),
+            CliError::Stopped { .. } => None,
+        }
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        match self {
+            CliError::Scene(error) => error.labels(),
+            CliError::Stopped { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The command line: one file per command, options in one place, no mechanics.
+//!
+//! A command reads its input, calls the library and returns an [`Exit`] or a [`CliError`]. Nothing is written before
+//! there is a result to write, so an error leaves no file behind.
+
+pub mod certify;
+pub mod chart;
+pub mod error;
+pub mod exit;
+pub mod options;
+pub mod schema;
+pub mod show;
+pub mod solve;
+pub mod stability;
+pub mod verify;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use error::CliError;
+pub use exit::Exit;
+
+/// Guaranteed two-sided energy bounds for plane frictionless contact, and a displacement model to compare with.
+#[derive(Debug, Parser)]
+#[command(name = "hypercircle", version, propagate_version = true, after_help = exit::TABLE)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Solve in stresses and, with FEniCSx, in displacements; compare, report and judge
+    Verify(verify::Args),
+    /// Solve in stresses, with a two-sided energy bracket; needs no Python
+    Solve(solve::Args),
+    /// Hold a displacement field from elsewhere against the bound
+    Certify(certify::Args),
+    /// Measure accuracy against time, every method and refinement
+    Chart(chart::Args),
+    /// Sweep the regimes where contact methods are known to fail
+    Stability(stability::Args),
+    /// Print the JSON Schema of a file format
+    Schema(schema::Args),
+}
+
+/// Runs the command of this process's arguments.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are answers, on stdout with code 0; the rest is bad usage, with the code of bad input.
+            // Where nobody reads the answer there is nobody to tell.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::BadInput.into() } else { ExitCode::SUCCESS };
+        }
+    };
+    show::install_panic_message();
+    match std::panic::catch_unwind(|| run(&cli.command)) {
+        Ok(Ok(exit)) => exit.into(),
+        Ok(Err(error)) => {
+            show::error(&error);
+            error.exit().into()
+        }
+        Err(_) => Exit::Failed.into(),
+    }
+}
+
+fn run(command: &Command) -> Result<Exit, CliError> {
+    match command {
+        Command::Verify(args) => verify::run(args),
+        Command::Solve(args) => solve::run(args),
+        Command::Certify(args) => certify::run(args),
+        Command::Chart(args) => chart::run(args),
+        Command::Stability(args) => stability::run(args),
+        Command::Schema(args) => schema::run(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use super::{Cli, Command, options::Method};
+
+    fn parse(line: &str) -> Result<Command, clap::Error> {
+        Cli::try_parse_from(line.split_whitespace()).map(|cli| cli.command)
+    }
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn options_arrive() {
+        let line = "hypercircle verify a.toml --method active-set --refine 2 --tolerance 0.01 --threads 2 --out o -q \
+                    --baseline b.json --accept --allow energy=1e-3 --allow contact=0 --max-triangles 9 --max-seconds 1.5";
+        let Ok(Command::Verify(args)) = parse(line) else { panic!("{:?}", parse(line)) };
+        assert_eq!(args.scene.to_str(), Some("a.toml"));
+        assert_eq!((args.solve.method, args.solve.refine, args.solve.threads), (Method::ActiveSet, 2, 2));
+        assert_eq!((args.limits.max_triangles, args.limits.max_seconds), (Some(9), Some(1.5)));
+        let allowed: Vec<_> = args.judge.allow.iter().map(|a| (a.name.as_str(), a.value)).collect();
+        assert_eq!(allowed, [("energy", 1e-3), ("contact", 0.0)]);
+        assert!(args.judge.accept && args.run.quiet);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        for line in [
+            "hypercircle solve",
+            "hypercircle solve a.toml b.toml",
+            "hypercircle solve a.toml --tolerance nan",
+            "hypercircle solve a.toml --tolerance 0",
+            "hypercircle solve a.toml --refine -1",
+            "hypercircle solve a.toml --refine 40",
+            "hypercircle solve a.toml --threads 0",
+            "hypercircle solve a.toml --max-triangles 0",
+            "hypercircle solve a.toml --max-seconds inf",
+            "hypercircle solve a.toml --method newton",
+            "hypercircle solve a.toml --baseline b.json",
+            "hypercircle verify a.toml --accept",
+            "hypercircle verify a.toml --allow energy",
+            "hypercircle verify a.toml --allow =1",
+            "hypercircle verify a.toml --allow energy=-1",
+            "hypercircle verify a.toml --allow energy=nan",
+            "hypercircle certify a.toml",
+            "hypercircle chart",
+            "hypercircle schema mesh",
+        ] {
+            assert_eq!(parse(line).map_err(|error| error.exit_code()).err(), Some(2), "{line}");
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The options that several commands share, and how their values are read.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum, value_parser};
+
+use crate::scene::Scene;
+
+/// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
+const MOST_REFINEMENTS: i64 = 12;
+
+/// How the dual problem is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// One sparse factorisation, contact solved on its Schur complement
+    Condensed,
+    /// Interior point
+    Clarabel,
+    /// Uzawa's iteration on the multipliers
+    Uzawa,
+    /// Primal–dual active set, refactorising at each step
+    ActiveSet,
+}
+
+impl std::fmt::Display for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Method::Condensed => "condensed",
+            Method::Clarabel => "clarabel",
+            Method::Uzawa => "uzawa",
+            Method::ActiveSet => "active-set",
+        })
+    }
+}
+
+/// How to solve.
+#[derive(Debug, Clone, Args)]
+pub struct SolveOptions {
+    /// Solver of the dual problem
+    #[arg(long, value_enum, default_value_t = Method::Condensed)]
+    pub method: Method,
+    /// Refine the mesh uniformly N times before solving
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
+    pub refine: u32,
+    /// Refine adaptively until the guaranteed relative energy-norm error is below X
+    #[arg(long, value_name = "X", value_parser = positive)]
+    pub tolerance: Option<f64>,
+    /// Threads to use
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
+    pub threads: u32,
+}
+
+/// Where adaptive refinement stops at the latest.
+#[derive(Debug, Clone, Args)]
+pub struct Limits {
+    /// Stop refining before a mesh has more than N triangles
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
+    pub max_triangles: Option<usize>,
+    /// Start no further refinement after S seconds
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub max_seconds: Option<f64>,
+}
+
+/// Where results go, and how much is said on the way.
+#[derive(Debug, Clone, Args)]
+pub struct RunOptions {
+    /// Folder for the results; made when there is something to write [default: out/<name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl RunOptions {
+    /// The folder for results about `scene`. It need not exist.
+    pub fn folder(&self, scene: &Scene) -> PathBuf {
+        self.folder_named(&scene.name)
+    }
+
+    /// The folder for results called `name`.
+    pub fn folder_named(&self, name: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| PathBuf::from("out").join(name))
+    }
+}
+
+/// How a comparison is judged.
+#[derive(Debug, Clone, Args)]
+pub struct JudgeOptions {
+    /// Compare with the results stored in FILE
+    #[arg(long, value_name = "FILE")]
+    pub baseline: Option<PathBuf>,
+    /// Write the results to the baseline instead of comparing with it
+    #[arg(long, requires = "baseline")]
+    pub accept: bool,
+    /// Allow the check NAME a difference of VALUE; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub allow: Vec<Allowance>,
+}
+
+/// A tolerance from the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Allowance {
+    /// Name of the check.
+    pub name: String,
+    /// Finite, not negative.
+    pub value: f64,
+}
+
+impl FromStr for Allowance {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // Names of checks may contain names of boundaries, and those an equals sign; a value cannot.
+        let (name, value) = text.rsplit_once('=').ok_or("write NAME=VALUE, for instance energy=1e-3")?;
+        if name.is_empty() {
+            return Err("the name before = is missing".to_owned());
+        }
+        let value = number(value)?;
+        if value < 0.0 {
+            return Err(format!("{value} is negative; a tolerance is zero or more"));
+        }
+        Ok(Allowance { name: name.to_owned(), value })
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("{text} is not finite")),
+        Err(_) => Err(format!("\"{text}\" is not a number")),
+    }
+}
+
+/// A finite number above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n) if n > 0 => Ok(n),
+        _ => Err("write a whole number, 1 or more".to_owned()),
+    }
+}
