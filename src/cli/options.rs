@@ -65,8 +65,13 @@ pub struct Limits {
 /// Where results go, and how much is said on the way.
 #[derive(Debug, Clone, Args)]
 pub struct RunOptions {
-    /// Folder for the results; made when there is something to write [default: out/<name>]
-    #[arg(long, value_name = "DIR")]
+    /// Folder for the results, made when there is something to write; `out/` and the name of the scene where it is
+    /// missing.
+    #[arg(
+        long,
+        value_name = "DIR",
+        help = "Folder for the results, made when there is something to write [default: out/<name>]"
+    )]
     pub out: Option<PathBuf>,
     /// Say nothing but errors
     #[arg(long, short)]

@@ -61,7 +61,7 @@ pub fn install_panic_message() {
             "hypercircle {version} stopped at an internal error ({place}: {what}).\n\
              This is a defect of the program and there is no result. Please report it with the scene and this message."
         );
-        if std::env::var_os("RUST_BACKTRACE").is_some() {
+        if std::env::var_os("RUST_BACKTRACE").is_some_and(|value| value != "0") {
             usual(panic);
         }
     }));

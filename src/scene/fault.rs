@@ -248,7 +248,7 @@ impl Fault {
             Fault::EmptyName { .. } => "empty",
             Fault::UnknownBody { .. } => "no table of this name",
             Fault::BodyWithoutPolygon { .. } => "no polygon of this name",
-            Fault::Polygon { .. } => "this polygon",
+            Fault::Polygon { .. } => "here",
             Fault::UnknownBoundary { .. } => "no edge of this name",
             Fault::TwoConditions { .. } => "the second condition",
             Fault::SelfContact { .. } => "twice the same",

@@ -90,6 +90,7 @@ pub(super) struct RawScene {
     /// Polygons to be meshed by the program. Either this or `mesh`.
     pub geometry: Option<At<Table<RawGeometry>>>,
     /// One table per body, by its name.
+    #[schemars(extend("minProperties" = 1))]
     pub bodies: BTreeMap<At<String>, At<Table<RawBody>>>,
     /// Boundaries that are held.
     #[serde(default)]
