@@ -12,43 +12,49 @@ pub struct Equilibrium {
     pub applied: f64,
     /// Largest resultant of boundary tractions and body force on any body.
     pub resultant: f64,
-    /// The traction that the first two are relative to.
+    /// Largest tension on a contact.
+    pub tension: f64,
+    /// The traction that jumps, applied tractions and tension are relative to.
     pub scale: f64,
+    /// ∫ |what is left of equilibrium · displacement|: by how much the lower bound can be off, per unit thickness.
+    pub work: f64,
 }
 
 impl Equilibrium {
-    /// The largest of the three.
+    /// The largest of the four.
     pub fn residual(&self) -> f64 {
-        self.jump.max(self.applied).max(self.resultant)
+        self.jump.max(self.applied).max(self.resultant).max(self.tension)
     }
 
-    /// Measures `stress` on `problem`.
-    pub fn measure(problem: &Problem, stress: &StressField) -> Self {
+    /// Measures `stress` on `problem`; `moments` are those of the displacement that the remainders are weighed with.
+    pub fn measure(problem: &Problem, stress: &StressField, moments: &[[[f64; 2]; 2]]) -> Self {
         let mesh = &problem.mesh;
         let bodies = problem.scene.bodies.len();
         let scale = load_scale(problem, stress);
         let (mut jump, mut applied) = (0.0_f64, 0.0_f64);
         let mut force = vec![[0.0; 2]; bodies];
         let mut gross = vec![0.0; bodies];
+        let (mut tension, mut work) = (0.0_f64, 0.0);
         for (e, edge) in mesh.edges.iter().enumerate() {
             let own = edge_traction(problem, stress, e, 0);
             let (length, normal) = mesh.edge_frame(e);
-            let tangential = |t: [f64; 2]| (t[1] * normal[0] - t[0] * normal[1]).abs();
-            match problem.conditions[e] {
-                Condition::Interior => {
-                    let other = edge_traction(problem, stress, e, 1);
-                    for end in 0..2 {
-                        jump = jump.max(norm([own[end][0] + other[end][0], own[end][1] + other[end][1]]));
-                    }
+            let along = |t: [f64; 2]| {
+                let shear = t[1] * normal[0] - t[0] * normal[1];
+                [-shear * normal[1], shear * normal[0]]
+            };
+            let other = edge_traction(problem, stress, e, 1);
+            for end in 0..2 {
+                let left = match problem.conditions[e] {
+                    Condition::Interior => [own[end][0] + other[end][0], own[end][1] + other[end][1]],
+                    Condition::Traction(p) => [own[end][0] - p[end][0], own[end][1] - p[end][1]],
+                    Condition::Clamped(_) => [0.0; 2],
+                    Condition::Roller | Condition::Contact { .. } => along(own[end]),
+                };
+                match problem.conditions[e] {
+                    Condition::Traction(_) => applied = applied.max(norm(left)),
+                    _ => jump = jump.max(norm(left)),
                 }
-                Condition::Traction(p) => {
-                    for end in 0..2 {
-                        applied = applied.max(norm([own[end][0] - p[end][0], own[end][1] - p[end][1]]));
-                    }
-                }
-                Condition::Clamped(_) => {}
-                Condition::Roller => jump = jump.max(tangential(own[0])).max(tangential(own[1])),
-                Condition::Contact { .. } => jump = jump.max(tangential(own[0])).max(tangential(own[1])),
+                work += norm(left) * norm(moments[e][end]);
             }
             let sides = usize::from(!edge.is_boundary()) + 1;
             for (side, triangle) in edge.triangles.iter().take(sides).enumerate() {
@@ -66,16 +72,25 @@ impl Equilibrium {
                 }
             }
         }
-        for interface in &problem.interfaces {
-            for pair in &interface.pairs {
-                if let ([Some(a), Some(b)], Some(second)) = (pair.edges, pair.second) {
-                    let (ta, tb) = (edge_traction(problem, stress, a, 0), edge_traction(problem, stress, b, 0));
-                    let at = |e: usize, t: [[f64; 2]; 2], v: usize| t[usize::from(mesh.edges[e].vertices[0] != v)];
-                    for end in 0..2 {
-                        let (p, q) = (at(a, ta, pair.first[end]), at(b, tb, second[end]));
-                        jump = jump.max(norm([p[0] + q[0], p[1] + q[1]]));
-                    }
+        for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+            let Some(a) = pair.edges[0] else { continue };
+            let at = |e: usize, v: usize| usize::from(mesh.edges[e].vertices[0] != v);
+            let ta = edge_traction(problem, stress, a, 0);
+            for end in 0..2 {
+                let own = at(a, pair.first[end]);
+                let normal = ta[own][0] * pair.normal[0] + ta[own][1] * pair.normal[1];
+                let mut opening = moments[a][own];
+                if let (Some(b), Some(second)) = (pair.edges[1], pair.second) {
+                    let tb = edge_traction(problem, stress, b, 0);
+                    let other = at(b, second[end]);
+                    let left = norm([ta[own][0] + tb[other][0], ta[own][1] + tb[other][1]]);
+                    jump = jump.max(left);
+                    work += left * norm(moments[b][other]);
+                    opening = [opening[0] - moments[b][other][0], opening[1] - moments[b][other][1]];
                 }
+                tension = tension.max(normal);
+                let g = 0.5 * pair.length * pair.gap[end];
+                work += normal.max(0.0) * (norm(opening) + g);
             }
         }
         for t in 0..mesh.triangles.len() {
@@ -90,7 +105,14 @@ impl Equilibrium {
         let resultant =
             (0..bodies).map(|b| if gross[b] > 0.0 { norm(force[b]) / gross[b] } else { 0.0 }).fold(0.0, f64::max);
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
-        Equilibrium { jump: relative(jump), applied: relative(applied), resultant, scale }
+        Equilibrium {
+            jump: relative(jump),
+            applied: relative(applied),
+            resultant,
+            tension: relative(tension),
+            scale,
+            work,
+        }
     }
 }
 

@@ -84,7 +84,7 @@ pub fn solve(
     let start = Instant::now();
     let found = method.solve(problem, motions, options)?;
     let measure = Instant::now();
-    let equilibrium = Equilibrium::measure(problem, &found.stress);
+    let equilibrium = Equilibrium::measure(problem, &found.stress, &found.moments);
     let contact_traction = contact_traction(problem, &found.stress);
     let mut seconds = found.seconds;
     seconds.recover += measure.elapsed().as_secs_f64();

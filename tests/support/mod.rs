@@ -1,0 +1,103 @@
+//! Scenes that several tests share, built without the mesher of the library.
+#![allow(dead_code)]
+
+use std::path::PathBuf;
+
+use hypercircle::mesh::{RawMesh, Triangulation};
+use hypercircle::problem::Problem;
+use hypercircle::scene::*;
+
+/// What distinguishes one two-block scene from another.
+#[derive(Clone)]
+pub struct Blocks {
+    /// Squares per side of each block.
+    pub n: usize,
+    pub kinematics: Kinematics,
+    /// E and ν of the left and the right block.
+    pub materials: [(f64, f64); 2],
+    /// P = value + slope · y on x = 0, along x.
+    pub load: (f64, f64),
+    pub gap: Gap,
+    /// Length of a block's side.
+    pub size: f64,
+}
+
+impl Default for Blocks {
+    fn default() -> Self {
+        Blocks {
+            n: 4,
+            kinematics: Kinematics::PlaneStrain,
+            materials: [(1.0, 0.3); 2],
+            load: (4.0, -7.0),
+            gap: Gap::Constant(0.0),
+            size: 1.0,
+        }
+    }
+}
+
+impl Blocks {
+    /// Left block [0,1]², right block [1,2]×[0,1] (times `size`): roller below the left block, traction on its left
+    /// side, the right block clamped at its right side, contact between. Squares are cut along alternating diagonals.
+    pub fn problem(&self) -> Problem {
+        let n = self.n;
+        let h = 1.0 / n as f64;
+        let mut raw = RawMesh::default();
+        for (block, body) in ["left", "right"].into_iter().enumerate() {
+            let base = raw.points.len();
+            for j in 0..=n {
+                for i in 0..=n {
+                    raw.points.push([self.size * (block as f64 + i as f64 * h), self.size * j as f64 * h]);
+                }
+            }
+            let at = |i: usize, j: usize| base + j * (n + 1) + i;
+            for j in 0..n {
+                for i in 0..n {
+                    let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+                    let cut = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+                    raw.triangles.extend(cut.map(|t| (t, body.to_string())));
+                }
+            }
+            for k in 0..n {
+                raw.segments.push(([at(k, 0), at(k + 1, 0)], format!("{body}_bottom")));
+                raw.segments.push(([at(0, k), at(0, k + 1)], format!("{body}_west")));
+                raw.segments.push(([at(n, k), at(n, k + 1)], format!("{body}_east")));
+            }
+        }
+        let scene = self.scene();
+        let (mesh, notes) = Triangulation::new(raw, &scene).expect("a valid mesh");
+        Problem::new(scene, mesh, notes).expect("a valid problem")
+    }
+
+    pub fn scene(&self) -> Scene {
+        let body = |name: &str, (young, poisson): (f64, f64)| Body {
+            name: name.to_string(),
+            young,
+            poisson,
+            body_force: [0.0, 0.0],
+        };
+        Scene {
+            name: "two_blocks".to_string(),
+            title: "Two blocks".to_string(),
+            path: PathBuf::from("two_blocks.toml"),
+            kinematics: self.kinematics,
+            thickness: 1.0,
+            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
+            bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],
+            supports: vec![
+                Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0, 0.0] } },
+                Support { on: "left_bottom".to_string(), kind: SupportKind::Roller },
+            ],
+            tractions: vec![Traction {
+                on: "left_west".to_string(),
+                load: Load::Affine {
+                    value: [self.load.0, 0.0],
+                    gradient: [[0.0, self.load.1 / self.size], [0.0, 0.0]],
+                },
+            }],
+            contacts: vec![Contact {
+                sides: ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
+                gap: self.gap.clone(),
+            }],
+        }
+    }
+}
