@@ -4,6 +4,22 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+mod boxes;
+mod cells;
+mod error;
+mod hanging;
+mod labels;
+mod overlap;
+pub mod polygons;
+mod polyline;
+#[cfg(test)]
+pub(crate) mod testing;
+mod topology;
+#[cfg(test)]
+mod topology_tests;
+
+pub use error::MeshError;
+
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawMesh {

@@ -1,0 +1,120 @@
+//! What can be wrong with a mesh, said so that its author knows where to look and what to do.
+
+use std::path::{Path, PathBuf};
+
+use crate::scene::{MeshSource, Scene};
+
+/// A mesh that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// The file as a whole cannot be read or converted.
+    #[error("mesh file {}: {what}; {remedy}", .file.display())]
+    File {
+        /// The mesh file.
+        file: PathBuf,
+        /// What was found.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A place inside the file does not follow its format.
+    #[error("mesh file {}, {place}: {what}; {remedy}", .file.display())]
+    Format {
+        /// The mesh file.
+        file: PathBuf,
+        /// Section, and line or byte.
+        place: String,
+        /// What was found.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The cells do not form a triangulation of the bodies.
+    #[error("{mesh}: {what}; {remedy}")]
+    Cells {
+        /// The mesh file, or `[geometry]`.
+        mesh: String,
+        /// What was found, with indices and coordinates.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A named boundary does not fit the scene.
+    #[error("{mesh}: boundary '{name}' {what}; {remedy}")]
+    Boundary {
+        /// The mesh file, or `[geometry]`.
+        mesh: String,
+        /// Name of the boundary.
+        name: String,
+        /// What was found.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The polygons of the scene do not describe bodies.
+    #[error("{}: geometry.polygons[{polygon}] (body '{body}') {what}; {remedy}", .scene.display())]
+    Polygon {
+        /// The scene file.
+        scene: PathBuf,
+        /// Index of the polygon, from 0.
+        polygon: usize,
+        /// Body of the polygon.
+        body: String,
+        /// What was found.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The two sides of a contact do not coincide.
+    #[error("{mesh}: contact '{contact}': {what}; {remedy}")]
+    Contact {
+        /// The mesh file, or `[geometry]`.
+        mesh: String,
+        /// `first|second` or `first|rigid`.
+        contact: String,
+        /// What was found, with coordinates.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+}
+
+impl MeshError {
+    /// A [`MeshError::File`].
+    pub(crate) fn file(file: &Path, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        MeshError::File { file: file.to_path_buf(), what: what.into(), remedy: remedy.into() }
+    }
+
+    /// A [`MeshError::Cells`].
+    pub(crate) fn cells(scene: &Scene, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        MeshError::Cells { mesh: mesh_name(scene), what: what.into(), remedy: remedy.into() }
+    }
+
+    /// A [`MeshError::Boundary`].
+    pub(crate) fn boundary(scene: &Scene, name: &str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        MeshError::Boundary { mesh: mesh_name(scene), name: name.to_string(), what: what.into(), remedy: remedy.into() }
+    }
+
+    /// A [`MeshError::Contact`].
+    pub(crate) fn contact(
+        scene: &Scene,
+        contact: impl Into<String>,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        MeshError::Contact { mesh: mesh_name(scene), contact: contact.into(), what: what.into(), remedy: remedy.into() }
+    }
+}
+
+/// How messages call the mesh of a scene.
+fn mesh_name(scene: &Scene) -> String {
+    match &scene.mesh {
+        MeshSource::File(path) => format!("mesh file {}", path.display()),
+        MeshSource::Geometry { .. } => format!("{}, [geometry]", scene.path.display()),
+    }
+}
+
+/// A point as messages show it.
+pub(crate) fn at(point: [f64; 2]) -> String {
+    format!("({}, {})", point[0], point[1])
+}

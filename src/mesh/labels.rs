@@ -1,0 +1,213 @@
+//! Which edge carries which name, and which edges are cut open because a contact runs along them.
+
+use std::collections::{HashMap, HashSet};
+
+use super::error::{MeshError, at};
+use super::{RawMesh, cells::Cells};
+use crate::problem::Note;
+use crate::scene::{ContactSides, MeshSource, Scene};
+
+/// An edge without direction.
+pub(super) type Pair = [usize; 2];
+
+/// The key of the edge between two vertices.
+pub(super) fn pair(a: usize, b: usize) -> Pair {
+    [a.min(b), a.max(b)]
+}
+
+/// Names of edges before vertices are split.
+#[derive(Default)]
+pub(super) struct Labels {
+    /// Distinct names in order of appearance.
+    pub names: Vec<String>,
+    /// Name of edge i (opposite corner i) of a triangle.
+    pub of: HashMap<(usize, usize), usize>,
+    /// Interior edges along which a contact separates two bodies.
+    pub cut: HashSet<Pair>,
+}
+
+impl Labels {
+    fn put(&mut self, side: (usize, usize), name: &str) {
+        let index = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
+            self.names.push(name.to_string());
+            self.names.len() - 1
+        });
+        self.of.insert(side, index);
+    }
+}
+
+/// The boundaries to which the scene gives a condition.
+pub(crate) fn used_names(scene: &Scene) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    names.extend(scene.supports.iter().map(|s| s.on.as_str()));
+    names.extend(scene.tractions.iter().map(|t| t.on.as_str()));
+    names.extend(contact_names(scene));
+    names
+}
+
+/// The sides of the contacts.
+pub(crate) fn contact_names(scene: &Scene) -> Vec<&str> {
+    let sides = scene.contacts.iter().flat_map(|contact| match &contact.sides {
+        ContactSides::Between(names) => names.as_slice(),
+        ContactSides::Rigid(name) => std::slice::from_ref(name),
+    });
+    sides.map(String::as_str).collect()
+}
+
+/// Gives the named segments of `raw` to the edges of its cells.
+///
+/// `sides` lists for every edge its one or two (triangle, local edge).
+pub(super) fn assign(
+    raw: &RawMesh,
+    cells: &Cells,
+    sides: &HashMap<Pair, Vec<(usize, usize)>>,
+    scene: &Scene,
+    notes: &mut Vec<Note>,
+) -> Result<Labels, MeshError> {
+    let used = used_names(scene);
+    let mut order: Vec<Pair> = Vec::new();
+    let mut on: HashMap<Pair, Vec<&str>> = HashMap::new();
+    for ([a, b], name) in &raw.segments {
+        let key = pair(*a, *b);
+        if name.is_empty() {
+            continue;
+        }
+        if !sides.contains_key(&key) {
+            if used.contains(&name.as_str()) {
+                let ends = [*a, *b].map(|v| at(raw.points[v]));
+                let what = format!("has the segment {} to {}, which is no edge of a triangle", ends[0], ends[1]);
+                return Err(MeshError::boundary(scene, name, what, "mesh curves and surfaces together"));
+            }
+            continue;
+        }
+        let names = on.entry(key).or_default();
+        if names.is_empty() {
+            order.push(key);
+        }
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let mut labels = Labels::default();
+    for key in order {
+        let names = &on[&key];
+        let carrying: Vec<&str> = names.iter().copied().filter(|name| used.contains(name)).collect();
+        let place = key.map(|v| at(raw.points[v])).join(" to ");
+        match (sides[&key].as_slice(), carrying.as_slice()) {
+            ([side], []) => labels.put(*side, names[0]),
+            ([side], [name]) => labels.put(*side, name),
+            ([_], [first, second, ..]) => {
+                let what = format!("shares the edge {place} with '{second}', and both carry a condition of the scene");
+                return Err(MeshError::boundary(scene, first, what, "put every curve into one of the two only"));
+            }
+            (_, []) => {}
+            (both, carrying) => {
+                for (side, name) in facing(cells, both, carrying, &place, scene)? {
+                    labels.put(side, name);
+                }
+                labels.cut.insert(key);
+            }
+        }
+    }
+    check_names(raw, &labels, &used, scene, notes)?;
+    Ok(labels)
+}
+
+/// The two sides of an edge shared by two bodies along which a contact separates them: the name that the contact
+/// lists first goes to the body that the scene lists first.
+fn facing<'a>(
+    cells: &Cells,
+    both: &[(usize, usize)],
+    carrying: &[&'a str],
+    place: &str,
+    scene: &Scene,
+) -> Result<[((usize, usize), &'a str); 2], MeshError> {
+    let name = carrying[0];
+    let contact = scene.contacts.iter().find_map(|contact| match &contact.sides {
+        ContactSides::Between(names) if names.iter().any(|n| n == name) => Some(names),
+        _ => None,
+    });
+    let Some([first, second]) = contact else {
+        return Err(MeshError::boundary(
+            scene,
+            name,
+            format!("carries a condition, but its edge {place} has a triangle on both sides"),
+            "conditions belong on the outer boundary of a body",
+        ));
+    };
+    let (sides, bodies) = match both {
+        [one, other] => ([*one, *other], [cells.body[one.0], cells.body[other.0]]),
+        _ => ([(0, 0); 2], [0, 0]),
+    };
+    if bodies[0] == bodies[1] {
+        return Err(MeshError::boundary(
+            scene,
+            name,
+            format!("is a side of a contact, but its edge {place} lies inside body '{}'", scene.bodies[bodies[0]].name),
+            "a contact separates two bodies: make two surfaces of it, each a body",
+        ));
+    }
+    let find = |wanted: &str| carrying.iter().copied().find(|n| *n == wanted);
+    match (find(first), find(second), carrying.len()) {
+        (Some(first), Some(second), 2) => {
+            let (early, late) = if bodies[0] < bodies[1] { (sides[0], sides[1]) } else { (sides[1], sides[0]) };
+            Ok([(early, first), (late, second)])
+        }
+        _ => Err(MeshError::boundary(
+            scene,
+            name,
+            format!(
+                "is a side of the contact {first}|{second}, but the bodies '{}' and '{}' share the edge {place}, \
+                which has the names {}",
+                scene.bodies[bodies[0]].name,
+                scene.bodies[bodies[1]].name,
+                carrying.join(", ")
+            ),
+            format!(
+                "put the curve into both physical curves '{first}' and '{second}', or give each body its own curve"
+            ),
+        )),
+    }
+}
+
+/// Every name of the scene is on an edge; names that the scene does not mention make a note.
+fn check_names(
+    raw: &RawMesh,
+    labels: &Labels,
+    used: &[&str],
+    scene: &Scene,
+    notes: &mut Vec<Note>,
+) -> Result<(), MeshError> {
+    for name in used {
+        if !labels.names.iter().any(|n| n == name) {
+            let existing: Vec<&str> = labels.names.iter().map(String::as_str).collect();
+            let remedy = match existing.as_slice() {
+                [] => "no boundary has a name: put the curves into physical curves, and save them".to_string(),
+                _ => format!("the boundaries are {}{}", existing.join(", "), suggestion(name, &existing)),
+            };
+            return Err(MeshError::boundary(scene, name, "does not exist", remedy));
+        }
+    }
+    if let MeshSource::File(_) = scene.mesh {
+        let mut idle: Vec<&str> = raw.segments.iter().map(|(_, n)| n.as_str()).collect();
+        idle.retain(|n| !n.is_empty() && !used.contains(n));
+        idle.sort_unstable();
+        idle.dedup();
+        for name in idle {
+            notes.push(Note {
+                weakens_guarantee: false,
+                text: format!("the scene does not mention the physical curve '{name}': it is free of traction"),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// `; did you mean 'x'?` when one of `names` is close to `name`.
+pub(crate) fn suggestion(name: &str, names: &[&str]) -> String {
+    let distance = |other: &&&str| strsim::damerau_levenshtein(name, other);
+    match names.iter().filter(|n| !n.is_empty()).min_by_key(distance) {
+        Some(best) if distance(&best) * 2 <= name.chars().count() => format!("; did you mean '{best}'?"),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,125 @@
+//! The edges of a contact side in order, with their arc length.
+
+use std::collections::BTreeMap;
+
+/// A point as a key: equal bits, and 0 equal to −0.
+pub(crate) type Key = [u64; 2];
+
+/// The key of a point.
+pub(crate) fn key(p: [f64; 2]) -> Key {
+    p.map(|x| (x + 0.0).to_bits())
+}
+
+/// The point of a key.
+pub(crate) fn point(key: Key) -> [f64; 2] {
+    key.map(f64::from_bits)
+}
+
+/// One edge on the way along a side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Link {
+    /// Index of the edge in the argument of [`chain`].
+    pub edge: usize,
+    /// Whether it is passed from its second end to its first.
+    pub reversed: bool,
+    /// Arc length at its two ends, in the order in which they are passed.
+    pub arc: [f64; 2],
+}
+
+/// Orders edges into pieces, each from the end that comes first in (x, y) order; the pieces follow one another by
+/// these ends, and the arc length goes on from one to the next. A closed piece starts at its first point in (x, y)
+/// order, towards the neighbour that comes first.
+///
+/// # Errors
+/// A point at which more than two edges meet.
+pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
+    let order = |a: &Key, b: &Key| {
+        let (a, b) = (point(*a), point(*b));
+        a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+    };
+    let mut at: BTreeMap<Key, Vec<usize>> = BTreeMap::new();
+    for (i, ends) in edges.iter().enumerate() {
+        ends.iter().for_each(|p| at.entry(key(*p)).or_default().push(i));
+    }
+    if let Some((crossing, _)) = at.iter().find(|(_, meeting)| meeting.len() > 2) {
+        return Err(point(*crossing));
+    }
+    let mut starts: Vec<Key> = at.keys().copied().collect();
+    starts.sort_by(order);
+    let closed_last = |k: &Key| at[k].len() != 1;
+    starts.sort_by_key(closed_last);
+
+    let mut done = vec![false; edges.len()];
+    let mut pieces: Vec<(Key, Vec<(usize, bool)>)> = Vec::new();
+    for start in starts {
+        let mut piece = Vec::new();
+        let mut here = start;
+        let other = |i: usize, from: Key| key(if key(edges[i][0]) == from { edges[i][1] } else { edges[i][0] });
+        while let Some(next) =
+            at[&here].iter().copied().filter(|&i| !done[i]).min_by(|&i, &j| order(&other(i, here), &other(j, here)))
+        {
+            done[next] = true;
+            piece.push((next, key(edges[next][0]) != here));
+            here = other(next, here);
+        }
+        if !piece.is_empty() {
+            pieces.push((start, piece));
+        }
+    }
+    pieces.sort_by(|a, b| order(&a.0, &b.0));
+    let mut arc = 0.0;
+    let links = pieces.into_iter().flat_map(|(_, piece)| piece).map(|(edge, reversed)| {
+        let [a, b] = edges[edge];
+        let from = arc;
+        arc += (b[0] - a[0]).hypot(b[1] - a[1]);
+        Link { edge, reversed, arc: [from, arc] }
+    });
+    Ok(links.collect())
+}
+
+/// Parts of an edge, and of the length of a side, within which two positions count as the same.
+pub(crate) const SAME: f64 = 1e-9;
+
+/// The points of a side at the arc lengths `breaks` that are not at an end of an edge: (edge, point).
+pub(crate) fn inner_points(edges: &[[[f64; 2]; 2]], links: &[Link], breaks: &[f64]) -> Vec<(usize, [f64; 2])> {
+    let mut found = Vec::new();
+    for &s in breaks {
+        for link in links {
+            let length = link.arc[1] - link.arc[0];
+            let t = (s - link.arc[0]) / length;
+            if t > SAME && t < 1.0 - SAME {
+                let [a, b] = edges[link.edge];
+                let t = if link.reversed { 1.0 - t } else { t };
+                found.push((link.edge, [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]));
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_follow_one_another_from_their_first_ends() {
+        let edges = [[[1.0, 0.0], [0.5, 0.0]], [[3.0, 1.0], [2.0, 1.0]], [[0.0, 0.0], [0.5, 0.0]]];
+        let links = chain(&edges).expect("no branches");
+        let passed: Vec<(usize, bool, [f64; 2])> = links.iter().map(|l| (l.edge, l.reversed, l.arc)).collect();
+        assert_eq!(passed, [(2, false, [0.0, 0.5]), (0, true, [0.5, 1.0]), (1, true, [1.0, 2.0])]);
+        assert_eq!(inner_points(&edges, &links, &[0.5, 0.75, 9.0]), [(0, [0.75, 0.0])]);
+    }
+
+    #[test]
+    fn a_loop_is_passed_once() {
+        let edges = [[[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 0.0]]];
+        let links = chain(&edges).expect("no branches");
+        assert_eq!(links.iter().map(|l| l.edge).collect::<Vec<_>>(), [2, 1, 0]);
+    }
+
+    #[test]
+    fn a_branch_is_an_error() {
+        let edges = [[[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.0], [-1.0, 0.0]]];
+        assert_eq!(chain(&edges), Err([0.0, 0.0]));
+    }
+}
