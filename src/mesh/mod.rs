@@ -6,12 +6,20 @@
 
 mod boxes;
 mod cells;
-mod error;
+pub(crate) mod error;
+mod file;
+mod foreign;
+pub mod glue;
+#[cfg(test)]
+mod glue_tests;
+pub mod gmsh;
 mod hanging;
-mod labels;
+mod insert;
+pub(crate) mod labels;
 mod overlap;
 pub mod polygons;
-mod polyline;
+pub(crate) mod polyline;
+mod quarter;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;
@@ -19,6 +27,25 @@ mod topology;
 mod topology_tests;
 
 pub use error::MeshError;
+
+use crate::problem::Note;
+use crate::scene::{MeshSource, Scene};
+
+/// Reads or makes the mesh of `scene`, checks it, and makes contact sides match.
+///
+/// # Errors
+/// [`MeshError`] says what is wrong, where, and what to do.
+pub fn load(scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
+    let (raw, mut notes) = match &scene.mesh {
+        MeshSource::File(path) => file::read(path)?,
+        MeshSource::Geometry { .. } => polygons::mesh(scene)?,
+    };
+    let (mesh, more) = Triangulation::new(raw, scene)?;
+    notes.extend(more);
+    let (mesh, more) = glue::glue(mesh, scene)?;
+    notes.extend(more);
+    Ok((mesh, notes))
+}
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,5 +1,13 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
+mod build;
+mod contact;
+mod error;
+#[cfg(test)]
+mod tests;
+
+pub use error::ProblemError;
+
 use crate::mesh::Triangulation;
 use crate::scene::Scene;
 

@@ -1,0 +1,208 @@
+//! Contact sides that coincide as curves get coinciding vertices.
+//!
+//! Every vertex of one side is put into the edges of the other, break points of the gap into both. What is left is
+//! the condition of the scene: two coinciding polylines.
+
+use std::collections::HashMap;
+
+use super::boxes::{BoxTree, around};
+use super::error::at;
+use super::polyline::{chain, inner_points, key};
+use super::{MeshError, Triangulation};
+use crate::problem::Note;
+use crate::scene::{Contact, ContactSides, Gap, Scene};
+
+/// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
+/// lies on it.
+const CLOSE: f64 = 1e-6;
+
+/// Part of the size of the mesh that counts as round-off; mesh generators compute points on curves to about 1e-12.
+const ROUND_OFF: f64 = 1e-10;
+
+/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
+///
+/// # Errors
+/// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
+pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
+    let mut notes = Vec::new();
+    snap(&mut mesh, scene, &mut notes);
+    for contact in &scene.contacts {
+        if let ContactSides::Between(names) = &contact.sides {
+            mesh = match_vertices(mesh, scene, contact, names, &mut notes)?;
+        }
+    }
+    for contact in &scene.contacts {
+        mesh = insert_gap_breaks(mesh, scene, contact, &mut notes)?;
+    }
+    Ok((mesh, notes))
+}
+
+/// Largest extent of the mesh.
+fn extent(mesh: &Triangulation) -> f64 {
+    let [lower, upper] = around(&mesh.points, 0.0);
+    (upper[0] - lower[0]).max(upper[1] - lower[1])
+}
+
+/// The vertices of a side, each with the length of its shortest edge there.
+fn side_vertices(mesh: &Triangulation, name: &str) -> Vec<(usize, f64)> {
+    let mut shortest: HashMap<usize, f64> = HashMap::new();
+    for e in mesh.boundary(name) {
+        let length = mesh.edge_frame(e).0;
+        for v in mesh.edges[e].vertices {
+            shortest.entry(v).and_modify(|l| *l = l.min(length)).or_insert(length);
+        }
+    }
+    let mut vertices: Vec<_> = shortest.into_iter().collect();
+    vertices.sort_unstable_by_key(|v| v.0);
+    vertices
+}
+
+/// Gives vertices of facing sides that are equal up to round-off the same coordinates, those of the lowest index. All
+/// contacts at once, because a vertex may belong to several.
+fn snap(mesh: &mut Triangulation, scene: &Scene, notes: &mut Vec<Note>) {
+    let mut leader: Vec<usize> = (0..mesh.points.len()).collect();
+    let find = |leader: &[usize], mut v: usize| {
+        while leader[v] != v {
+            v = leader[v];
+        }
+        v
+    };
+    for contact in &scene.contacts {
+        let ContactSides::Between(names) = &contact.sides else { continue };
+        let [first, second] = [0, 1].map(|i| side_vertices(mesh, &names[i]));
+        if second.is_empty() {
+            continue;
+        }
+        let tree = BoxTree::new(second.iter().map(|(v, _)| [mesh.points[*v]; 2]).collect());
+        for (v, length) in first {
+            for i in tree.meeting(&around(&[mesh.points[v]], CLOSE * length)) {
+                let (w, other) = second[i];
+                if distance(mesh.points[v], mesh.points[w]) <= CLOSE * length.min(other) {
+                    let (a, b) = (find(&leader, v), find(&leader, w));
+                    leader[a.max(b)] = a.min(b);
+                }
+            }
+        }
+    }
+    let mut moved = 0.0_f64;
+    for v in 0..leader.len() {
+        let target = mesh.points[find(&leader, v)];
+        moved = moved.max(distance(mesh.points[v], target));
+        mesh.points[v] = target;
+    }
+    if moved > ROUND_OFF * extent(mesh) {
+        notes.push(Note {
+            weakens_guarantee: true,
+            text: format!("contact sides coincide only up to {moved:.1e}: vertices were moved by that much to match"),
+        });
+    }
+}
+
+/// Puts the vertices of each side into the edges of the other.
+fn match_vertices(
+    mesh: Triangulation,
+    scene: &Scene,
+    contact: &Contact,
+    names: &[String; 2],
+    notes: &mut Vec<Note>,
+) -> Result<Triangulation, MeshError> {
+    let mut inserted = Vec::new();
+    let mut counts = [0, 0];
+    let mut moved = 0.0_f64;
+    for (from, into) in [(0, 1), (1, 0)] {
+        let edges = mesh.boundary(&names[into]);
+        let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
+        let margin = |e: usize| CLOSE * mesh.edge_frame(e).0;
+        let tree = BoxTree::new(edges.iter().map(|&e| around(&ends(e), margin(e))).collect());
+        let present: Vec<_> = edges.iter().flat_map(|&e| ends(e).map(key)).collect();
+        let present: std::collections::HashSet<_> = present.into_iter().collect();
+        for (v, _) in side_vertices(&mesh, &names[from]) {
+            let p = mesh.points[v];
+            if present.contains(&key(p)) {
+                continue;
+            }
+            let nearest = tree
+                .meeting(&[p, p])
+                .into_iter()
+                .map(|i| (distance_to(p, ends(edges[i])), edges[i]))
+                .filter(|(d, e)| *d <= margin(*e))
+                .min_by(|x, y| x.0.total_cmp(&y.0));
+            let Some((off, edge)) = nearest else {
+                let what = format!("the vertex {} of '{}' does not lie on '{}'", at(p), names[from], names[into]);
+                let remedy = "the two sides must be coinciding polylines with the same ends: divide the longer curve \
+                              there and name the common part only, or give both sides the same points";
+                return Err(MeshError::contact(scene, contact.name(), what, remedy));
+            };
+            moved = moved.max(off);
+            counts[from] += 1;
+            inserted.push((edge, p));
+        }
+    }
+    if inserted.is_empty() {
+        return Ok(mesh);
+    }
+    let size = extent(&mesh);
+    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    let parts: Vec<String> = [(0, 1), (1, 0)]
+        .into_iter()
+        .filter(|(from, _)| counts[*from] > 0)
+        .map(|(from, into)| format!("{} vertices of '{}' inserted into '{}'", counts[from], names[from], names[into]))
+        .collect();
+    notes.push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
+    if moved > ROUND_OFF * size {
+        notes.push(Note {
+            weakens_guarantee: true,
+            text: format!("contact {}: the sides deviate by {moved:.1e} and were made to coincide", contact.name()),
+        });
+    }
+    Ok(mesh)
+}
+
+fn too_flat(scene: &Scene, contact: &Contact, p: [f64; 2]) -> MeshError {
+    let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(p));
+    MeshError::contact(scene, contact.name(), what, "mesh both sides with the same points")
+}
+
+/// Puts the break points of the gap into the sides, so that the gap is linear on every edge.
+fn insert_gap_breaks(
+    mesh: Triangulation,
+    scene: &Scene,
+    contact: &Contact,
+    notes: &mut Vec<Note>,
+) -> Result<Triangulation, MeshError> {
+    let Gap::Table(rows) = &contact.gap else { return Ok(mesh) };
+    let breaks: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
+    let first = mesh.boundary(contact.first());
+    let side: Vec<[[f64; 2]; 2]> = first.iter().map(|&e| ends(e)).collect();
+    // A side that branches is reported when the contact is paired.
+    let Ok(links) = chain(&side) else { return Ok(mesh) };
+    let points = inner_points(&side, &links, &breaks);
+    if points.is_empty() {
+        return Ok(mesh);
+    }
+    let mut inserted: Vec<(usize, [f64; 2])> = points.iter().map(|(i, p)| (first[*i], *p)).collect();
+    if let ContactSides::Between([_, second]) = &contact.sides {
+        let facing: HashMap<_, usize> = mesh.boundary(second).into_iter().map(|e| (ends(e).map(key), e)).collect();
+        let opposite = |i: usize| facing.get(&[key(side[i][1]), key(side[i][0])]);
+        inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
+    }
+    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    notes.push(Note {
+        weakens_guarantee: false,
+        text: format!("contact {}: {} vertices inserted where the gap bends", contact.name(), points.len()),
+    });
+    Ok(mesh)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+/// Distance of `p` from a segment.
+fn distance_to(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let along = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let t = along.clamp(0.0, 1.0);
+    distance(p, [a[0] + t * d[0], a[1] + t * d[1]])
+}

@@ -1,0 +1,192 @@
+//! Files that gmsh wrote, and what becomes of them when they are damaged.
+
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+
+use super::parse;
+use crate::mesh::RawMesh;
+
+fn fixture(name: &str) -> Vec<u8> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name);
+    std::fs::read(path).expect("a fixture")
+}
+
+fn read(name: &str) -> RawMesh {
+    let (raw, notes) = parse(&fixture(name), Path::new(name)).expect("a good file");
+    assert!(notes.is_empty());
+    raw
+}
+
+#[track_caller]
+fn refuse(bytes: &[u8], fragments: &[&str]) {
+    let message = parse(bytes, Path::new("bad.msh")).expect_err("a bad file").to_string();
+    for fragment in ["mesh file bad.msh"].iter().chain(fragments) {
+        assert!(message.contains(fragment), "'{fragment}' is not in: {message}");
+    }
+}
+
+/// Cells by their coordinates, so that numbering does not matter.
+fn shape(raw: &RawMesh) -> (Vec<String>, Vec<String>) {
+    let text = |vertices: &[usize], name: &str| {
+        let points: Vec<String> =
+            vertices.iter().map(|&v| raw.points[v].map(|x| format!("{x:.9}")).join(" ")).collect();
+        format!("{name}: {}", points.join(", "))
+    };
+    let mut triangles: Vec<String> = raw.triangles.iter().map(|(t, name)| text(t, name)).collect();
+    let mut segments: Vec<String> = raw.segments.iter().map(|(s, name)| text(s, name)).collect();
+    triangles.sort();
+    segments.sort();
+    (triangles, segments)
+}
+
+const BLOCKS: [&str; 4] =
+    ["two_blocks_41.msh", "two_blocks_41_binary.msh", "two_blocks_22.msh", "two_blocks_22_binary.msh"];
+const SHARED: [&str; 4] =
+    ["shared_curve_41.msh", "shared_curve_41_binary.msh", "shared_curve_22.msh", "shared_curve_22_binary.msh"];
+
+#[test]
+fn every_version_gives_the_same_mesh() {
+    for files in [BLOCKS, SHARED] {
+        let first = shape(&read(files[0]));
+        for other in &files[1..] {
+            assert_eq!(shape(&read(other)), first, "{other}");
+        }
+    }
+    let raw = read(BLOCKS[0]);
+    let area = |body: &str| -> f64 {
+        let cells = raw.triangles.iter().filter(|(_, name)| name == body);
+        cells
+            .map(|(t, _)| {
+                let [a, b, c] = t.map(|v| raw.points[v]);
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            })
+            .sum()
+    };
+    assert!((area("left") - 1.0).abs() < 1e-12 && (area("right") - 1.0).abs() < 1e-12);
+    let count = |name: &str| raw.segments.iter().filter(|(_, n)| n == name).count();
+    assert_eq!((count("left_face"), count("right face"), count("77"), count("wall")), (2, 3, 2, 3));
+    let shared = read(SHARED[0]);
+    let on = |name: &str| shared.segments.iter().filter(|(_, n)| n == name).count();
+    assert_eq!((on("face"), on("opposite")), (2, 2), "a curve in two groups has both names");
+}
+
+#[test]
+fn straight_quadratic_triangles_lose_their_mid_nodes() {
+    let name = "shared_curve_quadratic_41.msh";
+    let (raw, notes) = parse(&fixture(name), Path::new(name)).expect("a good file");
+    assert_eq!(shape(&raw), shape(&read(SHARED[0])));
+    assert!(notes[0].text.contains("mid-nodes"));
+    let text = String::from_utf8(fixture(name)).expect("text");
+    let curved = text.replacen("\n0.2499999999994194 0 0\n", "\n0.25 0.01 0\n", 1);
+    assert_ne!(curved, text);
+    refuse(curved.as_bytes(), &["is curved", "(0.25, 0.01)", "Mesh.ElementOrder = 1"]);
+}
+
+/// The same binary file in the other byte order.
+fn turned(bytes: &[u8]) -> Vec<u8> {
+    // Only MSH 2.2 is simple enough to turn by its fixed layout: 4-byte numbers but for the coordinates.
+    let find =
+        |text: &str| bytes.windows(text.len()).position(|w| w == text.as_bytes()).expect("a section") + text.len();
+    let mut out = bytes.to_vec();
+    let mark = find("2.2 1 8\n");
+    out[mark..mark + 4].reverse();
+    let line_end = |from: usize| from + bytes[from..].iter().position(|b| *b == b'\n').expect("a line") + 1;
+    let count = |from: usize| -> usize {
+        String::from_utf8_lossy(&bytes[from..line_end(from)]).trim().parse().expect("a count")
+    };
+    let nodes = find("$Nodes\n");
+    let mut at = line_end(nodes);
+    for _ in 0..count(nodes) {
+        for width in [4, 8, 8, 8] {
+            out[at..at + width].reverse();
+            at += width;
+        }
+    }
+    let elements = find("$Elements\n");
+    let mut at = line_end(elements);
+    while !bytes[at..].starts_with(b"\n$End") && !bytes[at..].starts_with(b"$End") {
+        out[at..at + 4].reverse();
+        at += 4;
+    }
+    out
+}
+
+#[test]
+fn big_endian_files_read_the_same() {
+    let other = turned(&fixture(BLOCKS[3]));
+    assert_ne!(other, fixture(BLOCKS[3]));
+    let (raw, _) = parse(&other, Path::new("big.msh")).expect("a good file");
+    assert_eq!(raw, read(BLOCKS[3]));
+}
+
+#[test]
+fn files_that_are_refused() {
+    let v4 = String::from_utf8(fixture(BLOCKS[0])).expect("text");
+    let v2 = String::from_utf8(fixture(BLOCKS[2])).expect("text");
+    let edit = |text: &str, from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1).into_bytes()
+    };
+    refuse(b"", &["empty", "save it as MSH 4.1"]);
+    refuse(b" \n\n", &["empty"]);
+    refuse(b"$NOD\n1\n1 0 0 0\n$ENDNOD\n", &["line 1", "MSH version 1", "save it as"]);
+    refuse(&edit(&v4, "4.1 0 8", "4 0 8"), &["$MeshFormat, line 2", "MSH version 4;", "save it as"]);
+    refuse(&edit(&v4, "4.1 0 8", "4.0 0 8"), &["MSH version 4.0"]);
+    refuse(&edit(&v4, "4.1 0 8", "4.1 0 16"), &["data size is '16'"]);
+    refuse(&edit(&v4, "4.1 0 8", "four"), &["found 'four'"]);
+    refuse(b"(0 \"GAMBIT\")", &["no Gmsh file"]);
+    refuse(&edit(&v4, "\n18 32 1 32", "\n18 33 1 32"), &["$Nodes", "announces 33 nodes", "have 32"]);
+    refuse(&edit(&v4, "\n18 32 1 32", "\n17 32 1 32"), &["$Nodes", "announces 32 nodes"]);
+    refuse(&edit(&v4, "\n18 32 1 32", "\n99999999999999999 32 1 32"), &["$Nodes, line", "whole number"]);
+    refuse(&edit(&v4, "\n2 1 0 0 0", "\n2 one 0 0 0"), &["$Entities, line 17", "'one' where a number should be"]);
+    refuse(&edit(&v4, "$EndNodes", "$EndNode"), &["'$EndNode' where $EndNodes should be"]);
+    refuse(&edit(&v4, "1 3 \"left_bottom\"", "1 3 left_bottom"), &["$PhysicalNames", "\"name\" should be"]);
+    let nodes = v2.find("$Elements").expect("a section");
+    refuse(&v2.as_bytes()[..nodes], &["section $Elements is missing", "truncated"]);
+    refuse(&edit(&v2, "\n1 0 0 0\n", "\n1 0 0 0.5\n"), &["(0, 0, 0.5)", "plane z = 0"]);
+    refuse(&edit(&v2, "\n2 1 0 0\n", "\n1 1 0 0\n"), &["$Nodes, line", "node 1 is there twice"]);
+    refuse(&edit(&v2, "\n2 1 0 0\n", "\n99 1 0 0\n"), &["uses node 2, which is not in $Nodes"]);
+    refuse(&edit(&v2, "\n2 1 0 0\n", "\n2 inf 0 0\n"), &["node 2", "not finite"]);
+    refuse(&edit(&v2, "\n2 1 0 0\n", "\n2 1 0\n"), &["$Nodes, line", "found"]);
+    let quads =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n0\n$EndNodes\n$Elements\n1\n1 3 2 1 1 1 2 3 4\n$EndElements\n";
+    refuse(quads.as_bytes(), &["$Elements, line 9", "quadrangle", "mesh with triangles"]);
+    refuse(quads.replace("1 3 2", "1 4 2").as_bytes(), &["a cell in space", "save the surfaces only"]);
+    let binary = fixture(BLOCKS[1]);
+    refuse(&binary[..binary.len() / 2], &["byte ", "truncated"]);
+    refuse(&fixture(BLOCKS[3])[..1500], &["byte ", "truncated"]);
+    let mark = b"4.1 1 8\n".len() + b"$MeshFormat\n".len();
+    let mut marked = binary;
+    marked[mark] = 7;
+    refuse(&marked, &["byte order mark", "write it again"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn a_truncated_file_is_refused_without_panic(file in prop::sample::select([BLOCKS, SHARED].concat()), part in 0.0..1.0f64) {
+        let bytes = fixture(file);
+        // The last line may lose its end of line and still be whole.
+        let length = (part * (bytes.len() - 2) as f64) as usize;
+        prop_assert!(parse(&bytes[..length], Path::new("cut.msh")).is_err());
+    }
+
+    #[test]
+    fn damaged_bytes_never_panic(
+        file in prop::sample::select([BLOCKS, SHARED].concat()),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = fixture(file);
+        for (place, value) in damage {
+            let at = place.index(bytes.len());
+            bytes[at] = value;
+        }
+        // Either outcome is right: what matters is that there is one.
+        if let Ok((raw, _)) = parse(&bytes, Path::new("damaged.msh")) {
+            let highest = raw.triangles.iter().flat_map(|(t, _)| t).max();
+            prop_assert!(highest.is_none_or(|v| *v < raw.points.len()));
+        }
+    }
+}

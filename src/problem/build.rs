@@ -1,0 +1,115 @@
+//! From scene and mesh to a [`Problem`].
+
+use std::collections::HashMap;
+
+use super::contact::pair_up;
+use super::{Condition, Note, Problem, ProblemError};
+use crate::mesh::labels::contact_names;
+use crate::mesh::{self, Triangulation};
+use crate::scene::{Load, Scene, SupportKind};
+
+/// What a boundary name stands for.
+#[derive(Clone, Copy)]
+enum Role {
+    Support(SupportKind),
+    Load(Load),
+    Contact,
+}
+
+impl Problem {
+    /// Reads or makes the mesh of `scene`, checks it, makes contact sides match, and puts the conditions on it.
+    ///
+    /// # Errors
+    /// Everything that can be wrong with a mesh: [`ProblemError`].
+    pub fn load(scene: Scene) -> Result<Problem, ProblemError> {
+        let (mesh, notes) = mesh::load(&scene)?;
+        Problem::new(scene, mesh, notes)
+    }
+
+    /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was
+    /// made; remarks about the data are added to it.
+    ///
+    /// # Errors
+    /// Contact sides that do not match; a boundary with two conditions.
+    pub fn new(scene: Scene, mesh: Triangulation, mut notes: Vec<Note>) -> Result<Problem, ProblemError> {
+        let roles = roles(&scene)?;
+        let mut conditions: Vec<Condition> = (0..mesh.edges.len())
+            .map(|e| {
+                let edge = &mesh.edges[e];
+                let role = edge.name.and_then(|n| roles.get(mesh.names[n].as_str()));
+                match role {
+                    _ if !edge.is_boundary() => Condition::Interior,
+                    Some(Role::Support(SupportKind::Clamped { displacement })) => Condition::Clamped(*displacement),
+                    Some(Role::Support(SupportKind::Roller)) => Condition::Roller,
+                    Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
+                    // Contact edges are overwritten when they are paired.
+                    Some(Role::Contact) | None => Condition::Traction([[0.0; 2]; 2]),
+                }
+            })
+            .collect();
+        let mut interfaces = Vec::with_capacity(scene.contacts.len());
+        let mut remarks = Vec::new();
+        for (interface, contact) in scene.contacts.iter().enumerate() {
+            let matched = pair_up(contact, &mesh, &mut remarks)?;
+            for (pair, matched) in matched.pairs.iter().enumerate() {
+                for (side, edge) in matched.edges.iter().enumerate() {
+                    if let Some(edge) = edge {
+                        conditions[*edge] = Condition::Contact { interface, pair, side };
+                    }
+                }
+            }
+            interfaces.push(matched);
+        }
+        for remark in remarks {
+            if !notes.contains(&remark) {
+                notes.push(remark);
+            }
+        }
+        Ok(Problem { scene, mesh, conditions, interfaces, notes })
+    }
+
+    /// The same problem after `n` uniform refinements, each cutting every triangle into four.
+    ///
+    /// # Errors
+    /// None that [`Problem::new`] did not have, unless the mesh outgrows the index range.
+    pub fn refine_uniform(&self, n: usize) -> Result<Problem, ProblemError> {
+        let mut mesh = self.mesh.clone();
+        for _ in 0..n {
+            mesh = mesh.quartered();
+        }
+        Problem::new(self.scene.clone(), mesh, self.notes.clone())
+    }
+}
+
+/// The role of every boundary that the scene mentions.
+fn roles(scene: &Scene) -> Result<HashMap<&str, Role>, ProblemError> {
+    let mut all: Vec<(&str, Role)> = Vec::new();
+    all.extend(scene.supports.iter().map(|s| (s.on.as_str(), Role::Support(s.kind))));
+    all.extend(scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t.load))));
+    all.extend(contact_names(scene).into_iter().map(|name| (name, Role::Contact)));
+    let mut roles = HashMap::new();
+    for (name, role) in all {
+        if roles.insert(name, role).is_some() {
+            return Err(ProblemError::Condition {
+                name: name.to_string(),
+                what: "has two conditions".into(),
+                remedy: "give every boundary one of support, traction and contact side".into(),
+            });
+        }
+    }
+    Ok(roles)
+}
+
+/// P at the two ends of edge `e`.
+fn end_tractions(mesh: &Triangulation, e: usize, load: &Load) -> [[f64; 2]; 2] {
+    match load {
+        Load::Pressure(p) => {
+            let (_, normal) = mesh.edge_frame(e);
+            [normal.map(|n| 0.0 - p * n); 2]
+        }
+        Load::Affine { value, gradient } => mesh.edges[e].vertices.map(|v| {
+            let x = mesh.points[v];
+            [0, 1].map(|i| value[i] + gradient[i][0] * x[0] + gradient[i][1] * x[1])
+        }),
+    }
+}

@@ -1,0 +1,31 @@
+//! Why a scene and a mesh do not make a problem.
+
+use crate::mesh::MeshError;
+
+/// A scene and a mesh that do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ProblemError {
+    /// The mesh itself.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The sides of a contact.
+    #[error("contact '{contact}': {what}; {remedy}")]
+    Contact {
+        /// `first|second` or `first|rigid`.
+        contact: String,
+        /// What was found, with coordinates.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// Two conditions of the scene meet on one edge.
+    #[error("boundary '{name}': {what}; {remedy}")]
+    Condition {
+        /// Name of the boundary.
+        name: String,
+        /// What was found.
+        what: String,
+        /// What to do.
+        remedy: String,
+    },
+}
