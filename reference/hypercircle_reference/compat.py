@@ -1,0 +1,110 @@
+"""Every call whose spelling depends on the DOLFINx release, and nothing else.
+
+Two spellings are known: the one of 0.5 (UFL elements, adjacency lists) and the one of 0.9 and later (Basix elements,
+plain arrays, ``functionspace`` in place of ``VectorFunctionSpace``).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import NotInstalled
+
+try:
+    import dolfinx
+    import dolfinx.fem
+    import dolfinx.fem.petsc
+    import dolfinx.mesh
+    import petsc4py
+    import ufl
+    from mpi4py import MPI
+    from petsc4py import PETSc
+except ImportError as error:
+    raise NotInstalled(f"{error.name or 'FEniCSx'} cannot be imported ({error})") from error
+
+MODERN = hasattr(dolfinx.fem, "functionspace")
+if MODERN:
+    import basix.ufl
+
+SOLVER_VERSION = dolfinx.__version__
+PETSC_VERSION = petsc4py.__version__
+
+if not np.issubdtype(PETSc.ScalarType, np.floating):
+    raise NotInstalled("PETSc is built for complex numbers, and this model needs the build for real ones")
+
+
+def create_mesh(comm: MPI.Comm, triangles: np.ndarray, points: np.ndarray):
+    """Distribute the triangles (m, 3) with coordinates (n, 2); rank 0 hands in everything, the others nothing."""
+    if comm.rank != 0:
+        triangles, points = np.empty((0, 3), dtype=np.int64), np.empty((0, 2))
+    if MODERN:
+        element = basix.ufl.element("Lagrange", "triangle", 1, shape=(2,))
+        # Keywords, because 0.10 exchanged the order of the last two.
+        return dolfinx.mesh.create_mesh(comm, cells=triangles, x=points, e=ufl.Mesh(element))
+    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell("triangle", geometric_dimension=2), 1))
+    return dolfinx.mesh.create_mesh(comm, triangles, points, domain)
+
+
+def owned_cells(mesh) -> int:
+    """Number of cells this rank owns; they come first in the local numbering."""
+    return mesh.topology.index_map(mesh.topology.dim).size_local
+
+
+def cell_input_vertices(mesh) -> np.ndarray:
+    """Vertices of each owned cell (m, 3) in the numbering of the points given to :func:`create_mesh`."""
+    original = np.asarray(mesh.geometry.input_global_indices)
+    return original[_table(mesh.geometry.dofmap, 3)[: owned_cells(mesh)]]
+
+
+def vector_space(mesh, degree: int):
+    """Continuous Lagrange displacements of the given degree."""
+    if MODERN:
+        return dolfinx.fem.functionspace(mesh, ("Lagrange", degree, (2,)))
+    return dolfinx.fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
+
+
+def constant_per_cell(mesh, values: np.ndarray):
+    """Coefficient with the given value (m,) on each owned cell."""
+    make = dolfinx.fem.functionspace if MODERN else dolfinx.fem.FunctionSpace
+    space = make(mesh, ("DG", 0))
+    coefficient = dolfinx.fem.Function(space)
+    coefficient.x.array[_table(space.dofmap.list, 1)[: owned_cells(mesh), 0]] = values
+    return coefficient
+
+
+def cell_nodes(space, degree: int) -> np.ndarray:
+    """Global node index of each local degree of freedom of the owned cells, (m, 3) for P1 and (m, 6) for P2.
+
+    Nodes come as on the reference triangle: the vertices, then the midpoints of the edges opposite them.
+    """
+    width = {1: 3, 2: 6}[degree]
+    local = _table(space.dofmap.list, width)[: owned_cells(space.mesh)]
+    return space.dofmap.index_map.local_to_global(local.reshape(-1).astype(np.int32)).reshape(local.shape)
+
+
+def owned_nodes(space) -> tuple[int, int]:
+    """The half-open range of global node indices this rank owns."""
+    return tuple(space.dofmap.index_map.local_range)
+
+
+def form(expression):
+    """Compile a UFL form."""
+    return dolfinx.fem.form(expression)
+
+
+def assemble_matrix(compiled) -> PETSc.Mat:
+    """The assembled matrix, ready for use."""
+    matrix = dolfinx.fem.petsc.assemble_matrix(compiled)
+    matrix.assemble()
+    return matrix
+
+
+def assemble_vector(compiled) -> PETSc.Vec:
+    """The assembled vector, contributions of all ranks added."""
+    vector = dolfinx.fem.petsc.assemble_vector(compiled)
+    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+    return vector
+
+
+def _table(dofmap, width: int) -> np.ndarray:
+    return np.asarray(getattr(dofmap, "array", dofmap)).reshape(-1, width)

@@ -1,0 +1,260 @@
+"""The change of variables u = T w + u0 that makes the normal jump an unknown.
+
+Nodes are numbered in the order of the exchange file: the vertices, then for P2 the midpoint of edge e as node
+(number of vertices) + e; degree of freedom 2·node + component. Clamped values, rollers and pins are eliminated. Every
+remaining unknown is either free or a jump v_n' + v_n'' with plain bounds, as PETSc's variational-inequality solvers
+need it.
+
+On a P2 contact edge the jump is a quadratic with Bernstein coefficients b0 and b2 (its end values) and
+b1 = 2 j_mid − ½ (b0 + b2). The jump unknowns are b0, b1, b2, so that bounding them by the Bernstein coefficients of
+the linear gap bounds the jump everywhere on the edge, not only at its nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sparse
+from scipy.sparse.csgraph import connected_components
+
+from . import BadExchange
+from .exchange import Problem
+from .group import Conflict, eliminate
+
+
+@dataclass(frozen=True)
+class JumpRow:
+    """One inequality of the model: which unknown carries it, and what its multiplier R ≥ 0 acts on.
+
+    The row is factor · w[column] ≤ …, binding from above for factor > 0 and from below otherwise. ``vertex`` is the
+    vertex of the first side, or −1 for the midpoint of pair ``pair``.
+    """
+
+    column: int
+    factor: float
+    contact: int
+    normal: np.ndarray
+    vertex: int
+    pair: int
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """u = T w + offset with lower ≤ w ≤ upper; ``rows`` lists the inequalities behind the finite bounds."""
+
+    T: sparse.csr_matrix
+    offset: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    rows: list[JumpRow]
+
+    @property
+    def bounded(self) -> np.ndarray:
+        """Indices of the jump unknowns."""
+        return np.flatnonzero(np.isfinite(self.lower) | np.isfinite(self.upper))
+
+
+class _Builder:
+    """Collects entries of T, the offset and the bounds; columns are handed out as they are asked for."""
+
+    def __init__(self, nodes: int):
+        self.entries: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        self.offset = np.zeros(2 * nodes)
+        self.lower: list[np.ndarray] = []
+        self.upper: list[np.ndarray] = []
+        self.columns = 0
+        self.rows: list[JumpRow] = []
+
+    def new_columns(self, upper, lower=None) -> np.ndarray:
+        upper = np.atleast_1d(np.asarray(upper, dtype=float))
+        self.upper.append(upper)
+        self.lower.append(np.full(len(upper), -np.inf) if lower is None else np.asarray(lower, dtype=float))
+        first, self.columns = self.columns, self.columns + len(upper)
+        return np.arange(first, self.columns)
+
+    def add(self, rows, columns, values) -> None:
+        rows, columns, values = np.broadcast_arrays(rows, columns, values)
+        self.entries.append((rows.reshape(-1), columns.reshape(-1), values.reshape(-1)))
+
+    def matrix(self, rows: int) -> sparse.csr_matrix:
+        i, j, v = (np.concatenate(parts) for parts in zip(*self.entries))
+        return sparse.csr_matrix((v, (i, j)), shape=(rows, self.columns))
+
+
+def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constraints:
+    """The constraints of the P1 or P2 model; ``nodal_contact`` bounds the jump at the P2 nodes only.
+
+    Raises :class:`BadExchange` where supports and contacts contradict each other.
+    """
+    vertices = len(problem.points)
+    nodes = vertices + (len(problem.edges) if degree == 2 else 0)
+    builder = _Builder(nodes)
+    done = np.ones(nodes, dtype=bool)
+    done[problem.triangles.reshape(-1)] = False
+    if degree == 2:
+        done[vertices + problem.triangle_edges.reshape(-1)] = False
+    _vertex_groups(problem, builder, done)
+    if degree == 2:
+        _supported_midpoints(problem, builder, done)
+        _contact_midpoints(problem, builder, done, nodal_contact)
+    free = np.flatnonzero(~done)
+    dofs = (2 * free[:, None] + np.arange(2)).reshape(-1)
+    builder.add(dofs, builder.new_columns(np.full(len(dofs), np.inf)), 1.0)
+
+    T, offset = builder.matrix(2 * nodes), builder.offset
+    if degree == 2 and not nodal_contact:
+        # Midpoints of contact edges follow the vertex jumps: j_mid = ½ b1 + ¼ (b0 + b2).
+        follow = _quarter_of_vertex_jumps(problem, nodes)
+        T = (T + follow @ T).tocsr()
+        offset = offset + follow @ offset
+    return Constraints(T, offset, np.concatenate(builder.lower), np.concatenate(builder.upper), builder.rows)
+
+
+def _vertex_groups(problem: Problem, builder: _Builder, done: np.ndarray) -> None:
+    equalities = _vertex_equalities(problem)
+    jumps = _vertex_jumps(problem)
+    touched = np.unique(
+        np.concatenate([[v for v, _, _ in equalities], [v for jump in jumps for v in jump[0] if v >= 0]]).astype(int)
+    )
+    if len(touched) == 0:
+        return
+    slot = {v: i for i, v in enumerate(touched)}
+    links = [(slot[a], slot[b]) for (a, b), *_ in jumps if b >= 0]
+    graph = sparse.coo_matrix((np.ones(len(links)), tuple(np.array(links).reshape(-1, 2).T)), shape=(len(touched),) * 2)
+    count, label = connected_components(graph, directed=False)
+    members: list[list[int]] = [[] for _ in range(count)]
+    for v, group in zip(touched, label):
+        members[group].append(v)
+    fixed: list[list] = [[] for _ in range(count)]
+    for equality in equalities:
+        fixed[label[slot[equality[0]]]].append(equality)
+    bounded: list[list] = [[] for _ in range(count)]
+    for jump in jumps:
+        bounded[label[slot[jump[0][0]]]].append(jump)
+    for vertices, equal, jump in zip(members, fixed, bounded):
+        _one_group(problem, builder, vertices, equal, jump)
+    done[touched] = True
+
+
+def _one_group(problem: Problem, builder: _Builder, vertices, equalities, jumps) -> None:
+    place = {v: 2 * i for i, v in enumerate(vertices)}
+    C, d = np.zeros((len(equalities), 2 * len(vertices))), np.zeros(len(equalities))
+    for i, (v, direction, value) in enumerate(equalities):
+        C[i, place[v] : place[v] + 2] = direction
+        d[i] = value
+    B, g = np.zeros((len(jumps), 2 * len(vertices))), np.zeros(len(jumps))
+    for i, ((a, b), normal, gap, _) in enumerate(jumps):
+        B[i, place[a] : place[a] + 2] += normal
+        if b >= 0:
+            B[i, place[b] : place[b] + 2] -= normal
+        g[i] = gap
+    try:
+        result = eliminate(C, d, B, g)
+    except Conflict as conflict:
+        x, y = problem.points[vertices[0]]
+        raise BadExchange(f"supports and contacts contradict each other at ({x:g}, {y:g}): {conflict}") from conflict
+    dofs = np.array([2 * v + c for v in vertices for c in range(2)])
+    builder.offset[dofs] = result.offset
+    columns = builder.new_columns(
+        [np.inf if bound is None else bound.value for bound in result.upper],
+        [-np.inf if bound is None else bound.value for bound in result.lower],
+    )
+    builder.add(dofs[:, None], columns[None, :], result.jumps)
+    builder.add(dofs[:, None], builder.new_columns(np.full(result.free.shape[1], np.inf))[None, :], result.free)
+    for column, bounds in zip(columns, zip(result.upper, result.lower)):
+        for bound in filter(None, bounds):
+            (first, _), normal, _, contact = jumps[bound.row]
+            builder.rows.append(JumpRow(int(column), bound.factor, contact, normal, first, -1))
+
+
+def _vertex_equalities(problem: Problem) -> list[tuple[int, np.ndarray, float]]:
+    """(vertex, direction, value) of every u(vertex) · direction = value; equal ones once."""
+    found: dict[tuple, tuple[int, np.ndarray, float]] = {}
+    axes = np.eye(2)
+
+    def add(vertex, direction, value):
+        found.setdefault((int(vertex), *direction, value), (int(vertex), direction, float(value)))
+
+    for edge, displacement in zip(problem.clamped_edges, problem.clamped_values):
+        for vertex in problem.edges[edge]:
+            add(vertex, axes[0], displacement[0])
+            add(vertex, axes[1], displacement[1])
+    for edge, normal in zip(problem.roller_edges, problem.roller_normals):
+        for vertex in problem.edges[edge]:
+            add(vertex, normal, 0.0)
+    for vertex, direction in zip(problem.pin_vertices, problem.pin_directions):
+        add(vertex, direction, 0.0)
+    return list(found.values())
+
+
+def _vertex_jumps(problem: Problem) -> list[tuple[tuple[int, int], np.ndarray, float, int]]:
+    """((first, second), normal, gap, contact) of every jump at a vertex; equal ones once."""
+    found: dict[tuple, tuple] = {}
+    for index, contact in enumerate(problem.contacts):
+        for pair in range(len(contact.first)):
+            for end in range(2):
+                ends = (int(contact.first[pair, end]), int(contact.second[pair, end]))
+                normal, gap = contact.normal[pair], float(contact.gap[pair, end])
+                found.setdefault((index, *ends, *normal, gap), (ends, normal, gap, index))
+    return list(found.values())
+
+
+def _supported_midpoints(problem: Problem, builder: _Builder, done: np.ndarray) -> None:
+    vertices = len(problem.points)
+    clamped = vertices + problem.clamped_edges
+    builder.offset[2 * clamped] = problem.clamped_values[:, 0]
+    builder.offset[2 * clamped + 1] = problem.clamped_values[:, 1]
+    done[clamped] = True
+    roller = vertices + problem.roller_edges
+    dofs = 2 * roller[:, None] + np.arange(2)
+    columns = builder.new_columns(np.full(len(roller), np.inf))
+    builder.add(dofs, columns[:, None], _tangent(problem.roller_normals))
+    done[roller] = True
+
+
+def _contact_midpoints(problem: Problem, builder: _Builder, done: np.ndarray, nodal: bool) -> None:
+    """u' = t α + n (n · u'' + j_mid) at the first midpoint; α, u'' and b1 (or j_mid itself) are the unknowns."""
+    vertices = len(problem.points)
+    axis = np.arange(2)
+    for index, contact in enumerate(problem.contacts):
+        normal = contact.normal
+        first = 2 * (vertices + contact.edges[:, 0])[:, None] + axis
+        jump = builder.new_columns(contact.gap.mean(axis=1))
+        builder.add(first, jump[:, None], normal if nodal else 0.5 * normal)
+        along = builder.new_columns(np.full(len(normal), np.inf))
+        builder.add(first, along[:, None], _tangent(normal))
+        bodies = contact.edges[:, 1] >= 0
+        opposite = 2 * (vertices + contact.edges[bodies, 1])[:, None] + axis
+        columns = builder.new_columns(np.full(opposite.size, np.inf)).reshape(-1, 2)
+        builder.add(opposite, columns, 1.0)
+        builder.add(
+            first[bodies][:, :, None], columns[:, None, :], normal[bodies][:, :, None] * normal[bodies][:, None, :]
+        )
+        done[vertices + contact.edges[:, 0]] = True
+        done[vertices + contact.edges[bodies, 1]] = True
+        builder.rows.extend(
+            JumpRow(int(column), 1.0, index, normal[pair], -1, pair) for pair, column in enumerate(jump)
+        )
+
+
+def _quarter_of_vertex_jumps(problem: Problem, nodes: int) -> sparse.csr_matrix:
+    """Maps u to n · ¼ (b0 + b2) at the midpoints on the first sides, and to zero elsewhere."""
+    vertices = len(problem.points)
+    axis = np.arange(2)
+    entries = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
+    for contact in problem.contacts:
+        rows = 2 * (vertices + contact.edges[:, 0])[:, None, None] + axis[None, :, None]
+        weights = 0.25 * contact.normal[:, :, None] * contact.normal[:, None, :]
+        for ends, sign in ((contact.first, 1.0), (contact.second, -1.0)):
+            for end in range(2):
+                there = ends[:, end] >= 0
+                columns = 2 * ends[there, end][:, None, None] + axis[None, None, :]
+                i, j, v = np.broadcast_arrays(rows[there], columns, sign * weights[there])
+                entries.append((i.reshape(-1), j.reshape(-1), v.reshape(-1)))
+    i, j, v = (np.concatenate(parts) for parts in zip(*entries))
+    return sparse.csr_matrix((v, (i, j)), shape=(2 * nodes, 2 * nodes))
+
+
+def _tangent(normals: np.ndarray) -> np.ndarray:
+    return np.stack([-normals[:, 1], normals[:, 0]], axis=1)

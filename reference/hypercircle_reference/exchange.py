@@ -1,0 +1,268 @@
+"""The two files shared with the caller: ``problem.json`` in, ``primal-P*.json`` out."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import BadExchange, ReferenceFailure
+
+FORMAT = "hypercircle-exchange"
+VERSION = 1
+
+
+@dataclass(frozen=True)
+class Body:
+    """Homogeneous isotropic material: Young's modulus, Poisson's ratio, body force per volume (2,)."""
+
+    name: str
+    young: float
+    poisson: float
+    body_force: np.ndarray
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Matched edges of one contact, as arrays over its pairs.
+
+    ``edges`` (m, 2) and ``second`` (m, 2) hold −1 where the opposite side is a rigid obstacle. ``first`` (m, 2) are
+    the end vertices on the first side, ``normal`` (m, 2) its outward unit normal n', ``gap`` (m, 2) the gap g at the
+    two ends.
+    """
+
+    name: str
+    edges: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    normal: np.ndarray
+    gap: np.ndarray
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What ``problem.json`` says, checked; index arrays are int64, everything else float64."""
+
+    kinematics: str
+    thickness: float
+    bodies: list[Body]
+    points: np.ndarray
+    triangles: np.ndarray
+    body: np.ndarray
+    edges: np.ndarray
+    triangle_edges: np.ndarray
+    clamped_edges: np.ndarray
+    clamped_values: np.ndarray
+    roller_edges: np.ndarray
+    roller_normals: np.ndarray
+    traction_edges: np.ndarray
+    traction_values: np.ndarray
+    contacts: list[Contact]
+    pin_vertices: np.ndarray
+    pin_directions: np.ndarray
+
+
+def read_problem(path: Path) -> Problem:
+    """Read and check ``problem.json``; :class:`BadExchange` names the key that is wrong."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadExchange(f"cannot read {path}: {error}") from error
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise BadExchange(f"{path} is not JSON: {error}") from error
+    if not isinstance(data, dict):
+        raise BadExchange(f"{path} must hold one JSON object")
+    if data.get("format") != FORMAT or data.get("version") != VERSION:
+        found = (data.get("format"), data.get("version"))
+        raise BadExchange(f"{path} is not {FORMAT} version {VERSION}: found {found}")
+    return _problem(data)
+
+
+def _problem(data: dict) -> Problem:
+    kinematics = _get(data, "kinematics")
+    if kinematics not in ("plane-strain", "plane-stress"):
+        raise BadExchange(f"kinematics is {kinematics!r}, expected 'plane-strain' or 'plane-stress'")
+    thickness = _scalar(data, "thickness", "thickness")
+    if not thickness > 0.0:
+        raise BadExchange(f"thickness is {thickness}, expected a positive number")
+    bodies = [_body(entry, f"bodies[{i}]") for i, entry in enumerate(_records(data, "bodies"))]
+    points = _numbers(data, "points", (-1, 2))
+    triangles = _indices(data, "triangles", (-1, 3), len(points))
+    edges = _indices(data, "edges", (-1, 2), len(points))
+    triangle_edges = _indices(data, "triangle_edges", (len(triangles), 3), len(edges))
+    body = _indices(data, "body", (len(triangles),), len(bodies))
+    _check_mesh(points, triangles, edges, triangle_edges)
+
+    clamped = _records(data, "clamped")
+    roller = _records(data, "roller")
+    tractions = _records(data, "tractions")
+    pins = _records(data, "pins")
+    normals = _column(roller, "roller", "normal", (2,))
+    _check_unit(normals, "roller", "normal")
+    directions = _column(pins, "pins", "direction", (2,))
+    _check_unit(directions, "pins", "direction")
+    return Problem(
+        kinematics=kinematics,
+        thickness=thickness,
+        bodies=bodies,
+        points=points,
+        triangles=triangles,
+        body=body,
+        edges=edges,
+        triangle_edges=triangle_edges,
+        clamped_edges=_index_column(clamped, "clamped", "edge", (), len(edges)),
+        clamped_values=_column(clamped, "clamped", "displacement", (2,)),
+        roller_edges=_index_column(roller, "roller", "edge", (), len(edges)),
+        roller_normals=normals,
+        traction_edges=_index_column(tractions, "tractions", "edge", (), len(edges)),
+        traction_values=_column(tractions, "tractions", "values", (2, 2)),
+        contacts=[
+            _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(_records(data, "contacts"))
+        ],
+        pin_vertices=_index_column(pins, "pins", "vertex", (), len(points)),
+        pin_directions=directions,
+    )
+
+
+def _body(entry: dict, where: str) -> Body:
+    young = _scalar(entry, "young", f"{where}.young")
+    poisson = _scalar(entry, "poisson", f"{where}.poisson")
+    if not young > 0.0:
+        raise BadExchange(f"{where}.young is {young}, expected a positive number")
+    if not -1.0 < poisson < 0.5:
+        raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
+    return Body(str(_get(entry, "name", where)), young, poisson, _array(entry, "body_force", where, (2,)))
+
+
+def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:
+    pairs = _records(entry, "pairs", where)
+    inside = f"{where}.pairs"
+    rigid = np.array([pair.get("second") is None for pair in pairs], dtype=bool)
+    filled = [
+        {**pair, "second": [-1, -1], "edges": [_get(pair, "edges", inside)[0], -1]} if alone else pair
+        for pair, alone in zip(pairs, rigid)
+    ]
+    contact = Contact(
+        name=str(_get(entry, "name", where)),
+        edges=_index_column(filled, inside, "edges", (2,), len(edges), lowest=-1),
+        first=_index_column(filled, inside, "first", (2,), vertices),
+        second=_index_column(filled, inside, "second", (2,), vertices, lowest=-1),
+        normal=_column(filled, inside, "normal", (2,)),
+        gap=_column(filled, inside, "gap", (2,)),
+    )
+    _check_unit(contact.normal, inside, "normal")
+    for side, ends in ((0, contact.first), (1, contact.second)):
+        rows = np.flatnonzero(~rigid) if side else np.arange(len(pairs))
+        present = contact.edges[rows, side]
+        wrong = (present < 0) | np.any(np.sort(edges[present], axis=1) != np.sort(ends[rows], axis=1), axis=1)
+        if wrong.any():
+            pair = rows[np.argmax(wrong)]
+            raise BadExchange(f"{inside}[{pair}]: edges[{side}] does not join the vertices given for that side")
+    return contact
+
+
+def _check_mesh(points, triangles, edges, triangle_edges) -> None:
+    if len(triangles) == 0:
+        raise BadExchange("triangles is empty")
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    doubled_area = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    if not np.all(doubled_area > 0.0):
+        raise BadExchange(f"triangles[{np.argmin(doubled_area)}] is clockwise or has no area")
+    for i in range(3):
+        expected = np.sort(triangles[:, [(i + 1) % 3, (i + 2) % 3]], axis=1)
+        wrong = np.any(np.sort(edges[triangle_edges[:, i]], axis=1) != expected, axis=1)
+        if wrong.any():
+            raise BadExchange(f"triangle_edges[{np.argmax(wrong)}][{i}] is not the edge opposite vertex {i}")
+
+
+def _check_unit(vectors: np.ndarray, where: str, key: str) -> None:
+    off = np.abs(np.linalg.norm(vectors, axis=1) - 1.0) > 1e-9
+    if off.any():
+        raise BadExchange(f"{where}[{np.argmax(off)}].{key} is not a unit vector")
+
+
+def _get(data, key: str, where: str = ""):
+    if not isinstance(data, dict) or key not in data:
+        raise BadExchange(f"{where + '.' if where else ''}{key} is missing")
+    return data[key]
+
+
+def _records(data: dict, key: str, where: str = "") -> list[dict]:
+    path = f"{where}.{key}" if where else key
+    entries = _get(data, key, where)
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise BadExchange(f"{path} must be a list of objects")
+    return entries
+
+
+def _as_array(values, where: str, shape: tuple, kind: str) -> np.ndarray:
+    try:
+        array = np.array(values)
+    except ValueError as error:
+        raise BadExchange(f"{where} is ragged: {error}") from error
+    if array.size == 0 and shape[:1] in ((-1,), (0,)):
+        return np.zeros((0, *shape[1:]), dtype=np.int64 if kind == "i" else np.float64)
+    allowed = "iu" if kind == "i" else "iuf"
+    if array.dtype.kind not in allowed:
+        raise BadExchange(f"{where} must hold {'whole ' if kind == 'i' else ''}numbers only")
+    if array.ndim != len(shape) or any(want not in (-1, have) for want, have in zip(shape, array.shape)):
+        raise BadExchange(f"{where} has shape {list(array.shape)}, expected {list(shape)} (-1: any)")
+    if kind == "f" and not np.all(np.isfinite(array)):
+        raise BadExchange(f"{where} holds a number that is not finite")
+    return array.astype(np.int64 if kind == "i" else np.float64)
+
+
+def _array(data, key, where, shape):
+    return _as_array(_get(data, key, where), f"{where}.{key}", shape, "f")
+
+
+def _numbers(data, key, shape):
+    return _as_array(_get(data, key), key, shape, "f")
+
+
+def _scalar(data, key, where) -> float:
+    return float(_as_array(_get(data, key, where.rpartition(".")[0]), where, (), "f"))
+
+
+def _indices(data, key, shape, count):
+    return _in_range(_as_array(_get(data, key), key, shape, "i"), key, count, 0)
+
+
+def _column(entries, where, key, shape):
+    values = [_get(entry, key, f"{where}[{i}]") for i, entry in enumerate(entries)]
+    return _as_array(values, f"{where}[..].{key}", (len(entries), *shape), "f")
+
+
+def _index_column(entries, where, key, shape, count, lowest=0):
+    values = [_get(entry, key, f"{where}[{i}]") for i, entry in enumerate(entries)]
+    path = f"{where}[..].{key}"
+    return _in_range(_as_array(values, path, (len(entries), *shape), "i"), path, count, lowest)
+
+
+def _in_range(array, where, count, lowest):
+    if array.size and (array.min() < lowest or array.max() >= count):
+        raise BadExchange(f"{where} holds an index outside 0..{count - 1}")
+    return array
+
+
+def write_result(path: Path, result: dict) -> None:
+    """Write one result file whole or not at all: a temporary file in the same folder, then a rename."""
+    try:
+        text = json.dumps(result, allow_nan=False)
+    except ValueError as error:
+        raise ReferenceFailure("the solution holds a number that is not finite; nothing was written") from error
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        os.replace(temporary, path)
+    except BaseException:
+        os.unlink(temporary)
+        raise

@@ -1,0 +1,133 @@
+"""Elimination at one place: the vertices that supports and contacts couple there, as one small dense problem.
+
+A *group* is a set of vertices joined by contact pairs (usually two, more where several bodies meet, one where only a
+support or a rigid obstacle is present). Its displacement x obeys equalities C x = d (clamped values, rollers, pins)
+and inequalities B x ≤ g, one row per jump v_n' + v_n''. :func:`eliminate` returns a parametrisation
+x = x0 + J w + N y in which every w is itself a jump with plain bounds and y is free. Working with orthonormal bases
+treats every special case alike: a contact that ends on a support, two rollers at a corner, a polyline with a corner,
+rows that repeat each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+RELATIVE = 1e-9
+"""Below this, relative to unit rows, a direction counts as dependent and a value as equal."""
+
+
+class Conflict(Exception):
+    """Supports and contacts that contradict each other; the text says how, without saying where."""
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The inequality row that binds a jump unknown from one side, and its factor relative to that unknown."""
+
+    row: int
+    factor: float
+    value: float
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side)."""
+
+    offset: np.ndarray
+    jumps: np.ndarray
+    free: np.ndarray
+    upper: list[Bound | None]
+    lower: list[Bound | None]
+
+
+def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray) -> Elimination:
+    """Parametrise {x : C x = d, B x ≤ g}; rows of C and B have entries of order one.
+
+    Raises :class:`Conflict` where the equalities contradict each other, where they force a penetration, or where more
+    independent inequalities act than the group has freedoms, so that no change of variables turns them into bounds.
+    """
+    offset, kernel = _solve_equalities(C, d)
+    rows = B @ kernel
+    slack = g - B @ offset
+    scale = np.abs(g) + np.abs(B) @ np.abs(offset)
+    live = np.linalg.norm(rows, axis=1) > RELATIVE
+    if np.any(slack[~live] < -RELATIVE * scale[~live]):
+        raise Conflict(f"the supports force a penetration of {-slack[~live].min():.3e}")
+
+    leaders: list[int] = []
+    upper: list[Bound | None] = []
+    lower: list[Bound | None] = []
+    for row in np.flatnonzero(live):
+        for k, leader in enumerate(leaders):
+            factor = rows[row] @ rows[leader] / (rows[leader] @ rows[leader])
+            if np.linalg.norm(rows[row] - factor * rows[leader]) <= RELATIVE * np.linalg.norm(rows[row]):
+                break
+        else:
+            leaders.append(row)
+            upper.append(None)
+            lower.append(None)
+            k, factor = len(leaders) - 1, 1.0
+        bound = Bound(int(row), float(factor), slack[row] / factor)
+        if factor > 0.0:
+            upper[k] = bound if upper[k] is None or bound.value < upper[k].value else upper[k]
+        else:
+            lower[k] = bound if lower[k] is None or bound.value > lower[k].value else lower[k]
+    for above, below in zip(upper, lower):
+        if above and below and below.value > above.value:
+            raise Conflict("two contacts leave no room between them")
+
+    chosen = _independent(rows[leaders], np.array([bound.value for bound in upper]), lower)
+    return _parametrise(offset, kernel, rows, B, [leaders[k] for k in chosen], [upper[k] for k in chosen],
+                        [lower[k] for k in chosen])  # fmt: skip
+
+
+def _solve_equalities(C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    size = C.shape[1]
+    if len(C) == 0:
+        return np.zeros(size), np.eye(size)
+    left, singular, right = np.linalg.svd(C)
+    rank = int(np.sum(singular > RELATIVE))
+    offset = right[:rank].T @ ((left[:, :rank].T @ d) / singular[:rank])
+    if np.any(np.abs(C @ offset - d) > RELATIVE * np.max(np.abs(d), initial=0.0)):
+        raise Conflict("the supports prescribe two different displacements")
+    return offset, right[rank:].T
+
+
+def _independent(M: np.ndarray, upper: np.ndarray, lower: list[Bound | None]) -> tuple[int, ...]:
+    """Leaders that span all others; those left out must follow from the bounds of those kept."""
+    everything = tuple(range(len(M)))
+    rank = np.linalg.matrix_rank(M, tol=RELATIVE) if len(M) else 0
+    if rank == len(M):
+        return everything
+    for kept in combinations(everything, rank):
+        base = M[list(kept)]
+        if np.linalg.matrix_rank(base, tol=RELATIVE) < rank:
+            continue
+        out = [k for k in everything if k not in kept]
+        weights = np.linalg.lstsq(base.T, M[out].T, rcond=None)[0].T
+        implied = weights @ upper[list(kept)] <= upper[out] + RELATIVE * np.abs(upper[out])
+        if np.all(weights >= -RELATIVE) and np.all(implied) and not any(lower[k] for k in out):
+            return kept
+    raise Conflict(f"{len(M)} contact conditions act on {rank} freedoms and none of them follows from the others")
+
+
+def _parametrise(offset, kernel, rows, B, leaders, upper, lower) -> Elimination:
+    M = rows[leaders]
+    inverse = np.linalg.pinv(M) if leaders else np.zeros((kernel.shape[1], 0))
+    right = np.linalg.svd(M)[2] if leaders else np.eye(kernel.shape[1])
+    rigid = B[leaders] @ offset
+    jumps = kernel @ inverse
+
+    def shift(bound: Bound | None, value: float) -> Bound | None:
+        return bound and Bound(bound.row, bound.factor, bound.value + value)
+
+    return Elimination(
+        offset=offset - jumps @ rigid,
+        jumps=jumps,
+        free=kernel @ right[len(leaders) :].T,
+        upper=[shift(bound, value) for bound, value in zip(upper, rigid)],
+        lower=[shift(bound, value) for bound, value in zip(lower, rigid)],
+    )

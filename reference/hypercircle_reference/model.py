@@ -1,0 +1,145 @@
+"""The weak form: stiffness and load of continuous P1 or P2 displacements on the given triangles.
+
+𝓛(v) = ½ ∫ c e(v):e(v) − ∫ F·v − ∫ P·v, each integral times the thickness. FEniCSx assembles stiffness and body force;
+tractions, affine on each edge, are integrated in closed form against the traces of the shape functions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+import ufl
+
+from . import ReferenceFailure, compat
+from .exchange import Problem
+
+
+@dataclass(frozen=True)
+class Numbering:
+    """How nodes of the exchange file are numbered by FEniCSx, known in full on every rank.
+
+    ``nodes`` (n,) is the global FEniCSx index of each node, −1 where no triangle uses it; ``ranges`` (ranks, 2) the
+    indices each rank owns.
+    """
+
+    nodes: np.ndarray
+    ranges: np.ndarray
+
+    def owned(self, rank: int) -> np.ndarray:
+        """Nodes of the exchange file that ``rank`` owns, in the order of FEniCSx."""
+        order = np.full(self.ranges.max(), -1, dtype=np.int64)
+        used = np.flatnonzero(self.nodes >= 0)
+        order[self.nodes[used]] = used
+        return order[self.ranges[rank, 0] : self.ranges[rank, 1]]
+
+
+@dataclass(frozen=True)
+class Model:
+    """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node."""
+
+    stiffness: object
+    load: object
+    numbering: Numbering
+    seconds_compile: float
+    seconds_assemble: float
+
+
+class Mesh:
+    """The triangles, distributed, with the way back to the numbering of the exchange file."""
+
+    def __init__(self, comm, problem: Problem):
+        self.comm = comm
+        self.problem = problem
+        self.mesh = compat.create_mesh(comm, problem.triangles, problem.points)
+        corners = compat.cell_input_vertices(self.mesh)
+        edges = np.stack([self._edge(corners[:, (i + 1) % 3], corners[:, (i + 2) % 3]) for i in range(3)], axis=1)
+        self.cell_nodes = np.concatenate([corners, len(problem.points) + edges], axis=1)
+        self.triangles = self._triangle(edges[:, 0], corners[:, 0])
+
+    def _edge(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        count = len(self.problem.points)
+        given = np.sort(self.problem.edges, axis=1) @ np.array([count, 1])
+        return _find(given, np.minimum(a, b) * count + np.maximum(a, b))
+
+    def _triangle(self, edge: np.ndarray, vertex: np.ndarray) -> np.ndarray:
+        count = len(self.problem.points)
+        given = (self.problem.triangle_edges * count + self.problem.triangles).reshape(-1)
+        return _find(given, edge * count + vertex) // 3
+
+    def numbering(self, space, degree: int) -> Numbering:
+        """Gather the numbering of ``space`` from all ranks."""
+        ours = self.cell_nodes[:, : 3 * degree].reshape(-1)
+        pieces = self.comm.allgather((ours, compat.cell_nodes(space, degree).reshape(-1)))
+        nodes = np.full(len(self.problem.points) + (len(self.problem.edges) if degree == 2 else 0), -1, dtype=np.int64)
+        for node, index in pieces:
+            nodes[node] = index
+        return Numbering(nodes, np.array(self.comm.allgather(compat.owned_nodes(space))))
+
+
+def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
+    """Assemble stiffness and load for P1 or P2.
+
+    ``flip_sign`` plants a bug on purpose, 1 + 2ν for 1 − 2ν in Lamé's λ (1 + ν² for 1 − ν² in plane stress), so that
+    a comparison can show that it would notice.
+    """
+    problem = mesh.problem
+    start = perf_counter()
+    space = compat.vector_space(mesh.mesh, degree)
+    materials = np.array([_lame(body, problem.kinematics, flip_sign) for body in problem.bodies]) * problem.thickness
+    forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
+    owner = problem.body[mesh.triangles]
+    lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
+    force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    bilinear = compat.form((lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * ufl.dx)
+    linear = compat.form(ufl.inner(force, v) * ufl.dx)
+    compiled = perf_counter()
+
+    numbering = mesh.numbering(space, degree)
+    stiffness = compat.assemble_matrix(bilinear)
+    load = compat.assemble_vector(linear)
+    tractions = _traction_load(problem, degree).reshape(-1, 2)
+    load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
+    return Model(stiffness, load, numbering, compiled - start, perf_counter() - compiled)
+
+
+def _strain(v):
+    return ufl.sym(ufl.grad(v))
+
+
+def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
+    """(λ, μ) of the plane problem; plane stress has λ* = 2λμ/(λ + 2μ) = Eν/(1 − ν²)."""
+    young, poisson, sign = body.young, body.poisson, -1.0 if flip_sign else 1.0
+    shear = young / (2.0 * (1.0 + poisson))
+    if kinematics == "plane-strain":
+        return young * poisson / ((1.0 + poisson) * (1.0 - sign * 2.0 * poisson)), shear
+    return young * poisson / (1.0 - sign * poisson * poisson), shear
+
+
+def _traction_load(problem: Problem, degree: int) -> np.ndarray:
+    """∫ P·v over the loaded edges for every node and component (2n,), times the thickness; exact for affine P."""
+    vertices = len(problem.points)
+    nodes = vertices + (len(problem.edges) if degree == 2 else 0)
+    load = np.zeros((nodes, 2))
+    ends = problem.edges[problem.traction_edges]
+    length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)[:, None]
+    at_a, at_b = problem.traction_values[:, 0], problem.traction_values[:, 1]
+    if degree == 1:
+        np.add.at(load, ends[:, 0], length * (2.0 * at_a + at_b) / 6.0)
+        np.add.at(load, ends[:, 1], length * (at_a + 2.0 * at_b) / 6.0)
+    else:
+        np.add.at(load, ends[:, 0], length * at_a / 6.0)
+        np.add.at(load, ends[:, 1], length * at_b / 6.0)
+        np.add.at(load, vertices + problem.traction_edges, length * (at_a + at_b) / 3.0)
+    return problem.thickness * load.reshape(-1)
+
+
+def _find(given: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    order = np.argsort(given, kind="stable")
+    place = np.minimum(np.searchsorted(given[order], wanted), len(given) - 1)
+    found = order[place]
+    if np.any(given[found] != wanted):
+        raise ReferenceFailure("FEniCSx returned a cell that is not among the triangles of the exchange file")
+    return found

@@ -1,0 +1,103 @@
+"""From a problem to the result files' contents: mesh once, then each degree on it."""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+
+from . import compat, log
+from .constraints import Constraints, build as build_constraints
+from .exchange import Problem
+from .model import Mesh, build as build_model
+from .solve import Solution, minimise, without_strongest_row
+
+
+def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=None, seconds_import=0.0) -> list[dict]:
+    """One result per degree, in the layout of ``primal-P*.json``; equal on all ranks."""
+    start = perf_counter()
+    mesh = Mesh(comm, problem)
+    seconds_mesh = perf_counter() - start
+    results = []
+    for degree in degrees:
+        log(comm, f"degree {degree}")
+        start = perf_counter()
+        constraints = build_constraints(problem, degree, nodal_contact)
+        seconds_constraints = perf_counter() - start
+        model = build_model(mesh, degree, flip_sign=sabotage == "flip-sign")
+        start = perf_counter()
+        solution = minimise(comm, model, constraints)
+        if sabotage == "drop-row":
+            constraints = without_strongest_row(constraints, solution)
+            solution = minimise(comm, model, constraints)
+        seconds = {
+            "import": seconds_import,
+            "mesh": seconds_mesh,
+            "assemble": model.seconds_assemble + seconds_constraints,
+            "compile": model.seconds_compile,
+            "solve": perf_counter() - start,
+        }
+        seconds["total"] = sum(seconds.values())
+        log(comm, f"degree {degree}: energy {solution.energy!r}, {solution.iterations} steps")
+        results.append(_result(comm, problem, degree, nodal_contact, constraints, solution, seconds))
+    return results
+
+
+def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution: Solution, seconds) -> dict:
+    vertices = len(problem.points)
+    displacement = solution.displacement.reshape(-1, 2)
+    return {
+        "format": "hypercircle-primal",
+        "version": 1,
+        "solver": "FEniCSx",
+        "solver_version": compat.SOLVER_VERSION,
+        "petsc_version": compat.PETSC_VERSION,
+        "degree": degree,
+        "ranks": comm.size,
+        "energy": solution.energy,
+        "strain_energy": solution.strain_energy,
+        "iterations": solution.iterations,
+        "converged_reason": solution.reason,
+        "unknowns": solution.unknowns,
+        "admissible": degree == 1 or not (nodal_contact and problem.contacts),
+        "seconds": seconds,
+        "vertex_displacement": displacement[:vertices].tolist(),
+        "edge_displacement": displacement[vertices:].tolist() if degree == 2 else None,
+        "contacts": _contacts(problem, degree, constraints, solution),
+    }
+
+
+def _contacts(problem: Problem, degree: int, constraints: Constraints, solution: Solution) -> list[dict]:
+    """Reactions R ≥ 0: −∂𝓛/∂w shared out to the row that binds, and the force −R n' they put on the first side."""
+    out = []
+    chains = [np.unique(contact.first, return_index=True) for contact in problem.contacts]
+    order = [list(contact.first.reshape(-1)[np.sort(index)]) for contact, (_, index) in zip(problem.contacts, chains)]
+    place = [{int(v): i for i, v in enumerate(vertices)} for vertices in order]
+    at_vertex = [np.zeros(len(vertices)) for vertices in order]
+    at_edge = [np.zeros(len(contact.first)) for contact in problem.contacts]
+    resultant = np.zeros((len(problem.contacts), 2))
+    for row in constraints.rows:
+        reaction = max(-solution.gradient[row.column] / row.factor, 0.0)
+        if not _at_bound(constraints, solution, row):
+            continue
+        if row.vertex >= 0:
+            at_vertex[row.contact][place[row.contact][row.vertex]] += reaction
+        else:
+            at_edge[row.contact][row.pair] += reaction
+        resultant[row.contact] -= reaction * row.normal
+    for index, contact in enumerate(problem.contacts):
+        out.append(
+            {
+                "name": contact.name,
+                "vertices": [int(v) for v in order[index]],
+                "vertex_reaction": at_vertex[index].tolist(),
+                "edge_reaction": at_edge[index].tolist() if degree == 2 else None,
+                "resultant": resultant[index].tolist(),
+            }
+        )
+    return out
+
+
+def _at_bound(constraints: Constraints, solution: Solution, row) -> bool:
+    bound = constraints.upper if row.factor > 0.0 else constraints.lower
+    return bool(solution.jumps[row.column] == bound[row.column])

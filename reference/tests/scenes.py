@@ -1,0 +1,115 @@
+"""Small problems built directly in the exchange format, with no help from the package under test."""
+
+from __future__ import annotations
+
+import math
+
+CLAMP, ROLLER, LOAD, CONTACT = "clamp", "roller", "load", "contact"
+
+
+class Builder:
+    """Collects blocks of triangles and writes the exchange dictionary."""
+
+    def __init__(self, kinematics="plane-strain", thickness=1.0):
+        self.data = {
+            "format": "hypercircle-exchange", "version": 1, "kinematics": kinematics, "thickness": thickness,
+            "bodies": [], "points": [], "triangles": [], "body": [], "edges": [], "triangle_edges": [],
+            "clamped": [], "roller": [], "tractions": [], "contacts": [], "pins": [],
+        }  # fmt: skip
+        self.edge_of = {}
+
+    def body(self, name="body", young=1.0, poisson=0.3, body_force=(0.0, 0.0)):
+        self.data["bodies"].append(
+            {"name": name, "young": young, "poisson": poisson, "body_force": list(body_force)}
+        )
+        return len(self.data["bodies"]) - 1
+
+    def triangle(self, body, corners):
+        index = []
+        for i in range(3):
+            ends = (corners[(i + 1) % 3], corners[(i + 2) % 3])
+            key = tuple(sorted(ends))
+            if key not in self.edge_of:
+                self.edge_of[key] = len(self.data["edges"])
+                self.data["edges"].append(list(ends))
+            index.append(self.edge_of[key])
+        self.data["triangles"].append(list(corners))
+        self.data["triangle_edges"].append(index)
+        self.data["body"].append(body)
+
+    def block(self, body, nx, ny, place):
+        """nx × ny squares, diagonals alternating like a chessboard; ``place(s, t)`` maps [0, 1]² to the plane.
+
+        Returns vertex chains of the four sides: bottom, right, top, left, each in the direction of growing s or t.
+        """
+        base = len(self.data["points"])
+        self.data["points"] += [list(place(i / nx, j / ny)) for j in range(ny + 1) for i in range(nx + 1)]
+
+        def at(i, j):
+            return base + j * (nx + 1) + i
+
+        for j in range(ny):
+            for i in range(nx):
+                a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+                split = [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
+                for corners in split:
+                    self.triangle(body, corners)
+        return {
+            "bottom": [at(i, 0) for i in range(nx + 1)],
+            "right": [at(nx, j) for j in range(ny + 1)],
+            "top": [at(i, ny) for i in range(nx + 1)],
+            "left": [at(0, j) for j in range(ny + 1)],
+        }
+
+    def edges_of(self, chain):
+        return [self.edge_of[tuple(sorted(pair))] for pair in zip(chain, chain[1:])]
+
+    def clamp(self, chain, displacement=(0.0, 0.0)):
+        self.data["clamped"] += [{"edge": e, "displacement": list(displacement)} for e in self.edges_of(chain)]
+
+    def roller(self, chain, normal):
+        self.data["roller"] += [{"edge": e, "normal": list(normal)} for e in self.edges_of(chain)]
+
+    def load(self, chain, traction):
+        for e in self.edges_of(chain):
+            values = [list(traction(*self.data["points"][v])) for v in self.data["edges"][e]]
+            self.data["tractions"].append({"edge": e, "values": values})
+
+    def contact(self, first, second, normal, gap=lambda x, y: 0.0, name="contact"):
+        pairs = []
+        for k, edge in enumerate(self.edges_of(first)):
+            ends = [first[k], first[k + 1]]
+            opposite = None if second is None else [second[k], second[k + 1]]
+            pairs.append({
+                "edges": [edge, None if second is None else self.edges_of(second)[k]],
+                "first": ends, "second": opposite, "normal": list(normal),
+                "gap": [gap(*self.data["points"][v]) for v in ends],
+            })  # fmt: skip
+        self.data["contacts"].append({"name": name, "pairs": pairs})
+
+    def pin(self, vertex, direction):
+        self.data["pins"].append({"vertex": vertex, "direction": list(direction)})
+
+
+def rotated(angle, move=(0.0, 0.0)):
+    """Point and vector maps of a rotation."""
+    c, s = math.cos(angle), math.sin(angle)
+    return (
+        lambda x, y: (c * x - s * y + move[0], s * x + c * y + move[1]),
+        lambda x, y: (c * x - s * y, s * x + c * y),
+    )
+
+
+def two_blocks(n, traction=lambda y: 4.0 - 7.0 * y, gap=0.0, angle=0.0, load=1.0, **builder):
+    """Two unit blocks side by side, the left one loaded at x = 0, the right one clamped at x = 2; then rotated."""
+    b = Builder(**builder)
+    point, vector = rotated(angle)
+    back, _ = rotated(-angle)
+    left, right = b.body("left"), b.body("right")
+    one = b.block(left, n, n, lambda s, t: point(s, t))
+    two = b.block(right, n, n, lambda s, t: point(1.0 + s, t))
+    b.clamp(two["right"])
+    b.roller(one["bottom"], vector(0.0, -1.0))
+    b.load(one["left"], lambda x, y: vector(load * traction(back(x, y)[1]), 0.0))
+    b.contact(one["right"], two["left"], vector(1.0, 0.0), lambda x, y: gap)
+    return b.data
