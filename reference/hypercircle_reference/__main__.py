@@ -10,6 +10,7 @@ from time import perf_counter
 STARTED = perf_counter()
 
 import argparse
+import logging
 import os
 import sys
 import threading
@@ -41,10 +42,12 @@ def run(options: argparse.Namespace) -> None:
 
     comm = compat.MPI.COMM_WORLD
     imported = perf_counter() - STARTED
+    start = perf_counter()
     problem = read_problem(options.problem)
+    read = perf_counter() - start
     log(comm, f"{len(problem.triangles)} triangles, {comm.size} ranks, DOLFINx {compat.SOLVER_VERSION}")
     degrees = sorted(set(options.degree or (1, 2)))
-    results = solve_all(comm, problem, degrees, options.nodal_contact, options.sabotage, imported)
+    results = solve_all(comm, problem, degrees, options.nodal_contact, options.sabotage, (imported, read))
     if comm.rank == 0:
         for degree, result in zip(degrees, results):
             write_result(options.out / f"primal-P{degree}.json", result)
@@ -75,6 +78,7 @@ def stop_with_stdin() -> None:
 def main() -> None:
     """Run and translate every failure into an exit code and one line on stderr."""
     options = arguments()
+    logging.disable(logging.INFO)  # the compiler's command lines would fill the log
     if options.stop_with_stdin and int(os.environ.get("OMPI_COMM_WORLD_RANK", "0")) == 0:
         stop_with_stdin()
     try:

@@ -19,7 +19,7 @@ import scipy.sparse as sparse
 from scipy.sparse.csgraph import connected_components
 
 from . import BadExchange
-from .exchange import Problem
+from .exchange import Contact, Problem
 from .group import Conflict, eliminate
 
 
@@ -132,12 +132,13 @@ def _vertex_groups(problem: Problem, builder: _Builder, done: np.ndarray) -> Non
     bounded: list[list] = [[] for _ in range(count)]
     for jump in jumps:
         bounded[label[slot[jump[0][0]]]].append(jump)
+    stiffness = _vertex_stiffness(problem)
     for vertices, equal, jump in zip(members, fixed, bounded):
-        _one_group(problem, builder, vertices, equal, jump)
+        _one_group(problem, builder, stiffness, vertices, equal, jump)
     done[touched] = True
 
 
-def _one_group(problem: Problem, builder: _Builder, vertices, equalities, jumps) -> None:
+def _one_group(problem: Problem, builder: _Builder, stiffness, vertices, equalities, jumps) -> None:
     place = {v: 2 * i for i, v in enumerate(vertices)}
     C, d = np.zeros((len(equalities), 2 * len(vertices))), np.zeros(len(equalities))
     for i, (v, direction, value) in enumerate(equalities):
@@ -150,7 +151,7 @@ def _one_group(problem: Problem, builder: _Builder, vertices, equalities, jumps)
             B[i, place[b] : place[b] + 2] -= normal
         g[i] = gap
     try:
-        result = eliminate(C, d, B, g)
+        result = eliminate(C, d, B, g, np.repeat(stiffness[vertices], 2))
     except Conflict as conflict:
         x, y = problem.points[vertices[0]]
         raise BadExchange(f"supports and contacts contradict each other at ({x:g}, {y:g}): {conflict}") from conflict
@@ -166,6 +167,14 @@ def _one_group(problem: Problem, builder: _Builder, vertices, equalities, jumps)
         for bound in filter(None, bounds):
             (first, _), normal, _, contact = jumps[bound.row]
             builder.rows.append(JumpRow(int(column), bound.factor, contact, normal, first, -1))
+
+
+def _vertex_stiffness(problem: Problem) -> np.ndarray:
+    """Largest Young's modulus around each vertex."""
+    young = np.array([body.young for body in problem.bodies])[problem.body]
+    stiffness = np.zeros(len(problem.points))
+    np.maximum.at(stiffness, problem.triangles, young[:, None])
+    return stiffness
 
 
 def _vertex_equalities(problem: Problem) -> list[tuple[int, np.ndarray, float]]:
@@ -214,38 +223,49 @@ def _supported_midpoints(problem: Problem, builder: _Builder, done: np.ndarray) 
 
 
 def _contact_midpoints(problem: Problem, builder: _Builder, done: np.ndarray, nodal: bool) -> None:
-    """u' = t α + n (n · u'' + j_mid) at the first midpoint; α, u'' and b1 (or j_mid itself) are the unknowns."""
-    vertices = len(problem.points)
+    """The softer side follows the stiffer one: u' = t α + n (n · u'' + j_mid), or u'' = t α + n (n · u' − j_mid).
+
+    Unknowns are α, the displacement of the stiffer side, and b1 (for nodal contact j_mid itself).
+    """
     axis = np.arange(2)
     for index, contact in enumerate(problem.contacts):
         normal = contact.normal
-        first = 2 * (vertices + contact.edges[:, 0])[:, None] + axis
+        follower, leader, sign = _sides(problem, contact)
+        moved = 2 * follower[:, None] + axis
         jump = builder.new_columns(contact.gap.mean(axis=1))
-        builder.add(first, jump[:, None], normal if nodal else 0.5 * normal)
-        along = builder.new_columns(np.full(len(normal), np.inf))
-        builder.add(first, along[:, None], _tangent(normal))
-        bodies = contact.edges[:, 1] >= 0
-        opposite = 2 * (vertices + contact.edges[bodies, 1])[:, None] + axis
-        columns = builder.new_columns(np.full(opposite.size, np.inf)).reshape(-1, 2)
-        builder.add(opposite, columns, 1.0)
-        builder.add(
-            first[bodies][:, :, None], columns[:, None, :], normal[bodies][:, :, None] * normal[bodies][:, None, :]
-        )
-        done[vertices + contact.edges[:, 0]] = True
-        done[vertices + contact.edges[bodies, 1]] = True
+        builder.add(moved, jump[:, None], sign[:, None] * (normal if nodal else 0.5 * normal))
+        builder.add(moved, builder.new_columns(np.full(len(normal), np.inf))[:, None], _tangent(normal))
+        bodies = leader >= 0
+        columns = builder.new_columns(np.full(2 * int(bodies.sum()), np.inf)).reshape(-1, 2)
+        builder.add(2 * leader[bodies][:, None] + axis, columns, 1.0)
+        projection = normal[bodies][:, :, None] * normal[bodies][:, None, :]
+        builder.add(moved[bodies][:, :, None], columns[:, None, :], projection)
+        done[follower] = True
+        done[leader[bodies]] = True
         builder.rows.extend(
             JumpRow(int(column), 1.0, index, normal[pair], -1, pair) for pair, column in enumerate(jump)
         )
 
 
+def _sides(problem: Problem, contact: Contact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Midpoint nodes of the softer and the stiffer side (−1: rigid), and +1 where the softer one is the first side."""
+    young = np.zeros(len(problem.edges))
+    young[problem.triangle_edges] = np.array([body.young for body in problem.bodies])[problem.body][:, None]
+    midpoints = np.where(contact.edges >= 0, len(problem.points) + contact.edges, -1)
+    second_softer = (contact.edges[:, 1] >= 0) & (young[contact.edges[:, 1]] < young[contact.edges[:, 0]])
+    follower = np.where(second_softer, midpoints[:, 1], midpoints[:, 0])
+    leader = np.where(second_softer, midpoints[:, 0], midpoints[:, 1])
+    return follower, leader, np.where(second_softer, -1.0, 1.0)
+
+
 def _quarter_of_vertex_jumps(problem: Problem, nodes: int) -> sparse.csr_matrix:
-    """Maps u to n · ¼ (b0 + b2) at the midpoints on the first sides, and to zero elsewhere."""
-    vertices = len(problem.points)
+    """Maps u to ± n ¼ (b0 + b2) at the midpoints that follow, and to zero elsewhere."""
     axis = np.arange(2)
     entries = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
     for contact in problem.contacts:
-        rows = 2 * (vertices + contact.edges[:, 0])[:, None, None] + axis[None, :, None]
-        weights = 0.25 * contact.normal[:, :, None] * contact.normal[:, None, :]
+        follower, _, direction = _sides(problem, contact)
+        rows = 2 * follower[:, None, None] + axis[None, :, None]
+        weights = 0.25 * direction[:, None, None] * contact.normal[:, :, None] * contact.normal[:, None, :]
         for ends, sign in ((contact.first, 1.0), (contact.second, -1.0)):
             for end in range(2):
                 there = ends[:, end] >= 0

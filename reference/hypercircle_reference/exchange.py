@@ -81,10 +81,11 @@ def read_problem(path: Path) -> Problem:
     if data.get("format") != FORMAT or data.get("version") != VERSION:
         found = (data.get("format"), data.get("version"))
         raise BadExchange(f"{path} is not {FORMAT} version {VERSION}: found {found}")
-    return _problem(data)
+    return parse_problem(data)
 
 
-def _problem(data: dict) -> Problem:
+def parse_problem(data: dict) -> Problem:
+    """Check the contents of ``problem.json``; :class:`BadExchange` names the key that is wrong."""
     kinematics = _get(data, "kinematics")
     if kinematics not in ("plane-strain", "plane-stress"):
         raise BadExchange(f"kinematics is {kinematics!r}, expected 'plane-strain' or 'plane-stress'")
@@ -144,10 +145,7 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
     pairs = _records(entry, "pairs", where)
     inside = f"{where}.pairs"
     rigid = np.array([pair.get("second") is None for pair in pairs], dtype=bool)
-    filled = [
-        {**pair, "second": [-1, -1], "edges": [_get(pair, "edges", inside)[0], -1]} if alone else pair
-        for pair, alone in zip(pairs, rigid)
-    ]
+    filled = [_without_second(pair, inside) if alone else pair for pair, alone in zip(pairs, rigid)]
     contact = Contact(
         name=str(_get(entry, "name", where)),
         edges=_index_column(filled, inside, "edges", (2,), len(edges), lowest=-1),
@@ -165,6 +163,13 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
             pair = rows[np.argmax(wrong)]
             raise BadExchange(f"{inside}[{pair}]: edges[{side}] does not join the vertices given for that side")
     return contact
+
+
+def _without_second(pair: dict, where: str) -> dict:
+    edges = _get(pair, "edges", where)
+    if not isinstance(edges, list) or len(edges) != 2 or edges[1] is not None:
+        raise BadExchange(f"{where}[..].edges must be [edge, null] where second is null")
+    return {**pair, "second": [-1, -1], "edges": [edges[0], -1]}
 
 
 def _check_mesh(points, triangles, edges, triangle_edges) -> None:

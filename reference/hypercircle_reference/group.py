@@ -3,9 +3,9 @@
 A *group* is a set of vertices joined by contact pairs (usually two, more where several bodies meet, one where only a
 support or a rigid obstacle is present). Its displacement x obeys equalities C x = d (clamped values, rollers, pins)
 and inequalities B x ≤ g, one row per jump v_n' + v_n''. :func:`eliminate` returns a parametrisation
-x = x0 + J w + N y in which every w is itself a jump with plain bounds and y is free. Working with orthonormal bases
-treats every special case alike: a contact that ends on a support, two rollers at a corner, a polyline with a corner,
-rows that repeat each other.
+x = x0 + J w + N y in which every w is itself a jump with plain bounds and y is free. One elimination treats every
+special case alike: a contact that ends on a support, two rollers at a corner, a polyline with a corner, rows that
+repeat each other.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg import qr
 
 RELATIVE = 1e-9
 """Below this, relative to unit rows, a direction counts as dependent and a value as equal."""
@@ -43,8 +44,11 @@ class Elimination:
     lower: list[Bound | None]
 
 
-def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray) -> Elimination:
+def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray) -> Elimination:
     """Parametrise {x : C x = d, B x ≤ g}; rows of C and B have entries of order one.
+
+    The y are components of x, and ``stiffness``, one positive number per component, decides which: the stiff ones.
+    The displacement of a stiff body is then an unknown of its own and never a small difference of large ones.
 
     Raises :class:`Conflict` where the equalities contradict each other, where they force a penetration, or where more
     independent inequalities act than the group has freedoms, so that no change of variables turns them into bounds.
@@ -80,8 +84,20 @@ def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray) -> Eli
             raise Conflict("two contacts leave no room between them")
 
     chosen = _independent(rows[leaders], np.array([bound.value for bound in upper]), lower)
-    return _parametrise(offset, kernel, rows, B, [leaders[k] for k in chosen], [upper[k] for k in chosen],
-                        [lower[k] for k in chosen])  # fmt: skip
+    leaders = [leaders[k] for k in chosen]
+    jumps, free = _parametrise(np.vstack([_independent_rows(C), B[leaders]]), len(leaders), stiffness)
+    rigid = B[leaders] @ offset
+    return Elimination(
+        offset=offset - jumps @ rigid,
+        jumps=jumps,
+        free=free,
+        upper=[_shift(upper[k], value) for k, value in zip(chosen, rigid)],
+        lower=[_shift(lower[k], value) for k, value in zip(chosen, rigid)],
+    )
+
+
+def _shift(bound: Bound | None, value: float) -> Bound | None:
+    return bound and Bound(bound.row, bound.factor, bound.value + value)
 
 
 def _solve_equalities(C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -114,20 +130,26 @@ def _independent(M: np.ndarray, upper: np.ndarray, lower: list[Bound | None]) ->
     raise Conflict(f"{len(M)} contact conditions act on {rank} freedoms and none of them follows from the others")
 
 
-def _parametrise(offset, kernel, rows, B, leaders, upper, lower) -> Elimination:
-    M = rows[leaders]
-    inverse = np.linalg.pinv(M) if leaders else np.zeros((kernel.shape[1], 0))
-    right = np.linalg.svd(M)[2] if leaders else np.eye(kernel.shape[1])
-    rigid = B[leaders] @ offset
-    jumps = kernel @ inverse
+def _independent_rows(C: np.ndarray) -> np.ndarray:
+    """A basis of the row space of C, rows of unit length."""
+    if len(C) == 0:
+        return C
+    _, singular, right = np.linalg.svd(C)
+    return right[: int(np.sum(singular > RELATIVE))]
 
-    def shift(bound: Bound | None, value: float) -> Bound | None:
-        return bound and Bound(bound.row, bound.factor, bound.value + value)
 
-    return Elimination(
-        offset=offset - jumps @ rigid,
-        jumps=jumps,
-        free=kernel @ right[len(leaders) :].T,
-        upper=[shift(bound, value) for bound, value in zip(upper, rigid)],
-        lower=[shift(bound, value) for bound, value in zip(lower, rigid)],
-    )
+def _parametrise(A: np.ndarray, jumps: int, stiffness: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """J and N with A J = (0, 1)ᵀ on the last ``jumps`` rows and A N = 0, for A of full row rank.
+
+    As many components as A has rows are solved for, the softest that allow it (pivoted QR of the scaled columns).
+    """
+    rank, size = A.shape
+    pivots = qr(A / np.sqrt(stiffness), mode="r", pivoting=True)[1] if rank else np.arange(size)
+    solved, kept = pivots[:rank], np.sort(pivots[rank:])
+    right = np.zeros((size, jumps))
+    free = np.zeros((size, len(kept)))
+    free[kept, np.arange(len(kept))] = 1.0
+    if rank:
+        right[solved] = np.linalg.solve(A[:, solved], np.eye(rank)[:, rank - jumps :])
+        free[solved] = np.linalg.solve(A[:, solved], -A[:, kept])
+    return right, free

@@ -13,11 +13,14 @@ from .model import Mesh, build as build_model
 from .solve import Solution, minimise, without_strongest_row
 
 
-def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=None, seconds_import=0.0) -> list[dict]:
-    """One result per degree, in the layout of ``primal-P*.json``; equal on all ranks."""
+def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=None, seconds=(0.0, 0.0)) -> list[dict]:
+    """One result per degree, in the layout of ``primal-P*.json``; equal on all ranks.
+
+    ``seconds`` is what imports and reading took before; reading counts as part of making the mesh.
+    """
     start = perf_counter()
     mesh = Mesh(comm, problem)
-    seconds_mesh = perf_counter() - start
+    seconds_import, seconds_mesh = seconds[0], seconds[1] + perf_counter() - start
     results = []
     for degree in degrees:
         log(comm, f"degree {degree}")
@@ -30,16 +33,16 @@ def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=Non
         if sabotage == "drop-row":
             constraints = without_strongest_row(constraints, solution)
             solution = minimise(comm, model, constraints)
-        seconds = {
+        phases = {
             "import": seconds_import,
             "mesh": seconds_mesh,
             "assemble": model.seconds_assemble + seconds_constraints,
             "compile": model.seconds_compile,
             "solve": perf_counter() - start,
         }
-        seconds["total"] = sum(seconds.values())
+        phases["total"] = sum(phases.values())
         log(comm, f"degree {degree}: energy {solution.energy!r}, {solution.iterations} steps")
-        results.append(_result(comm, problem, degree, nodal_contact, constraints, solution, seconds))
+        results.append(_result(comm, problem, degree, nodal_contact, constraints, solution, phases))
     return results
 
 
@@ -70,9 +73,8 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
 def _contacts(problem: Problem, degree: int, constraints: Constraints, solution: Solution) -> list[dict]:
     """Reactions R ≥ 0: −∂𝓛/∂w shared out to the row that binds, and the force −R n' they put on the first side."""
     out = []
-    chains = [np.unique(contact.first, return_index=True) for contact in problem.contacts]
-    order = [list(contact.first.reshape(-1)[np.sort(index)]) for contact, (_, index) in zip(problem.contacts, chains)]
-    place = [{int(v): i for i, v in enumerate(vertices)} for vertices in order]
+    order = [list(dict.fromkeys(contact.first.reshape(-1).tolist())) for contact in problem.contacts]
+    place = [{v: i for i, v in enumerate(vertices)} for vertices in order]
     at_vertex = [np.zeros(len(vertices)) for vertices in order]
     at_edge = [np.zeros(len(contact.first)) for contact in problem.contacts]
     resultant = np.zeros((len(problem.contacts), 2))
@@ -89,7 +91,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
         out.append(
             {
                 "name": contact.name,
-                "vertices": [int(v) for v in order[index]],
+                "vertices": order[index],
                 "vertex_reaction": at_vertex[index].tolist(),
                 "edge_reaction": at_edge[index].tolist() if degree == 2 else None,
                 "resultant": resultant[index].tolist(),

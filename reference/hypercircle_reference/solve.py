@@ -1,6 +1,7 @@
 """Minimise ½ wᵀA w − bᵀw over lower ≤ w ≤ upper with PETSc, where A = TᵀK T and b = Tᵀ(f − K u0).
 
-PETSc's reduced-space Newton method for variational inequalities (``vinewtonrsls``) starts from the displacement with
+Unknowns are scaled so that A has a unit diagonal: residuals of a stiff and a soft body, in any units, are then
+comparable. PETSc's reduced-space Newton method for variational inequalities (``vinewtonrsls``) starts from the displacement with
 every jump at its bound: a body that only contact holds has no solution with all jumps free. The outcome is checked
 here, not taken from PETSc's word.
 """
@@ -66,6 +67,11 @@ class Reduced:
         right.axpy(-1.0, model.stiffness * self.offset)
         self.b = self.A.createVecRight()
         self.T.multTranspose(right, self.b)
+        diagonal = self.A.getDiagonal()
+        self.scale = diagonal.duplicate()
+        self.scale.array[:] = 1.0 / np.sqrt(diagonal.array_r)
+        self.A.diagonalScale(self.scale, self.scale)
+        self.b.pointwiseMult(self.b, self.scale)
         self.lower, self.upper = self._vector(constraints.lower), self._vector(constraints.upper)
         bounded = np.zeros(len(self.order), dtype=bool)
         bounded[constraints.bounded] = True
@@ -75,7 +81,8 @@ class Reduced:
 
     def _vector(self, values: np.ndarray) -> PETSc.Vec:
         vector = self.A.createVecRight()
-        vector.array[:] = np.clip(values[self.order[self.begin : self.end]], PETSc.NINFINITY, PETSc.INFINITY)
+        scaled = values[self.order[self.begin : self.end]] / self.scale.array_r
+        vector.array[:] = np.clip(scaled, PETSc.NINFINITY, PETSc.INFINITY)
         return vector
 
     def residual(self, w: PETSc.Vec) -> PETSc.Vec:
@@ -135,6 +142,8 @@ class Reduced:
         # projection puts w on the bound exactly.
         options[prefix + "snes_vi_zero_tolerance"] = 0.0
         options[prefix + "snes_linesearch_type"] = "basic"
+        # The residual may grow while contacts open; only the step limit ends a hopeless run.
+        options[prefix + "snes_divergence_tolerance"] = -1.0
         snes = PETSc.SNES().create(self.comm)
         snes.setOptionsPrefix(prefix)
         snes.setType("vinewtonrsls")
@@ -145,8 +154,6 @@ class Reduced:
         snes.setMonitor(lambda _, step, norm: log(self.comm, f"newton step {step}, residual {norm:.3e}"))
         _direct(snes.getKSP())
         snes.setFromOptions()
-        # The residual may grow when contacts open; only the step limit ends a hopeless run.
-        snes.setDivergenceTolerance(-1.0) if hasattr(snes, "setDivergenceTolerance") else None
         snes.solve(None, w)
         steps, reason = snes.getIterationNumber(), snes.getConvergedReason()
         snes.destroy()
@@ -170,6 +177,13 @@ class Reduced:
             )
 
     def _gather(self, w: PETSc.Vec, gradient: PETSc.Vec, iterations: int, reason: int) -> Solution:
+        closed = [w.array_r == bound.array_r for bound in (self.upper, self.lower)]
+        w.pointwiseMult(w, self.scale)
+        gradient.pointwiseDivide(gradient, self.scale)
+        mine = self.order[self.begin : self.end]
+        # Scaling there and back may miss the bound by a rounding error.
+        for at, bound in zip(closed, (self.constraints.upper, self.constraints.lower)):
+            w.array[at] = bound[mine[at]]
         u = self.T * w
         u.axpy(1.0, self.offset)
         strain_energy = 0.5 * u.dot(self.model.stiffness * u)

@@ -1,0 +1,180 @@
+"""The command as it is called: files, exit codes, ranks."""
+
+import copy
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import two_blocks
+
+ROOT = Path(__file__).parent.parent
+
+
+def call(folder, *arguments, data=None, text=None, launcher=(), python=(), **environment):
+    problem = folder / "problem.json"
+    if data is not None or text is not None:
+        problem.write_text(json.dumps(data) if text is None else text)
+    command = [*launcher, sys.executable, *python, "-m", "hypercircle_reference", str(problem), "--out", str(folder / "out")]
+    return subprocess.run(
+        [*command, *arguments],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", **environment},
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+
+
+def result(folder, degree):
+    return json.loads((folder / "out" / f"primal-P{degree}.json").read_text())
+
+
+def test_writes_what_the_format_promises(tmp_path):
+    data = two_blocks(4)
+    done = call(tmp_path, "--degree", "1", "--degree", "2", data=data)
+    assert done.returncode == 0, done.stderr
+    assert sorted(os.listdir(tmp_path / "out")) == ["primal-P1.json", "primal-P2.json"]
+    for degree in (1, 2):
+        found = result(tmp_path, degree)
+        assert (found["format"], found["version"], found["degree"], found["ranks"]) == ("hypercircle-primal", 1, degree, 1)
+        assert set(found["seconds"]) == {"import", "mesh", "assemble", "compile", "solve", "total"}
+        assert np.shape(found["vertex_displacement"]) == (len(data["points"]), 2)
+        contact = found["contacts"][0]
+        assert len(contact["vertices"]) == len(contact["vertex_reaction"]) == 5
+        if degree == 2:
+            assert np.shape(found["edge_displacement"]) == (len(data["edges"]), 2)
+            assert len(contact["edge_reaction"]) == 4
+        else:
+            assert found["edge_displacement"] is None and contact["edge_reaction"] is None
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="mpirun is not installed")
+def test_two_ranks_give_the_same_numbers(tmp_path):
+    data = two_blocks(8, angle=0.2, gap=0.01)
+    folders = [tmp_path / "one", tmp_path / "two"]
+    launchers = [(), ("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2")]
+    for folder, launcher in zip(folders, launchers):
+        folder.mkdir()
+        done = call(folder, data=data, launcher=launcher)
+        assert done.returncode == 0, done.stderr
+    for degree in (1, 2):
+        one, two = (result(folder, degree) for folder in folders)
+        assert two["ranks"] == 2
+        assert two["energy"] == pytest.approx(one["energy"], rel=1e-12)
+        assert np.array(two["vertex_displacement"]) == pytest.approx(np.array(one["vertex_displacement"]), abs=1e-10)
+        reactions = [np.array(found["contacts"][0]["vertex_reaction"]) for found in (one, two)]
+        assert reactions[1] == pytest.approx(reactions[0], abs=1e-11)
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="mpirun is not installed")
+def test_failure_of_several_ranks_ends_all(tmp_path):
+    data = two_blocks(2)
+    data["clamped"] = []
+    done = call(tmp_path, data=data, launcher=("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"))
+    assert done.returncode == 3
+    assert not (tmp_path / "out").exists()
+
+
+def test_no_support_is_a_failure_not_a_number(tmp_path):
+    data = two_blocks(2)
+    data["clamped"] = []
+    done = call(tmp_path, data=data)
+    assert done.returncode == 3
+    assert "hypercircle-reference:" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_loss_of_contact_is_a_failure(tmp_path):
+    done = call(tmp_path, data=two_blocks(4, load=-1.0))
+    assert done.returncode == 3 and not (tmp_path / "out").exists()
+
+
+def test_missing_package(tmp_path):
+    (tmp_path / "dolfinx.py").write_text("raise ModuleNotFoundError('no dolfinx here', name='dolfinx')")
+    done = call(tmp_path, data=two_blocks(2), PYTHONPATH=f"{tmp_path}{os.pathsep}{ROOT}")
+    assert done.returncode == 4
+    assert done.stderr.startswith("hypercircle-reference: not installed: dolfinx")
+    assert done.stderr.count("\n") == 1
+
+
+def changed(path, value):
+    data = copy.deepcopy(two_blocks(2))
+    place = data
+    for key in path[:-1]:
+        place = place[key]
+    if value is KeyError:
+        del place[path[-1]]
+    else:
+        place[path[-1]] = value
+    return json.dumps(data)
+
+
+MALFORMED = {
+    "empty": "",
+    "truncated": changed(["thickness"], 1.0)[:200],
+    "list": "[]",
+    "format": changed(["format"], "other"),
+    "version": changed(["version"], 2),
+    "kinematics": changed(["kinematics"], "axisymmetric"),
+    "thickness": changed(["thickness"], 0.0),
+    "thickness text": changed(["thickness"], "1"),
+    "thickness missing": changed(["thickness"], KeyError),
+    "young": changed(["bodies", 0, "young"], -1.0),
+    "poisson": changed(["bodies", 1, "poisson"], 0.5),
+    "body_force": changed(["bodies", 1, "body_force"], [0.0]),
+    "body not object": changed(["bodies", 1], 3),
+    "body index": changed(["body", 0], 7),
+    "nan": changed(["points", 0], [float("nan"), 0.0]),
+    "infinite": changed(["points", 0], [1e999, 0.0]),
+    "ragged": changed(["points", 0], [0.0]),
+    "point text": changed(["points", 0], ["a", "b"]),
+    "vertex index": changed(["triangles", 0], [0, 1, 99]),
+    "negative index": changed(["triangles", 0], [0, 1, -1]),
+    "fractional index": changed(["triangles", 0], [0, 1, 2.5]),
+    "clockwise": changed(["triangles", 0], [4, 1, 0]),
+    "no triangles": changed(["triangles"], []),
+    "triangle_edges": changed(["triangle_edges", 0], [0, 0, 0]),
+    "clamped edge": changed(["clamped", 0, "edge"], 999),
+    "roller normal": changed(["roller", 0, "normal"], [0.0, -2.0]),
+    "traction": changed(["tractions", 0, "values"], [[0.0, 1.0]]),
+    "pairs": changed(["contacts", 0, "pairs"], {}),
+    "pair edge": changed(["contacts", 0, "pairs", 0, "edges"], [0, 1]),
+    "pair second": changed(["contacts", 0, "pairs", 0, "second"], [0, 1]),
+    "pair edges empty": changed(["contacts", 0, "pairs", 0, "edges"], []),
+    "rigid without edges": changed(["contacts", 0, "pairs", 0], {"second": None, "edges": []}),
+    "pin": changed(["pins"], [{"vertex": 0}]),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_malformed_files_are_refused_by_name(tmp_path, name):
+    from hypercircle_reference import BadExchange
+    from hypercircle_reference.exchange import read_problem
+
+    path = tmp_path / "problem.json"
+    path.write_text(MALFORMED[name])
+    with pytest.raises(BadExchange) as refusal:
+        read_problem(path)
+    assert len(str(refusal.value)) > 10 and "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ("empty", "truncated", "list", "format", "nan"))
+def test_malformed_files_end_with_two(tmp_path, name):
+    done = call(tmp_path, text=MALFORMED[name])
+    assert done.returncode == 2
+    assert done.stderr.startswith("hypercircle-reference: ") and "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_missing_file_and_folder(tmp_path):
+    assert call(tmp_path).returncode == 2
+    (tmp_path / "problem.json").mkdir()
+    assert call(tmp_path).returncode == 2
+
+
+def test_ends_with_its_parent(tmp_path):
+    """Closed standard input stops a run that was told to watch it."""
+    done = call(tmp_path, "--stop-with-stdin", data=two_blocks(64))
+    assert done.returncode == 3 and not (tmp_path / "out").exists()
