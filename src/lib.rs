@@ -9,3 +9,4 @@ pub mod mesh;
 pub mod problem;
 pub mod report;
 pub mod scene;
+pub mod statics;

@@ -1,0 +1,151 @@
+//! Connected pieces of the mesh and their rigid motions.
+
+use crate::problem::Problem;
+
+/// One rigid motion of every piece of the mesh.
+///
+/// Piece c with centroid (x_c, y_c) moves by u(x, y) = (a − ω (y − y_c), b + ω (x − x_c)).
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidMotion {
+    /// (a, b, ω) of each piece: displacement of its centroid (length) and rotation (1).
+    pub component: Vec<[f64; 3]>,
+}
+
+impl RigidMotion {
+    /// Displacement of `point`, taken as a point of piece `component`.
+    pub fn at(&self, components: &Components, component: usize, point: [f64; 2]) -> [f64; 2] {
+        let [a, b, omega] = self.component[component];
+        let centre = components.centre[component];
+        [a - omega * (point[1] - centre[1]), b + omega * (point[0] - centre[0])]
+    }
+
+    /// Displacement of every vertex of the mesh, for pictures.
+    pub fn at_vertices(&self, problem: &Problem, components: &Components) -> Vec<[f64; 2]> {
+        let points = problem.mesh.points.iter().zip(&components.of_vertex);
+        points.map(|(point, c)| if *c == usize::MAX { [0.0; 2] } else { self.at(components, *c, *point) }).collect()
+    }
+}
+
+/// The connected pieces of the mesh. Triangles that share an edge belong together: bonded bodies are one piece, and a
+/// body may have several. Triangles that share nothing but a vertex are hinged at a point, which holds no stress, and
+/// count as separate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Components {
+    /// Piece of each triangle.
+    pub of_triangle: Vec<usize>,
+    /// Piece of each vertex (`usize::MAX` for a vertex no triangle uses; where two pieces touch in a point, one of them).
+    pub of_vertex: Vec<usize>,
+    /// Centroid of each piece.
+    pub centre: Vec<[f64; 2]>,
+    /// Largest distance of a vertex of the piece from its centroid.
+    pub size: Vec<f64>,
+    /// Names of the bodies of each piece, in scene order.
+    pub bodies: Vec<Vec<String>>,
+    /// Whether the bodies of the piece have further pieces, so that their names alone do not tell it.
+    pub one_of_several: Vec<bool>,
+}
+
+impl Components {
+    /// Number of pieces.
+    pub fn count(&self) -> usize {
+        self.centre.len()
+    }
+
+    /// Finds the pieces of the mesh of `problem`.
+    pub fn new(problem: &Problem) -> Self {
+        let mesh = &problem.mesh;
+        let mut sets = DisjointSets::new(mesh.triangles.len());
+        for edge in &mesh.edges {
+            if let [Some(left), Some(right)] = edge.triangles {
+                sets.join(left, right);
+            }
+        }
+        let (of_triangle, count) = sets.labels();
+
+        let mut of_vertex = vec![usize::MAX; mesh.points.len()];
+        let mut in_piece = vec![vec![false; problem.scene.bodies.len()]; count];
+        // First moments about one vertex of the piece: coordinates far from the origin cost no digits.
+        let mut origin = vec![None; count];
+        let mut moment = vec![[0.0; 2]; count];
+        let mut area = vec![0.0; count];
+        for (t, &c) in of_triangle.iter().enumerate() {
+            let corners = mesh.corners(t);
+            let o = *origin[c].get_or_insert(corners[0]);
+            let [p, q, r] = corners.map(|x| [x[0] - o[0], x[1] - o[1]]);
+            let twice = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+            area[c] += twice;
+            for i in 0..2 {
+                moment[c][i] += twice * ((p[i] + q[i] + r[i]) / 3.0);
+            }
+            for v in mesh.triangles[t] {
+                of_vertex[v] = c;
+            }
+            if let Some(here) = in_piece[c].get_mut(mesh.body[t]) {
+                *here = true;
+            }
+        }
+        let centre: Vec<[f64; 2]> = (0..count)
+            .map(|c| {
+                let o = origin[c].unwrap_or_default();
+                [o[0] + moment[c][0] / area[c], o[1] + moment[c][1] / area[c]]
+            })
+            .collect();
+        let mut size = vec![0.0f64; count];
+        for (t, &c) in of_triangle.iter().enumerate() {
+            for x in mesh.corners(t) {
+                size[c] = size[c].max((x[0] - centre[c][0]).hypot(x[1] - centre[c][1]));
+            }
+        }
+        let pieces_of = |b: usize| in_piece.iter().filter(|piece| piece[b]).count();
+        let several: Vec<bool> = (0..problem.scene.bodies.len()).map(|b| pieces_of(b) > 1).collect();
+        let one_of_several =
+            in_piece.iter().map(|piece| piece.iter().zip(&several).all(|(here, many)| !here || *many)).collect();
+        let name = |(b, _): (usize, &bool)| problem.scene.bodies[b].name.clone();
+        let bodies =
+            in_piece.iter().map(|piece| piece.iter().enumerate().filter(|(_, here)| **here).map(name).collect());
+        Components { bodies: bodies.collect(), of_triangle, of_vertex, centre, size, one_of_several }
+    }
+}
+
+/// Union–find.
+pub(super) struct DisjointSets {
+    parent: Vec<usize>,
+}
+
+impl DisjointSets {
+    /// `n` sets of one element each.
+    pub fn new(n: usize) -> Self {
+        DisjointSets { parent: (0..n).collect() }
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            self.parent[i] = self.parent[self.parent[i]];
+            i = self.parent[i];
+        }
+        i
+    }
+
+    /// Unites the sets of `i` and `j`.
+    pub fn join(&mut self, i: usize, j: usize) {
+        let (i, j) = (self.root(i), self.root(j));
+        self.parent[i.max(j)] = i.min(j);
+    }
+
+    /// A label per element, numbered by first appearance, and the number of sets.
+    pub fn labels(&mut self) -> (Vec<usize>, usize) {
+        let mut label = vec![usize::MAX; self.parent.len()];
+        let mut count = 0;
+        let labels = (0..self.parent.len())
+            .map(|i| {
+                let root = self.root(i);
+                if label[root] == usize::MAX {
+                    label[root] = count;
+                    count += 1;
+                }
+                label[root]
+            })
+            .collect();
+        (labels, count)
+    }
+}

@@ -1,0 +1,100 @@
+//! Force and moment of the loads on each piece.
+
+use super::components::{Components, RigidMotion};
+use crate::problem::{Condition, Problem};
+
+/// Resultants of body forces and tractions on each piece of the mesh, times the thickness. Exact but for round-off:
+/// body forces are constant, tractions are linear along an edge, and the sums are compensated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadResultants {
+    /// Resultant force.
+    pub force: Vec<[f64; 2]>,
+    /// Resultant moment about the centroid of the piece, counter-clockwise.
+    pub moment: Vec<f64>,
+    /// Sum of the magnitudes of all forces that went into `force`: what round-off in it is relative to.
+    pub magnitude: Vec<f64>,
+}
+
+impl LoadResultants {
+    /// The resultants of the loads of `problem`.
+    pub fn new(problem: &Problem, components: &Components) -> Self {
+        let mesh = &problem.mesh;
+        let mut sums = vec![[Compensated::default(); 4]; components.count()];
+        let mut add = |c: usize, force: [f64; 2], moment: f64, magnitude: f64| {
+            for (sum, value) in sums[c].iter_mut().zip([force[0], force[1], moment, magnitude]) {
+                sum.add(value);
+            }
+        };
+        for (t, &c) in components.of_triangle.iter().enumerate() {
+            let body = problem.scene.bodies.get(mesh.body[t]);
+            let f = body.map_or([0.0; 2], |body| body.body_force);
+            if f == [0.0; 2] {
+                continue;
+            }
+            let arms = mesh.corners(t).map(|x| arm(x, components.centre[c]));
+            let [p, q, r] = arms;
+            let area = 0.5 * cross([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
+            let centroid = [(p[0] + q[0] + r[0]) / 3.0, (p[1] + q[1] + r[1]) / 3.0];
+            let force = [area * f[0], area * f[1]];
+            add(c, force, cross(centroid, force), force[0].hypot(force[1]));
+        }
+        for (e, condition) in problem.conditions.iter().enumerate() {
+            let (Condition::Traction([p, q]), Some(t)) = (condition, mesh.edges[e].triangles[0]) else { continue };
+            if (p, q) == (&[0.0; 2], &[0.0; 2]) {
+                continue;
+            }
+            let c = components.of_triangle[t];
+            let [x, y] = mesh.edges[e].vertices.map(|v| arm(mesh.points[v], components.centre[c]));
+            let length = (y[0] - x[0]).hypot(y[1] - x[1]);
+            let half = 0.5 * length;
+            let moment = length / 6.0 * (2.0 * cross(x, *p) + 2.0 * cross(y, *q) + cross(x, *q) + cross(y, *p));
+            let magnitude = half * (p[0].hypot(p[1]) + q[0].hypot(q[1]));
+            add(c, [half * (p[0] + q[0]), half * (p[1] + q[1])], moment, magnitude);
+        }
+        let total = |c: usize, i: usize| problem.scene.thickness * sums[c][i].value();
+        let all = 0..components.count();
+        LoadResultants {
+            force: all.clone().map(|c| [total(c, 0), total(c, 1)]).collect(),
+            moment: all.clone().map(|c| total(c, 2)).collect(),
+            magnitude: all.map(|c| total(c, 3)).collect(),
+        }
+    }
+
+    /// Work L(y) of the loads on piece `c` in the motion `y`.
+    pub fn work_on(&self, motion: &RigidMotion, c: usize) -> f64 {
+        let [a, b, omega] = motion.component[c];
+        self.force[c][0] * a + self.force[c][1] * b + self.moment[c] * omega
+    }
+
+    /// Work L(y) of all loads in the motion `y`.
+    pub fn work(&self, motion: &RigidMotion) -> f64 {
+        (0..self.force.len()).map(|c| self.work_on(motion, c)).sum()
+    }
+}
+
+fn arm(point: [f64; 2], centre: [f64; 2]) -> [f64; 2] {
+    [point[0] - centre[0], point[1] - centre[1]]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// A sum that carries its own round-off along (Neumaier).
+#[derive(Debug, Clone, Copy, Default)]
+struct Compensated {
+    sum: f64,
+    lost: f64,
+}
+
+impl Compensated {
+    fn add(&mut self, value: f64) {
+        let sum = self.sum + value;
+        self.lost += if self.sum.abs() >= value.abs() { (self.sum - sum) + value } else { (value - sum) + self.sum };
+        self.sum = sum;
+    }
+
+    fn value(&self) -> f64 {
+        self.sum + self.lost
+    }
+}

@@ -1,0 +1,210 @@
+//! Whether the loads admit an equilibrium, and which rigid motions nothing holds.
+//!
+//! Equilibrium is possible only if L(y) ≤ 0 for every rigid motion y that supports and contacts allow: u = 0 on Γ_u,
+//! u_n = 0 on Γ_0, v_n' + v_n'' ≤ 0 on Γ_K (1.16). Initial gaps do not enter: a body falls through any gap until it is
+//! held. The allowed motions form a cone in few unknowns, three per piece of the mesh, so the question is settled before
+//! anything is solved: the loads are split into a part the contact forces can balance and the motion they drive
+//! (see `cone`). A motion allowed both ways must see no work at all; it then leaves the stress unique and the displacement
+//! not, and pins choose one displacement.
+
+mod balance;
+mod components;
+mod cone;
+mod loads;
+mod pins;
+mod restraint;
+mod span;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use components::{Components, RigidMotion};
+pub use loads::LoadResultants;
+pub use pins::{EdgePin, VertexPin};
+pub use words::{MotionKind, Moving};
+
+use crate::problem::Problem;
+use balance::{RANK, Verdict};
+use nalgebra::DVector;
+use restraint::Group;
+use span::Span;
+
+/// Rigid statics of a problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statics {
+    /// The pieces of the mesh.
+    pub components: Components,
+    /// The loads on each piece.
+    pub loads: LoadResultants,
+    /// A basis of the motions allowed both ways: no displacement on Γ_u, no normal displacement on Γ_0, no jump on Γ_K.
+    /// They are the null vectors of the stiffness with all contacts held closed. Each has largest displacement 1, and as
+    /// many pieces and rotations as possible are at rest in each.
+    pub held: Vec<RigidMotion>,
+    /// One vertex pin per motion of `held`.
+    pub vertex_pins: Vec<VertexPin>,
+    /// One edge pin per motion of `held`.
+    pub edge_pins: Vec<EdgePin>,
+    /// The answer.
+    pub equilibrium: Equilibrium,
+    /// What a report should say: motions that stay free, borderline loads, pressure too concentrated for the mesh.
+    pub notes: Vec<String>,
+}
+
+/// Whether (1.16) holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Equilibrium {
+    /// L(y) ≤ 0 for every allowed motion.
+    Possible {
+        /// A motion allowed one way only on which the loads do no work (to within 1e-7 of the loads): the borderline.
+        one_way: Option<RigidMotion>,
+        /// A motion that shows that no pressure linear and compressive on each edge of this mesh balances the loads,
+        /// though an equilibrium exists: the discrete dual set is empty until the ends of the contact are refined.
+        beyond_mesh: Option<RigidMotion>,
+    },
+    /// Some allowed motion has L(y) > 0.
+    Impossible {
+        /// That motion; the largest displacement in each independent group of pieces is 1.
+        motion: RigidMotion,
+        /// L(motion) > 0, thickness included.
+        work: f64,
+        /// The pieces that move, those that drive the motion first.
+        bodies: Vec<Moving>,
+        /// One sentence per group of pieces that cannot be in equilibrium.
+        sentence: String,
+    },
+}
+
+/// Why the question could not be answered.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum StaticsError {
+    /// The active-set search did not settle.
+    #[error(
+        "the balance of {bodies} could not be decided: the contact forces that balance the loads best were not found. \
+         Check the scene for contacts that are short against their distance from each other"
+    )]
+    Undecided {
+        /// The bodies in question.
+        bodies: String,
+    },
+    /// A motion that no vertex or no edge can take away.
+    #[error(
+        "{bodies} can move freely and the mesh offers no point to pin: refine it once, so that pieces have interior edges"
+    )]
+    NothingToPin {
+        /// The bodies in question.
+        bodies: String,
+    },
+}
+
+/// Rigid statics of `problem`.
+///
+/// # Errors
+/// [`StaticsError`] where round-off or the mesh leaves the question open; no scene is known to lead there.
+pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
+    let components = Components::new(problem);
+    let loads = LoadResultants::new(problem, &components);
+    let runs = restraint::runs(problem, &components);
+    let clamped = restraint::clamped(problem, &components);
+
+    let (mut held, mut vertex_pins, mut edge_pins) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut both_ways, mut one_way, mut beyond_mesh, mut impossible) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for group in restraint::groups(&components, &clamped, &runs) {
+        let found = Verdict::of(problem, &group, &loads)?;
+        let words = |motion: &RigidMotion| words::moving(problem, &group, &loads, motion);
+        vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held)?);
+        edge_pins.extend(pins::edge_pins(problem, &group, &found.held)?);
+        for direction in readable(&group, &found.held) {
+            let motion = motion(&group, &direction).0;
+            both_ways.push(words::free_both_ways(&components, &words(&motion)));
+            held.push(motion);
+        }
+        if let Some(driven) = found.driven {
+            let (motion, factor) = motion(&group, &driven.motion);
+            // Summing force times displacement instead would lose small differences.
+            let work = factor * driven.work;
+            let moving = words(&motion);
+            let sentence = words::impossible(&components, &moving, work);
+            impossible.push((motion, work, moving, sentence));
+        }
+        if let Some(direction) = &found.one_way {
+            let motion = motion(&group, direction).0;
+            one_way.push((words::free_one_way(&components, &words(&motion)), motion));
+        }
+        if let Some(direction) = &found.beyond_mesh {
+            let motion = motion(&group, direction).0;
+            let note = words::beyond_mesh(&components, &words(&motion), found.one_way.is_some());
+            beyond_mesh.push((note, motion));
+        }
+    }
+
+    let (equilibrium, notes) = if impossible.is_empty() {
+        let mut notes = both_ways;
+        notes.extend(one_way.iter().chain(&beyond_mesh).map(|(note, _)| note.clone()));
+        let sum = |all: Vec<(String, RigidMotion)>| together(all.into_iter().map(|(_, motion)| motion));
+        (Equilibrium::Possible { one_way: sum(one_way), beyond_mesh: sum(beyond_mesh) }, notes)
+    } else {
+        let work = impossible.iter().map(|(_, work, _, _)| work).sum();
+        let sentence = impossible.iter().map(|(_, _, _, sentence)| sentence.as_str()).collect::<Vec<_>>().join(" ");
+        let bodies = impossible.iter().flat_map(|(_, _, moving, _)| moving.clone()).collect();
+        let motion = together(impossible.into_iter().map(|(motion, ..)| motion))
+            .unwrap_or(RigidMotion { component: vec![[0.0; 3]; components.count()] });
+        (Equilibrium::Impossible { motion, work, bodies, sentence }, Vec::new())
+    };
+    Ok(Statics { components, loads, held, vertex_pins, edge_pins, equilibrium, notes })
+}
+
+/// The motion of the pieces for a vector of group unknowns, scaled to largest displacement 1, and the factor that took.
+fn motion(group: &Group, direction: &DVector<f64>) -> (RigidMotion, f64) {
+    let reach = |m: usize| direction[3 * m].hypot(direction[3 * m + 1]) + direction[3 * m + 2].abs();
+    let largest = (0..group.members.len()).map(reach).fold(f64::MIN_POSITIVE, f64::max);
+    let mut component = vec![[0.0; 3]; group.components.count()];
+    for (m, c) in group.members.iter().enumerate() {
+        let [a, b, w] = [0, 1, 2].map(|i| direction[3 * m + i] / largest);
+        component[*c] = [a, b, w / group.components.size[*c]];
+    }
+    (RigidMotion { component }, largest.recip())
+}
+
+fn together(mut motions: impl Iterator<Item = RigidMotion>) -> Option<RigidMotion> {
+    let mut sum = motions.next()?;
+    for motion in motions {
+        for (total, part) in sum.component.iter_mut().zip(motion.component) {
+            for i in 0..3 {
+                total[i] += part[i];
+            }
+        }
+    }
+    Some(sum)
+}
+
+/// A basis of `held` in reduced echelon form, rotations eliminated first: most of its motions are translations of few
+/// pieces.
+fn readable(group: &Group, held: &Span) -> Vec<DVector<f64>> {
+    let mut rows = held.basis.clone();
+    let mut done = 0;
+    for class in [|i: usize| i % 3 == 2, |i: usize| i % 3 != 2] {
+        while done < rows.len() {
+            let columns = (0..group.dimension()).filter(|i| class(*i));
+            let entries = columns.flat_map(|i| (done..rows.len()).map(move |r| (r, i)));
+            let largest = entries.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()));
+            let Some((r, i)) = largest.filter(|(r, i)| rows[*r][*i].abs() > RANK) else { break };
+            rows.swap(done, r);
+            let pivot = rows[done].clone() / rows[done][i];
+            for (other, row) in rows.iter_mut().enumerate() {
+                let factor = row[i];
+                if other != done {
+                    row.axpy(-factor, &pivot, 1.0);
+                }
+            }
+            rows[done] = pivot;
+            done += 1;
+        }
+    }
+    for row in &mut rows {
+        let size = row.amax();
+        row.iter_mut().filter(|x| x.abs() < 1e-12 * size).for_each(|x| *x = 0.0);
+    }
+    rows
+}

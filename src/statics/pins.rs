@@ -1,0 +1,206 @@
+//! Points to hold so that the motions nothing else holds are taken away.
+//!
+//! The loads do no work on these motions, so a pin carries no force: it only chooses one displacement among those that
+//! differ by the motion. Pins are picked by pivoting, the one that holds the remaining motions best first.
+
+use super::StaticsError;
+use super::components::Components;
+use super::restraint::Group;
+use super::span::Span;
+use crate::problem::{Condition, Problem};
+use nalgebra::DVector;
+
+/// A vertex to hold: u(vertex) · direction = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VertexPin {
+    /// Vertex index.
+    pub vertex: usize,
+    /// A coordinate direction wherever the vertex lies on no support and no contact; otherwise the tangent there.
+    pub direction: [f64; 2],
+}
+
+/// An edge moment to hold: m_{e,p} · direction = 0 with m_{e,p} = ∫_e v q_p ds, q_p the hat function of the end p.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgePin {
+    /// Edge index.
+    pub edge: usize,
+    /// Which end, in the order of [`crate::mesh::Edge::vertices`].
+    pub end: usize,
+    /// A coordinate direction on interior and loaded edges. Only where a piece has no such edge that would serve, an edge
+    /// on a roller or a contact is taken, with its tangent.
+    pub direction: [f64; 2],
+}
+
+/// A pin that holds less than this, of displacements of size 1, holds nothing.
+const WEAKEST: f64 = 1e-7;
+
+/// Somewhere a pin could go.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    /// Vertex, or edge and end.
+    index: (usize, usize),
+    component: usize,
+    /// Where the displacement is taken.
+    point: [f64; 2],
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// Both components are free unknowns.
+    Free,
+    /// Only this direction is.
+    Along([f64; 2]),
+    /// Contacts or rollers of several directions meet here.
+    Corner,
+}
+
+impl Kind {
+    /// How much worse a place of this kind may hold a free one and still be passed over.
+    fn weight(self) -> f64 {
+        match self {
+            Kind::Free => 1.0,
+            Kind::Along(_) => 0.05,
+            Kind::Corner => 0.0025,
+        }
+    }
+
+    fn directions(self) -> Vec<[f64; 2]> {
+        match self {
+            Kind::Along(tangent) => vec![tangent],
+            Kind::Free | Kind::Corner => vec![[1.0, 0.0], [0.0, 1.0]],
+        }
+    }
+}
+
+/// One vertex pin per motion of `held`, which they take away together.
+pub(super) fn vertex_pins(problem: &Problem, group: &Group, held: &Span) -> Result<Vec<VertexPin>, StaticsError> {
+    if held.basis.is_empty() {
+        return Ok(Vec::new());
+    }
+    let components = group.components;
+    let mesh = &problem.mesh;
+    let mut kinds = vec![Some(Kind::Free); mesh.points.len()];
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        let tangent = tangent(problem, e);
+        for v in mesh.edges[e].vertices {
+            kinds[v] = match (condition, kinds[v]) {
+                (Condition::Clamped(_), _) | (_, None) => None,
+                (Condition::Interior | Condition::Traction(_), kind) => kind,
+                (_, Some(Kind::Free)) => Some(Kind::Along(tangent)),
+                (_, Some(Kind::Along(t))) if (t[0] * tangent[1] - t[1] * tangent[0]).abs() < 1e-6 => kinds[v],
+                _ => Some(Kind::Corner),
+            };
+        }
+    }
+    // A vertex where two pieces touch belongs to both: holding it would hold the wrong one as well.
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        for v in triangle {
+            if components.of_vertex[*v] != components.of_triangle[t] {
+                kinds[*v] = None;
+            }
+        }
+    }
+    let places = kinds.iter().enumerate().filter_map(|(v, kind)| {
+        let component = components.of_vertex[v];
+        group.column(component)?;
+        Some(Place { index: (v, 0), component, point: mesh.points[v], kind: (*kind)? })
+    });
+    let chosen = choose(places, group, held)?;
+    Ok(chosen.into_iter().map(|(place, direction)| VertexPin { vertex: place.index.0, direction }).collect())
+}
+
+/// One edge pin per motion of `held`, which they take away together.
+pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &Span) -> Result<Vec<EdgePin>, StaticsError> {
+    if held.basis.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mesh = &problem.mesh;
+    let places = problem.conditions.iter().enumerate().flat_map(|(e, condition)| {
+        let kind = match condition {
+            Condition::Interior | Condition::Traction(_) => Some(Kind::Free),
+            Condition::Clamped(_) => None,
+            Condition::Roller | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
+        };
+        let component = mesh.edges[e].triangles[0].map(|t| group.components.of_triangle[t]);
+        let component = component.filter(|c| group.column(*c).is_some());
+        let ends = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+        // ∫_e v q_p ds of a linear v is half the length times v a third of the way from p to the other end.
+        let third = move |p: usize| [0, 1].map(|i| (2.0 * ends[p][i] + ends[1 - p][i]) / 3.0);
+        [0, 1]
+            .into_iter()
+            .filter_map(move |p| Some(Place { index: (e, p), component: component?, point: third(p), kind: kind? }))
+    });
+    let chosen = choose(places, group, held)?;
+    let pin = |(place, direction): (Place, _)| EdgePin { edge: place.index.0, end: place.index.1, direction };
+    Ok(chosen.into_iter().map(pin).collect())
+}
+
+fn tangent(problem: &Problem, e: usize) -> [f64; 2] {
+    let (_, n) = problem.mesh.edge_frame(e);
+    [-n[1], n[0]]
+}
+
+/// The best places for the `held` motions, by pivoted elimination.
+fn choose(
+    places: impl Iterator<Item = Place>,
+    group: &Group,
+    held: &Span,
+) -> Result<Vec<(Place, [f64; 2])>, StaticsError> {
+    let rank = held.basis.len();
+    let mut candidates = Vec::new();
+    for place in outermost(places, group.components) {
+        for direction in place.kind.directions() {
+            let row = group.displacement(place.component, place.point, direction);
+            let on_held = DVector::from_iterator(rank, held.basis.iter().map(|q| q.dot(&row)));
+            candidates.push((place, direction, on_held));
+        }
+    }
+    let mut taken = Span::empty(rank);
+    let mut chosen = Vec::new();
+    while chosen.len() < rank {
+        let mut best: Option<(f64, f64, usize)> = None;
+        for (i, (place, _, row)) in candidates.iter().enumerate() {
+            let hold = taken.residual(row).norm();
+            let merit = hold * place.kind.weight();
+            if best.is_none_or(|(leading, _, _)| merit > leading * (1.0 + 1e-6)) {
+                best = Some((merit, hold, i));
+            }
+        }
+        let Some((_, _, i)) = best.filter(|(_, hold, _)| *hold > WEAKEST) else {
+            return Err(StaticsError::NothingToPin { bodies: super::words::all_names(group) });
+        };
+        let (place, direction, row) = &candidates[i];
+        chosen.push((*place, *direction));
+        taken.extend(std::slice::from_ref(row), 1e-3 * WEAKEST);
+    }
+    Ok(chosen)
+}
+
+/// For each piece and kind of place, the places farthest out in eight directions: no others can hold it much better, and
+/// the choice stays cheap on large meshes.
+fn outermost(places: impl Iterator<Item = Place>, components: &Components) -> Vec<Place> {
+    let directions = std::array::from_fn::<[f64; 2], 8, _>(|i| {
+        let angle = 0.2 + std::f64::consts::FRAC_PI_4 * i as f64;
+        [angle.cos(), angle.sin()]
+    });
+    let mut best: Vec<Option<(f64, Place)>> = vec![None; 24 * components.count()];
+    for place in places {
+        let kind = match place.kind {
+            Kind::Free => 0,
+            Kind::Along(_) => 1,
+            Kind::Corner => 2,
+        };
+        for (i, d) in directions.iter().enumerate() {
+            let reach = place.point[0] * d[0] + place.point[1] * d[1];
+            let slot = &mut best[24 * place.component + 8 * kind + i];
+            if slot.is_none_or(|(leading, _)| reach > leading) {
+                *slot = Some((reach, place));
+            }
+        }
+    }
+    let mut kept: Vec<Place> = best.into_iter().flatten().map(|(_, place)| place).collect();
+    kept.sort_by_key(|place| place.index);
+    kept.dedup_by_key(|place| place.index);
+    kept
+}

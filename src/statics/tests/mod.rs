@@ -1,0 +1,5 @@
+mod build;
+mod freedom;
+mod pinning;
+mod scenes;
+mod table;
