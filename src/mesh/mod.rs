@@ -99,12 +99,6 @@ impl Triangulation {
         self.triangles[t].map(|v| self.points[v])
     }
 
-    /// Area of triangle `t`.
-    pub fn area(&self, t: usize) -> f64 {
-        let [a, b, c] = self.corners(t);
-        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
-    }
-
     /// Length and outward unit normal (as seen from `triangles[0]`) of edge `e`.
     pub fn edge_frame(&self, e: usize) -> (f64, [f64; 2]) {
         let [a, b] = self.edges[e].vertices.map(|v| self.points[v]);
