@@ -1,10 +1,12 @@
 //! Two-sided bounds: complementary and potential energy, the free upper bound, and the gap in local terms.
 
+mod bracket;
 pub mod energy;
 pub mod strain;
 mod sum;
 pub mod upper;
 
+pub use bracket::{Bracket, UpperBound};
 pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 pub use sum::Sum;
-pub use upper::{NoUpperBound, admissible};
+pub use upper::{NoUpperBound, Violation, admissible, repaired};

@@ -7,10 +7,10 @@
 use super::NoUpperBound;
 use super::holds::Hold;
 use crate::dual::DualSolution;
-use crate::problem::{Condition, ContactPair, Problem};
+use crate::problem::{ContactPair, Problem};
 
 /// Bounds on the jump at one end of one pair.
-struct End {
+pub struct End {
     first: usize,
     second: Option<usize>,
     normal: [f64; 2],
@@ -27,16 +27,15 @@ const MOST_SWEEPS: usize = 200;
 /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for that.
 pub fn restrict_vertices(
     problem: &Problem,
-    dual: &DualSolution,
+    ends: &[End],
     holds: &[Hold],
     vertex: &mut [[f64; 2]],
 ) -> Result<(), NoUpperBound> {
-    let ends = ends(problem, dual);
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let tolerance = 1e-13 * size;
     for _ in 0..MOST_SWEEPS {
         let mut moved = false;
-        for end in &ends {
+        for end in ends {
             let off = excess(end, vertex);
             if off == 0.0 {
                 continue;
@@ -58,7 +57,7 @@ pub fn restrict_vertices(
             break;
         }
     }
-    for end in &ends {
+    for end in ends {
         let by = excess(end, vertex);
         if by > tolerance.max(1e-12 * size) {
             let [x, y] = problem.mesh.points[end.first];
@@ -74,8 +73,24 @@ fn excess(end: &End, vertex: &[[f64; 2]]) -> f64 {
     if jump > end.high { jump - end.high } else { (jump - end.low).min(0.0) }
 }
 
-/// Both ends of all pairs, with the lower bounds of neighbouring pairs merged.
-fn ends(problem: &Problem, dual: &DualSolution) -> Vec<End> {
+/// Both ends of all pairs, bounded by the gap alone.
+pub fn ends_below_gap(problem: &Problem) -> Vec<End> {
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    pairs
+        .flat_map(|pair| {
+            [0, 1].map(|end| End {
+                first: pair.first[end],
+                second: pair.second.map(|s| s[end]),
+                normal: pair.normal,
+                low: f64::NEG_INFINITY,
+                high: pair.gap[end],
+            })
+        })
+        .collect()
+}
+
+/// Both ends of all pairs, kept near the mean jumps of the dual solution; bounds of neighbouring pairs are merged.
+pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
     let mut ends = Vec::new();
     for interface in &problem.interfaces {
         let mean: Vec<f64> = interface.pairs.iter().map(|pair| mean_excess(dual, pair).min(0.0)).collect();
@@ -110,22 +125,34 @@ fn mean_excess(dual: &DualSolution, pair: &ContactPair) -> f64 {
     jump / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
 }
 
+/// b1 of v_n' + v_n'' − g on a pair, and the two vertex coefficients.
+fn bernstein(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 3] {
+    let n = pair.normal;
+    let at = |k: usize| dot(vertex[pair.first[k]], n) - pair.second.map_or(0.0, |s| dot(vertex[s[k]], n));
+    let (a, b) = (at(0), at(1));
+    let centre = pair.edges[0].map_or(0.0, |e| dot(middle[e], n)) - pair.edges[1].map_or(0.0, |e| dot(middle[e], n));
+    let [ga, gb] = pair.gap;
+    [a - ga, 2.0 * centre - 0.5 * (a + b) - 0.5 * (ga + gb), b - gb]
+}
+
+/// Deepest penetration of all pairs.
+pub fn penetration(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> f64 {
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    pairs.flat_map(|pair| bernstein(pair, vertex, middle)).fold(0.0, f64::max)
+}
+
 /// Draws midpoints back where supports at the vertices or rounding left b1 above zero.
 pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f64; 2]]) {
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         let [Some(own), other] = pair.edges else { continue };
-        let n = pair.normal;
-        let ends = [0, 1].map(|k| dot(vertex[pair.first[k]], n) - pair.second.map_or(0.0, |s| dot(vertex[s[k]], n)));
-        let centre = dot(middle[own], n) - other.map_or(0.0, |e| dot(middle[e], n));
-        let b1 = 2.0 * centre - 0.5 * (ends[0] + ends[1]) - 0.5 * (pair.gap[0] + pair.gap[1]);
+        let b1 = bernstein(pair, vertex, middle)[1];
         if b1 <= 0.0 {
             continue;
         }
-        debug_assert!(matches!(problem.conditions[own], Condition::Contact { .. }));
         let share = if other.is_some() { 0.25 } else { 0.5 };
-        shift(&mut middle[own], n, -share * b1);
+        shift(&mut middle[own], pair.normal, -share * b1);
         if let Some(e) = other {
-            shift(&mut middle[e], n, share * b1);
+            shift(&mut middle[e], pair.normal, share * b1);
         }
     }
 }

@@ -54,7 +54,7 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
     for (value, hold) in vertex.iter_mut().zip(&holds) {
         *value = hold.impose(*value);
     }
-    contact::restrict_vertices(problem, dual, &holds, &mut vertex)?;
+    contact::restrict_vertices(problem, &contact::ends_near(problem, dual), &holds, &mut vertex)?;
     let mut middle: Vec<[f64; 2]> = (0..mesh.edges.len())
         .map(|e| {
             if let Condition::Clamped(u0) = problem.conditions[e] {
@@ -73,4 +73,55 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
         .collect();
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok(interior::fill(problem, &vertex, &middle))
+}
+
+/// By how much a displacement misses admissibility, relative to its size.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Violation {
+    /// Largest distance from a prescribed displacement.
+    pub support: f64,
+    /// Deepest penetration, between nodes too (largest Bernstein coefficient of v_n' + v_n'' − g).
+    pub penetration: f64,
+}
+
+impl Violation {
+    /// The larger of the two.
+    pub fn largest(&self) -> f64 {
+        self.support.max(self.penetration)
+    }
+}
+
+/// The nearest admissible continuous quadratic field to one given by its values at vertices and edge midpoints, and how
+/// far from admissible that was.
+///
+/// # Errors
+/// [`NoUpperBound`] as for [`admissible`].
+pub fn repaired(
+    problem: &Problem,
+    vertex: &[[f64; 2]],
+    middle: &[[f64; 2]],
+) -> Result<(Displacement, Violation), NoUpperBound> {
+    let mesh = &problem.mesh;
+    let holds = holds(problem)?;
+    let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+    let (mut vertex, mut middle) = (vertex.to_vec(), middle.to_vec());
+    let mut violation = Violation { support: 0.0, penetration: contact::penetration(problem, &vertex, &middle) / size };
+    let mut impose = |hold: Hold, value: &mut [f64; 2]| {
+        let held = hold.impose(*value);
+        violation.support = violation.support.max((held[0] - value[0]).hypot(held[1] - value[1]) / size);
+        *value = held;
+    };
+    for (value, hold) in vertex.iter_mut().zip(&holds) {
+        impose(*hold, value);
+    }
+    for (e, value) in middle.iter_mut().enumerate() {
+        match problem.conditions[e] {
+            Condition::Clamped(u0) => impose(Hold::Fixed(u0), value),
+            Condition::Roller => impose(Hold::Line { normal: mesh.edge_frame(e).1, value: 0.0 }, value),
+            _ => {}
+        }
+    }
+    contact::restrict_vertices(problem, &contact::ends_below_gap(problem), &holds, &mut vertex)?;
+    contact::restrict_middles(problem, &vertex, &mut middle);
+    Ok((Displacement::from_p2(mesh, &vertex, &middle), violation))
 }
