@@ -30,6 +30,9 @@ use nalgebra::DVector;
 use restraint::Group;
 use span::Span;
 
+/// Free motions described one by one; any more are only counted.
+const MOST_NOTES: usize = 6;
+
 /// Rigid statics of a problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statics {
@@ -141,6 +144,11 @@ pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
 
     let (equilibrium, notes) = if impossible.is_empty() {
         let mut notes = both_ways;
+        if notes.len() > MOST_NOTES {
+            let more = format!("{} more rigid motions are free in the same way.", notes.len() - MOST_NOTES);
+            notes.truncate(MOST_NOTES);
+            notes.push(more);
+        }
         notes.extend(one_way.iter().chain(&beyond_mesh).map(|(note, _)| note.clone()));
         let sum = |all: Vec<(String, RigidMotion)>| together(all.into_iter().map(|(_, motion)| motion));
         (Equilibrium::Possible { one_way: sum(one_way), beyond_mesh: sum(beyond_mesh) }, notes)

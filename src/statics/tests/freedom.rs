@@ -189,3 +189,53 @@ fn borderline_is_told() {
         assert!(!one_way(-1e-2), "{}", case.name);
     }
 }
+
+/// Two rings of blocks, one inside the other, in contact along `n` straight pieces of an arc from `from` to `to`.
+fn bearing(n: usize, from: f64, to: f64) -> Build {
+    let at = |r: f64, i: usize| {
+        let angle = from + (to - from) * i as f64 / n as f64;
+        [r * angle.cos(), r * angle.sin()]
+    };
+    let arc: Vec<_> = (0..=n).map(|i| at(1.0, i)).collect();
+    let mut build = Build::default();
+    let inner: Vec<_> = arc.iter().copied().chain([[0.0, 0.0]]).collect();
+    build.fan("shaft", &inner);
+    let outer = arc.iter().rev().copied().chain([at(2.0, 0), at(2.0, n / 2), at(2.0, n)]);
+    build.fan("shell", &outer.collect::<Vec<_>>());
+    build.clamp("shell", [at(2.0, 0), at(2.0, n / 2)]);
+    for i in 0..n {
+        build.contact("shaft", "shell", [arc[i], arc[i + 1]]);
+    }
+    build
+}
+
+#[test]
+fn facets_of_an_arc_hold_a_shaft_and_let_go_of_it_outwards() {
+    let (from, to) = (std::f64::consts::PI * 1.1, std::f64::consts::PI * 1.9);
+    let mut build = bearing(40, from, to);
+    build.gravity("shaft", [0.1, -1.0]);
+    let statics = check(&build.problem()).unwrap();
+    assert!(possible(&statics) && statics.held.is_empty(), "{:?}", statics.notes);
+    build.gravity("shaft", [0.0, 1.0]);
+    let statics = check(&build.problem()).unwrap();
+    let (body, kind, _) = impossible(&statics);
+    assert!(body == "shaft" && matches!(kind, MotionKind::LiftsOff { .. }), "{kind:?}");
+}
+
+#[test]
+fn pieces_that_touch_in_a_vertex_are_hinged() {
+    // Two triangles that share vertex 2 and nothing else; the first is clamped.
+    let mut build = Build::default();
+    build.fan("a", &[[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]).fan("b", &[[1.0, 2.0], [0.0, 2.0], [0.5, 1.0]]);
+    build.clamp("a", [[0.0, 0.0], [1.0, 0.0]]).gravity("b", [0.0, -1.0]);
+    let mut problem = build.problem();
+    let (kept, doubled) = (3, 7);
+    assert_eq!(problem.mesh.points[kept], problem.mesh.points[doubled]);
+    let to_kept = |v: &mut usize| *v = if *v == doubled { kept } else { *v };
+    problem.mesh.triangles.iter_mut().flatten().for_each(to_kept);
+    problem.mesh.edges.iter_mut().flat_map(|edge| &mut edge.vertices).for_each(to_kept);
+    let statics = check(&problem).unwrap();
+    assert_eq!((statics.components.count(), statics.held.len()), (2, 3));
+    assert_eq!(impossible(&statics).0, "b");
+    assert!(statics.vertex_pins.iter().all(|pin| pin.vertex != kept));
+}

@@ -1,5 +1,6 @@
 mod build;
 mod freedom;
 mod pinning;
+mod program;
 mod scenes;
 mod table;

@@ -90,8 +90,6 @@ fn fifty_blocks_in_a_stack() {
         build.contact(&pair[1], &pair[0], [[0.0, y], [2.0, y]]);
     }
     build.rigid("b0", [[0.0, 0.0], [2.0, 0.0]]);
-    let started = std::time::Instant::now();
     let statics = assert_pinned(&transformed(build.problem(), 0.2, 1.0, 1.0, [0.0; 2]), 50);
-    println!("fifty blocks: {:?}", started.elapsed());
-    assert!(!statics.notes.is_empty());
+    assert_eq!(statics.notes[6], "44 more rigid motions are free in the same way.");
 }
