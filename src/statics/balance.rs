@@ -55,7 +55,7 @@ impl Verdict {
             let work_free = both.norm() <= tolerance;
             let driven = translations.into_iter().chain(parts).find(|part| part.norm() >= 0.7 * size).map(|part| {
                 let work = part.norm_squared();
-                let motion = if work_free { allowed.without_sliding(group, part) } else { part };
+                let motion = if work_free { allowed.without_sliding(group, part, |run| run.ends) } else { part };
                 Driven { motion, work }
             });
             return Ok(Verdict { held: allowed.held, driven, one_way: None, beyond_mesh: None });
@@ -66,8 +66,8 @@ impl Verdict {
         let one_way = allowed.borderline(&load, total).map_err(undecided)?;
         Ok(Verdict {
             driven: None,
-            one_way: one_way.map(|motion| allowed.without_sliding(group, motion)),
-            beyond_mesh: (beyond.norm() > tolerance).then(|| allowed.without_sliding(group, beyond)),
+            one_way: one_way.map(|motion| allowed.without_sliding(group, motion, |run| run.ends)),
+            beyond_mesh: (beyond.norm() > tolerance).then(|| allowed.without_sliding(group, beyond, |run| run.thirds)),
             held: allowed.held,
         })
     }
@@ -133,14 +133,19 @@ impl Allowed {
 
     /// `motion` with free motions added so that, as far as they can, pieces do not slide where they stay in touch: what
     /// turns then turns about its points of contact and not about a point that round-off or the method would choose.
-    /// Translations stay as they are. The loads must do no work on free motions.
-    fn without_sliding(&self, group: &Group, motion: DVector<f64>) -> DVector<f64> {
+    /// Translations stay as they are. Touch is judged at the two `points` of each run. The loads must do no work on free motions.
+    fn without_sliding(
+        &self,
+        group: &Group,
+        motion: DVector<f64>,
+        points: impl Fn(&Run) -> [[f64; 2]; 2],
+    ) -> DVector<f64> {
         let size = motion.amax();
         let turns = (0..motion.len()).any(|i| i % 3 == 2 && motion[i].abs() > 1e-5 * size);
         if !turns || self.held.basis.is_empty() {
             return motion;
         }
-        let ends = group.runs.iter().flat_map(|run| run.ends.map(|end| (*run, end)));
+        let ends = group.runs.iter().flat_map(|run| points(run).map(|end| (*run, end)));
         let touching = ends.filter(|(run, end)| group.jump(run, *end).dot(&motion).abs() <= 1e-5 * size);
         let rows: Vec<_> = touching.map(|(run, end)| group.slip(run, end)).collect();
         if rows.is_empty() {

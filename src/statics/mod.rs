@@ -42,7 +42,7 @@ pub struct Statics {
     pub loads: LoadResultants,
     /// A basis of the motions allowed both ways: no displacement on Γ_u, no normal displacement on Γ_0, no jump on Γ_K.
     /// They are the null vectors of the stiffness with all contacts held closed. Each has largest displacement 1, and as
-    /// many pieces and rotations as possible are at rest in each.
+    /// many pieces and rotations as possible are at rest in each (displacement: that of the centroid plus size times rotation).
     pub held: Vec<RigidMotion>,
     /// One vertex pin per motion of `held`.
     pub vertex_pins: Vec<VertexPin>,

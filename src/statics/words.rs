@@ -11,7 +11,7 @@ const STILL: f64 = 1e-5;
 /// How one piece moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionKind {
-    /// Translates; no support and no contact touches it.
+    /// Translates, with no contact or roller it would move along.
     MovesOff,
     /// Translates along its contacts and rollers without leaving them.
     Slides,
@@ -80,20 +80,27 @@ fn piece(
     let turning = omega.abs() * components.size[c] > STILL * reach;
     let centre = [components.centre[c][0] - b / omega, components.centre[c][1] + a / omega];
     let mine: Vec<&Run> = group.runs.iter().copied().filter(|run| run.sides.contains(&Some(c))).collect();
-    let jumps = |run: &Run| run.ends.map(|end| jump(components, motion, run, end));
+    let jumps = |run: &Run| run.ends.map(|end| relative(components, motion, run, end)[0]);
     let opens = |run: &Run| jumps(run).iter().any(|jump| *jump < -STILL * largest);
     let hinged = mine.iter().any(|run| jumps(run).iter().any(|jump| *jump > -STILL * largest));
     let open: Vec<&Run> = mine.iter().copied().filter(|run| opens(run)).collect();
+    let slides =
+        |run: &&Run| run.ends.iter().any(|end| relative(components, motion, run, *end)[1].abs() > STILL * largest);
+    let sliding: Vec<&Run> = mine.iter().copied().filter(slides).collect();
     let kind = match (turning, open.is_empty()) {
         (true, true) => MotionKind::Turns { centre },
         (true, false) if hinged => MotionKind::Tips { centre },
         (_, false) => MotionKind::LiftsOff { centre: turning.then_some(centre) },
-        (false, true) if mine.is_empty() && !on_roller(problem, components, c) => MotionKind::MovesOff,
+        (false, true) if sliding.is_empty() && !on_roller(problem, components, c) => MotionKind::MovesOff,
         (false, true) => MotionKind::Slides,
     };
-    let mut contacts: Vec<usize> =
-        if open.is_empty() { &mine } else { &open }.iter().map(|run| run.interface).collect();
-    contacts.dedup();
+    let mut contacts = Vec::new();
+    for run in if open.is_empty() { sliding } else { open } {
+        let name = &problem.interfaces[run.interface].name;
+        if !contacts.contains(name) {
+            contacts.push(name.clone());
+        }
+    }
     Moving {
         component: c,
         bodies: components.bodies[c].clone(),
@@ -101,17 +108,15 @@ fn piece(
         displacement: [a, b],
         rotation: if turning { omega } else { 0.0 },
         work: loads.work_on(motion, c),
-        contacts: contacts.into_iter().map(|i| problem.interfaces[i].name.clone()).collect(),
+        contacts,
     }
 }
 
-/// v_n' + v_n'' at `point` of `run`.
-fn jump(components: &Components, motion: &RigidMotion, run: &Run, point: [f64; 2]) -> f64 {
-    let along = |side: Option<usize>| {
-        let u = side.map_or([0.0; 2], |c| motion.at(components, c, point));
-        u[0] * run.normal[0] + u[1] * run.normal[1]
-    };
-    along(run.sides[0]) - along(run.sides[1])
+/// Displacement of the first side relative to the second at `point` of `run`: across (v_n' + v_n'') and along it.
+fn relative(components: &Components, motion: &RigidMotion, run: &Run, point: [f64; 2]) -> [f64; 2] {
+    let [u, v] = run.sides.map(|side| side.map_or([0.0; 2], |c| motion.at(components, c, point)));
+    let (apart, n) = ([u[0] - v[0], u[1] - v[1]], run.normal);
+    [apart[0] * n[0] + apart[1] * n[1], apart[1] * n[0] - apart[0] * n[1]]
 }
 
 fn on_roller(problem: &Problem, components: &Components, c: usize) -> bool {
