@@ -1,5 +1,93 @@
 //! The dual solution against displacement models: energies, contact pressure, stresses, verdict.
 
+mod candidate;
 mod check;
+mod contact;
+mod energy;
+mod outcome;
+mod pressure;
+mod stress;
+mod tolerance;
 
+pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
+pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
+pub use stress::{primal_means, von_mises, von_mises_map};
+pub use tolerance::{Allowances, CHOSEN};
+
+use crate::bounds::{Bracket, UpperBound};
+use crate::dual::DualSolution;
+use crate::problem::Problem;
+
+/// Everything a comparison finds.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// The candidates, evaluated.
+    pub judged: Vec<Judged>,
+    /// Which of them is the best: the lowest admissible energy among those that are admissible as delivered, or among
+    /// all where none is.
+    pub best: Option<usize>,
+    /// Contact, interface by interface.
+    pub contacts: Vec<ContactSummary>,
+    /// Stress against the best candidate.
+    pub stress: Option<StressSummary>,
+    /// Every check.
+    pub checks: Vec<Check>,
+}
+
+impl Comparison {
+    /// Whether every check passed.
+    pub fn agrees(&self) -> bool {
+        self.checks.iter().all(|c| c.passed)
+    }
+
+    /// The best upper bound with the name of the field it comes from.
+    pub fn upper<'a>(&'a self, bracket: &'a Bracket) -> Option<(&'a UpperBound, &'a str)> {
+        let free = bracket.free.iter().map(|f| (f, "free"));
+        let delivered = self.judged.iter().map(|j| (&j.admissible, j.candidate.name.as_str()));
+        free.chain(delivered).min_by(|a, b| a.0.upper().total_cmp(&b.0.upper()))
+    }
+}
+
+/// Compares the dual solution with any number of displacement fields.
+pub fn compare(
+    problem: &Problem,
+    dual: &DualSolution,
+    bracket: &Bracket,
+    candidates: Vec<Candidate>,
+    allow: &Allowances,
+) -> Comparison {
+    let mut refused = Vec::new();
+    let mut judged = Vec::new();
+    for candidate in candidates {
+        let name = candidate.name.clone();
+        match Judged::new(problem, dual, candidate) {
+            Ok(j) => judged.push(j),
+            Err(reason) => refused.push(Check::not_made(
+                &format!("admissible/{name}"),
+                ADMISSIBLE,
+                Basis::RoundOff,
+                format!("No admissible displacement is near this field: {reason}."),
+            )),
+        }
+    }
+    let rank = |j: &Judged| (!j.is_admissible(), j.admissible.upper());
+    let best = (0..judged.len()).min_by(|&a, &b| {
+        let (a, b) = (rank(&judged[a]), rank(&judged[b]));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let mut comparison = Comparison { judged, best, contacts: Vec::new(), stress: None, checks: Vec::new() };
+    let upper = comparison.upper(bracket).map_or(f64::INFINITY, |(u, _)| u.upper());
+    comparison.checks = energy::dual_checks(dual, bracket, upper, allow);
+    comparison.checks.extend(refused);
+    for judged in &comparison.judged {
+        comparison.checks.extend(energy::primal_checks(problem, bracket, judged, allow));
+    }
+    comparison.checks.extend(energy::degree_order(&comparison.judged, bracket, allow));
+    let best = comparison.best.map(|b| &comparison.judged[b]);
+    let (contacts, checks) = contact::compare(problem, dual, bracket, best, &comparison.judged, allow);
+    comparison.stress = best.map(|b| stress::compare(problem, dual, bracket.complementary.strain, b));
+    comparison.contacts = contacts;
+    comparison.checks.extend(checks);
+    comparison
+}

@@ -1,0 +1,93 @@
+//! A displacement field to be held against the dual solution.
+
+use std::collections::BTreeMap;
+
+use crate::bounds::{Bracket, NoUpperBound, UpperBound, Violation, repaired};
+use crate::dual::DualSolution;
+use crate::element::Displacement;
+use crate::problem::Problem;
+
+/// A displacement solution from some program, on the vertices and edges of the mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// Name in the report, for example `FEniCSx P2`.
+    pub name: String,
+    /// The program.
+    pub solver: String,
+    /// Its version.
+    pub version: String,
+    /// Polynomial degree: 1 or 2.
+    pub degree: usize,
+    /// Value at each vertex.
+    pub vertex: Vec<[f64; 2]>,
+    /// Value at each edge midpoint.
+    pub middle: Vec<[f64; 2]>,
+    /// 𝓛(u_h) as the program reports it.
+    pub reported: Option<f64>,
+    /// Whether it is meant to be the minimiser over its space, so that the identities of a solution hold.
+    pub is_solution: bool,
+    /// Contact reactions, interface by interface.
+    pub reactions: Option<Vec<Reactions>>,
+    /// Nonlinear iterations.
+    pub iterations: usize,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Seconds by phase.
+    pub seconds: BTreeMap<String, f64>,
+}
+
+/// Variationally consistent contact reactions on one interface, thickness included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reactions {
+    /// Vertices of the first side.
+    pub vertices: Vec<usize>,
+    /// R ≥ 0 conjugate to the jump at each of them.
+    pub vertex: Vec<f64>,
+    /// R ≥ 0 conjugate to the middle Bernstein coefficient of each pair (degree 2).
+    pub edge: Option<Vec<f64>>,
+    /// Force on the first side.
+    pub resultant: [f64; 2],
+}
+
+/// A candidate after it was evaluated.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// What was delivered.
+    pub candidate: Candidate,
+    /// The field as delivered.
+    pub field: UpperBound,
+    /// How far it was from admissible.
+    pub violation: Violation,
+    /// The nearest admissible field; its energy is the upper bound.
+    pub admissible: UpperBound,
+}
+
+/// Solvers leave supports and contact to their own accuracy; a field within this of an admissible one is one.
+pub const ADMISSIBLE: f64 = 1e-9;
+
+impl Judged {
+    /// Evaluates a candidate.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other or the contact.
+    pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
+        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle)?;
+        let field = Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle);
+        Ok(Judged {
+            field: UpperBound::new(problem, dual, field),
+            admissible: UpperBound::new(problem, dual, mended),
+            violation,
+            candidate,
+        })
+    }
+
+    /// Whether the field as delivered is admissible to the accuracy of a solver.
+    pub fn is_admissible(&self) -> bool {
+        self.violation.largest() <= ADMISSIBLE
+    }
+
+    /// Guaranteed relative energy-norm error of the stress of the admissible field.
+    pub fn relative_error(&self, bracket: &Bracket) -> f64 {
+        bracket.relative_error(self.admissible.upper())
+    }
+}

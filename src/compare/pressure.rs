@@ -1,0 +1,149 @@
+//! Contact pressure from both sides, along each interface.
+
+use super::candidate::{Judged, Reactions};
+use crate::bounds::strain::strains;
+use crate::dual::DualSolution;
+use crate::dual::modes::materials;
+use crate::problem::{ContactPair, Interface, Problem};
+
+/// Pressure on one pair: values at the first end, the middle and the second end; linear in each half.
+pub type Piece = [f64; 3];
+
+/// −T_n of the dual solution.
+pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
+    dual.contact_traction[interface].iter().map(|[a, b]| [-a, -0.5 * (a + b), -b]).collect()
+}
+
+/// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
+pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &Reactions) -> Vec<Piece> {
+    let thickness = problem.scene.thickness;
+    // ∫ of the shape function per unit edge length: hat functions, or Bernstein polynomials of degree two.
+    let share = if reactions.edge.is_some() { 1.0 / 3.0 } else { 0.5 };
+    let mut weight = std::collections::HashMap::new();
+    for pair in &interface.pairs {
+        for v in pair.first {
+            *weight.entry(v).or_insert(0.0) += share * pair.length * thickness;
+        }
+    }
+    let force: std::collections::HashMap<_, _> =
+        reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
+    let at = |v: usize| force.get(&v).copied().unwrap_or(0.0) / weight[&v];
+    interface
+        .pairs
+        .iter()
+        .enumerate()
+        .map(|(k, pair)| {
+            let (a, b) = (at(pair.first[0]), at(pair.first[1]));
+            let middle = reactions.edge.as_ref().and_then(|e| e.get(k));
+            [a, middle.map_or(0.5 * (a + b), |r| r / (share * pair.length * thickness)), b]
+        })
+        .collect()
+}
+
+/// −σ_n(u_h) on the first side.
+pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged) -> Vec<Piece> {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let trace = |pair: &ContactPair| {
+        let Some(e) = pair.edges[0] else { return [0.0; 3] };
+        let t = mesh.edges[e].triangles[0].unwrap_or(0);
+        let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+        let mid = strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub));
+        // The strain is linear: its value at a corner from those at the three midpoints.
+        let corner = |i: usize| [0, 1, 2].map(|c| mid[(i + 1) % 3][c] + mid[(i + 2) % 3][c] - mid[i][c]);
+        let n = pair.normal;
+        let pressure = |e: [f64; 3]| {
+            let s = materials[mesh.body[t]].stress(e);
+            -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
+        };
+        let (a, b) = (pressure(corner(0)), pressure(corner(1)));
+        let forward = mesh.edges[e].vertices[0] == pair.first[0];
+        let (a, b) = if forward { (a, b) } else { (b, a) };
+        [a, 0.5 * (a + b), b]
+    };
+    interface.pairs.iter().map(trace).collect()
+}
+
+/// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included.
+pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (pair, p) in interface.pairs.iter().zip(pieces) {
+        let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
+        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let half = 0.5 * pair.length * problem.scene.thickness;
+        for (x, y, p, q) in [(a, middle, p[0], p[1]), (middle, b, p[1], p[2])] {
+            // ∫ of a linear pressure over a half, at the two ends.
+            let (wx, wy) = (half / 6.0 * (2.0 * p + q), half / 6.0 * (p + 2.0 * q));
+            for (at, w) in [(x, wx), (y, wy)] {
+                let f = [-w * pair.normal[0], -w * pair.normal[1]];
+                force[0] += f[0];
+                force[1] += f[1];
+                moment += at[0] * f[1] - at[1] * f[0];
+            }
+        }
+    }
+    (force, moment)
+}
+
+/// Largest value and where it is.
+pub fn maximum(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> (f64, [f64; 2]) {
+    let mut best = (0.0, interface.pairs.first().map_or([0.0; 2], |p| problem.mesh.points[p.first[0]]));
+    for (pair, p) in interface.pairs.iter().zip(pieces) {
+        let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
+        for (value, at) in [(p[0], a), (p[1], [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]), (p[2], b)] {
+            if value > best.0 {
+                best = (value, at);
+            }
+        }
+    }
+    best
+}
+
+/// L² norms of p and of p − q.
+pub fn l2(interface: &Interface, p: &[Piece], q: &[Piece]) -> (f64, f64) {
+    let square = |half: f64, a: f64, b: f64| half / 3.0 * (a * a + a * b + b * b);
+    let (mut norm, mut difference) = (0.0, 0.0);
+    for ((pair, p), q) in interface.pairs.iter().zip(p).zip(q) {
+        let half = 0.5 * pair.length;
+        for (i, j) in [(0, 1), (1, 2)] {
+            norm += square(half, p[i], p[j]);
+            difference += square(half, p[i] - q[i], p[j] - q[j]);
+        }
+    }
+    (norm.sqrt(), difference.sqrt())
+}
+
+/// Length that carries less than `threshold` of pressure throughout an edge.
+pub fn open_length(interface: &Interface, pieces: &[Piece], threshold: f64) -> f64 {
+    let open = |p: &Piece| p.iter().all(|&v| v <= threshold);
+    interface.pairs.iter().zip(pieces).filter(|(_, p)| open(p)).map(|(pair, _)| pair.length).sum()
+}
+
+/// Arc lengths at which contact begins or ends.
+pub fn contact_ends(interface: &Interface, pieces: &[Piece], threshold: f64) -> Vec<f64> {
+    let mut ends = Vec::new();
+    let mut last: Option<bool> = None;
+    for (pair, p) in interface.pairs.iter().zip(pieces) {
+        for (arc, value) in [(pair.arc[0], p[0]), (pair.arc[1], p[2])] {
+            let closed = value > threshold;
+            if last.is_some_and(|l| l != closed) && ends.last() != Some(&arc) {
+                ends.push(arc);
+            }
+            last = Some(closed);
+        }
+    }
+    ends
+}
+
+/// Points (arc length, pressure) for a plot.
+pub fn profile(interface: &Interface, pieces: &[Piece], with_middle: bool) -> Vec<[f64; 2]> {
+    let mut points = Vec::with_capacity(3 * pieces.len());
+    for (pair, p) in interface.pairs.iter().zip(pieces) {
+        points.push([pair.arc[0], p[0]]);
+        if with_middle {
+            points.push([0.5 * (pair.arc[0] + pair.arc[1]), p[1]]);
+        }
+        points.push([pair.arc[1], p[2]]);
+    }
+    points
+}

@@ -1,0 +1,97 @@
+//! Stress of the dual solution against stress of a displacement solution, triangle by triangle.
+
+use super::candidate::Judged;
+use super::outcome::{ComponentDifference, StressSummary, TwoSides};
+use crate::bounds::strain::strains;
+use crate::dual::DualSolution;
+use crate::dual::modes::materials;
+use crate::element::quadrature::triangle_rule;
+use crate::problem::Problem;
+use crate::scene::Kinematics;
+
+/// Von Mises stress of an in-plane stress.
+pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
+    let out = match kinematics {
+        Kinematics::PlaneStrain => poisson * (s[0] + s[1]),
+        Kinematics::PlaneStress => 0.0,
+    };
+    let (a, b, c) = (s[0] - s[1], s[1] - out, out - s[0]);
+    (0.5 * (a * a + b * b + c * c) + 3.0 * s[2] * s[2]).sqrt()
+}
+
+/// Mean stress of the displacement solution on each triangle.
+pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    (0..mesh.triangles.len())
+        .map(|t| {
+            let mut mean = [0.0; 3];
+            for sub in 0..3 {
+                for e in strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub)) {
+                    let s = materials[mesh.body[t]].stress(e);
+                    (0..3).for_each(|c| mean[c] += s[c] / 9.0);
+                }
+            }
+            mean
+        })
+        .collect()
+}
+
+/// Von Mises stress of mean stresses.
+pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
+    let scene = &problem.scene;
+    means
+        .iter()
+        .enumerate()
+        .map(|(t, &s)| von_mises(scene.kinematics, scene.bodies[problem.mesh.body[t]].poisson, s))
+        .collect()
+}
+
+/// Compares the stresses.
+pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judged: &Judged) -> StressSummary {
+    let mesh = &problem.mesh;
+    let scene = &problem.scene;
+    let materials = materials(problem);
+    // ½‖λ_h − σ(u_h)‖² on each triangle.
+    let terms = &judged.field.local.triangles;
+    let total: f64 = terms.iter().sum();
+    let worst = (0..terms.len()).max_by(|&a, &b| terms[a].total_cmp(&terms[b])).unwrap_or(0);
+    let (mut difference, mut norm, mut mises) = ([0.0; 3], 0.0, 0.0);
+    for t in 0..mesh.triangles.len() {
+        let poisson = scene.bodies[mesh.body[t]].poisson;
+        for sub in 0..3 {
+            let strain = strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub));
+            for (e, (bary, weight)) in strain.into_iter().zip(triangle_rule(2)) {
+                let l = dual.stress.at(t, sub, *bary);
+                let s = materials[mesh.body[t]].stress(e);
+                let w = weight * mesh.area(t) / 3.0;
+                for c in 0..3 {
+                    difference[c] += w * (l[c] - s[c]).powi(2);
+                }
+                norm += w * (l[0] * l[0] + l[1] * l[1] + 2.0 * l[2] * l[2]);
+                let of = |s| von_mises(scene.kinematics, poisson, s);
+                mises += w * (of(l) - of(s)).powi(2);
+            }
+        }
+    }
+    let relative = |square: f64| if norm > 0.0 { (square / norm).sqrt() } else { 0.0 };
+    let largest = |means: Vec<[f64; 3]>| von_mises_map(problem, &means).into_iter().fold(0.0, f64::max);
+    let corners = mesh.corners(worst);
+    StressSummary {
+        against: judged.candidate.name.clone(),
+        relative_energy_norm_difference: if complementary > 0.0 { (total / complementary).sqrt() } else { 0.0 },
+        worst_triangle: worst,
+        worst_at: [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0),
+        worst_share: if total > 0.0 { terms.get(worst).copied().unwrap_or(0.0) / total } else { 0.0 },
+        von_mises_max: TwoSides {
+            dual: largest((0..mesh.triangles.len()).map(|t| dual.stress.mean(t)).collect()),
+            primal: Some(largest(primal_means(problem, judged))),
+        },
+        component_l2_difference: ComponentDifference {
+            xx: relative(difference[0]),
+            yy: relative(difference[1]),
+            xy: relative(difference[2]),
+            von_mises: relative(mises),
+        },
+    }
+}

@@ -1,0 +1,41 @@
+//! Tolerances that theory leaves open, and how the command line changes them.
+
+/// Defaults of the chosen tolerances, by the last part of the check name.
+pub const CHOSEN: [(&str, f64, &str); 4] = [
+    ("sharpness", 0.15, "a bracket wider than this could not tell two models apart"),
+    ("pressure-l2", 0.25, "the energy bound does not control the pressure in L²"),
+    ("pressure-max", 0.35, "a maximum is not controlled by the energy bound"),
+    ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
+];
+
+/// Allowed values from the command line, by check name.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Allowances {
+    entries: Vec<(String, f64)>,
+}
+
+impl Allowances {
+    /// From NAME=VALUE pairs; NAME is the whole name of a check or its last part.
+    pub fn new(entries: Vec<(String, f64)>) -> Self {
+        Allowances { entries }
+    }
+
+    /// The allowed value of the check `name`, or `default`.
+    pub fn get(&self, name: &str, default: f64) -> f64 {
+        let last = name.rsplit('/').next().unwrap_or(name);
+        self.entries.iter().rev().find(|(key, _)| key == name || key == last).map_or(default, |(_, value)| *value)
+    }
+
+    /// The chosen default for `name`, unless overridden.
+    pub fn chosen(&self, name: &str) -> f64 {
+        let last = name.rsplit('/').next().unwrap_or(name);
+        let default = CHOSEN.iter().find(|(key, ..)| *key == last).map_or(0.0, |row| row.1);
+        self.get(name, default)
+    }
+
+    /// Names that match none of `checks`.
+    pub fn unknown<'a>(&'a self, checks: &[super::Check]) -> Vec<&'a str> {
+        let matches = |key: &str| checks.iter().any(|c| c.name == key || c.name.rsplit('/').next() == Some(key));
+        self.entries.iter().map(|(key, _)| key.as_str()).filter(|key| !matches(key)).collect()
+    }
+}
