@@ -6,6 +6,7 @@ pub mod compare;
 pub mod dual;
 pub mod element;
 pub mod mesh;
+pub mod primal;
 pub mod problem;
 pub mod report;
 pub mod scene;

@@ -18,7 +18,10 @@ from .constraints import Constraints
 from .model import Model
 
 RESIDUAL = 1e-8
-"""Largest admitted residual, relative to the load."""
+"""Largest admitted residual, relative to load and energy norm of the solution."""
+
+ENERGY = 1e-5
+"""Largest admitted effect of the residual on the energy, relative to the same."""
 
 
 @dataclass(frozen=True)
@@ -116,15 +119,13 @@ class Reduced:
     def minimise(self) -> Solution:
         """Run the solver, check residual and feasibility, and gather the solution."""
         w = self.clamped_start()
-        held = w.copy()
-        held.array[self.unbounded] = 0.0
-        load = self.b.norm() + (self.A * held).norm()
+        load = self._size(w)
         iterations, reason = 0, 2
         if len(self.constraints.bounded):
             # A second run only polishes: the round-off to be expected is known once the size of w is.
             for _ in range(2):
                 tolerance = max(1e-13 * load, np.finfo(float).eps * self._norm() * w.norm())
-                steps, reason = self._newton(w, tolerance)
+                steps, reason = self._newton(w, tolerance, load)
                 iterations += steps
         else:
             iterations = 1
@@ -132,18 +133,24 @@ class Reduced:
         self._check(w, gradient, load)
         return self._gather(w, gradient, iterations, reason)
 
+    def _size(self, w: PETSc.Vec) -> float:
+        """What a residual is compared with: load and energy norm. Scaled forces are square roots of energies."""
+        unscaled = w.duplicate()
+        unscaled.pointwiseMult(w, self.scale)
+        u = self.T * unscaled
+        u.axpy(1.0, self.offset)
+        return self.b.norm() + np.sqrt(max(u.dot(self.model.stiffness * u), 0.0))
+
     def _norm(self) -> float:
         return self.A.norm(PETSc.NormType.INFINITY)
 
-    def _newton(self, w: PETSc.Vec, tolerance: float) -> tuple[int, int]:
+    def _newton(self, w: PETSc.Vec, tolerance: float, load: float) -> tuple[int, int]:
         options = PETSc.Options()
         prefix = "hypercircle_"
         # PETSc's own tolerance for "on the bound" is an absolute length, which no choice of units would survive; the
         # projection puts w on the bound exactly.
         options[prefix + "snes_vi_zero_tolerance"] = 0.0
         options[prefix + "snes_linesearch_type"] = "basic"
-        # The residual may grow while contacts open; only the step limit ends a hopeless run.
-        options[prefix + "snes_divergence_tolerance"] = -1.0
         snes = PETSc.SNES().create(self.comm)
         snes.setOptionsPrefix(prefix)
         snes.setType("vinewtonrsls")
@@ -151,6 +158,7 @@ class Reduced:
         snes.setJacobian(lambda *_: None, self.A)
         snes.setVariableBounds(self.lower, self.upper)
         snes.setTolerances(rtol=0.0, atol=tolerance, stol=0.0, max_it=100)
+        snes.setConvergenceTest(_Stop(tolerance, 0.1 * RESIDUAL * load))
         snes.setMonitor(lambda _, step, norm: log(self.comm, f"newton step {step}, residual {norm:.3e}"))
         _direct(snes.getKSP())
         snes.setFromOptions()
@@ -162,6 +170,7 @@ class Reduced:
         return steps, reason
 
     def _check(self, w: PETSc.Vec, gradient: PETSc.Vec, load: float) -> None:
+        """Equilibrium, bounds, and the digits that round-off leaves: the residual's work bounds the error in 𝓛."""
         x, g = w.array_r, gradient.array_r
         lower, upper = self.lower.array_r, self.upper.array_r
         wrong = g.copy()
@@ -174,6 +183,11 @@ class Reduced:
             raise ReferenceFailure(
                 f"the solution fails its check: relative residual {residual / load if load else residual:.2e} "
                 f"(allowed {RESIDUAL:.0e}), {outside} jumps beyond their bounds"
+            )
+        if residual * w.norm() > ENERGY * load * load:
+            raise ReferenceFailure(
+                f"round-off may have changed the energy by {residual * w.norm() / (load * load):.1e} of itself (allowed "
+                f"{ENERGY:.0e}): a body moves rigidly by far more than it deforms, beyond what displacements can resolve"
             )
 
     def _gather(self, w: PETSc.Vec, gradient: PETSc.Vec, iterations: int, reason: int) -> Solution:
@@ -204,6 +218,25 @@ class Reduced:
             reason=reason,
             unknowns=len(self.order),
         )
+
+
+class _Stop:
+    """Converged below ``tolerance``, or below ``enough`` when round-off keeps the residual from falling further."""
+
+    def __init__(self, tolerance: float, enough: float):
+        self.tolerance, self.enough, self.before = tolerance, enough, np.inf
+
+    def __call__(self, snes, step: int, norms) -> int:
+        residual = norms[2]
+        stuck = residual <= self.enough and residual > 0.5 * self.before
+        self.before = residual
+        if residual <= self.tolerance:
+            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_ABS
+        if stuck:
+            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
+        if not np.isfinite(residual):
+            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        return PETSc.SNES.ConvergedReason.CONVERGED_ITERATING
 
 
 def _direct(ksp: PETSc.KSP) -> None:

@@ -46,12 +46,17 @@ def test_elimination_of_ordinary_and_odd_groups(stiffness):
     twice = check(rows(), none, rows(pair, pair), np.array([0.3, 0.1]), stiffness)
     assert [bound.value for bound in twice.upper] == pytest.approx([0.1])
     assert twice.upper[0].row == 1
-    # A roller leaves one freedom, on which both normals act.
-    roller = check(rows([0.0, 1.0, 0, 0], [0, 0, 0, 1.0], [0, 0, 1.0, 0]), np.zeros(3), corner, np.array([0.1, 0.2]), stiffness)
-    assert [bound.value for bound in roller.upper] == pytest.approx([0.1 / 0.6])
+    # Supports leave u = (x, 0): the first jump is 0.6 x ≤ 0.1, the second x ≤ h. The unknown is the first.
+    held = rows([0.0, 1.0, 0, 0], [0, 0, 0, 1.0], [0, 0, 1.0, 0])
+    for second, bound, binding in ((0.2, 0.1, 0), (0.05, 0.6 * 0.05, 1)):
+        roller = check(held, np.zeros(3), corner, np.array([0.1, second]), stiffness)
+        assert [(b.value, b.row) for b in roller.upper] == [(pytest.approx(bound), binding)]
     # Between two walls: bounded from both sides.
     walls = check(rows([0, 1.0, 0, 0]), np.zeros(1), rows([1.0, 0, 0, 0], [-1.0, 0, 0, 0]), np.array([0.2, 0.3]), stiffness)
     assert (walls.upper[0].value, walls.lower[0].value) == pytest.approx((0.2, -0.3))
+    # The second side is moved by its support: the unknown is still the whole jump, bounded by the whole gap.
+    driven = check(rows([0, 0, 1.0, 0], [0, 0, 0, 1.0]), np.array([-0.3, 0.1]), rows(pair), np.array([0.2]), stiffness)
+    assert driven.upper[0].value == pytest.approx(0.2)
     # Everything held: no unknown is left, and a jump that is allowed is no conflict.
     held = check(np.eye(4), np.array([0.1, 0.0, 0.0, 0.0]), rows(pair), np.array([0.06]), stiffness)
     assert held.jumps.shape[1] == held.free.shape[1] == 0

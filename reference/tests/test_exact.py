@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from hypercircle_reference import ReferenceFailure
 from scenes import Builder, rotated, two_blocks
 
 DEGREES = (1, 2)
@@ -172,6 +173,37 @@ def test_incompressible_limit_and_stiff_against_soft(solve):
         data["bodies"][1]["young"] = ratio
         result = solve(data, 2)
         assert result["contacts"][0]["resultant"] == pytest.approx([-0.5, 0.0], abs=1e-7)
+
+
+@pytest.mark.parametrize("ratio", (1e4, 1e8))
+def test_stiff_support_of_a_soft_block(solve, ratio):
+    """Whichever side is named first: the contact force is that of statics to all digits, the energies are equal."""
+    energies = []
+    for stiff_first in (True, False):
+        b = Builder()
+        stiff = b.block(b.body("stiff", ratio), 8, 8, lambda s, t: (s, t))
+        soft = b.block(b.body("soft", 1.0), 8, 8, lambda s, t: (1.0 + s, t))
+        b.clamp(stiff["left"])
+        b.roller(soft["bottom"], (0.0, -1.0))
+        b.load(soft["right"], lambda x, y: (7.0 * y - 4.0, 0.0))
+        sides = (stiff["right"], soft["left"]) if stiff_first else (soft["left"], stiff["right"])
+        sign = 1.0 if stiff_first else -1.0
+        b.contact(*sides, (sign, 0.0))
+        result = solve(b.data, 2)
+        assert result["contacts"][0]["resultant"] == pytest.approx([-0.5 * sign, 0.0], abs=1e-12)
+        assert result["energy"] == pytest.approx(-result["strain_energy"], rel=1e-11)
+        energies.append(result["energy"])
+    assert energies[0] == pytest.approx(energies[1], rel=1e-12)
+
+
+def test_stiff_block_carried_by_a_soft_one(solve):
+    """Its rigid motion leaves few digits to its strain: six digits of the force are required, or a refusal."""
+    data = two_blocks(8)
+    data["bodies"][0]["young"] = 1e6
+    assert solve(data, 2)["contacts"][0]["resultant"] == pytest.approx([-0.5, 0.0], abs=0.5e-6)
+    data["bodies"][0]["young"] = 1e12
+    with pytest.raises(ReferenceFailure, match="moves rigidly by far more than it deforms"):
+        solve(data, 2)
 
 
 def test_rotation_changes_nothing(solve):

@@ -85,3 +85,12 @@ pub struct Note {
     /// The remark, one sentence or two.
     pub text: String,
 }
+
+/// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pin {
+    /// Index into [`Triangulation::points`].
+    pub vertex: usize,
+    /// Unit vector.
+    pub direction: [f64; 2],
+}

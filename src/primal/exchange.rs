@@ -1,0 +1,298 @@
+//! The two files shared with the displacement model; `docs/exchange.md` describes them.
+
+use std::fs::{self, File};
+use std::io::{BufReader, BufWriter, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{PrimalError, PrimalSolution};
+use crate::problem::{Condition, Pin, Problem};
+use crate::scene::Kinematics;
+
+/// Name of the file the model reads.
+pub const PROBLEM_FILE: &str = "problem.json";
+
+/// Name of the file the model writes for `degree`.
+pub fn solution_file(degree: u8) -> String {
+    format!("primal-P{degree}.json")
+}
+
+#[derive(Serialize)]
+struct ProblemFile<'a> {
+    format: &'static str,
+    version: u32,
+    kinematics: &'static str,
+    thickness: f64,
+    bodies: Vec<BodyEntry<'a>>,
+    points: &'a [[f64; 2]],
+    triangles: &'a [[usize; 3]],
+    body: &'a [usize],
+    edges: Vec<[usize; 2]>,
+    triangle_edges: &'a [[usize; 3]],
+    clamped: Vec<ClampedEntry>,
+    roller: Vec<RollerEntry>,
+    tractions: Vec<TractionEntry>,
+    contacts: Vec<ContactEntry<'a>>,
+    pins: Vec<PinEntry>,
+}
+
+#[derive(Serialize)]
+struct BodyEntry<'a> {
+    name: &'a str,
+    young: f64,
+    poisson: f64,
+    body_force: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct ClampedEntry {
+    edge: usize,
+    displacement: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct RollerEntry {
+    edge: usize,
+    normal: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct TractionEntry {
+    edge: usize,
+    values: [[f64; 2]; 2],
+}
+
+#[derive(Serialize)]
+struct ContactEntry<'a> {
+    name: &'a str,
+    pairs: Vec<PairEntry>,
+}
+
+#[derive(Serialize)]
+struct PairEntry {
+    edges: [Option<usize>; 2],
+    first: [usize; 2],
+    second: Option<[usize; 2]>,
+    normal: [f64; 2],
+    gap: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct PinEntry {
+    vertex: usize,
+    direction: [f64; 2],
+}
+
+impl<'a> ProblemFile<'a> {
+    fn new(problem: &'a Problem, pins: &[Pin]) -> Self {
+        let (scene, mesh) = (&problem.scene, &problem.mesh);
+        let (mut clamped, mut roller, mut tractions) = (Vec::new(), Vec::new(), Vec::new());
+        for (edge, condition) in problem.conditions.iter().enumerate() {
+            match *condition {
+                Condition::Clamped(displacement) => clamped.push(ClampedEntry { edge, displacement }),
+                Condition::Roller => roller.push(RollerEntry { edge, normal: mesh.edge_frame(edge).1 }),
+                Condition::Traction(values) if values != [[0.0; 2]; 2] => {
+                    tractions.push(TractionEntry { edge, values })
+                }
+                Condition::Traction(_) | Condition::Interior | Condition::Contact { .. } => {}
+            }
+        }
+        ProblemFile {
+            format: "hypercircle-exchange",
+            version: 1,
+            kinematics: match scene.kinematics {
+                Kinematics::PlaneStrain => "plane-strain",
+                Kinematics::PlaneStress => "plane-stress",
+            },
+            thickness: scene.thickness,
+            bodies: scene
+                .bodies
+                .iter()
+                .map(|body| BodyEntry {
+                    name: &body.name,
+                    young: body.young,
+                    poisson: body.poisson,
+                    body_force: body.body_force,
+                })
+                .collect(),
+            points: &mesh.points,
+            triangles: &mesh.triangles,
+            body: &mesh.body,
+            edges: mesh.edges.iter().map(|edge| edge.vertices).collect(),
+            triangle_edges: &mesh.triangle_edges,
+            clamped,
+            roller,
+            tractions,
+            contacts: problem
+                .interfaces
+                .iter()
+                .map(|interface| ContactEntry {
+                    name: &interface.name,
+                    pairs: interface
+                        .pairs
+                        .iter()
+                        .map(|pair| PairEntry {
+                            edges: pair.edges,
+                            first: pair.first,
+                            second: pair.second,
+                            normal: pair.normal,
+                            gap: pair.gap,
+                        })
+                        .collect(),
+                })
+                .collect(),
+            pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),
+        }
+    }
+}
+
+/// Write `problem.json` into `folder`, which is made where it does not exist. Results of an earlier run are removed.
+pub fn write_problem(problem: &Problem, pins: &[Pin], folder: &Path) -> Result<(), PrimalError> {
+    let in_folder = |source| PrimalError::Io { path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(in_folder)?;
+    for degree in [1, 2] {
+        match fs::remove_file(folder.join(solution_file(degree))) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(in_folder(error)),
+            _ => {}
+        }
+    }
+    let path = folder.join(PROBLEM_FILE);
+    let in_file = |source| PrimalError::Io { path: path.clone(), source };
+    let mut writer = BufWriter::new(File::create(&path).map_err(in_file)?);
+    serde_json::to_writer(&mut writer, &ProblemFile::new(problem, pins)).map_err(|error| in_file(error.into()))?;
+    writer.flush().map_err(in_file)
+}
+
+#[derive(Deserialize)]
+struct SolutionFile {
+    format: String,
+    version: u32,
+    #[serde(flatten)]
+    solution: PrimalSolution,
+}
+
+/// Read the result for `degree` from `folder` and check that it fits `problem`.
+pub fn read_solution(folder: &Path, degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let name = solution_file(degree);
+    let bad = |reason: String| PrimalError::BadResult { file: name.clone(), reason };
+    let file = File::open(folder.join(&name)).map_err(|error| bad(format!("it cannot be read ({error})")))?;
+    let found: SolutionFile = serde_json::from_reader(BufReader::new(file)).map_err(|error| bad(error.to_string()))?;
+    if (found.format.as_str(), found.version) != ("hypercircle-primal", 1) {
+        return Err(bad(format!(
+            "expected hypercircle-primal version 1, found {} version {}",
+            found.format, found.version
+        )));
+    }
+    check(&found.solution, degree, problem).map_err(bad)?;
+    Ok(found.solution)
+}
+
+fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(), String> {
+    if solution.degree != degree {
+        return Err(format!("it holds degree {}, not {degree}", solution.degree));
+    }
+    let vertices = problem.mesh.points.len();
+    if solution.vertex_displacement.len() != vertices {
+        return Err(format!("{} vertex displacements for {vertices} vertices", solution.vertex_displacement.len()));
+    }
+    let expected = (degree == 2).then_some(problem.mesh.edges.len());
+    if solution.edge_displacement.as_ref().map(Vec::len) != expected {
+        return Err("edge displacements do not match the edges".to_owned());
+    }
+    let names = problem.interfaces.iter().map(|interface| interface.name.as_str());
+    if !solution.contacts.iter().map(|contact| contact.name.as_str()).eq(names) {
+        return Err("its contacts are not those of the scene".to_owned());
+    }
+    for (contact, interface) in solution.contacts.iter().zip(&problem.interfaces) {
+        let edges = (degree == 2).then_some(interface.pairs.len());
+        let fits = contact.vertices.len() == contact.vertex_reaction.len()
+            && contact.vertices.iter().all(|&v| v < vertices)
+            && contact.edge_reaction.as_ref().map(Vec::len) == edges;
+        if !fits {
+            return Err(format!("the reactions of {} do not match its edges", contact.name));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::primal::fixture::pressed_square;
+    use crate::primal::{Options, Sabotage, run};
+
+    fn written(problem: &Problem, pins: &[Pin]) -> Value {
+        let folder = tempfile::tempdir().unwrap();
+        write_problem(problem, pins, folder.path()).unwrap();
+        serde_json::from_slice(&fs::read(folder.path().join(PROBLEM_FILE)).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn conditions_become_entries_and_free_edges_none() {
+        let mut problem = pressed_square();
+        problem.conditions[3] = Condition::Clamped([0.25, -0.5]);
+        let file = written(&problem, &[Pin { vertex: 2, direction: [0.0, 1.0] }]);
+        assert_eq!(file["format"], "hypercircle-exchange");
+        assert_eq!(file["kinematics"], "plane-stress");
+        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0]}]));
+        assert_eq!(file["clamped"], json!([{"edge": 3, "displacement": [0.25, -0.5]}]));
+        assert_eq!(file["tractions"], json!([{"edge": 4, "values": [[2.0, 0.0], [2.0, 0.0]]}]));
+        assert_eq!(file["contacts"][0]["name"], "right|rigid");
+        assert_eq!(file["contacts"][0]["pairs"][0]["edges"], json!([1, null]));
+        assert_eq!(file["contacts"][0]["pairs"][0]["second"], Value::Null);
+        assert_eq!(file["edges"][2], json!([2, 0]));
+        assert_eq!(file["pins"], json!([{"vertex": 2, "direction": [0.0, 1.0]}]));
+        assert_eq!(written(&pressed_square(), &[])["tractions"].as_array().unwrap().len(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_named() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let error = write_problem(&pressed_square(), &[], &file.path().join("below")).unwrap_err();
+        assert!(matches!(&error, PrimalError::Io { path, .. } if path.ends_with("below")), "{error}");
+    }
+
+    /// Uniform stress has a closed solution; see the fixture.
+    #[test]
+    fn fenicsx_solves_the_pressed_square() {
+        for ranks in [None, Some(2)] {
+            let solutions = match run(&pressed_square(), &[], &Options { ranks, ..Options::default() }) {
+                Err(PrimalError::NotInstalled(reason)) => return eprintln!("skipped: {reason}"),
+                outcome => outcome.unwrap(),
+            };
+            for (solution, degree) in solutions.iter().zip([1, 2]) {
+                assert_eq!((solution.degree, solution.ranks), (degree, ranks.unwrap_or(1)));
+                assert!((solution.energy + 1.0).abs() < 1e-12 && (solution.strain_energy - 1.0).abs() < 1e-12);
+                assert!((solution.contacts[0].resultant[0] + 1.0).abs() < 1e-12);
+                for (point, u) in pressed_square().mesh.points.iter().zip(&solution.vertex_displacement) {
+                    assert!((u[0] - 2.0 * (1.0 - point[0])).abs() < 1e-12 && u[1].abs() < 1e-12);
+                }
+                assert!(solution.admissible);
+            }
+        }
+    }
+
+    #[test]
+    fn a_result_for_another_problem_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options {
+            scratch: Some(folder.path().to_owned()),
+            sabotage: Some(Sabotage::DropRow),
+            ..Options::default()
+        };
+        let problem = pressed_square();
+        match run(&problem, &[], &options) {
+            Err(PrimalError::NotInstalled(reason)) => return eprintln!("skipped: {reason}"),
+            outcome => assert!(outcome.unwrap()[0].energy < -1.0 - 1e-3),
+        }
+        let mut other = problem.clone();
+        other.mesh.points.push([5.0, 5.0]);
+        assert!(matches!(read_solution(folder.path(), 2, &other), Err(PrimalError::BadResult { .. })));
+        let mut other = problem;
+        other.interfaces[0].name = "left|rigid".to_owned();
+        assert!(matches!(read_solution(folder.path(), 1, &other), Err(PrimalError::BadResult { .. })));
+    }
+}

@@ -1,0 +1,61 @@
+//! A problem made by hand for the tests: one bar of two triangles pressed against a rigid wall.
+
+use std::path::PathBuf;
+
+use crate::mesh::{Edge, Triangulation};
+use crate::problem::{Condition, ContactPair, Interface, Problem};
+use crate::scene::{Body, Kinematics, MeshSource, Scene};
+
+/// The unit square, pressure 2 on its left, a rigid wall on its right, rollers below; E = 1, ν = 0, thickness ½.
+///
+/// Uniform stress: 𝓛 = −½ · 2² / E · ½ = −1, and the wall pushes back with (−1, 0).
+pub(crate) fn pressed_square() -> Problem {
+    let edge = |vertices, left, right| Edge { vertices, triangles: [Some(left), right], name: None };
+    let mesh = Triangulation {
+        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        body: vec![0, 0],
+        edges: vec![
+            edge([0, 1], 0, None),
+            edge([1, 2], 0, None),
+            edge([2, 0], 0, Some(1)),
+            edge([2, 3], 1, None),
+            edge([3, 0], 1, None),
+        ],
+        triangle_edges: vec![[1, 2, 0], [3, 4, 2]],
+        names: Vec::new(),
+    };
+    let pair = ContactPair {
+        edges: [Some(1), None],
+        first: [1, 2],
+        second: None,
+        normal: [1.0, 0.0],
+        length: 1.0,
+        arc: [0.0, 1.0],
+        gap: [0.0, 0.0],
+    };
+    Problem {
+        scene: Scene {
+            name: "square".to_owned(),
+            title: "square".to_owned(),
+            path: PathBuf::from("square.toml"),
+            kinematics: Kinematics::PlaneStress,
+            thickness: 0.5,
+            mesh: MeshSource::File(PathBuf::from("square.msh")),
+            bodies: vec![Body { name: "square".to_owned(), young: 1.0, poisson: 0.0, body_force: [0.0, 0.0] }],
+            supports: Vec::new(),
+            tractions: Vec::new(),
+            contacts: Vec::new(),
+        },
+        mesh,
+        conditions: vec![
+            Condition::Roller,
+            Condition::Contact { interface: 0, pair: 0, side: 0 },
+            Condition::Interior,
+            Condition::Traction([[0.0, 0.0]; 2]),
+            Condition::Traction([[2.0, 0.0]; 2]),
+        ],
+        interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair] }],
+        notes: Vec::new(),
+    }
+}

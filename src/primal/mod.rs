@@ -1,0 +1,235 @@
+//! The displacement model: FEniCSx, run as a process on the same triangles.
+//!
+//! It minimises 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫P·v over continuous P1 or P2 displacements. Contact is imposed on the
+//! Bernstein coefficients of the normal jump, so that v_n' + v_n'' ≤ g holds between the nodes too and 𝓛(u_h) bounds
+//! 𝓛(u) from above.
+//!
+//! [`run`] writes the exchange file ([`exchange`]), starts the interpreter that has FEniCSx ([`process`]) with the
+//! Python package this program carries inside it, and reads the results. The files are described in
+//! `docs/exchange.md`.
+
+pub mod exchange;
+#[cfg(test)]
+pub(crate) mod fixture;
+pub mod process;
+
+use std::collections::VecDeque;
+use std::io;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::problem::{Pin, Problem};
+
+/// What to run, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Polynomial degrees, each 1 or 2, each solved once.
+    pub degrees: Vec<u8>,
+    /// The process is ended when it takes longer.
+    pub timeout: Duration,
+    /// A bug to plant on purpose.
+    pub sabotage: Option<Sabotage>,
+    /// Number of MPI ranks; `None` runs without `mpirun`.
+    pub ranks: Option<usize>,
+    /// Impose P2 contact at the nodes only. The result is then no upper bound, and says so.
+    pub nodal_contact: bool,
+    /// Folder for the exchange files, kept afterwards; `None` uses a temporary one.
+    pub scratch: Option<PathBuf>,
+    /// The Python interpreter; `None` asks `HYPERCIRCLE_PYTHON`, then takes `/usr/bin/python3`.
+    pub interpreter: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            degrees: vec![1, 2],
+            timeout: Duration::from_secs(1800),
+            sabotage: None,
+            ranks: None,
+            nodal_contact: false,
+            scratch: None,
+            interpreter: None,
+        }
+    }
+}
+
+/// A bug in the displacement model, planted to see whether the comparison notices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sabotage {
+    /// 1 + 2ν in place of 1 − 2ν in Lamé's λ (1 + ν² in place of 1 − ν² in plane stress). Without effect for ν = 0.
+    FlipSign,
+    /// The closed contact row with the largest reaction is left unbounded.
+    DropRow,
+}
+
+/// Why there is no displacement solution.
+#[derive(Debug, thiserror::Error)]
+pub enum PrimalError {
+    /// The interpreter, `mpirun` or a Python package is missing.
+    #[error(
+        "the FEniCSx reference is not installed: {0}; install python3-dolfinx, or name an interpreter that has it in HYPERCIRCLE_PYTHON"
+    )]
+    NotInstalled(String),
+    /// The process ended without result files.
+    #[error("the FEniCSx reference failed ({status}); the end of its log:\n{log}")]
+    Failed {
+        /// How the process ended.
+        status: String,
+        /// The last lines it printed.
+        log: String,
+    },
+    /// The process did not end in time and was stopped.
+    #[error("the FEniCSx reference was stopped after {} s; the end of its log:\n{log}", limit.as_secs_f64())]
+    TimedOut {
+        /// The time allowed.
+        limit: Duration,
+        /// The last lines it printed.
+        log: String,
+    },
+    /// A result file that contradicts its format or the problem.
+    #[error("{file} of the FEniCSx reference is not usable: {reason}")]
+    BadResult {
+        /// Name of the file.
+        file: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Options that cannot be run.
+    #[error(
+        "the FEniCSx reference solves degrees 1 and 2, on one rank or more; found degrees {degrees:?}, ranks {ranks:?}"
+    )]
+    BadOptions {
+        /// Degrees asked for.
+        degrees: Vec<u8>,
+        /// Ranks asked for.
+        ranks: Option<usize>,
+    },
+    /// The exchange folder cannot be used.
+    #[error("cannot use {path}: {source}; check that the folder exists and is writable")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
+}
+
+/// The displacement solution of one degree. Energies and forces include the thickness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PrimalSolution {
+    /// `FEniCSx`.
+    pub solver: String,
+    /// Release of DOLFINx.
+    pub solver_version: String,
+    /// Release of PETSc's Python interface.
+    pub petsc_version: String,
+    /// Polynomial degree, 1 or 2.
+    pub degree: u8,
+    /// Number of MPI ranks.
+    pub ranks: usize,
+    /// 𝓛(u_h).
+    pub energy: f64,
+    /// ½∫ c e(u_h):e(u_h).
+    pub strain_energy: f64,
+    /// Newton steps of the variational inequality; 1 for a problem without contact.
+    pub iterations: usize,
+    /// PETSc's reason for stopping; positive.
+    pub converged_reason: i32,
+    /// Unknowns left after supports are eliminated.
+    pub unknowns: usize,
+    /// Whether the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
+    pub admissible: bool,
+    /// Wall-clock time by phase.
+    pub seconds: PrimalSeconds,
+    /// u_h at each vertex of the mesh.
+    pub vertex_displacement: Vec<[f64; 2]>,
+    /// u_h at the midpoint of each edge of the mesh; `None` for degree 1, where it is the mean of the ends.
+    pub edge_displacement: Option<Vec<[f64; 2]>>,
+    /// Reactions, contact by contact in scene order.
+    pub contacts: Vec<PrimalContact>,
+}
+
+/// Seconds spent in each phase. Imports and the compilation of forms stand apart from the work itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PrimalSeconds {
+    /// Loading Python packages.
+    pub import: f64,
+    /// Reading and distributing the mesh.
+    pub mesh: f64,
+    /// Assembly, and the change of variables for the contact.
+    pub assemble: f64,
+    /// Compiling the forms, or finding them compiled.
+    pub compile: f64,
+    /// Solving.
+    pub solve: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// Reactions of one contact, consistent with the discrete equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PrimalContact {
+    /// Name of the interface.
+    pub name: String,
+    /// Vertices of the first side along the contact.
+    pub vertices: Vec<usize>,
+    /// R ≥ 0 at each of `vertices`, conjugate to the jump there. Zero where supports alone decide the jump.
+    pub vertex_reaction: Vec<f64>,
+    /// R ≥ 0 of each pair, conjugate to the middle Bernstein coefficient of its jump (to the midpoint value with
+    /// [`Options::nodal_contact`]); `None` for degree 1.
+    pub edge_reaction: Option<Vec<f64>>,
+    /// Force on the first side.
+    pub resultant: [f64; 2],
+}
+
+/// Solve `problem` in displacements, once for each of [`Options::degrees`], in their order.
+///
+/// # Errors
+/// Everything that keeps the results from being complete is a [`PrimalError`]; the call ends at the latest a few
+/// seconds after [`Options::timeout`].
+pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<PrimalSolution>, PrimalError> {
+    let degrees_fit = options.degrees.iter().all(|d| (1..=2).contains(d)) && !options.degrees.is_empty();
+    if !degrees_fit || options.ranks == Some(0) {
+        return Err(PrimalError::BadOptions { degrees: options.degrees.clone(), ranks: options.ranks });
+    }
+    let temporary;
+    let folder = match &options.scratch {
+        Some(folder) => folder.as_path(),
+        None => {
+            let place = std::env::temp_dir();
+            temporary = tempfile::tempdir().map_err(|source| PrimalError::Io { path: place, source })?;
+            temporary.path()
+        }
+    };
+    exchange::write_problem(problem, pins, folder)?;
+    process::run(folder, options)?;
+    options.degrees.iter().map(|&degree| exchange::read_solution(folder, degree, problem)).collect()
+}
+
+/// The last lines of a log.
+#[derive(Debug, Default)]
+pub(crate) struct Tail {
+    lines: VecDeque<String>,
+}
+
+impl Tail {
+    const LINES: usize = 40;
+    const WIDTH: usize = 2000;
+
+    /// Keep `line`, and let go of the oldest where there are too many.
+    pub(crate) fn push(&mut self, line: &[u8]) {
+        if self.lines.len() == Self::LINES {
+            self.lines.pop_front();
+        }
+        let text = String::from_utf8_lossy(&line[..line.len().min(Self::WIDTH)]);
+        self.lines.push_back(text.trim_end().to_owned());
+    }
+
+    /// The lines, joined.
+    pub(crate) fn text(&self) -> String {
+        let lines: Vec<&str> = self.lines.iter().map(String::as_str).collect();
+        if lines.is_empty() { "(nothing was printed)".to_owned() } else { lines.join("\n") }
+    }
+}
