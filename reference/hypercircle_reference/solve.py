@@ -119,7 +119,7 @@ class Reduced:
     def minimise(self) -> Solution:
         """Run the solver, check residual and feasibility, and gather the solution."""
         w = self.clamped_start()
-        load = self._size(w)
+        start = load = self._size(w)
         iterations, reason = 0, 2
         if len(self.constraints.bounded):
             # A second run only polishes: the round-off to be expected is known once the size of w is.
@@ -127,6 +127,8 @@ class Reduced:
                 tolerance = max(1e-13 * load, np.finfo(float).eps * self._norm() * w.norm())
                 steps, reason = self._newton(w, tolerance, load)
                 iterations += steps
+                # A wide gap makes the start far larger than the solution, which is what counts.
+                load = max(self._size(w), 1e-5 * start)
         else:
             iterations = 1
         gradient = self.residual(w)

@@ -123,6 +123,17 @@ def test_parabolic_gap(solve, degree):
     assert all(np.all(ends <= gap + 1e-13) for ends, _, gap in jumps(b.data, result))
 
 
+@pytest.mark.parametrize("degree", (1, 2))
+def test_nothing_happens_without_a_load(solve, degree):
+    """The solver starts with the gap closed, and has to come back to exactly nothing."""
+    data = two_blocks(4, load=0.0, gap=0.5)
+    data["roller"] += [{"edge": t["edge"], "normal": [-1.0, 0.0]} for t in data["tractions"]]
+    data["tractions"] = []
+    result = solve(data, degree)
+    assert np.array(result["vertex_displacement"]) == pytest.approx(0.0, abs=1e-13)
+    assert result["contacts"][0]["resultant"] == [0.0, 0.0]
+
+
 @pytest.mark.parametrize("sabotage", ("flip-sign", "drop-row"))
 @pytest.mark.parametrize("degree", (1, 2))
 def test_sabotage_shows(solve, degree, sabotage):
