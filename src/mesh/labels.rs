@@ -10,6 +10,9 @@ use crate::scene::{ContactSides, MeshSource, Scene};
 /// An edge without direction.
 pub(super) type Pair = [usize; 2];
 
+/// An edge as seen from a triangle: (triangle, local edge).
+pub(super) type Side = (usize, usize);
+
 /// The key of the edge between two vertices.
 pub(super) fn pair(a: usize, b: usize) -> Pair {
     [a.min(b), a.max(b)]
@@ -21,13 +24,13 @@ pub(super) struct Labels {
     /// Distinct names in order of appearance.
     pub names: Vec<String>,
     /// Name of edge i (opposite corner i) of a triangle.
-    pub of: HashMap<(usize, usize), usize>,
+    pub of: HashMap<Side, usize>,
     /// Interior edges along which a contact separates two bodies.
     pub cut: HashSet<Pair>,
 }
 
 impl Labels {
-    fn put(&mut self, side: (usize, usize), name: &str) {
+    fn put(&mut self, side: Side, name: &str) {
         let index = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
             self.names.push(name.to_string());
             self.names.len() - 1
@@ -56,11 +59,11 @@ pub(crate) fn contact_names(scene: &Scene) -> Vec<&str> {
 
 /// Gives the named segments of `raw` to the edges of its cells.
 ///
-/// `sides` lists for every edge its one or two (triangle, local edge).
+/// `sides` lists for every edge its one or two sides.
 pub(super) fn assign(
     raw: &RawMesh,
     cells: &Cells,
-    sides: &HashMap<Pair, Vec<(usize, usize)>>,
+    sides: &HashMap<Pair, Vec<Side>>,
     scene: &Scene,
     notes: &mut Vec<Note>,
 ) -> Result<Labels, MeshError> {
@@ -117,11 +120,11 @@ pub(super) fn assign(
 /// lists first goes to the body that the scene lists first.
 fn facing<'a>(
     cells: &Cells,
-    both: &[(usize, usize)],
+    both: &[Side],
     carrying: &[&'a str],
     place: &str,
     scene: &Scene,
-) -> Result<[((usize, usize), &'a str); 2], MeshError> {
+) -> Result<[(Side, &'a str); 2], MeshError> {
     let name = carrying[0];
     let contact = scene.contacts.iter().find_map(|contact| match &contact.sides {
         ContactSides::Between(names) if names.iter().any(|n| n == name) => Some(names),

@@ -4,6 +4,7 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+pub mod bisect;
 mod boxes;
 mod cells;
 pub(crate) mod error;

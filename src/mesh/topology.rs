@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use super::cells::{self, Cells};
 use super::error::{MeshError, at};
-use super::labels::{self, Labels, Pair, pair};
+use super::labels::{self, Labels, Pair, Side, pair};
 use super::{Edge, RawMesh, Triangulation, hanging, overlap};
 use crate::problem::Note;
 use crate::scene::Scene;
@@ -79,8 +79,8 @@ impl Triangulation {
 }
 
 /// For every edge the (triangle, local edge) on its sides, two at most and on opposite sides.
-fn match_sides(raw: &RawMesh, cells: &Cells, scene: &Scene) -> Result<HashMap<Pair, Vec<(usize, usize)>>, MeshError> {
-    let mut sides: HashMap<Pair, Vec<(usize, usize)>> = HashMap::with_capacity(cells.triangles.len() * 3 / 2);
+fn match_sides(raw: &RawMesh, cells: &Cells, scene: &Scene) -> Result<HashMap<Pair, Vec<Side>>, MeshError> {
+    let mut sides: HashMap<Pair, Vec<Side>> = HashMap::with_capacity(cells.triangles.len() * 3 / 2);
     for (t, corners) in cells.triangles.iter().enumerate() {
         for i in 0..3 {
             let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
@@ -109,7 +109,7 @@ fn match_sides(raw: &RawMesh, cells: &Cells, scene: &Scene) -> Result<HashMap<Pa
 }
 
 /// Gives every fan of triangles around a vertex, connected through edges that are not cut, its own vertex.
-fn split(raw: &RawMesh, cells: Cells, sides: &HashMap<Pair, Vec<(usize, usize)>>, labels: Labels) -> Triangulation {
+fn split(raw: &RawMesh, cells: Cells, sides: &HashMap<Pair, Vec<Side>>, labels: Labels) -> Triangulation {
     let corner = |t: usize, i: usize| 3 * t + i;
     let mut parent: Vec<usize> = (0..3 * cells.triangles.len()).collect();
     for (key, both) in sides {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::contact::pair_up;
 use super::{Condition, Note, Problem, ProblemError};
+use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::{self, Triangulation};
 use crate::scene::{Load, Scene, SupportKind};
@@ -78,6 +79,28 @@ impl Problem {
             mesh = mesh.quartered();
         }
         Problem::new(self.scene.clone(), mesh, self.notes.clone())
+    }
+
+    /// The edges of the two sides of all contacts between bodies, facing each other.
+    pub fn facing_edges(&self) -> Vec<[usize; 2]> {
+        let pairs = self.interfaces.iter().flat_map(|interface| &interface.pairs);
+        pairs.filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?])).collect()
+    }
+
+    /// The same problem with the triangles `marked` bisected, and what else that asks for, see
+    /// [`bisect`](crate::mesh::bisect::bisect). Also gives the refinement edges of the new triangles, and for each new
+    /// triangle the old one it comes from.
+    ///
+    /// # Errors
+    /// None that [`Problem::new`] did not have.
+    pub fn bisect(
+        &self,
+        refinement: &RefinementEdges,
+        marked: &[usize],
+    ) -> Result<(Problem, RefinementEdges, Vec<usize>), ProblemError> {
+        let finer = bisect(&self.mesh, refinement, marked, &self.facing_edges());
+        let problem = Problem::new(self.scene.clone(), finer.mesh, self.notes.clone())?;
+        Ok((problem, finer.refinement, finer.parent))
     }
 }
 

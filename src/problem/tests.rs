@@ -2,6 +2,7 @@
 
 use super::{Condition, Problem};
 use crate::mesh::Triangulation;
+use crate::mesh::bisect::RefinementEdges;
 use crate::mesh::testing::*;
 use crate::scene::{Contact, ContactSides, Gap, Load, Scene, Support, SupportKind};
 
@@ -115,11 +116,33 @@ fn arc_length_goes_on_over_the_pieces_of_a_side() {
 
 #[test]
 fn sides_that_do_not_match_are_refused() {
-    for (n, fragments) in [(3, ["no edge opposite", "make the two sides coincide"])] {
-        let raw = both(grid("a", [0.0; 2], [1.0; 2], [2, 2]), grid("b", [1.0, 0.0], [2.0, 1.0], [2, n]));
-        let scene = contact(scene(&["a", "b"]), "a_right", "b_left", Gap::Constant(0.0));
-        let (mesh, notes) = Triangulation::new(raw, &scene).expect("a good mesh");
-        let message = Problem::new(scene, mesh, notes).expect_err("sides differ").to_string();
-        assert!(fragments.iter().all(|f| message.contains(f)), "{message}");
+    let raw = both(grid("a", [0.0; 2], [1.0; 2], [2, 2]), grid("b", [1.0, 0.0], [2.0, 1.0], [2, 3]));
+    let scene = contact(scene(&["a", "b"]), "a_right", "b_left", Gap::Constant(0.0));
+    let (mesh, notes) = Triangulation::new(raw, &scene).expect("a good mesh");
+    let message = Problem::new(scene, mesh, notes).expect_err("sides differ").to_string();
+    for fragment in ["contact 'a_right|b_left'", "no edge opposite", "make the two sides coincide"] {
+        assert!(message.contains(fragment), "{message}");
+    }
+}
+
+#[test]
+fn bisection_keeps_the_contact_matched() {
+    let mut problem = Problem::load(two_blocks(Gap::Constant(0.0), 3)).expect("a good scene");
+    let mut refinement = RefinementEdges::longest(&problem.mesh);
+    for round in 0..6 {
+        // Only triangles of the first body are marked; the second has to follow along the contact.
+        let at_contact = |t: &usize| {
+            let conditions = problem.mesh.triangle_edges[*t].map(|e| problem.conditions[e]);
+            conditions.iter().any(|c| matches!(c, Condition::Contact { side: 0, .. }))
+        };
+        let marked: Vec<usize> = (0..problem.mesh.triangles.len()).filter(at_contact).collect();
+        let before = problem.interfaces[0].pairs.len();
+        let parent;
+        (problem, refinement, parent) = problem.bisect(&refinement, &marked).expect("refines");
+        assert_eq!(parent.len(), problem.mesh.triangles.len());
+        assert_consistent(&problem.mesh);
+        assert_paired(&problem);
+        assert!(round < 2 || problem.interfaces[0].pairs.len() > before);
+        assert!((total_area(&problem.mesh) - 2.0).abs() < 1e-13);
     }
 }

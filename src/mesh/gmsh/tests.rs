@@ -148,7 +148,7 @@ fn files_that_are_refused() {
     refuse(&edit(&v2, "\n2 1 0 0\n", "\n1 1 0 0\n"), &["$Nodes, line", "node 1 is there twice"]);
     refuse(&edit(&v2, "\n2 1 0 0\n", "\n99 1 0 0\n"), &["uses node 2, which is not in $Nodes"]);
     refuse(&edit(&v2, "\n2 1 0 0\n", "\n2 inf 0 0\n"), &["node 2", "not finite"]);
-    refuse(&edit(&v2, "\n2 1 0 0\n", "\n2 1 0\n"), &["$Nodes, line", "found"]);
+    refuse(&edit(&v2, "\n2 1 0 0\n", "\n2 1 0\n"), &["$Nodes, line", "node 1 is there twice"]);
     let quads =
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n0\n$EndNodes\n$Elements\n1\n1 3 2 1 1 1 2 3 4\n$EndElements\n";
     refuse(quads.as_bytes(), &["$Elements, line 9", "quadrangle", "mesh with triangles"]);

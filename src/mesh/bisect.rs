@@ -1,0 +1,215 @@
+//! Adaptive refinement by newest-vertex bisection.
+//!
+//! Every triangle has a refinement edge. Bisecting it joins the middle of that edge to the opposite vertex; the
+//! refinement edges of the halves are the ones opposite the new vertex. The triangles that can arise from one triangle
+//! fall into four similarity classes, so angles stay bounded however often this is repeated.
+
+use std::collections::HashMap;
+
+use super::Triangulation;
+use super::labels::{Pair, pair};
+use super::quarter::middle;
+
+/// For every triangle the local index of its refinement edge.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RefinementEdges(Vec<usize>);
+
+impl RefinementEdges {
+    /// The longest edge of every triangle; of equal ones that whose middle comes last in (x, y) order, which does not
+    /// depend on the numbering.
+    pub fn longest(mesh: &Triangulation) -> Self {
+        let rank = |e: usize| {
+            let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+            let square = (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
+            let [x, y] = middle(a, b);
+            [square, x, y]
+        };
+        let longest = |edges: &[usize; 3]| {
+            let after =
+                |i: usize, j: usize| rank(edges[i]).partial_cmp(&rank(edges[j])) == Some(std::cmp::Ordering::Greater);
+            (1..3).fold(0, |best, i| if after(i, best) { i } else { best })
+        };
+        RefinementEdges(mesh.triangle_edges.iter().map(longest).collect())
+    }
+
+    /// Local index of the refinement edge of triangle `t`.
+    pub fn of(&self, t: usize) -> usize {
+        self.0[t]
+    }
+}
+
+/// What [`bisect`] makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bisected {
+    /// The finer mesh; old vertices keep their index.
+    pub mesh: Triangulation,
+    /// Its refinement edges.
+    pub refinement: RefinementEdges,
+    /// For each new triangle the old one that contains it.
+    pub parent: Vec<usize>,
+}
+
+/// Bisects the triangles `marked`, and others as far as needed for a conforming mesh.
+///
+/// `facing` lists the edges that lie opposite each other in a contact: they are bisected together, so that both sides
+/// keep the same vertices, bit for bit. Names of boundaries are kept.
+pub fn bisect(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], facing: &[[usize; 2]]) -> Bisected {
+    let cut = close(mesh, refinement, marked, facing);
+    let mut points = mesh.points.clone();
+    let mut middles: HashMap<Pair, usize> = HashMap::new();
+    let mut label = mesh.label();
+    for (e, edge) in mesh.edges.iter().enumerate().filter(|(e, _)| cut[*e]) {
+        let [a, b] = edge.vertices;
+        let m = points.len();
+        points.push(middle(points[a], points[b]));
+        middles.insert(pair(a, b), m);
+        if let Some(name) = mesh.edges[e].name {
+            label.remove(&pair(a, b));
+            label.extend([(pair(a, m), name), (pair(m, b), name)]);
+        }
+    }
+    let (mut triangles, mut edges, mut parent) = (Vec::new(), Vec::new(), Vec::new());
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        let r = refinement.0[t];
+        let [a, b, c] = [1, 2, 3].map(|k| corners[(r + k) % 3]);
+        if middles.contains_key(&pair(a, b)) {
+            let before = triangles.len();
+            halve([a, b, c], &middles, &mut triangles);
+            edges.resize(triangles.len(), 2);
+            parent.resize(parent.len() + triangles.len() - before, t);
+        } else {
+            triangles.push(*corners);
+            edges.push(r);
+            parent.push(t);
+        }
+    }
+    let body = parent.iter().map(|&t| mesh.body[t]).collect();
+    let mesh = Triangulation::connect(points, triangles, body, mesh.names.clone(), &label);
+    Bisected { mesh, refinement: RefinementEdges(edges), parent }
+}
+
+/// The edges to cut: the refinement edges of marked triangles, and with any edge of a triangle its refinement edge, and
+/// with an edge of a contact the one opposite.
+fn close(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], facing: &[[usize; 2]]) -> Vec<bool> {
+    let mut opposite: HashMap<usize, usize> = HashMap::with_capacity(2 * facing.len());
+    for &[e, f] in facing {
+        opposite.extend([(e, f), (f, e)]);
+    }
+    let refinement_edge = |t: usize| mesh.triangle_edges[t][refinement.0[t]];
+    let mut cut = vec![false; mesh.edges.len()];
+    let mut open: Vec<usize> = marked.iter().map(|&t| refinement_edge(t)).collect();
+    while let Some(e) = open.pop() {
+        if !std::mem::replace(&mut cut[e], true) {
+            open.extend(opposite.get(&e));
+            open.extend(mesh.edges[e].triangles.iter().flatten().map(|&t| refinement_edge(t)));
+        }
+    }
+    cut
+}
+
+/// Cuts a triangle, given with its refinement edge first, and its halves where their refinement edges are cut too.
+fn halve([a, b, c]: [usize; 3], middles: &HashMap<Pair, usize>, into: &mut Vec<[usize; 3]>) {
+    match middles.get(&pair(a, b)) {
+        None => into.push([a, b, c]),
+        Some(&m) => {
+            halve([c, a, m], middles, into);
+            halve([b, c, m], middles, into);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::testing::*;
+    use proptest::prelude::*;
+
+    /// Two bodies that face each other at x = 1, with the facing edges.
+    fn blocks(jitter: f64) -> (Triangulation, crate::scene::Scene) {
+        let scene = contact(scene(&["a", "b"]), "a_right", "b_left", crate::scene::Gap::Constant(0.0));
+        let mut raw = both(grid("a", [0.0; 2], [1.0; 2], [3, 3]), grid("b", [1.0, 0.0], [2.0, 1.0], [2, 3]));
+        // Inner vertices are moved so that no two triangles are alike.
+        for (i, p) in raw.points.iter_mut().enumerate() {
+            if p[0] != 1.0 && p[0] % 2.0 != 0.0 && p[1] % 1.0 != 0.0 {
+                p[0] += jitter * (0.1 * i as f64).sin();
+            }
+        }
+        (Triangulation::new(raw, &scene).expect("a good mesh").0, scene)
+    }
+
+    fn facing(mesh: &Triangulation) -> Vec<[usize; 2]> {
+        let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
+        let turned = |[a, b]: [[f64; 2]; 2]| [b, a];
+        let seconds = mesh.boundary("b_left");
+        let partner = |e: usize| seconds.iter().copied().find(|&f| ends(f) == turned(ends(e)));
+        mesh.boundary("a_right").into_iter().map(|e| [e, partner(e).expect("an edge opposite")]).collect()
+    }
+
+    #[test]
+    fn the_longest_edge_does_not_depend_on_the_numbering() {
+        let (mesh, scene) = blocks(0.0);
+        let mut raw = both(grid("b", [1.0, 0.0], [2.0, 1.0], [2, 3]), grid("a", [0.0; 2], [1.0; 2], [3, 3]));
+        raw.triangles.iter_mut().for_each(|(t, _)| t.rotate_left(1));
+        raw.triangles.reverse();
+        let (other, _) = Triangulation::new(raw, &scene).expect("a good mesh");
+        let chosen = |mesh: &Triangulation| {
+            let edges = RefinementEdges::longest(mesh);
+            let ends = |t: usize| mesh.edges[mesh.triangle_edges[t][edges.of(t)]].vertices.map(|v| mesh.points[v]);
+            let mut all: Vec<String> = (0..mesh.triangles.len())
+                .map(|t| {
+                    let [p, q] = ends(t);
+                    format!("{:?}", if p < q { [p, q] } else { [q, p] })
+                })
+                .collect();
+            all.sort();
+            all
+        };
+        assert_eq!(chosen(&mesh), chosen(&other));
+    }
+
+    #[test]
+    fn one_marked_triangle_is_cut_once() {
+        let (mesh, _) = blocks(0.0);
+        let finer = bisect(&mesh, &RefinementEdges::longest(&mesh), &[0], &facing(&mesh));
+        assert_eq!(finer.mesh.triangles.len(), mesh.triangles.len() + 2, "the pair along the diagonal");
+        assert_consistent(&finer.mesh);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn random_marking_keeps_angles_names_and_matching_sides(
+            jitter in 0.0..0.15f64,
+            rounds in prop::collection::vec(prop::collection::vec(any::<prop::sample::Index>(), 1..12), 12),
+        ) {
+            let (coarse, _) = blocks(jitter);
+            let sharpest = smallest_angle(&coarse);
+            let names = lengths(&coarse);
+            let (mut mesh, mut refinement) = (coarse.clone(), RefinementEdges::longest(&coarse));
+            for round in rounds {
+                let marked: Vec<usize> = round.iter().map(|i| i.index(mesh.triangles.len())).collect();
+                let finer = bisect(&mesh, &refinement, &marked, &facing(&mesh));
+                assert_consistent(&finer.mesh);
+                let mut areas = vec![0.0; mesh.triangles.len()];
+                for (t, &p) in finer.parent.iter().enumerate() {
+                    areas[p] += finer.mesh.area(t);
+                    prop_assert_eq!(finer.mesh.body[t], mesh.body[p]);
+                }
+                for (t, area) in areas.iter().enumerate() {
+                    prop_assert!((area / mesh.area(t) - 1.0).abs() < 1e-12);
+                }
+                for t in marked {
+                    prop_assert!(finer.parent.iter().filter(|p| **p == t).count() >= 2);
+                }
+                prop_assert_eq!(side(&finer.mesh, "a_right", false), side(&finer.mesh, "b_left", true));
+                (mesh, refinement) = (finer.mesh, finer.refinement);
+            }
+            prop_assert!(smallest_angle(&mesh) >= 0.5 * sharpest - 1e-9);
+            prop_assert_eq!(euler(&mesh), euler(&coarse));
+            for (name, length) in lengths(&mesh) {
+                prop_assert!((length - names[&name]).abs() < 1e-12);
+            }
+        }
+    }
+}
