@@ -70,6 +70,7 @@ pub(super) fn assign(
     let used = used_names(scene);
     let mut order: Vec<Pair> = Vec::new();
     let mut on: HashMap<Pair, Vec<&str>> = HashMap::new();
+    let mut idle: Vec<&str> = Vec::new();
     for ([a, b], name) in &raw.segments {
         let key = pair(*a, *b);
         if name.is_empty() {
@@ -81,6 +82,7 @@ pub(super) fn assign(
                 let what = format!("has the segment {} to {}, which is no edge of a triangle", ends[0], ends[1]);
                 return Err(MeshError::boundary(scene, name, what, "mesh curves and surfaces together"));
             }
+            idle.push(name);
             continue;
         }
         let names = on.entry(key).or_default();
@@ -95,6 +97,9 @@ pub(super) fn assign(
     for key in order {
         let names = &on[&key];
         let carrying: Vec<&str> = names.iter().copied().filter(|name| used.contains(name)).collect();
+        if carrying.is_empty() {
+            idle.extend(names);
+        }
         let place = key.map(|v| at(raw.points[v])).join(" to ");
         match (sides[&key].as_slice(), carrying.as_slice()) {
             ([side], []) => labels.put(*side, names[0]),
@@ -112,7 +117,8 @@ pub(super) fn assign(
             }
         }
     }
-    check_names(raw, &labels, &used, scene, notes)?;
+    check_names(&labels, &used, scene)?;
+    note_idle(idle, scene, notes);
     Ok(labels)
 }
 
@@ -173,14 +179,8 @@ fn facing<'a>(
     }
 }
 
-/// Every name of the scene is on an edge; names that the scene does not mention make a note.
-fn check_names(
-    raw: &RawMesh,
-    labels: &Labels,
-    used: &[&str],
-    scene: &Scene,
-    notes: &mut Vec<Note>,
-) -> Result<(), MeshError> {
+/// Every name of the scene is on an edge.
+fn check_names(labels: &Labels, used: &[&str], scene: &Scene) -> Result<(), MeshError> {
     for name in used {
         if !labels.names.iter().any(|n| n == name) {
             let existing: Vec<&str> = labels.names.iter().map(String::as_str).collect();
@@ -191,19 +191,20 @@ fn check_names(
             return Err(MeshError::boundary(scene, name, "does not exist", remedy));
         }
     }
-    if let MeshSource::File(_) = scene.mesh {
-        let mut idle: Vec<&str> = raw.segments.iter().map(|(_, n)| n.as_str()).collect();
-        idle.retain(|n| !n.is_empty() && !used.contains(n));
-        idle.sort_unstable();
-        idle.dedup();
-        for name in idle {
-            notes.push(Note {
-                weakens_guarantee: false,
-                text: format!("the scene does not mention the physical curve '{name}': it is free of traction"),
-            });
-        }
-    }
     Ok(())
+}
+
+/// A remark for each physical curve that has no part in the scene.
+fn note_idle(mut idle: Vec<&str>, scene: &Scene, notes: &mut Vec<Note>) {
+    if let MeshSource::Geometry { .. } = scene.mesh {
+        return;
+    }
+    idle.sort_unstable();
+    idle.dedup();
+    notes.extend(idle.into_iter().map(|name| Note {
+        weakens_guarantee: false,
+        text: format!("the scene does not mention the physical curve '{name}': it is free of traction"),
+    }));
 }
 
 /// `; did you mean 'x'?` when one of `names` is close to `name`.
