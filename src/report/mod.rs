@@ -1,5 +1,24 @@
 //! What a run leaves behind, all derived from one [`Dossier`].
+//!
+//! [`write()`] makes the five files; each of them is also a function here, from data to text, that knows nothing of files.
 
 mod data;
+pub mod figure;
+mod html;
+mod json;
+mod junit;
+mod markdown;
+mod number;
+#[cfg(test)]
+mod sample;
+mod vtu;
+mod words;
+mod write;
 
 pub use data::*;
+pub use html::page;
+pub use json::{json, schema};
+pub use junit::junit;
+pub use markdown::summary;
+pub use vtu::vtu;
+pub use write::{ReportError, write};

@@ -1,0 +1,120 @@
+//! The energy bracket: the interval that holds the exact energy, and every computed energy beside it.
+
+use super::axis::Axis;
+use super::svg::{Anchor, Svg, look};
+use crate::report::Report;
+use crate::report::number::{digits_to_tell, significant};
+use crate::report::words::energies;
+
+const WIDTH: f64 = 560.0;
+const LANE: f64 = 40.0;
+
+/// One lane per energy over an axis; the interval [lower, upper] is a band through all lanes. Where the energies spread
+/// much wider than the bracket, a second panel shows its neighbourhood.
+pub fn bracket(report: &Report) -> String {
+    let Some(energy) = report.energy.as_ref().filter(|e| e.lower.is_finite() && e.upper.is_finite()) else {
+        return Svg::new(WIDTH, 10.0, "No energy bracket").finish();
+    };
+    let (lower, upper) = (energy.lower, energy.upper);
+    let list: Vec<(String, f64)> = energies(report).into_iter().filter(|e| e.1.is_finite()).collect();
+    let digits = digits_to_tell(lower, upper);
+    let label = format!(
+        "The exact energy lies between {} and {}; {} energies are marked on the axis",
+        significant(lower, digits),
+        significant(upper, digits),
+        list.len()
+    );
+    let wide = Axis::over(list.iter().map(|e| e.1).chain([lower, upper]), 24.0, WIDTH - 24.0, false).padded(0.06);
+    let zoomed = wide.to - wide.from > 8.0 * (upper - lower).abs() && upper != lower;
+    let panel = 30.0 + LANE * list.len() as f64;
+    let height = if zoomed { 2.0 * panel + 118.0 } else { panel + 52.0 };
+    let mut svg = Svg::new(WIDTH, height, label);
+    lanes(&mut svg, &list, &wide, [lower, upper], 0.0, "energy");
+    if zoomed {
+        let pad = 0.5 * (upper - lower).abs();
+        let near = Axis { from: lower.min(upper) - pad, to: lower.max(upper) + pad, ..wide };
+        let top = panel + 66.0;
+        for x in [lower, upper] {
+            svg.line(look::SUPPORT, r#"stroke-dasharray="2 3""#, [wide.at(x), panel], [near.at(x), top + 4.0]);
+        }
+        let factor = (wide.to - wide.from) / (near.to - near.from);
+        lanes(
+            &mut svg,
+            &list,
+            &near,
+            [lower, upper],
+            top,
+            &format!("energy, {} times enlarged", significant(factor, 2)),
+        );
+    }
+    svg.finish()
+}
+
+fn lanes(svg: &mut Svg, list: &[(String, f64)], axis: &Axis, [lower, upper]: [f64; 2], top: f64, title: &str) {
+    let bottom = top + 30.0 + LANE * list.len() as f64;
+    axis.draw_below(svg, bottom, top + 18.0, title);
+    let (a, b) = (axis.at(lower.min(upper)), axis.at(lower.max(upper)));
+    svg.rect(if lower <= upper { look::BAND } else { look::BAD }, a, top + 18.0, (b - a).max(1.5), bottom - top - 18.0);
+    for x in [a, b] {
+        svg.line(look::LINE, r#"stroke-width="1.5""#, [x, top + 14.0], [x, bottom]);
+    }
+    let band = if lower <= upper { "the exact energy lies here" } else { "the bounds contradict each other" };
+    let (at, anchor) = match 0.5 * (a + b) {
+        x if x < 110.0 => (a, Anchor::Start),
+        x if x > WIDTH - 110.0 => (b, Anchor::End),
+        x => (x, Anchor::Middle),
+    };
+    svg.text(&format!(r#"{} font-weight="600""#, look::INK), [at, top + 11.0], anchor, band);
+    for (i, (name, value)) in list.iter().enumerate() {
+        let y = top + 48.0 + LANE * i as f64;
+        let x = axis.at(*value);
+        svg.line(look::GRID, "", [axis.start, y], [axis.end, y]);
+        let outside = if x < axis.start - 12.0 || x > axis.end + 12.0 { ", outside this panel" } else { "" };
+        let digits = digits_to_tell(*value, lower).max(digits_to_tell(upper, lower));
+        let below = if *value < lower - 1e-13 * lower.abs() { ", below the lower bound" } else { "" };
+        let text = format!("{name}: {}{below}{outside}", significant(*value, digits));
+        let look = if below.is_empty() { look::INK } else { look::BAD };
+        svg.text(look, [axis.start, y - 9.0], Anchor::Start, &text);
+        if outside.is_empty() {
+            svg.marker(i, [x, y], 5.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+    #[test]
+    fn every_energy_is_marked() {
+        let report = Sample::new(2, Verdict::Agree).dossier().report;
+        let text = bracket(&report);
+        assert_well_formed(&text);
+        for name in ["lower bound", "free upper bound", "FEniCSx P1", "FEniCSx P2"] {
+            assert!(text.contains(name), "{name}");
+        }
+        // The two upper bounds lie far from one another, so there is a second panel, and P1 is outside it.
+        assert!(text.contains("enlarged") && text.contains("outside this panel"));
+    }
+
+    #[test]
+    fn an_energy_on_the_wrong_side_is_said() {
+        let text = bracket(&Sample::new(2, Verdict::Disagree).dossier().report);
+        assert!(text.contains("below the lower bound"));
+        let mut report = Sample::new(2, Verdict::Agree).dossier().report;
+        let energy = report.energy.as_mut().unwrap();
+        (energy.lower, energy.upper) = (energy.upper, energy.lower);
+        assert!(bracket(&report).contains("contradict"));
+    }
+
+    #[test]
+    fn degenerate_brackets_are_drawn() {
+        let mut report = Sample::new(2, Verdict::Agree).dossier().report;
+        for (lower, upper) in [(0.0, 0.0), (-1.0, -1.0), (f64::NAN, 1.0), (-1e-300, 1e300)] {
+            let energy = report.energy.as_mut().unwrap();
+            (energy.lower, energy.upper) = (lower, upper);
+            assert_well_formed(&bracket(&report));
+        }
+    }
+}

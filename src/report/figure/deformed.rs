@@ -1,0 +1,216 @@
+//! Deformed shapes: a displacement of the bodies, or the rigid motion of a scene without equilibrium.
+
+use std::fmt::Write;
+
+use super::outline::{View, loops, outline, polyline};
+use super::svg::{Svg, look, px};
+use super::symbols;
+use crate::element::Displacement;
+use crate::problem::Problem;
+
+const WIDTH: f64 = 560.0;
+/// Up to this many triangles their edges are drawn.
+const MESH_SHOWN: usize = 1500;
+
+/// The factor 1, 2 or 5 times a power of ten that makes the largest of `fields` about an eighth of the size of the scene.
+pub fn deformation_scale(problem: &Problem, fields: &[&Displacement]) -> f64 {
+    let nodes = fields.iter().flat_map(|f| f.values.iter().flatten());
+    let largest = nodes.map(|u| u[0].hypot(u[1])).filter(|d| d.is_finite()).fold(0.0, f64::max);
+    round_down(0.13 * size(problem) / largest)
+}
+
+/// Largest extent of the scene.
+fn size(problem: &Problem) -> f64 {
+    let extent = |c: usize| {
+        let (low, high) =
+            problem.mesh.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[c]), h.max(p[c])));
+        high - low
+    };
+    extent(0).max(extent(1))
+}
+
+fn round_down(x: f64) -> f64 {
+    if !(x.is_finite() && x > 0.0) {
+        return 1.0;
+    }
+    let power = 10f64.powf(x.log10().floor());
+    power * [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= x * 1.000001).unwrap_or(1.0)
+}
+
+/// The bodies displaced by `scale` times `field`, over their undeformed outlines. All pictures with equal `scale` and
+/// `all` (the fields that have to fit) have the same frame, so that they can be laid side by side.
+pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Displacement], scale: f64) -> String {
+    let mesh = &problem.mesh;
+    let bodies = problem.scene.bodies.len();
+    let moved = |t: usize, k: usize, f: &Displacement| {
+        let (p, u) = (node(problem, t, k), f.values[t][k]);
+        [0, 1].map(|c| p[c] + scale * u[c])
+    };
+    let fits = |f: &&&Displacement| f.values.len() == mesh.triangles.len();
+    let corners = all
+        .iter()
+        .filter(fits)
+        .flat_map(|f| (0..mesh.triangles.len()).flat_map(move |t| (0..3).map(move |k| moved(t, k, f))));
+    let (view, height) = View::fit(mesh.points.iter().copied().chain(corners), WIDTH, 460.0, 14.0);
+    let mut svg = Svg::new(WIDTH, height, format!("Deformed shape, {name}, displacements times {scale}"));
+    if field.values.len() != mesh.triangles.len() {
+        return svg.finish();
+    }
+    for body in 0..bodies {
+        let d = curved_outline(problem, body, &view, |t, k| moved(t, k, field));
+        let look = look::BODIES[body % look::BODIES.len()];
+        svg.path(look, r#"fill-opacity="0.75" fill-rule="evenodd""#, &d);
+    }
+    if mesh.triangles.len() <= MESH_SHOWN {
+        let mut d = String::new();
+        for t in 0..mesh.triangles.len() {
+            d.push_str(&polyline(&[0, 1, 2].map(|k| view.at(moved(t, k, field)))));
+            d.push('z');
+        }
+        svg.path(look::GRID, r#"stroke-width="0.6""#, &d);
+    }
+    for body in 0..bodies {
+        svg.path(
+            look::LINE,
+            r#"stroke-width="0.8" stroke-dasharray="3 4" stroke-opacity="0.55""#,
+            &outline(mesh, body, &view),
+        );
+        let d = curved_outline(problem, body, &view, |t, k| moved(t, k, field));
+        svg.path(look::LINE, r#"stroke-width="1.1""#, &d);
+    }
+    for side in 0..2 {
+        let mut d = String::new();
+        for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+            if let Some((e, t)) = pair.edges[side].and_then(|e| Some((e, mesh.edges[e].triangles[0]?))) {
+                let curve = edge_curve(problem, e, t, &view, &|t, k| moved(t, k, field));
+                let _ = write!(d, "M{} {}{}", px(curve[0][0]), px(curve[0][1]), quadratic(&curve));
+            }
+        }
+        let dash = if side == 0 { "" } else { r#" stroke-dasharray="7 3""# };
+        svg.path(look::CONTACT, &format!(r#"stroke-width="2.4"{dash}"#), &d);
+    }
+    svg.finish()
+}
+
+/// The rigid motion that nothing stops: outlines before and after, and arrows.
+pub fn motion(problem: &Problem, motion: &[[f64; 2]]) -> String {
+    let mesh = &problem.mesh;
+    if motion.len() != mesh.points.len() {
+        return Svg::new(WIDTH, 10.0, "No motion").finish();
+    }
+    let largest = motion.iter().map(|u| u[0].hypot(u[1])).filter(|d| d.is_finite()).fold(0.0, f64::max);
+    let scale = if largest > 0.0 { 0.2 * size(problem) / largest } else { 1.0 };
+    let moved = |v: usize| [0, 1].map(|c| mesh.points[v][c] + scale * motion[v][c]);
+    let (view, height) =
+        View::fit(mesh.points.iter().copied().chain((0..mesh.points.len()).map(moved)), WIDTH, 460.0, 24.0);
+    let mut svg =
+        Svg::new(WIDTH, height, "The motion that supports and contact do not stop: before (dashed) and after");
+    for body in 0..problem.scene.bodies.len() {
+        svg.path(look::LINE, r#"stroke-width="1" stroke-dasharray="4 4""#, &outline(mesh, body, &view));
+        let rings = loops(mesh, body);
+        let start = |(e, t): (usize, usize)| mesh.edges[e].vertices[usize::from(mesh.edges[e].triangles[0] != Some(t))];
+        let d: String = rings
+            .iter()
+            .map(|ring| polyline(&ring.iter().map(|&s| view.at(moved(start(s)))).collect::<Vec<_>>()) + "z")
+            .collect();
+        svg.path(
+            look::BODIES[body % look::BODIES.len()],
+            r##"fill-opacity="0.8" fill-rule="evenodd" stroke="#57606a""##,
+            &d,
+        );
+        for ring in &rings {
+            for &s in ring.iter().step_by(ring.len().div_ceil(12).max(1)) {
+                let (v, u) = (start(s), motion[start(s)]);
+                let k = view.scale * scale;
+                symbols::arrow(&mut svg, look::LOAD, view.at(mesh.points[v]), [k * u[0], -k * u[1]], true);
+            }
+        }
+    }
+    svg.finish()
+}
+
+/// Position of node `k` of triangle `t`: corners, then midpoints of the edges opposite them.
+fn node(problem: &Problem, t: usize, k: usize) -> [f64; 2] {
+    let a = problem.mesh.corners(t);
+    if k < 3 { a[k] } else { [0, 1].map(|c| 0.5 * (a[(k + 1) % 3][c] + a[(k + 2) % 3][c])) }
+}
+
+/// An edge of `t`, displaced, as a quadratic Bézier curve on the page: exact for a quadratic displacement.
+fn edge_curve(
+    problem: &Problem,
+    e: usize,
+    t: usize,
+    view: &View,
+    at: &dyn Fn(usize, usize) -> [f64; 2],
+) -> [[f64; 2]; 3] {
+    let i = problem.mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+    let (a, m, b) = (at(t, (i + 1) % 3), at(t, 3 + i), at(t, (i + 2) % 3));
+    let control = [0, 1].map(|c| 2.0 * m[c] - 0.5 * (a[c] + b[c]));
+    [view.at(a), view.at(control), view.at(b)]
+}
+
+/// Path data of a curve from where the pen is; straight where the bow cannot be seen.
+fn quadratic([a, q, b]: &[[f64; 2]; 3]) -> String {
+    let bow = [0, 1].map(|c| q[c] - 0.5 * (a[c] + b[c]));
+    if bow[0].hypot(bow[1]) < 0.2 {
+        format!("L{} {}", px(b[0]), px(b[1]))
+    } else {
+        format!("Q{} {} {} {}", px(q[0]), px(q[1]), px(b[0]), px(b[1]))
+    }
+}
+
+fn curved_outline(problem: &Problem, body: usize, view: &View, at: impl Fn(usize, usize) -> [f64; 2]) -> String {
+    let mut d = String::new();
+    for ring in loops(&problem.mesh, body) {
+        for (i, &(e, t)) in ring.iter().enumerate() {
+            let curve = edge_curve(problem, e, t, view, &at);
+            if i == 0 {
+                let _ = write!(d, "M{} {}", px(curve[0][0]), px(curve[0][1]));
+            }
+            d.push_str(&quadratic(&curve));
+        }
+        d.push('z');
+    }
+    d
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+    #[test]
+    fn scale_is_round_and_keeps_the_picture_readable() {
+        let sample = Sample::new(2, Verdict::Agree);
+        let dossier = sample.dossier();
+        let fields: Vec<&Displacement> = dossier.displacements.iter().map(|d| d.1).collect();
+        // The largest displacement of the formula is hypot(1.8, …) < 2.5 in a scene of size 2.
+        assert_eq!(deformation_scale(&sample.problem, &fields), 0.1);
+        assert_eq!(deformation_scale(&sample.problem, &[]), 1.0);
+        assert_eq!(round_down(0.3), 0.2);
+        assert_eq!(round_down(1000.0), 1000.0);
+        let text = deformed(&sample.problem, "<free>", fields[0], &fields, 0.1);
+        assert_well_formed(&text);
+        assert_eq!(text.matches("class=\"contact\"").count(), 2);
+    }
+
+    #[test]
+    fn a_quadratic_edge_becomes_its_curve() {
+        let sample = Sample::new(1, Verdict::Agree);
+        let mesh = &sample.problem.mesh;
+        let edge = vec![[0.0, 0.5]; mesh.edges.len()];
+        let field = Displacement::from_p2(mesh, &vec![[0.0; 2]; mesh.points.len()], &edge);
+        let text = deformed(&sample.problem, "bow", &field, &[&field], 1.0);
+        assert!(text.contains('Q'));
+    }
+
+    #[test]
+    fn a_motion_is_drawn_with_arrows() {
+        let sample = Sample::new(2, Verdict::Infeasible);
+        let dossier = sample.dossier();
+        let text = motion(&sample.problem, dossier.motion.as_ref().unwrap());
+        assert_well_formed(&text);
+        assert!(text.contains("class=\"load\""));
+        assert_well_formed(&motion(&sample.problem, &[]));
+    }
+}

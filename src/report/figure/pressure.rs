@@ -1,0 +1,111 @@
+//! Contact pressure along an interface, from every model.
+
+use std::fmt::Write;
+
+use super::axis::Axis;
+use super::svg::{Anchor, Svg, look, px};
+use crate::report::ContactSummary;
+
+const WIDTH: f64 = 560.0;
+const DASHES: [&str; 5] = ["", "8 4", "2 3", "10 3 2 3", "5 2"];
+/// Markers per curve.
+const MARKERS: usize = 16;
+
+/// Pressure against arc length; jumps are drawn upright, ends of contact as dotted lines.
+pub fn pressure(contact: &ContactSummary) -> String {
+    let rows = contact.profiles.len() as f64;
+    let (left, top, bottom) = (62.0, 30.0 + 20.0 * rows, 330.0 + 20.0 * rows);
+    let mut svg =
+        Svg::new(WIDTH, bottom + 46.0, format!("Pressure along the contact {} from every model", contact.name));
+    let values = contact.profiles.iter().flat_map(|p| p.points.iter());
+    let x = Axis::over(values.clone().map(|p| p[0]).chain([0.0, contact.length]), left, WIDTH - 14.0, false);
+    let y = Axis::over(values.map(|p| p[1]).chain([0.0]), bottom, top + 24.0, false).padded(0.03);
+    x.draw_below(&mut svg, bottom, top + 24.0, "arc length along the contact");
+    y.draw_left(&mut svg, left, WIDTH - 14.0, "pressure");
+    if y.from < 0.0 {
+        svg.line(look::LINE, r#"stroke-width="0.8""#, [left, y.at(0.0)], [WIDTH - 14.0, y.at(0.0)]);
+    }
+    for &end in contact.contact_ends.iter().filter(|s| s.is_finite()) {
+        svg.line(
+            look::SUPPORT,
+            r#"stroke-dasharray="1 4" stroke-width="1.5""#,
+            [x.at(end), bottom],
+            [x.at(end), top + 24.0],
+        );
+    }
+    for (i, profile) in contact.profiles.iter().enumerate() {
+        let finite: Vec<Option<[f64; 2]>> =
+            profile.points.iter().map(|p| p.iter().all(|v| v.is_finite()).then(|| [x.at(p[0]), y.at(p[1])])).collect();
+        curve(&mut svg, i, &finite);
+        let row = 14.0 + 20.0 * i as f64;
+        sample(&mut svg, i, [150.0, row]);
+        svg.text(look::INK, [206.0, row + 4.5], Anchor::Start, &profile.model);
+    }
+    svg.finish()
+}
+
+fn stroke(series: usize) -> String {
+    let (class, colour) = look::SERIES[series % look::SERIES.len()];
+    let width = if series == 0 { 2.4 } else { 1.7 };
+    let dash = DASHES[series % DASHES.len()];
+    format!(r#"class="{class}" fill="none" stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dash}""#)
+}
+
+/// A curve that is interrupted where a number is missing, with its markers.
+fn curve(svg: &mut Svg, series: usize, points: &[Option<[f64; 2]>]) {
+    let mut d = String::new();
+    let mut pen_down = false;
+    for point in points {
+        if let Some(p) = point {
+            // Writing to a String cannot fail.
+            let _ = write!(d, "{}{} {}", if pen_down { 'L' } else { 'M' }, px(p[0]), px(p[1]));
+        }
+        pen_down = point.is_some();
+    }
+    svg.path(&stroke(series), "", &d);
+    let every = points.len().div_ceil(MARKERS).max(1);
+    // Series start their markers at different points, so that equal curves show all of them.
+    for p in points.iter().skip((series * every) / 3).step_by(every).flatten() {
+        svg.marker(series, *p, 3.4);
+    }
+}
+
+/// A piece of the curve for the legend.
+pub(super) fn sample(svg: &mut Svg, series: usize, at: [f64; 2]) {
+    svg.line(&stroke(series), "", at, [at[0] + 46.0, at[1]]);
+    svg.marker(series, [at[0] + 23.0, at[1]], 3.6);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+    #[test]
+    fn models_differ_in_dash_and_marker_and_are_named() {
+        let report = Sample::new(4, Verdict::Disagree).dossier().report;
+        let contact = &report.contact[0];
+        let text = pressure(contact);
+        assert_well_formed(&text);
+        for (i, profile) in contact.profiles.iter().enumerate() {
+            assert!(text.contains(&format!("stroke-dasharray=\"{}\"", DASHES[i])), "{i}");
+            assert!(text.contains(&profile.model));
+        }
+        assert!(text.contains("<circle") && text.contains("class=\"m s1\"") && text.contains("class=\"m s2\""));
+    }
+
+    #[test]
+    fn missing_numbers_interrupt_the_curve() {
+        let mut svg = Svg::new(1.0, 1.0, "");
+        curve(&mut svg, 0, &[Some([0.0, 0.0]), Some([1.0, 1.0]), None, Some([2.0, 2.0]), Some([3.0, 3.0])]);
+        assert!(svg.finish().contains("M0 0L1 1M2 2L3 3"));
+    }
+
+    #[test]
+    fn nothing_to_draw_is_no_harm() {
+        let mut contact = Sample::new(1, Verdict::Agree).dossier().report.contact.remove(0);
+        contact.profiles.clear();
+        contact.length = f64::NAN;
+        assert_well_formed(&pressure(&contact));
+    }
+}

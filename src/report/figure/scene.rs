@@ -1,0 +1,226 @@
+//! The scene: bodies, supports, loads, contacts.
+
+use std::collections::BTreeMap;
+
+use super::outline::{self, View, chains, polyline, stations};
+use super::svg::{Anchor, Svg, look};
+use super::symbols;
+use crate::problem::{Condition, Interface, Problem};
+use crate::report::number::significant;
+
+const WIDTH: f64 = 560.0;
+const MARGIN: f64 = 66.0;
+/// Page length of the largest traction.
+const LONGEST_ARROW: f64 = 44.0;
+
+/// The bodies in their undeformed state with everything that holds, loads or meets them.
+pub fn scene(problem: &Problem) -> String {
+    let mesh = &problem.mesh;
+    let (view, height) = View::fit(mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
+    let mut svg =
+        Svg::new(WIDTH, height, format!("The scene {} with its supports, loads and contacts", problem.scene.title));
+    for body in 0..problem.scene.bodies.len() {
+        let look = look::BODIES[body % look::BODIES.len()];
+        let d = outline::outline(mesh, body, &view);
+        svg.path(look, r##"fill-rule="evenodd" stroke="#57606a" stroke-width="1""##, &d);
+    }
+    supports(&mut svg, problem, &view);
+    contacts(&mut svg, problem, &view);
+    tractions(&mut svg, problem, &view);
+    labels(&mut svg, problem, &view);
+    svg.finish()
+}
+
+/// The factor by which the picture exaggerates the gap of the contacts, or `None` where every gap is zero.
+pub fn gap_exaggeration(problem: &Problem) -> Option<f64> {
+    let (view, _) = View::fit(problem.mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
+    let largest = problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(|p| p.gap).fold(0.0, f64::max);
+    let page = largest * view.scale;
+    if !(page.is_finite() && page > 0.0) {
+        None
+    } else if page >= 6.0 {
+        Some(1.0)
+    } else {
+        let raw = 14.0 / page;
+        let power = 10f64.powf(raw.log10().floor());
+        Some(power * [1.0, 2.0, 5.0].into_iter().rev().find(|m| m * power <= raw).unwrap_or(1.0))
+    }
+}
+
+fn page_chains(problem: &Problem, view: &View, edges: &[usize]) -> Vec<Vec<[f64; 2]>> {
+    chains(&problem.mesh, edges).into_iter().map(|c| c.into_iter().map(|p| view.at(p)).collect()).collect()
+}
+
+fn edges_where(problem: &Problem, holds: impl Fn(&Condition) -> bool) -> Vec<usize> {
+    (0..problem.conditions.len().min(problem.mesh.edges.len())).filter(|&e| holds(&problem.conditions[e])).collect()
+}
+
+fn supports(svg: &mut Svg, problem: &Problem, view: &View) {
+    for line in page_chains(problem, view, &edges_where(problem, |c| matches!(c, Condition::Clamped(_)))) {
+        symbols::clamped(svg, &line);
+    }
+    for line in page_chains(problem, view, &edges_where(problem, |c| matches!(c, Condition::Roller))) {
+        symbols::roller(svg, &line);
+    }
+    let moved = edges_where(problem, |c| matches!(c, Condition::Clamped(u) if u[0].hypot(u[1]) > 0.0));
+    for line in page_chains(problem, view, &moved) {
+        // Where one support meets another with a different value, the first edge of the chain speaks for it.
+        let value = moved.iter().find_map(|&e| match problem.conditions[e] {
+            Condition::Clamped(u) if view.at(problem.mesh.points[problem.mesh.edges[e].vertices[0]]) == line[0] => {
+                Some(u)
+            }
+            _ => None,
+        });
+        if let (Some(u), Some(station)) = (value, stations(&line, 1e9).first()) {
+            let d = u[0].hypot(u[1]);
+            symbols::arrow(svg, look::LOAD, station.0, [30.0 * u[0] / d, -30.0 * u[1] / d], true);
+        }
+    }
+}
+
+fn contacts(svg: &mut Svg, problem: &Problem, view: &View) {
+    let factor = gap_exaggeration(problem);
+    for interface in &problem.interfaces {
+        let first: Vec<usize> = interface.pairs.iter().filter_map(|pair| pair.edges[0]).collect();
+        for line in page_chains(problem, view, &first) {
+            svg.path(look::CONTACT, r#"stroke-width="3""#, &polyline(&line));
+        }
+        let shift = factor.unwrap_or(0.0);
+        let rigid = interface.pairs.iter().any(|pair| pair.second.is_none());
+        if factor.is_some() || rigid {
+            for line in obstacle(problem, interface, view, shift) {
+                svg.path(look::CONTACT, r#"stroke-width="1.5" stroke-dasharray="5 3""#, &polyline(&line));
+                if rigid {
+                    symbols::hatch(svg, &line, 1.0);
+                }
+            }
+        }
+    }
+}
+
+/// The other side of the gap, at `factor` times its distance, oriented like the first side (body on the left).
+fn obstacle(problem: &Problem, interface: &Interface, view: &View, factor: f64) -> Vec<Vec<[f64; 2]>> {
+    let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
+    for pair in &interface.pairs {
+        let mut ends = [0, 1].map(|k| {
+            let p = problem.mesh.points[pair.first[k]];
+            view.at([0, 1].map(|c| p[c] + factor * pair.gap[k] * pair.normal[c]))
+        });
+        // n' is outward: turn the pair round where walking along it would have the body on the right.
+        let tangent = [0, 1].map(|c| problem.mesh.points[pair.first[1]][c] - problem.mesh.points[pair.first[0]][c]);
+        let forward = tangent[1] * pair.normal[0] - tangent[0] * pair.normal[1] > 0.0;
+        if !forward {
+            ends.reverse();
+        }
+        let near = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < 0.01;
+        match lines.last_mut() {
+            Some(line) if forward && near(line[line.len() - 1], ends[0]) => line.push(ends[1]),
+            Some(line) if !forward && near(line[0], ends[1]) => line.insert(0, ends[0]),
+            _ => lines.push(ends.to_vec()),
+        }
+    }
+    lines
+}
+
+fn tractions(svg: &mut Svg, problem: &Problem, view: &View) {
+    let mesh = &problem.mesh;
+    let loaded = edges_where(problem, |c| matches!(c, Condition::Traction(p) if p.iter().flatten().any(|x| *x != 0.0)));
+    let values: BTreeMap<usize, [[f64; 2]; 2]> = loaded
+        .iter()
+        .filter_map(|&e| match problem.conditions[e] {
+            Condition::Traction(p) => Some((e, p)),
+            _ => None,
+        })
+        .collect();
+    let largest = values.values().flatten().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
+    if !(largest.is_finite() && largest > 0.0) {
+        return;
+    }
+    let factor = LONGEST_ARROW / largest;
+    // About one arrow per 16 page units, wherever they fall on the edges.
+    let mut carried = 8.0;
+    let mut tails = String::new();
+    for (&e, p) in &values {
+        let ends = mesh.edges[e].vertices.map(|v| view.at(mesh.points[v]));
+        let (_, normal) = mesh.edge_frame(e);
+        let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
+        let inward = |f: [f64; 2]| f[0] * normal[0] + f[1] * normal[1] < 0.0;
+        let page = |f: [f64; 2]| [factor * f[0], -factor * f[1]];
+        let tail = |k: usize| {
+            let (at, v) = (ends[k], page(p[k]));
+            if inward(p[k]) { [at[0] - v[0], at[1] - v[1]] } else { [at[0] + v[0], at[1] + v[1]] }
+        };
+        tails.push_str(&polyline(&[tail(0), tail(1)]));
+        let mut s = carried;
+        while s <= length {
+            let w = s / length;
+            let f = [0, 1].map(|c| (1.0 - w) * p[0][c] + w * p[1][c]);
+            let at = [0, 1].map(|c| (1.0 - w) * ends[0][c] + w * ends[1][c]);
+            symbols::arrow(svg, look::LOAD, at, page(f), !inward(f));
+            s += 16.0;
+        }
+        carried = s - length;
+    }
+    svg.path(look::LOAD, r#"stroke-width="1" stroke-opacity="0.6""#, &tails);
+    let text = format!("largest traction {}", significant(largest, 4));
+    svg.text(look::DIM, [WIDTH - 6.0, svg.height - 8.0], Anchor::End, &text);
+}
+
+fn labels(svg: &mut Svg, problem: &Problem, view: &View) {
+    let mesh = &problem.mesh;
+    for (b, body) in problem.scene.bodies.iter().enumerate() {
+        let (mut area, mut sum) = (0.0, [0.0; 2]);
+        for t in (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == b) {
+            let [p, q, r] = mesh.corners(t);
+            let a = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+            area += a;
+            sum = [0, 1].map(|c| sum[c] + a * (p[c] + q[c] + r[c]) / 3.0);
+        }
+        if area <= 0.0 {
+            continue;
+        }
+        let at = view.at(sum.map(|s| s / area));
+        svg.text(&format!(r#"{} font-weight="600""#, look::INK), at, Anchor::Middle, &body.name);
+        let force = body.body_force;
+        if force[0].hypot(force[1]) > 0.0 {
+            let d = force[0].hypot(force[1]);
+            symbols::arrow(svg, look::LOAD, [at[0], at[1] + 10.0], [28.0 * force[0] / d, -28.0 * force[1] / d], true);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+    #[test]
+    fn every_condition_has_its_symbol() {
+        let problem = Sample::new(4, Verdict::Agree).problem;
+        let text = scene(&problem);
+        assert_well_formed(&text);
+        for class in ["b0", "b1", "support", "contact", "load"] {
+            assert!(text.contains(&format!("class=\"{class}\"")), "{class}");
+        }
+        assert!(text.contains("left &lt;a&amp;b&gt;") && text.contains("largest traction 4"));
+        // The roller's circles lie below the block, the clamp's hatching right of it.
+        assert!(text.contains("<circle"));
+    }
+
+    #[test]
+    fn a_gap_is_drawn_as_a_second_line() {
+        let mut problem = Sample::new(4, Verdict::Agree).problem;
+        assert_eq!(gap_exaggeration(&problem), None);
+        let without = scene(&problem).matches("stroke-dasharray").count();
+        for pair in &mut problem.interfaces[0].pairs {
+            pair.gap = [1e-3, 1e-3];
+        }
+        let factor = gap_exaggeration(&problem).unwrap();
+        assert!(factor > 10.0 && factor < 1000.0, "{factor}");
+        assert_eq!(scene(&problem).matches("stroke-dasharray").count(), without + 1);
+        for pair in &mut problem.interfaces[0].pairs {
+            pair.gap = [0.5, 0.5];
+        }
+        assert_eq!(gap_exaggeration(&problem), Some(1.0));
+    }
+}

@@ -1,0 +1,74 @@
+//! The style sheet.
+
+/// Light and dark, narrow and wide, screen and paper.
+pub(super) const CSS: &str = r#"
+:root{--paper:#fff;--sheet:#f6f8fa;--ink:#1f2328;--dim:#59636e;--rule:#d1d9e0;--good:#1a7f37;--bad:#cf222e;--warn:#9a6700;--accent:#0969da;--good-bg:#e6f6ea;--bad-bg:#ffebe9;--warn-bg:#fff6db}
+*{box-sizing:border-box}
+body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,"Segoe UI",sans-serif}
+header,main,footer{max-width:1240px;margin:0 auto;padding:0 clamp(14px,3vw,36px)}
+header{padding-top:26px}
+h1{font-size:clamp(1.25rem,3.4vw,1.75rem);line-height:1.25;margin:0 0 2px;overflow-wrap:anywhere}
+h2{font-size:1.3rem;margin:44px 0 10px;padding-bottom:6px;border-bottom:1px solid var(--rule)}
+h3{font-size:1rem;margin:0 0 6px;overflow-wrap:anywhere}
+p{margin:6px 0 10px;max-width:76ch}
+code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhere}
+.sub{color:var(--dim);margin:0 0 18px}
+.verdict{display:flex;gap:18px;align-items:center;padding:16px 20px;border:2px solid;border-left-width:12px;border-radius:8px}
+.verdict .symbol{font-size:2.5rem;line-height:1}
+.verdict .word{font-size:1.5rem;font-weight:700;line-height:1.2;letter-spacing:.02em}
+.verdict p{margin:3px 0 0;color:var(--ink)}
+.agree{border-color:var(--good);background:var(--good-bg)}.agree .word,.agree .symbol{color:var(--good)}
+.disagree{border-color:var(--bad);background:var(--bad-bg)}.disagree .word,.disagree .symbol{color:var(--bad)}
+.infeasible,.failed{border-color:var(--warn);background:var(--warn-bg)}
+.infeasible .word,.infeasible .symbol,.failed .word,.failed .symbol{color:var(--warn)}
+.failures{margin:16px 0 0;padding:14px 20px 6px;border:2px solid var(--bad);border-radius:8px}
+.failures h2{margin:0 0 8px;border:0;padding:0;color:var(--bad);font-size:1.15rem}
+.failures li{margin-bottom:14px}
+.failures ol{padding-left:24px;margin:0}
+.failures .name{font-weight:700;font-family:ui-monospace,Menlo,monospace;overflow-wrap:anywhere}
+.facts{display:flex;flex-wrap:wrap;gap:2px 22px;margin:3px 0;padding:0;font-variant-numeric:tabular-nums}
+.facts span b{font-weight:600}
+.answers{display:grid;grid-template-columns:minmax(0,1fr);gap:14px;margin:18px 0 0}
+.card{background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:14px 18px;min-width:0}
+.card p{margin:4px 0 6px}
+.card .big{font-size:1.7rem;font-weight:700;line-height:1.2;margin:2px 0 4px}
+.first{display:grid;gap:14px;margin-top:14px;grid-template-columns:minmax(0,1fr)}
+@media(min-width:900px){.first{grid-template-columns:minmax(0,1.25fr) minmax(0,1fr)}}
+.gallery{display:grid;gap:16px;grid-template-columns:repeat(auto-fit,minmax(min(100%,430px),1fr))}
+figure{margin:0;background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:12px 14px;min-width:0}
+figure svg,.card svg{display:block;width:100%;height:auto;max-width:640px;margin:0 auto}
+figcaption{font-size:.9rem;color:var(--dim);margin-top:8px}
+figcaption b{color:var(--ink)}
+.scroll{overflow-x:auto;margin:10px 0 18px}
+table{border-collapse:collapse;font-size:.9rem;width:100%;font-variant-numeric:tabular-nums}
+caption{text-align:left;font-weight:600;padding:6px 0}
+th,td{text-align:left;padding:6px 12px 6px 0;border-bottom:1px solid var(--rule);vertical-align:top}
+thead th{color:var(--dim);font-weight:600;white-space:nowrap}
+td.n,th.n{text-align:right;white-space:nowrap}
+td.why{min-width:250px;color:var(--dim)}
+td.long{overflow-wrap:anywhere;min-width:170px}
+tr.no td{background:var(--bad-bg)}
+.yes{color:var(--good);font-weight:600;white-space:nowrap}.not{color:var(--bad);font-weight:700;white-space:nowrap}
+.phases{display:flex;height:22px;border-radius:4px;overflow:hidden;border:1px solid var(--rule);margin:8px 0 4px}
+.phases div{min-width:1px}
+.key{display:flex;flex-wrap:wrap;gap:2px 16px;font-size:.85rem;color:var(--dim);padding:0;margin:0 0 14px;list-style:none}
+.key i{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:6px;border:1px solid var(--rule)}
+.p0{background:#0072b2}.p1{background:#e69f00}.p2{background:#009e73}.p3{background:#cc79a7}.p4{background:#56b4e9}.p5{background:#d55e00}.p6{background:#8c959f}
+.notes li{margin-bottom:6px}
+.words dt{font-weight:600;margin-top:10px}.words dd{margin:2px 0 0;max-width:78ch;color:var(--dim)}
+footer{color:var(--dim);font-size:.88rem;padding-top:30px;padding-bottom:40px}
+@media(prefers-color-scheme:dark){
+:root{--paper:#0d1117;--sheet:#151b23;--ink:#e6edf3;--dim:#9aa4af;--rule:#30363d;--good:#3fb950;--bad:#ff7b72;--warn:#d29922;--accent:#58a6ff;--good-bg:#12261a;--bad-bg:#2d1618;--warn-bg:#2b2413}
+svg .ink{fill:#e6edf3}svg .dim{fill:#9aa4af}svg .line{stroke:#e6edf3}svg .grid{stroke:#363d47}svg .support{stroke:#aab4bf}
+svg .load{fill:#f0a45d;stroke:#f0a45d}svg .contact{stroke:#ff7b72}svg .bad{fill:#ff7b72}svg .band{fill:#58a6ff;fill-opacity:.3}
+svg .b0{fill:#234566}svg .b1{fill:#57461f}svg .b2{fill:#24503a}svg .b3{fill:#4d3a55}svg .b4{fill:#5c362f}svg .b5{fill:#3b4250}
+svg .s0{stroke:#58a6ff}svg .s1{stroke:#ff9457}svg .s2{stroke:#3ccf9b}svg .s3{stroke:#d990c4}svg .s4{stroke:#d9b23c}svg .s5{stroke:#aab4bf}
+svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
+}
+@media print{
+body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
+figure,.card,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
+.scroll{overflow:visible}table{font-size:8.5pt}
+*{print-color-adjust:exact;-webkit-print-color-adjust:exact}
+}
+"#;

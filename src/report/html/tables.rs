@@ -1,0 +1,259 @@
+//! The numbers.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+
+use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
+use crate::report::words::basis_word;
+use crate::report::{DualSummary, Energy, Report};
+
+pub(super) fn tables(report: &Report) -> Markup {
+    html! {
+        section #checks { h2 { "Checks" } (checks(report)) }
+        @if let Some(energy) = &report.energy { section #energy { h2 { "Energy" } (energies(report, energy)) } }
+        @if !report.contact.is_empty() { section #contact { h2 { "Contact" } (contacts(report)) } }
+        @if report.stress.is_some() { section #stress { h2 { "Stress" } (stress(report)) } }
+        section #solvers { h2 { "Solvers" } (solvers(report)) }
+        @if !report.history.is_empty() { section #history { h2 { "Adaptive refinement" } (history(report)) } }
+        @if !report.notes.is_empty() { section #notes { h2 { "Notes" } (notes(report)) } }
+        section #provenance { h2 { "Where the numbers come from" } (provenance(report)) }
+    }
+}
+
+/// A table that scrolls sideways where it does not fit.
+fn scroll(label: &str, table: Markup) -> Markup {
+    html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
+}
+
+fn checks(report: &Report) -> Markup {
+    let mut list: Vec<_> = report.checks.iter().collect();
+    // Stable: the failing ones first, otherwise in the order of the report.
+    list.sort_by_key(|check| check.passed);
+    html! {
+        @if list.is_empty() { p { "No check was made." } } @else {
+            p { "Margin: how far the difference is from what is allowed. A check that could not be made does not count as passed." }
+            (scroll("checks", html! {
+                table {
+                    thead { tr {
+                        th { "check" } th { "passed" } th.n { "value" } th.n { "held against" } th.n { "difference" } th.n { "allowed" }
+                        th.n { "margin" } th { "basis" } th { "why" }
+                    } }
+                    tbody { @for check in list {
+                        tr.no[!check.passed] {
+                            td.long { code { (clean(&check.name)) } }
+                            td {
+                                @if check.passed { span.yes { "✔ yes" } }
+                                @else if check.difference.is_none() { span.not { "✘ not made" } }
+                                @else { span.not { "✘ no" } }
+                            }
+                            td.n { (optional(check.value, 8)) } td.n { (optional(check.reference, 8)) }
+                            td.n { (optional(check.difference, 3)) } td.n { (significant(check.allowed, 3)) }
+                            td.n { (optional(check.margin, 3)) } td { (basis_word(check.basis)) } td.why { (clean(&check.why)) }
+                        }
+                    } }
+                }
+            }))
+        }
+    }
+}
+
+fn energies(report: &Report, energy: &Energy) -> Markup {
+    let digits = digits_to_tell(energy.lower, energy.upper).max(10);
+    let row = |name: &str, value: String, text: &str| html! { tr { td { (name) } td.n { (value) } td.why { (text) } } };
+    html! {
+        (scroll("energies", html! {
+            table {
+                thead { tr { th { "quantity" } th.n { "value" } th { "meaning" } } }
+                tbody {
+                    (row("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"))
+                    (row("upper bound", significant(energy.upper, digits), &format!("best admissible 𝓛(v), from {}", clean(&energy.upper_from))))
+                    (row("gap", significant(energy.gap, 6), "upper − lower"))
+                    (row("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"))
+                    (row("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"))
+                    (row("gap of the free bound, local", optional(energy.gap_local, 10), "constitutive-relation error plus contact complementarity, integrated triangle by triangle"))
+                    (row("complementary energy", significant(energy.complementary, digits), "𝒮(λ_h) = ½∫ a λ_h : λ_h"))
+                    (row("widening", significant(energy.widening, 3), "what rounding and residual equilibrium can have cost, contained in both bounds"))
+                    (row("guaranteed", if energy.guaranteed { "yes".into() } else { "for the data on the mesh".into() }, "whether the bracket holds for the scene as written"))
+                    @for primal in &report.primal {
+                        (row(&format!("𝓛 of {}", clean(&primal.name)), significant(primal.energy, digits),
+                            if primal.admissible { "admissible: an upper bound" } else { "not admissible everywhere: no bound" }))
+                    }
+                }
+            }
+        }))
+    }
+}
+
+fn contacts(report: &Report) -> Markup {
+    html! {
+        p { "Force and moment act on the first side; the moment is about the origin." }
+        (scroll("contacts", html! {
+            table {
+                thead { tr {
+                    th { "contact" } th { "model" } th.n { "force" } th.n { "moment" } th.n { "largest pressure" } th.n { "at" } th.n { "open" }
+                    th.n { "ends of contact" } th.n { "pressure difference" }
+                } }
+                tbody { @for contact in &report.contact {
+                    tr {
+                        td.long rowspan="2" { code { (clean(&contact.name)) } br; "length " (significant(contact.length, 4)) }
+                        td { "dual" } td.n { (vector(contact.resultant.dual, 7)) } td.n { (significant(contact.moment.dual, 7)) }
+                        td.n { (significant(contact.pressure_max.dual, 5)) } td.n { (vector(contact.pressure_max_at.dual, 4)) }
+                        td.n { (percent(contact.open_fraction)) }
+                        td.n rowspan="2" {
+                            @if contact.contact_ends.is_empty() { "–" }
+                            @for (i, end) in contact.contact_ends.iter().enumerate() { @if i > 0 { ", " } (significant(*end, 4)) }
+                        }
+                        td.n rowspan="2" { (contact.pressure_l2_difference.map_or("–".to_string(), percent)) }
+                    }
+                    tr {
+                        td { "primal" } td.n { (contact.resultant.primal.map_or("–".to_string(), |r| vector(r, 7))) }
+                        td.n { (optional(contact.moment.primal, 7)) } td.n { (optional(contact.pressure_max.primal, 5)) }
+                        td.n { (contact.pressure_max_at.primal.map_or("–".to_string(), |p| vector(p, 4))) }
+                        td.n { (contact.open_fraction_primal.map_or("–".to_string(), percent)) }
+                    }
+                } }
+            }
+        }))
+    }
+}
+
+fn stress(report: &Report) -> Markup {
+    let Some(stress) = &report.stress else { return html! {} };
+    let parts = stress.component_l2_difference;
+    html! {
+        p {
+            "Dual against " (clean(&stress.against)) ": " b { (percent(stress.relative_energy_norm_difference)) } " apart in the energy norm. "
+            "Component by component, relative to the L² norm of the whole dual stress:"
+        }
+        (scroll("stress differences", html! {
+            table {
+                thead { tr { th.n { "σ_xx" } th.n { "σ_yy" } th.n { "σ_xy" } th.n { "von Mises" } th.n { "largest von Mises, dual" } th.n { "primal" } } }
+                tbody { tr {
+                    td.n { (percent(parts.xx)) } td.n { (percent(parts.yy)) } td.n { (percent(parts.xy)) } td.n { (percent(parts.von_mises)) }
+                    td.n { (significant(stress.von_mises_max.dual, 5)) } td.n { (optional(stress.von_mises_max.primal, 5)) }
+                } }
+            }
+        }))
+    }
+}
+
+fn solvers(report: &Report) -> Markup {
+    html! {
+        @if let Some(dual) = &report.dual { (dual_solver(dual)) } @else { p { "There is no dual solution." } }
+        @if !report.primal.is_empty() {
+            (scroll("displacement models", html! {
+                table {
+                    caption { "Displacement models" }
+                    thead { tr {
+                        th { "model" } th { "program" } th.n { "degree" } th.n { "unknowns" } th.n { "iterations" } th { "admissible" } th.n { "error at most" }
+                        th.n { "seconds" }
+                    } }
+                    tbody { @for primal in &report.primal { tr {
+                        td.long { (clean(&primal.name)) } td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
+                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) } td { @if primal.admissible { "yes" } @else { "no" } }
+                        td.n { (primal.relative_error_bound.map_or("–".to_string(), percent)) }
+                        td.n { (optional(primal.seconds.get("total").copied(), 3)) }
+                    } } }
+                }
+            }))
+            @for primal in &report.primal {
+                p { b { (clean(&primal.name)) } ", seconds by phase" }
+                (phases(&primal.seconds))
+            }
+        }
+    }
+}
+
+fn dual_solver(dual: &DualSummary) -> Markup {
+    let s = dual.seconds;
+    let names = [
+        ("read", s.read),
+        ("assemble", s.assemble),
+        ("factor", s.factor),
+        ("contact", s.contact),
+        ("recover", s.recover),
+        ("total", s.total),
+    ];
+    html! {
+        (scroll("dual solver", html! {
+            table {
+                caption { "Dual solve" }
+                thead { tr { th { "method" } th.n { "triangles" } th.n { "unknowns" } th.n { "contact steps" } th.n { "equilibrium residual" } th.n { "seconds" } } }
+                tbody { tr {
+                    td { (dual.method) } td.n { (grouped(dual.triangles)) } td.n { (grouped(dual.unknowns)) } td.n { (dual.iterations) }
+                    td.n { (significant(dual.equilibrium_residual, 3)) } td.n { (significant(s.total, 3)) }
+                } }
+            }
+        }))
+        (phases(&names.into_iter().map(|(name, value)| (name.to_string(), value)).collect()))
+    }
+}
+
+/// Seconds by phase as one bar; `total` is its length, and what the phases leave of it is shown as the rest.
+fn phases(all: &BTreeMap<String, f64>) -> Markup {
+    let valid = |s: f64| s.is_finite() && s > 0.0;
+    let mut parts: Vec<(&str, f64)> = all
+        .iter()
+        .filter(|(name, s)| name.as_str() != "total" && valid(**s))
+        .map(|(name, s)| (name.as_str(), *s))
+        .collect();
+    let sum: f64 = parts.iter().map(|part| part.1).sum();
+    let total = all.get("total").copied().filter(|s| valid(*s)).unwrap_or(sum).max(sum);
+    if total - sum > 0.005 * total {
+        parts.push(("rest", total - sum));
+    }
+    let colour = |i: usize, name: &str| if name == "rest" { "p6".to_string() } else { format!("p{}", i % 6) };
+    html! {
+        @if total > 0.0 {
+            div.phases aria-hidden="true" {
+                @for (i, (name, s)) in parts.iter().enumerate() {
+                    div class=(colour(i, name)) style=(format!("width:{:.2}%", 100.0 * s / total)) {}
+                }
+            }
+            ul.key {
+                @for (i, (name, s)) in parts.iter().enumerate() { li { i class=(colour(i, name)) {} (clean(name)) " " (seconds(*s)) } }
+                li { b { "total " (seconds(total)) } }
+            }
+        }
+    }
+}
+
+fn history(report: &Report) -> Markup {
+    html! {
+        (scroll("adaptive refinement", html! {
+            table {
+                thead { tr { th.n { "mesh" } th.n { "triangles" } th.n { "unknowns" } th.n { "lower bound" } th.n { "upper bound" } th.n { "error at most" } th.n { "seconds since start" } } }
+                tbody { @for (i, row) in report.history.iter().enumerate() { tr {
+                    @let digits = digits_to_tell(row.lower, row.upper);
+                    td.n { (i + 1) } td.n { (grouped(row.triangles)) } td.n { (grouped(row.unknowns)) } td.n { (significant(row.lower, digits)) }
+                    td.n { (significant(row.upper, digits)) } td.n { (percent(row.relative_error_bound)) } td.n { (significant(row.seconds, 3)) }
+                } } }
+            }
+        }))
+    }
+}
+
+fn notes(report: &Report) -> Markup {
+    html! {
+        ul.notes { @for note in &report.notes {
+            li { @if note.weakens_guarantee { span.not { "weakens the guarantee: " } } (clean(&note.text)) }
+        } }
+    }
+}
+
+fn provenance(report: &Report) -> Markup {
+    let made = &report.provenance;
+    html! {
+        (scroll("provenance", html! {
+            table { tbody {
+                tr { th { "hypercircle" } td { (clean(&made.version)) ", " (made.threads) @if made.threads == 1 { " thread" } @else { " threads" } } }
+                @for (name, version) in &made.components { tr { th { (clean(name)) } td.long { (clean(version)) } } }
+                tr { th { "scene, SHA-256" } td.long { code { (clean(&made.scene_sha256)) } } }
+                tr { th { "mesh, SHA-256" } td.long { code { (clean(&made.mesh_sha256)) } } }
+                tr { th { "Cargo.lock, SHA-256" } td.long { code { (clean(&made.lock_sha256)) } } }
+            } }
+        }))
+        @if !made.seconds.is_empty() { p { b { "The whole run" } ", seconds by phase" } (phases(&made.seconds)) }
+    }
+}

@@ -1,0 +1,153 @@
+//! The first screen: verdict, failures, bracket, three answers.
+
+use maud::{Markup, PreEscaped, html};
+
+use crate::report::figure::bracket::bracket;
+use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, significant, vector};
+use crate::report::words::{accuracy, basis_word, failing, meaning, status_symbol, status_word};
+use crate::report::{Report, Status};
+
+pub(super) fn first_screen(report: &Report) -> Markup {
+    html! {
+        header {
+            h1 { (clean(&report.title)) }
+            p.sub {
+                "Scene " code { (clean(&report.scene)) }
+                @if let Some(dual) = &report.dual { " · " (grouped(dual.triangles)) " triangles" }
+            }
+            div class=(format!("verdict {}", status_word(report.status))) role="status" {
+                span.symbol aria-hidden="true" { (status_symbol(report.status)) }
+                div {
+                    div.word { (headline(report.status)) }
+                    p { (clean(&report.verdict)) }
+                }
+            }
+            (failures(report))
+            div.first {
+                @if report.energy.is_some() { (bracket_card(report)) }
+                div.answers {
+                    (agreement(report))
+                    @if report.energy.is_some() { (distance(report)) }
+                    (differences(report))
+                }
+            }
+        }
+    }
+}
+
+fn headline(status: Status) -> &'static str {
+    match status {
+        Status::Agree => "AGREE",
+        Status::Disagree => "DISAGREE",
+        Status::Infeasible => "INFEASIBLE: no equilibrium exists",
+        Status::Failed => "FAILED: there is nothing to trust here",
+    }
+}
+
+/// The failing checks, each with its numbers and what it means.
+fn failures(report: &Report) -> Markup {
+    let failing = failing(report);
+    html! {
+        @if !failing.is_empty() {
+            section.failures aria-label="failing checks" {
+                h2 { "✘ " (failing.len()) " of " (report.checks.len()) " checks did not pass" }
+                ol {
+                    @for check in failing {
+                        li {
+                            span.name { (clean(&check.name)) }
+                            @if let Some(difference) = check.difference {
+                                div.facts {
+                                    span { "found " b { (optional(check.value, 9)) } }
+                                    span { "held against " b { (optional(check.reference, 9)) } }
+                                    span { "difference " b { (significant(difference, 4)) } }
+                                    span { "allowed " b { (significant(check.allowed, 4)) } " (" (basis_word(check.basis)) ")" }
+                                }
+                            }
+                            div { (clean(&check.why)) }
+                            div { b { "What it means: " } (meaning(check)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn bracket_card(report: &Report) -> Markup {
+    html! {
+        section.card aria-label="energy bracket" {
+            h3 { "Where the exact energy lies" }
+            (PreEscaped(bracket(report)))
+            @if let Some(energy) = &report.energy {
+                @let digits = digits_to_tell(energy.lower, energy.upper);
+                p {
+                    "Stresses in equilibrium give " b { (significant(energy.lower, digits)) } ", the best admissible displacement ("
+                    (clean(&energy.upper_from)) ") gives " b { (significant(energy.upper, digits)) }
+                    ". The exact energy is between them. Marks: one per computed energy."
+                }
+            }
+        }
+    }
+}
+
+fn agreement(report: &Report) -> Markup {
+    let (passed, all) = (report.checks.len() - failing(report).len(), report.checks.len());
+    html! {
+        section.card {
+            h3 { "Do the two models agree?" }
+            div.big {
+                @match report.status {
+                    Status::Agree if report.primal.is_empty() => "No second model",
+                    Status::Agree => "Yes",
+                    Status::Disagree => "No",
+                    Status::Infeasible | Status::Failed => "Not compared",
+                }
+            }
+            p {
+                @if all == 0 { "No check was made." }
+                @else if passed == all { "All " (all) " checks passed." }
+                @else { (passed) " of " (all) " checks passed. The others are named above." }
+            }
+        }
+    }
+}
+
+fn distance(report: &Report) -> Markup {
+    html! {
+        section.card {
+            h3 { "How far can each be from the truth?" }
+            @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
+                div.big { "≤ " (percent(energy.relative_error_bound)) }
+            }
+            p { (accuracy(report)) }
+            @for primal in &report.primal {
+                @if let Some(bound) = primal.relative_error_bound {
+                    p { (clean(&primal.name)) ": at most " b { (percent(bound)) } "." }
+                } @else {
+                    p { (clean(&primal.name)) ": no bound, its energy does not lie above the lower bound or it is not admissible." }
+                }
+            }
+        }
+    }
+}
+
+fn differences(report: &Report) -> Markup {
+    html! {
+        @if let Some(stress) = &report.stress {
+            section.card {
+                h3 { "Where do they differ?" }
+                div.big { (percent(stress.relative_energy_norm_difference)) }
+                p {
+                    "is the difference of the stresses of the dual model and of " (clean(&stress.against)) " in the energy norm. "
+                    "The triangle that contributes most (" (percent(stress.worst_share)) " of the square) is number "
+                    (stress.worst_triangle) " at " (vector(stress.worst_at, 3)) "."
+                }
+                @for contact in &report.contact {
+                    @if let Some(difference) = contact.pressure_l2_difference {
+                        p { "Pressure on " code { (clean(&contact.name)) } ": " b { (percent(difference)) } " apart." }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! `junit.xml`: one test case per check.
+
+use std::time::Duration;
+
+use quick_junit::{
+    NonSuccessKind, Report as JunitReport, SerializeError, TestCase, TestCaseStatus, TestSuite, XmlString,
+};
+
+use super::number::{optional, significant};
+use super::{Report, Status};
+use crate::compare::Check;
+
+/// The checks as a JUnit test suite named after the scene, the notes as its output. A run without a verdict
+/// (infeasible or failed) adds one test case that says so: a file without failures must mean agreement.
+pub fn junit(report: &Report) -> Result<String, SerializeError> {
+    let mut suite = TestSuite::new(format!("hypercircle {} {}", report.command, report.scene));
+    suite.add_test_cases(report.checks.iter().map(|check| case(check, &report.scene)));
+    let verdict = match report.status {
+        Status::Infeasible => Some(NonSuccessKind::Failure),
+        Status::Failed => Some(NonSuccessKind::Error),
+        Status::Agree | Status::Disagree => None,
+    };
+    if let Some(kind) = verdict {
+        let mut status = TestCaseStatus::non_success(kind);
+        status.set_message(report.verdict.as_str()).set_type(super::words::status_word(report.status));
+        suite.add_test_case(with_class(TestCase::new("verdict", status), &report.scene));
+    }
+    if let Some(time) = total_seconds(report) {
+        suite.set_time(time);
+    }
+    if !report.notes.is_empty() {
+        let notes: Vec<&str> = report.notes.iter().map(|note| note.text.as_str()).collect();
+        suite.set_system_out(notes.join("\n"));
+    }
+    let mut junit = JunitReport::new("hypercircle");
+    if let Some(time) = total_seconds(report) {
+        junit.set_time(time);
+    }
+    junit.add_test_suite(suite);
+    junit.to_string()
+}
+
+fn with_class(mut case: TestCase, scene: &str) -> TestCase {
+    case.classname = Some(XmlString::new(format!("hypercircle.{scene}")));
+    case
+}
+
+fn case(check: &Check, scene: &str) -> TestCase {
+    let status = if check.passed {
+        TestCaseStatus::success()
+    } else {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        let message = match check.difference {
+            Some(difference) => {
+                format!(
+                    "difference {} exceeds the allowed {}",
+                    significant(difference, 6),
+                    significant(check.allowed, 6)
+                )
+            }
+            None => "the check could not be made, so it has not passed".to_string(),
+        };
+        status.set_message(message).set_type(super::words::basis_word(check.basis));
+        status.set_description(format!(
+            "value {}\nreference {}\ndifference {}\nallowed {}\n{}",
+            optional(check.value, 12),
+            optional(check.reference, 12),
+            optional(check.difference, 6),
+            significant(check.allowed, 6),
+            check.why
+        ));
+        status
+    };
+    with_class(TestCase::new(check.name.as_str(), status), scene)
+}
+
+/// Time of the run, where it is one that a duration can hold.
+fn total_seconds(report: &Report) -> Option<Duration> {
+    let whole = report.provenance.seconds.get("total").copied();
+    let seconds = whole.or_else(|| report.dual.as_ref().map(|dual| dual.seconds.total))?;
+    Duration::try_from_secs_f64(seconds).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+    #[test]
+    fn failures_are_counted_named_and_explained() {
+        let report = Sample::new(2, Verdict::Disagree).dossier().report;
+        let text = junit(&report).unwrap();
+        assert_well_formed(&text);
+        let parsed = JunitReport::deserialize_from_str(&text).unwrap();
+        let failing = report.checks.iter().filter(|c| !c.passed).count();
+        assert_eq!((parsed.tests, parsed.failures), (report.checks.len(), failing));
+        assert!(failing >= 2);
+        for check in report.checks.iter().filter(|c| !c.passed) {
+            let case = parsed.test_suites[0].test_cases.iter().find(|c| c.name.as_str() == check.name).unwrap();
+            let TestCaseStatus::NonSuccess { description: Some(text), .. } = &case.status else {
+                panic!("{}", check.name)
+            };
+            assert!(text.as_str().contains("allowed") && text.as_str().contains(&check.why));
+        }
+        assert!(parsed.test_suites[0].system_out.as_ref().unwrap().as_str().contains(&report.notes[0].text));
+    }
+
+    #[test]
+    fn no_verdict_is_no_success() {
+        for (verdict, failures, errors) in [(Verdict::Infeasible, 1, 0), (Verdict::Failed, 0, 1)] {
+            let mut report = Sample::new(1, verdict).dossier().report;
+            report.checks.clear();
+            let parsed = JunitReport::deserialize_from_str(&junit(&report).unwrap()).unwrap();
+            assert_eq!((parsed.failures, parsed.errors), (failures, errors));
+        }
+    }
+
+    #[test]
+    fn odd_times_and_characters_do_no_harm() {
+        let mut report = Sample::new(1, Verdict::Agree).dossier().report;
+        report.provenance.seconds.insert("total".to_string(), f64::NAN);
+        report.checks[0].name = "a\u{1}<b>&\"".to_string();
+        assert_well_formed(&junit(&report).unwrap());
+    }
+}

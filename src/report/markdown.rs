@@ -1,0 +1,178 @@
+//! `summary.md`: the report on one screen, for a comment of a continuous-integration job.
+
+use std::fmt::Write;
+
+use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
+use super::words::{accuracy, basis_word, failing, status_symbol, status_word};
+use super::{Report, Status};
+
+/// How many failing checks are listed before the rest is only counted.
+const LISTED: usize = 12;
+
+/// The report as Markdown.
+pub fn summary(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail, so the results of `write!` below carry no information.
+    let symbol = if report.status == Status::Agree { "✅" } else { status_symbol(report.status) };
+    let _ = writeln!(text, "## {symbol} {}: {}\n", cell(&report.title), status_word(report.status));
+    let _ = writeln!(text, "{}\n", cell(&report.verdict));
+    bracket(&mut text, report);
+    checks(&mut text, report);
+    primals(&mut text, report);
+    contacts(&mut text, report);
+    let weakening: Vec<_> = report.notes.iter().filter(|note| note.weakens_guarantee).collect();
+    for note in &weakening {
+        let _ = writeln!(text, "> **Weakens the guarantee:** {}\n", cell(&note.text));
+    }
+    if report.notes.len() > weakening.len() {
+        let _ = writeln!(text, "{} more note(s) in `report.html`.\n", report.notes.len() - weakening.len());
+    }
+    let _ = writeln!(text, "`{}` · hypercircle {}", code(&report.scene), cell(&report.provenance.version));
+    text
+}
+
+fn bracket(text: &mut String, report: &Report) {
+    let Some(energy) = &report.energy else { return };
+    let digits = digits_to_tell(energy.lower, energy.upper);
+    let _ = writeln!(
+        text,
+        "Exact energy 𝓛(u) between **{}** and **{}** (upper bound from {}). {}\n",
+        significant(energy.lower, digits),
+        significant(energy.upper, digits),
+        cell(&energy.upper_from),
+        accuracy(report)
+    );
+}
+
+fn checks(text: &mut String, report: &Report) {
+    let failing = failing(report);
+    if report.checks.is_empty() {
+        let _ = writeln!(text, "No checks were made.\n");
+    } else if failing.is_empty() {
+        let _ = writeln!(text, "All {} checks passed.\n", report.checks.len());
+    } else {
+        let _ = writeln!(text, "**{} of {} checks failed:**\n", failing.len(), report.checks.len());
+        let _ = writeln!(text, "| check | value | reference | difference | allowed | basis | why |");
+        let _ = writeln!(text, "|---|--:|--:|--:|--:|---|---|");
+        for check in failing.iter().take(LISTED) {
+            let _ = writeln!(
+                text,
+                "| `{}` | {} | {} | {} | {} | {} | {} |",
+                code(&check.name),
+                optional(check.value, 7),
+                optional(check.reference, 7),
+                check.difference.map_or("not made".to_string(), |d| significant(d, 4)),
+                significant(check.allowed, 4),
+                basis_word(check.basis),
+                cell(&check.why)
+            );
+        }
+        if failing.len() > LISTED {
+            let rest: Vec<String> = failing[LISTED..].iter().map(|check| format!("`{}`", code(&check.name))).collect();
+            let _ = writeln!(text, "\nand {}", rest.join(", "));
+        }
+        text.push('\n');
+    }
+}
+
+fn primals(text: &mut String, report: &Report) {
+    if report.primal.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "| displacement model | energy 𝓛 | admissible | error at most | unknowns |");
+    let _ = writeln!(text, "|---|--:|---|--:|--:|");
+    let lower = report.energy.as_ref().map_or(f64::NAN, |energy| energy.lower);
+    for primal in &report.primal {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} |",
+            cell(&primal.name),
+            significant(primal.energy, digits_to_tell(primal.energy, lower)),
+            if primal.admissible { "yes" } else { "no" },
+            primal.relative_error_bound.map_or("–".to_string(), percent),
+            primal.unknowns
+        );
+    }
+    text.push('\n');
+}
+
+fn contacts(text: &mut String, report: &Report) {
+    if report.contact.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "| contact | resultant, dual | resultant, primal | largest pressure, dual | primal | open | pressure difference |"
+    );
+    let _ = writeln!(text, "|---|--:|--:|--:|--:|--:|--:|");
+    for contact in &report.contact {
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {} | {} | {} | {} |",
+            code(&contact.name),
+            vector(contact.resultant.dual, 5),
+            contact.resultant.primal.map_or("–".to_string(), |r| vector(r, 5)),
+            significant(contact.pressure_max.dual, 4),
+            optional(contact.pressure_max.primal, 4),
+            percent(contact.open_fraction),
+            contact.pressure_l2_difference.map_or("–".to_string(), percent)
+        );
+    }
+    text.push('\n');
+}
+
+/// User text on one line: whatever Markdown or HTML would act on is escaped.
+fn cell(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in clean(text).chars() {
+        match c {
+            '\n' | '\t' => escaped.push(' '),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '&' => escaped.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '#' | '|' | '~' => {
+                escaped.push('\\');
+                escaped.push(c);
+            }
+            _ => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// User text inside a code span in a table: a backtick would end it, and a bar the cell.
+fn code(text: &str) -> String {
+    clean(text).replace(['\n', '\t'], " ").replace('`', "'").replace('|', "\\|")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict};
+
+    #[test]
+    fn one_screen_with_verdict_bracket_and_checks() {
+        let report = Sample::new(2, Verdict::Agree).dossier().report;
+        let text = summary(&report);
+        assert!(text.lines().count() < 40, "{text}");
+        assert!(text.contains(": agree") && text.contains(&format!("All {} checks passed.", report.checks.len())));
+    }
+
+    #[test]
+    fn tables_keep_their_columns_whatever_the_names() {
+        let mut report = Sample::new(2, Verdict::Disagree).dossier().report;
+        report.contact[0].name = "a|b`<script>".to_string();
+        report.primal[0].name = "P1 | <img src=x>".to_string();
+        let text = summary(&report);
+        assert!(!text.contains("<img") && text.contains("a\\|b'"));
+        let mut columns = None;
+        for line in text.lines() {
+            let bars = line.replace("\\|", "").matches('|').count();
+            match columns {
+                _ if !line.starts_with('|') => columns = None,
+                None => columns = Some(bars),
+                Some(n) => assert_eq!(n, bars, "{line}"),
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Numbers and user text as a reader sees them, the same in every output for people.
+
+/// `x` with `digits` significant digits: plain where that is short, with a power of ten elsewhere; an en dash for a
+/// number that is none.
+pub(crate) fn significant(x: f64, digits: usize) -> String {
+    let digits = digits.clamp(1, 17);
+    if !x.is_finite() {
+        return "–".to_string();
+    }
+    if x == 0.0 {
+        return "0".to_string();
+    }
+    // Rounding first: 9.9996 with four digits is 10.00, whose exponent is one larger.
+    let scientific = format!("{x:.*e}", digits - 1);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let text = if (-4..6).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        trim_zeros(&format!("{x:.decimals$}"))
+    } else {
+        format!("{}×10{}", trim_zeros(mantissa), superscript(exponent))
+    };
+    text.replace('-', "−")
+}
+
+/// The same for a number that may be missing.
+pub(crate) fn optional(x: Option<f64>, digits: usize) -> String {
+    x.map_or_else(|| "–".to_string(), |x| significant(x, digits))
+}
+
+/// A ratio in per cent, with three significant digits.
+pub(crate) fn percent(x: f64) -> String {
+    if x.is_finite() { format!("{} %", significant(100.0 * x, 3)) } else { "–".to_string() }
+}
+
+/// A vector in parentheses.
+pub(crate) fn vector(v: [f64; 2], digits: usize) -> String {
+    format!("({}, {})", significant(v[0], digits), significant(v[1], digits))
+}
+
+/// As many digits as are needed to tell `a` from `b`, and two more.
+pub(crate) fn digits_to_tell(a: f64, b: f64) -> usize {
+    let ratio = a.abs().max(b.abs()) / (a - b).abs();
+    if ratio.is_finite() && ratio > 1.0 { (ratio.log10().ceil() as usize + 2).clamp(5, 15) } else { 6 }
+}
+
+/// Digits in groups of three.
+pub(crate) fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Seconds, short.
+pub(crate) fn seconds(s: f64) -> String {
+    if s.is_finite() && s < 0.001 && s > 0.0 { "< 1 ms".to_string() } else { format!("{} s", significant(s, 3)) }
+}
+
+/// User text without the control characters that neither XML nor a terminal should meet.
+pub(crate) fn clean(text: &str) -> String {
+    text.chars()
+        .map(|c| {
+            if c.is_control() && c != '\n' && c != '\t' || c == '\u{fffe}' || c == '\u{ffff}' { '\u{fffd}' } else { c }
+        })
+        .collect()
+}
+
+/// A power as superscript digits.
+pub(crate) fn superscript(n: i32) -> String {
+    n.to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
+        })
+        .collect()
+}
+
+fn trim_zeros(text: &str) -> String {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(significant(-1.796419, 5), "−1.7964");
+        assert_eq!(significant(9.9996, 4), "10");
+        assert_eq!(significant(1.0e-9, 3), "1×10⁻⁹");
+        assert_eq!(significant(2.1e11, 3), "2.1×10¹¹");
+        assert_eq!(significant(f64::NAN, 3), "–");
+        assert_eq!(significant(0.00012, 3), "0.00012");
+        assert_eq!(percent(0.0523), "5.23 %");
+        assert_eq!(percent(f64::INFINITY), "–");
+        assert_eq!(grouped(1_234_567), "1,234,567");
+        assert_eq!(grouped(123), "123");
+    }
+
+    #[test]
+    fn digits_tell_two_numbers_apart() {
+        let (a, b) = (-1.7964189504, -1.7964083583);
+        let n = digits_to_tell(a, b);
+        assert_ne!(significant(a, n), significant(b, n));
+        assert!(n < 10);
+        assert_eq!(digits_to_tell(1.0, 1.0), 6);
+        assert_eq!(digits_to_tell(f64::NAN, 1.0), 6);
+    }
+
+    #[test]
+    fn control_characters_are_replaced() {
+        assert_eq!(clean("a\u{1}b\nc"), "a\u{fffd}b\nc");
+    }
+}

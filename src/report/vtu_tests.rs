@@ -1,0 +1,126 @@
+use std::collections::BTreeMap;
+
+use super::*;
+use crate::report::sample::{Sample, Verdict, assert_well_formed};
+
+/// Name → (type, components, bytes), read with nothing of the writer.
+fn arrays(xml: &str) -> BTreeMap<String, (String, usize, Vec<u8>)> {
+    let mut reader = quick_xml::Reader::from_str(xml);
+    let (mut found, mut current) = (BTreeMap::new(), None);
+    loop {
+        match reader.read_event().unwrap() {
+            Event::Start(start) if start.name().as_ref() == b"DataArray" => {
+                let get =
+                    |key: &str| start.try_get_attribute(key).unwrap().unwrap().unescape_value().unwrap().into_owned();
+                assert_eq!(get("format"), "binary");
+                current = Some((get("Name"), get("type"), get("NumberOfComponents").parse::<usize>().unwrap()));
+            }
+            Event::Text(text) => {
+                if let Some((name, kind, components)) = current.take() {
+                    let bytes = STANDARD.decode(text.decode().unwrap().trim()).unwrap();
+                    let length = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
+                    assert_eq!(length, bytes.len() - 8, "{name}");
+                    found.insert(name, (kind, components, bytes[8..].to_vec()));
+                }
+            }
+            Event::Eof => return found,
+            _ => {}
+        }
+    }
+}
+
+fn floats(bytes: &[u8]) -> Vec<f64> {
+    bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+fn ints(bytes: &[u8]) -> Vec<i64> {
+    bytes.chunks(8).map(|b| i64::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+#[test]
+fn points_cells_and_fields_fit_together() {
+    let sample = Sample::new(3, Verdict::Agree);
+    let dossier = sample.dossier();
+    let text = String::from_utf8(vtu(&dossier).unwrap()).unwrap();
+    assert_well_formed(&text);
+    let arrays = arrays(&text);
+    let triangles = sample.problem.mesh.triangles.len();
+    for (name, kind, components, count) in [
+        ("Points", "Float64", 3, 9 * triangles),
+        ("dual_stress", "Float64", 3, 9 * triangles),
+        ("von_mises", "Float64", 1, 9 * triangles),
+        ("pressure", "Float64", 1, 9 * triangles),
+        ("displacement_free", "Float64", 3, 9 * triangles),
+        ("displacement_FEniCSx_P2", "Float64", 3, 9 * triangles),
+        ("stress_difference", "Float64", 1, 3 * triangles),
+        ("error_contribution", "Float64", 1, 3 * triangles),
+        ("triangle", "Int64", 1, 3 * triangles),
+        ("body", "Int64", 1, 3 * triangles),
+        ("connectivity", "Int64", 1, 9 * triangles),
+        ("offsets", "Int64", 1, 3 * triangles),
+    ] {
+        let (found_kind, found_components, bytes) = &arrays[name];
+        assert_eq!((found_kind.as_str(), *found_components), (kind, components), "{name}");
+        assert_eq!(bytes.len(), 8 * components * count, "{name}");
+    }
+    assert_eq!(arrays["types"].2, vec![5; 3 * triangles]);
+
+    // The cells cover the two unit squares, each counter-clockwise.
+    let points = floats(&arrays["Points"].2);
+    let at = |p: i64| [points[3 * p as usize], points[3 * p as usize + 1]];
+    let mut area = 0.0;
+    for cell in ints(&arrays["connectivity"].2).chunks(3) {
+        let [a, b, c] = [at(cell[0]), at(cell[1]), at(cell[2])];
+        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        assert!(twice > 0.0);
+        area += 0.5 * twice;
+    }
+    assert!((area - 2.0).abs() < 1e-12);
+
+    // The sample's σ_yy is constant on a triangle and differs from its neighbour's: nothing was averaged.
+    let stress = floats(&arrays["dual_stress"].2);
+    for t in 0..triangles {
+        for p in 9 * t..9 * t + 9 {
+            assert_eq!(stress[3 * p + 1], 0.05 * (t % 3) as f64);
+        }
+    }
+    // At every point the displacement is the formula's, which is linear on no edge but exact at the vertices.
+    let vertices = &sample.problem.mesh.points;
+    let u = floats(&arrays["displacement_free"].2);
+    let corner = (0..9 * triangles).find(|&p| points[3 * p] == 0.0 && points[3 * p + 1] == 0.0).unwrap();
+    assert!(vertices.contains(&[0.0, 0.0]));
+    assert!((u[3 * corner] - 1.8).abs() < 1e-14 && u[3 * corner + 2] == 0.0);
+}
+
+#[test]
+fn von_mises_of_known_states() {
+    let mut sample = Sample::new(1, Verdict::Agree);
+    // Plane strain, ν = 0.3, uniaxial 1: σ_33 = 0.3, ½(1² + 0.3² + 0.7²) = 0.79.
+    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0]) - 0.79_f64.sqrt()).abs() < 1e-15);
+    sample.problem.scene.kinematics = Kinematics::PlaneStress;
+    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0]) - 1.0).abs() < 1e-15);
+    assert!((von_mises(&sample.problem, 0, [0.0, 0.0, 1.0]) - 3.0_f64.sqrt()).abs() < 1e-15);
+}
+
+#[test]
+fn names_become_keys_that_differ() {
+    let mut taken = Vec::new();
+    assert_eq!(unique_key("FEniCSx P1", &mut taken), "displacement_FEniCSx_P1");
+    assert_eq!(unique_key("FEniCSx<P1", &mut taken), "displacement_FEniCSx_P1_");
+}
+
+#[test]
+fn meshio_reads_the_file_where_it_is_installed() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("fields.vtu");
+    let sample = Sample::new(2, Verdict::Infeasible);
+    std::fs::write(&file, vtu(&sample.dossier()).unwrap()).unwrap();
+    let script = "import sys\ntry:\n import meshio\nexcept ImportError:\n sys.exit(77)\n\
+        m = meshio.read(sys.argv[1])\nprint(len(m.points), m.cells[0].type, len(m.cells[0].data), m.point_data['motion'].shape[1])";
+    let Ok(output) = std::process::Command::new("python3").args(["-c", script]).arg(&file).output() else { return };
+    if output.status.code() == Some(77) {
+        return;
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(text.trim(), "144 triangle 48 3", "{}", String::from_utf8_lossy(&output.stderr));
+}

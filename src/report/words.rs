@@ -1,0 +1,94 @@
+//! The words shared by the page, the summary and the JUnit file.
+
+use super::{Report, Status};
+use crate::compare::{Basis, Check};
+
+/// The verdict as one word.
+pub(crate) fn status_word(status: Status) -> &'static str {
+    match status {
+        Status::Agree => "agree",
+        Status::Disagree => "disagree",
+        Status::Infeasible => "infeasible",
+        Status::Failed => "failed",
+    }
+}
+
+/// A symbol that tells the verdicts apart without colour.
+pub(crate) fn status_symbol(status: Status) -> &'static str {
+    match status {
+        Status::Agree => "✔",
+        Status::Disagree => "✘",
+        Status::Infeasible => "⤢",
+        Status::Failed => "⚠",
+    }
+}
+
+/// Where an allowed value comes from, in one or two words.
+pub(crate) fn basis_word(basis: Basis) -> &'static str {
+    match basis {
+        Basis::Guaranteed => "guaranteed",
+        Basis::RoundOff => "round-off",
+        Basis::Chosen => "chosen",
+    }
+}
+
+/// What it means that a check failed.
+pub(crate) fn meaning(check: &Check) -> &'static str {
+    match (check.difference, check.basis) {
+        (None, _) => "The check could not be made. What has not been compared counts as not passed.",
+        (_, Basis::Guaranteed) => {
+            "The allowed value follows from the guaranteed bound: no correct pair of solutions of this scene can differ by \
+             more. At least one of the two models is wrong, or they do not solve the same scene."
+        }
+        (_, Basis::RoundOff) => {
+            "The two numbers are equal in exact arithmetic, and differ here by more than rounding explains. One of them was \
+             computed or transferred wrongly."
+        }
+        (_, Basis::Chosen) => {
+            "Theory sets no limit here; the tolerance was chosen. The models differ more than that: look at the pictures, \
+             refine the mesh, or allow more if the difference is understood."
+        }
+    }
+}
+
+/// The checks that did not pass, in the order of the report.
+pub(crate) fn failing(report: &Report) -> Vec<&Check> {
+    report.checks.iter().filter(|check| !check.passed).collect()
+}
+
+/// The energies of the report by name: the lower bound, the free upper bound, then the displacement solutions.
+pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
+    let mut list = Vec::new();
+    if let Some(energy) = &report.energy {
+        list.push(("lower bound −Π(λ_h), from stresses".to_string(), energy.lower));
+        if let Some(free) = energy.free_upper {
+            list.push(("free upper bound, from the same stresses".to_string(), free));
+        }
+    }
+    for primal in &report.primal {
+        let suffix = if primal.admissible { "" } else { " (not admissible)" };
+        list.push((format!("{}{suffix}", primal.name), primal.energy));
+    }
+    list
+}
+
+/// What the bracket says about the accuracy of the stresses, in one sentence.
+pub(crate) fn accuracy(report: &Report) -> String {
+    use super::number::percent;
+    match &report.energy {
+        Some(energy) if energy.relative_error_bound.is_finite() => {
+            let bound = percent(energy.relative_error_bound);
+            if energy.guaranteed {
+                format!(
+                    "The exact stress differs from the computed one by at most {bound} in the energy norm. This is guaranteed, not estimated."
+                )
+            } else {
+                format!(
+                    "The exact stress differs from the computed one by at most {bound} in the energy norm, for the data as represented on the mesh; the notes say what weakens the guarantee."
+                )
+            }
+        }
+        _ => "No two-sided bound was obtained, so nothing can be said about the distance from the exact solution."
+            .to_string(),
+    }
+}

@@ -1,0 +1,205 @@
+//! The five files of a run, each whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::{Dossier, html, json, junit, markdown, vtu};
+
+/// Why a report was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The output folder is something else.
+    #[error("the output folder {path} exists and is not a folder; remove it, or choose another with --out")]
+    NotAFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The output folder cannot be made.
+    #[error("the output folder {path} cannot be made: {source}; choose another with --out")]
+    Create {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file cannot be written.
+    #[error("{path} cannot be written: {source}; free the place, or choose another folder with --out")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file could not be put together.
+    #[error("{file} could not be put together: {reason}")]
+    Render {
+        /// Its name.
+        file: &'static str,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be.
+///
+/// All five are rendered before the first is written, and all are written under temporary names before the first is
+/// given its own: a reader never sees half a file.
+pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
+    let files = render(dossier)?;
+    if dir.exists() && !dir.is_dir() {
+        return Err(ReportError::NotAFolder { path: dir.to_path_buf() });
+    }
+    std::fs::create_dir_all(dir).map_err(|source| ReportError::Create { path: dir.to_path_buf(), source })?;
+    let mut written = Vec::new();
+    for (name, bytes) in &files {
+        let path = dir.join(name);
+        if path.is_dir() {
+            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
+            return Err(ReportError::Write { path, source });
+        }
+        let temporary =
+            write_temporary(dir, bytes).map_err(|source| ReportError::Write { path: path.clone(), source })?;
+        written.push((temporary, path));
+    }
+    for (temporary, path) in written {
+        temporary.persist(&path).map_err(|e| ReportError::Write { path, source: e.error })?;
+    }
+    Ok(())
+}
+
+/// The five files by name.
+pub(super) fn render(dossier: &Dossier) -> Result<[(&'static str, Vec<u8>); 5], ReportError> {
+    let report = &dossier.report;
+    let fail = |file, reason: String| ReportError::Render { file, reason };
+    Ok([
+        ("report.json", json::json(report).map_err(|e| fail("report.json", e.to_string()))?.into_bytes()),
+        ("report.html", html::page(dossier).into_bytes()),
+        ("junit.xml", junit::junit(report).map_err(|e| fail("junit.xml", e.to_string()))?.into_bytes()),
+        ("summary.md", markdown::summary(report).into_bytes()),
+        ("fields.vtu", vtu::vtu(dossier).map_err(|e| fail("fields.vtu", e.to_string()))?),
+    ])
+}
+
+fn write_temporary(dir: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".hypercircle-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Temporary files are private by default; a report is for everybody the umask allows.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(dir)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict};
+
+    const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
+
+    fn listing(dir: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            std::fs::read_dir(dir).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn five_files_and_nothing_else_twice_the_same() {
+        let dir = tempfile::tempdir().unwrap();
+        let sample = Sample::new(3, Verdict::Disagree);
+        let out = dir.path().join("deep/er");
+        write(&sample.dossier(), &out).unwrap();
+        let mut expected = NAMES.map(String::from);
+        expected.sort();
+        assert_eq!(listing(&out), expected);
+        let first = NAMES.map(|n| std::fs::read(out.join(n)).unwrap());
+        write(&Sample::new(3, Verdict::Disagree).dossier(), &out).unwrap();
+        assert_eq!(listing(&out), expected);
+        assert!(first == NAMES.map(|n| std::fs::read(out.join(n)).unwrap()), "same input, other bytes");
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_said() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("out");
+        std::fs::write(&file, "x").unwrap();
+        let sample = Sample::new(1, Verdict::Agree);
+        let error = write(&sample.dossier(), &file).unwrap_err();
+        assert!(matches!(&error, ReportError::NotAFolder { path } if *path == file), "{error}");
+        let error = write(&sample.dossier(), &file.join("below")).unwrap_err();
+        assert!(error.to_string().contains("--out"), "{error}");
+    }
+
+    #[test]
+    fn a_folder_in_the_place_of_a_file_leaves_nothing_behind() {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::create_dir(dir.path().join("junit.xml")).unwrap();
+        let error = write(&Sample::new(1, Verdict::Agree).dossier(), dir.path()).unwrap_err();
+        assert!(error.to_string().contains("junit.xml"), "{error}");
+        assert_eq!(listing(dir.path()), ["junit.xml"]);
+    }
+
+    #[test]
+    fn every_output_names_the_failing_checks() {
+        let sample = Sample::new(2, Verdict::Disagree);
+        let dossier = sample.dossier();
+        let files = render(&dossier).unwrap();
+        let failing = crate::report::words::failing(&dossier.report);
+        assert!(!failing.is_empty());
+        for (name, bytes) in files.iter().filter(|(name, _)| *name != "fields.vtu") {
+            let text = String::from_utf8(bytes.clone()).unwrap();
+            for check in &failing {
+                assert!(text.contains(&check.name), "{name} does not name {}", check.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_verdict_renders_with_the_least_there_can_be() {
+        for verdict in [Verdict::Agree, Verdict::Disagree, Verdict::Infeasible, Verdict::Failed] {
+            let sample = Sample::new(1, verdict);
+            let mut dossier = sample.dossier();
+            render(&dossier).unwrap();
+            dossier.dual = None;
+            dossier.displacements.clear();
+            dossier.maps.clear();
+            dossier.report.energy = None;
+            dossier.report.dual = None;
+            dossier.report.stress = None;
+            dossier.report.primal.clear();
+            dossier.report.contact.clear();
+            dossier.report.checks.clear();
+            render(&dossier).unwrap();
+        }
+    }
+
+    #[test]
+    fn nan_everywhere_is_no_panic() {
+        let mut sample = Sample::new(2, Verdict::Disagree);
+        sample.spoil();
+        let mut dossier = sample.dossier();
+        let energy = dossier.report.energy.as_mut().unwrap();
+        (energy.lower, energy.upper, energy.gap, energy.relative_error_bound) =
+            (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
+        for contact in &mut dossier.report.contact {
+            for profile in &mut contact.profiles {
+                profile.points[0] = [f64::NAN, f64::INFINITY];
+            }
+        }
+        for map in &mut dossier.maps {
+            map.values.fill(f64::NAN);
+        }
+        for (name, bytes) in render(&dossier).unwrap() {
+            let text = String::from_utf8_lossy(&bytes);
+            assert!(name == "fields.vtu" || !text.contains("NaN"), "{name}");
+        }
+    }
+}
