@@ -60,9 +60,9 @@ pub(crate) fn failing(report: &Report) -> Vec<&Check> {
 pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
     let mut list = Vec::new();
     if let Some(energy) = &report.energy {
-        list.push(("lower bound −Π(λ_h), from stresses".to_string(), energy.lower));
+        list.push(("lower bound, from stresses".to_string(), energy.lower));
         if let Some(free) = energy.free_upper {
-            list.push(("free upper bound, from the same stresses".to_string(), free));
+            list.push(("free upper bound".to_string(), free));
         }
     }
     for primal in &report.primal {

@@ -63,7 +63,7 @@ impl Axis {
         let span = self.to - self.from;
         let raw = span / count.max(1) as f64;
         let power = 10f64.powf(raw.log10().floor());
-        let step = power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw * 0.999).unwrap_or(10.0);
+        let step = power * [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw * 0.8).unwrap_or(10.0);
         let (first, last) = ((self.from / step - 1e-9).ceil(), (self.to / step + 1e-9).floor());
         let largest = self.from.abs().max(self.to.abs());
         let step_exponent = step.log10().floor() as i32;
@@ -117,10 +117,11 @@ impl Axis {
         for (x, label) in self.ticks(if self.end - self.start < 340.0 { 4 } else { 6 }) {
             let at = self.at(x);
             svg.line(look::GRID, "", [at, top], [at, y + 4.0]);
-            svg.text(look::DIM, [at, y + 18.0], Anchor::Middle, &label);
+            svg.text(&format!("{} {}", look::DIM, look::HALO), [at, y + 18.0], Anchor::Middle, &label);
         }
         svg.line(look::LINE, "", [self.start, y], [self.end, y]);
-        svg.text(look::INK, [0.5 * (self.start + self.end), y + 37.0], Anchor::Middle, title);
+        let middle = 0.5 * (self.start + self.end);
+        svg.text(&format!("{} {}", look::INK, look::HALO), [middle, y + 37.0], Anchor::Middle, title);
     }
 
     /// Draws the axis vertically at `x`, with grid lines up to `right`; the title stands above it.

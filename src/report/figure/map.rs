@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::axis::Axis;
 use super::outline::{View, outline, polyline};
 use super::raster::raster;
-use super::svg::{Svg, look, px};
+use super::svg::{Anchor, Svg, look, px};
 use super::viridis::{LEVELS, colour, level};
 use crate::problem::Problem;
 
@@ -131,10 +131,10 @@ fn bar(svg: &mut Svg, top: f64, scale: &Scale) {
     for (value, label) in axis.ticks(6) {
         let at = axis.at(value);
         svg.line(look::LINE, "", [at, y + 12.0], [at, y + 17.0]);
-        svg.text(look::INK, [at, y + 31.0], super::Anchor::Middle, &label);
+        svg.text(look::INK, [at, y + 31.0], Anchor::Middle, &label);
     }
     if !name.is_empty() {
-        svg.text(look::DIM, [right, y + 44.0], super::Anchor::End, name);
+        svg.text(look::DIM, [right, y + 44.0], Anchor::End, name);
     }
 }
 

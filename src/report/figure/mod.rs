@@ -16,8 +16,5 @@ mod svg;
 mod symbols;
 mod viridis;
 
-pub(crate) use axis::Axis;
-pub(crate) use outline::View;
 #[cfg(test)]
 pub(crate) use svg::escape;
-pub(crate) use svg::{Anchor, Svg};

@@ -22,6 +22,8 @@ pub(crate) mod look {
     pub const CONTACT: &str = r##"class="contact" fill="none" stroke="#cf222e""##;
     /// The bracket.
     pub const BAND: &str = r##"class="band" fill="#0072b2" fill-opacity="0.22""##;
+    /// For text that lies on lines: an edge in the colour of the paper.
+    pub const HALO: &str = r##"paint-order="stroke" stroke="#f6f8fa" stroke-width="4" stroke-linejoin="round""##;
     /// What contradicts.
     pub const BAD: &str = r##"class="bad" fill="#cf222e""##;
     /// Fills of the bodies, in turn.

@@ -65,5 +65,5 @@ pub(crate) fn arrow(svg: &mut Svg, look: &str, p: [f64; 2], v: [f64; 2], tail: b
     let side = [-d[1], d[0]];
     svg.line(look, r#"stroke-width="1.4""#, start, base);
     let triangle = [tip, along(base, side, 0.45 * head), along(base, side, -0.45 * head)];
-    svg.path(look, r#"stroke="none""#, &(polyline(&triangle) + "z"));
+    svg.path(look, r#"stroke-width="0""#, &(polyline(&triangle) + "z"));
 }

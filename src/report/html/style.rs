@@ -28,7 +28,7 @@ code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhe
 .failures .name{font-weight:700;font-family:ui-monospace,Menlo,monospace;overflow-wrap:anywhere}
 .facts{display:flex;flex-wrap:wrap;gap:2px 22px;margin:3px 0;padding:0;font-variant-numeric:tabular-nums}
 .facts span b{font-weight:600}
-.answers{display:grid;grid-template-columns:minmax(0,1fr);gap:14px;margin:18px 0 0}
+.answers{display:grid;grid-template-columns:minmax(0,1fr);gap:14px;align-content:start}
 .card{background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:14px 18px;min-width:0}
 .card p{margin:4px 0 6px}
 .card .big{font-size:1.7rem;font-weight:700;line-height:1.2;margin:2px 0 4px}
@@ -63,7 +63,7 @@ svg .ink{fill:#e6edf3}svg .dim{fill:#9aa4af}svg .line{stroke:#e6edf3}svg .grid{s
 svg .load{fill:#f0a45d;stroke:#f0a45d}svg .contact{stroke:#ff7b72}svg .bad{fill:#ff7b72}svg .band{fill:#58a6ff;fill-opacity:.3}
 svg .b0{fill:#234566}svg .b1{fill:#57461f}svg .b2{fill:#24503a}svg .b3{fill:#4d3a55}svg .b4{fill:#5c362f}svg .b5{fill:#3b4250}
 svg .s0{stroke:#58a6ff}svg .s1{stroke:#ff9457}svg .s2{stroke:#3ccf9b}svg .s3{stroke:#d990c4}svg .s4{stroke:#d9b23c}svg .s5{stroke:#aab4bf}
-svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
+svg text{stroke:#151b23}svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
 }
 @media print{
 body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
