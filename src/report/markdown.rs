@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
-use super::words::{accuracy, basis_word, failing, status_symbol, status_word};
+use super::words::{accuracy, basis_word, failing, status_symbol, status_word, upper_from};
 use super::{Report, Status};
 
 /// How many failing checks are listed before the rest is only counted.
@@ -36,10 +36,10 @@ fn bracket(text: &mut String, report: &Report) {
     let digits = digits_to_tell(energy.lower, energy.upper);
     let _ = writeln!(
         text,
-        "Exact energy 𝓛(u) between **{}** and **{}** (upper bound from {}). {}\n",
+        "Exact energy 𝓛(u) between **{}** and **{}** (upper bound: {}). {}\n",
         significant(energy.lower, digits),
         significant(energy.upper, digits),
-        cell(&energy.upper_from),
+        cell(&upper_from(&energy.upper_from)),
         accuracy(report)
     );
 }

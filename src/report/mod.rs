@@ -11,6 +11,8 @@ mod markdown;
 mod number;
 #[cfg(test)]
 mod sample;
+#[cfg(test)]
+mod sample_numbers;
 mod vtu;
 mod words;
 mod write;

@@ -18,7 +18,7 @@ pub(crate) fn status_symbol(status: Status) -> &'static str {
     match status {
         Status::Agree => "✔",
         Status::Disagree => "✘",
-        Status::Infeasible => "⤢",
+        Status::Infeasible => "∅",
         Status::Failed => "⚠",
     }
 }
@@ -35,17 +35,17 @@ pub(crate) fn basis_word(basis: Basis) -> &'static str {
 /// What it means that a check failed.
 pub(crate) fn meaning(check: &Check) -> &'static str {
     match (check.difference, check.basis) {
-        (None, _) => "The check could not be made. What has not been compared counts as not passed.",
+        (None, _) => "Not made: what has not been compared counts as not passed.",
         (_, Basis::Guaranteed) => {
-            "The allowed value follows from the guaranteed bound: no correct pair of solutions of this scene can differ by \
+            "Guaranteed: the allowed value follows from the bound: no correct pair of solutions of this scene can differ by \
              more. At least one of the two models is wrong, or they do not solve the same scene."
         }
         (_, Basis::RoundOff) => {
-            "The two numbers are equal in exact arithmetic, and differ here by more than rounding explains. One of them was \
+            "Round-off: the two numbers are equal in exact arithmetic, and differ here by more than rounding explains. One of them was \
              computed or transferred wrongly."
         }
         (_, Basis::Chosen) => {
-            "Theory sets no limit here; the tolerance was chosen. The models differ more than that: look at the pictures, \
+            "Chosen: theory sets no limit here, the tolerance was chosen. The models differ more than that: look at the pictures, \
              refine the mesh, or allow more if the difference is understood."
         }
     }
@@ -60,7 +60,7 @@ pub(crate) fn failing(report: &Report) -> Vec<&Check> {
 pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
     let mut list = Vec::new();
     if let Some(energy) = &report.energy {
-        list.push(("lower bound, from stresses".to_string(), energy.lower));
+        list.push(("lower bound (stresses)".to_string(), energy.lower));
         if let Some(free) = energy.free_upper {
             list.push(("free upper bound".to_string(), free));
         }
@@ -70,6 +70,11 @@ pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
         list.push((format!("{}{suffix}", primal.name), primal.energy));
     }
     list
+}
+
+/// Where the upper bound comes from, for a reader who does not know the word `free`.
+pub(crate) fn upper_from(name: &str) -> String {
+    if name == "free" { "built from the dual solve".to_string() } else { super::number::clean(name) }
 }
 
 /// What the bracket says about the accuracy of the stresses, in one sentence.

@@ -183,20 +183,6 @@ mod tests {
     }
 
     #[test]
-    fn preview() {
-        for (n, v, name) in [
-            (8, Verdict::Agree, "agree"),
-            (8, Verdict::Disagree, "disagree"),
-            (8, Verdict::Infeasible, "infeasible"),
-            (96, Verdict::Agree, "fine"),
-        ] {
-            let t = std::time::Instant::now();
-            write(&Sample::new(n, v).dossier(), &Path::new("/tmp/preview").join(name)).unwrap();
-            eprintln!("{name} {:?}", t.elapsed());
-        }
-    }
-
-    #[test]
     fn nan_everywhere_is_no_panic() {
         let mut sample = Sample::new(2, Verdict::Disagree);
         sample.spoil();

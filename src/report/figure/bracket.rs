@@ -7,7 +7,11 @@ use crate::report::number::{digits_to_tell, significant};
 use crate::report::words::energies;
 
 const WIDTH: f64 = 560.0;
-const LANE: f64 = 40.0;
+const LANE: f64 = 42.0;
+/// Width of the column of names and values.
+const LABELS: f64 = 206.0;
+/// Longest name that fits there.
+const NAME: usize = 29;
 
 /// One lane per energy over an axis; the interval [lower, upper] is a band through all lanes. Where the energies spread
 /// much wider than the bracket, a second panel shows its neighbourhood.
@@ -24,9 +28,9 @@ pub fn bracket(report: &Report) -> String {
         significant(upper, digits),
         list.len()
     );
-    let wide = Axis::over(list.iter().map(|e| e.1).chain([lower, upper]), 24.0, WIDTH - 24.0, false).padded(0.06);
+    let wide = Axis::over(list.iter().map(|e| e.1).chain([lower, upper]), LABELS, WIDTH - 22.0, false).padded(0.06);
     let zoomed = wide.to - wide.from > 8.0 * (upper - lower).abs() && upper != lower;
-    let panel = |lanes: usize| 30.0 + LANE * lanes as f64;
+    let panel = |lanes: usize| 34.0 + LANE * lanes as f64;
     let all: Vec<usize> = (0..list.len()).collect();
     if !zoomed {
         let mut svg = Svg::new(WIDTH, panel(list.len()) + 44.0, label);
@@ -40,7 +44,7 @@ pub fn bracket(report: &Report) -> String {
     let top = below + 58.0;
     let mut svg = Svg::new(WIDTH, top + panel(close.len()) + 44.0, label);
     for x in [lower, upper] {
-        svg.line(look::SUPPORT, r#"stroke-dasharray="2 3""#, [wide.at(x), below], [near.at(x), top + 14.0]);
+        svg.line(look::SUPPORT, r#"stroke-dasharray="2 3""#, [wide.at(x), below], [near.at(x), top + 19.0]);
     }
     let factor = (wide.to - wide.from) / (near.to - near.from);
     lanes(&mut svg, &list, &all, &wide, [lower, upper], 0.0, "energy");
@@ -66,31 +70,35 @@ fn lanes(
     top: f64,
     title: &str,
 ) {
-    let bottom = top + 30.0 + LANE * shown.len() as f64;
+    let bottom = top + 34.0 + LANE * shown.len() as f64;
     let (a, b) = (axis.at(lower.min(upper)), axis.at(lower.max(upper)));
-    svg.rect(if lower <= upper { look::BAND } else { look::BAD }, a, top + 18.0, (b - a).max(1.5), bottom - top - 18.0);
-    axis.draw_below(svg, bottom, top + 18.0, title);
+    svg.rect(if lower <= upper { look::BAND } else { look::BAD }, a, top + 22.0, (b - a).max(1.5), bottom - top - 22.0);
+    axis.draw_below(svg, bottom, top + 22.0, title);
     for x in [a, b] {
-        svg.line(look::LINE, r#"stroke-width="1.2""#, [x, top + 14.0], [x, bottom]);
+        svg.line(look::LINE, r#"stroke-width="1.2""#, [x, top + 19.0], [x, bottom]);
     }
     let band = if lower <= upper { "the exact energy lies here" } else { "the bounds contradict each other" };
-    let (at, anchor) = match 0.5 * (a + b) {
-        x if x < 110.0 => (a, Anchor::Start),
-        x if x > WIDTH - 110.0 => (b, Anchor::End),
-        x => (x, Anchor::Middle),
-    };
-    svg.text(&format!(r#"{} font-weight="600""#, look::INK), [at, top + 11.0], anchor, band);
+    let room = 88.0;
+    let at = (0.5 * (a + b)).clamp(axis.start + room, axis.end - room);
+    svg.text(&format!(r#"{} {} font-weight="600""#, look::INK, look::HALO), [at, top + 14.0], Anchor::Middle, band);
     for (lane, &i) in shown.iter().enumerate() {
         let (name, value) = &list[i];
         let y = top + 48.0 + LANE * lane as f64;
         svg.line(look::GRID, "", [axis.start, y], [axis.end, y]);
         let digits = digits_to_tell(*value, lower).max(digits_to_tell(upper, lower));
-        let below = if *value < lower - 1e-13 * lower.abs() { ", below the lower bound" } else { "" };
-        let text = format!("{name}: {}{below}", significant(*value, digits));
-        let look = if below.is_empty() { look::INK } else { look::BAD };
-        svg.text(&format!("{look} {}", look::HALO), [axis.start, y - 9.0], Anchor::Start, &text);
-        svg.marker(i, [axis.at(*value), y], 5.0);
+        let below = *value < lower - 1e-13 * lower.abs();
+        let look = if below { look::BAD } else { look::INK };
+        svg.text(look, [4.0, y - 4.0], Anchor::Start, &shortened(name));
+        let note = if below { "  below the bound" } else { "" };
+        let text = format!("{}{note}", significant(*value, digits));
+        svg.text(if below { look::BAD } else { look::DIM }, [4.0, y + 13.0], Anchor::Start, &text);
+        svg.marker(i, [axis.at(*value), y], 5.5);
     }
+}
+
+/// A name that fits into its column.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= NAME { name.to_string() } else { name.chars().take(NAME - 1).chain(['…']).collect() }
 }
 
 #[cfg(test)]
@@ -114,7 +122,7 @@ mod tests {
     #[test]
     fn an_energy_on_the_wrong_side_is_said() {
         let text = bracket(&Sample::new(2, Verdict::Disagree).dossier().report);
-        assert!(text.contains("below the lower bound"));
+        assert!(text.contains("below the bound"));
         let mut report = Sample::new(2, Verdict::Agree).dossier().report;
         let energy = report.energy.as_mut().unwrap();
         (energy.lower, energy.upper) = (energy.upper, energy.lower);

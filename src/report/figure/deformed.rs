@@ -67,7 +67,7 @@ pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Dis
             d.push_str(&polyline(&[0, 1, 2].map(|k| view.at(moved(t, k, field)))));
             d.push('z');
         }
-        svg.path(look::GRID, r#"stroke-width="0.6""#, &d);
+        svg.path(look::MESH, r#"stroke-width="0.6""#, &d);
     }
     for body in 0..bodies {
         svg.path(

@@ -43,7 +43,7 @@ pub fn history(history: &[HistoryRow]) -> String {
     }
     if let Some(rate) = rate(history) {
         let text = format!("error ≈ unknowns to the power {}", significant(-rate, 2));
-        svg.text(look::INK, [WIDTH - 22.0, top + 16.0], Anchor::End, &text);
+        svg.text(&format!("{} {}", look::INK, look::HALO), [WIDTH - 22.0, top + 16.0], Anchor::End, &text);
     }
     svg.finish()
 }

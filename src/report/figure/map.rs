@@ -92,7 +92,11 @@ fn triangles(svg: &mut Svg, problem: &Problem, values: &[f64], view: &View, scal
     for (l, d) in paths.iter().enumerate() {
         let colour = colour(l);
         // The thin line closes the hairlines that anti-aliasing leaves between neighbours.
-        svg.path(&format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.5""#), "", d);
+        svg.path(
+            &format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.6" shape-rendering="crispEdges""#),
+            "",
+            d,
+        );
     }
 }
 
@@ -109,14 +113,23 @@ fn cells(svg: &mut Svg, problem: &Problem, values: &[f64], view: &View, height: 
                 column += 1;
             }
             if let Some(l) = l {
-                // A run of equal cells is a stroke of one cell's width; writing to a String cannot fail.
+                // A run of equal cells is a stroke as wide as a cell, a little longer than they are, so that no hairline stays
+                // between runs. Writing to a String cannot fail.
                 let (x, y) = (start as f64 * grid.cell, (row as f64 + 0.5) * grid.cell);
-                let _ = write!(paths[l], "M{} {}h{}", px(x), px(y), px((column - start) as f64 * grid.cell));
+                let _ = write!(paths[l], "M{} {}h{}", px(x), px(y), px((column - start) as f64 * grid.cell + 0.4));
             }
         }
     }
     for (l, d) in paths.iter().enumerate() {
-        svg.path(&format!(r#"fill="none" stroke="{}" stroke-width="{}""#, colour(l), px(grid.cell + 0.3)), "", d);
+        svg.path(
+            &format!(
+                r#"fill="none" stroke="{}" stroke-width="{}" shape-rendering="crispEdges""#,
+                colour(l),
+                px(grid.cell + 0.3)
+            ),
+            "",
+            d,
+        );
     }
 }
 
@@ -124,7 +137,13 @@ fn bar(svg: &mut Svg, top: f64, scale: &Scale) {
     let (left, right, y) = (40.0, WIDTH - 40.0, top + 12.0);
     let step = (right - left) / LEVELS as f64;
     for l in 0..LEVELS {
-        svg.rect(&format!(r#"fill="{}""#, colour(l)), left + l as f64 * step, y, step + 0.4, 12.0);
+        svg.rect(
+            &format!(r#"fill="{}" shape-rendering="crispEdges""#, colour(l)),
+            left + l as f64 * step,
+            y,
+            step + 0.4,
+            12.0,
+        );
     }
     let axis = scale.axis(left, right);
     let name = if scale.log { "logarithmic scale" } else { "" };

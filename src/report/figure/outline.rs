@@ -91,14 +91,19 @@ pub(crate) fn loops(mesh: &Triangulation, body: usize) -> Vec<Vec<(usize, usize)
     trace(&segments).into_iter().map(|chain| chain.into_iter().map(|s| around[s]).collect()).collect()
 }
 
+/// The edges in chains, each in the order of walking with the body on the left.
+pub(crate) fn edge_chains(mesh: &Triangulation, edges: &[usize]) -> Vec<Vec<usize>> {
+    let segments: Vec<[usize; 2]> = edges.iter().map(|&e| mesh.edges[e].vertices).collect();
+    trace(&segments).into_iter().map(|chain| chain.into_iter().map(|s| edges[s]).collect()).collect()
+}
+
 /// Chains of boundary edges, each as the polyline of its points with the body on the left.
 pub(crate) fn chains(mesh: &Triangulation, edges: &[usize]) -> Vec<Vec<[f64; 2]>> {
-    let segments: Vec<[usize; 2]> = edges.iter().map(|&e| mesh.edges[e].vertices).collect();
     let points = |chain: Vec<usize>| {
-        let first = chain.first().map(|&s| segments[s][0]);
-        first.into_iter().chain(chain.iter().map(|&s| segments[s][1])).map(|v| mesh.points[v]).collect()
+        let first = chain.first().map(|&e| mesh.edges[e].vertices[0]);
+        first.into_iter().chain(chain.iter().map(|&e| mesh.edges[e].vertices[1])).map(|v| mesh.points[v]).collect()
     };
-    trace(&segments).into_iter().map(points).collect()
+    edge_chains(mesh, edges).into_iter().map(points).collect()
 }
 
 /// Path data of the outline of `body` in the undeformed state.

@@ -14,7 +14,7 @@ const MARKERS: usize = 16;
 /// Pressure against arc length; jumps are drawn upright, ends of contact as dotted lines.
 pub fn pressure(contact: &ContactSummary) -> String {
     let rows = contact.profiles.len() as f64;
-    let (left, top, bottom) = (62.0, 30.0 + 20.0 * rows, 330.0 + 20.0 * rows);
+    let (left, top, bottom) = (62.0, 10.0 + 20.0 * rows, 300.0 + 20.0 * rows);
     let mut svg =
         Svg::new(WIDTH, bottom + 46.0, format!("Pressure along the contact {} from every model", contact.name));
     let values = contact.profiles.iter().flat_map(|p| p.points.iter());

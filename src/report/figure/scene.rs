@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::outline::{self, View, chains, polyline, stations};
+use super::outline::{self, View, chains, edge_chains, polyline, stations};
 use super::svg::{Anchor, Svg, look};
 use super::symbols;
 use crate::problem::{Condition, Interface, Problem};
 use crate::report::number::significant;
 
 const WIDTH: f64 = 560.0;
-const MARGIN: f64 = 66.0;
+const MARGIN: f64 = 58.0;
 /// Page length of the largest traction.
 const LONGEST_ARROW: f64 = 44.0;
 
@@ -137,31 +137,38 @@ fn tractions(svg: &mut Svg, problem: &Problem, view: &View) {
         return;
     }
     let factor = LONGEST_ARROW / largest;
-    // About one arrow per 16 page units, wherever they fall on the edges.
-    let mut carried = 8.0;
     let mut tails = String::new();
-    for (&e, p) in &values {
-        let ends = mesh.edges[e].vertices.map(|v| view.at(mesh.points[v]));
-        let (_, normal) = mesh.edge_frame(e);
-        let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
-        let inward = |f: [f64; 2]| f[0] * normal[0] + f[1] * normal[1] < 0.0;
-        let page = |f: [f64; 2]| [factor * f[0], -factor * f[1]];
-        let tail = |k: usize| {
-            let (at, v) = (ends[k], page(p[k]));
-            if inward(p[k]) { [at[0] - v[0], at[1] - v[1]] } else { [at[0] + v[0], at[1] + v[1]] }
-        };
-        tails.push_str(&polyline(&[tail(0), tail(1)]));
-        let mut s = carried;
-        while s <= length {
-            let w = s / length;
-            let f = [0, 1].map(|c| (1.0 - w) * p[0][c] + w * p[1][c]);
-            let at = [0, 1].map(|c| (1.0 - w) * ends[0][c] + w * ends[1][c]);
-            symbols::arrow(svg, look::LOAD, at, page(f), !inward(f));
-            s += 16.0;
+    for chain in edge_chains(mesh, &loaded) {
+        // About one arrow per 16 page units, wherever they fall on the edges.
+        let mut next = 8.0;
+        for e in chain {
+            let Some(p) = values.get(&e) else { continue };
+            let ends = mesh.edges[e].vertices.map(|v| view.at(mesh.points[v]));
+            let (_, normal) = mesh.edge_frame(e);
+            let mix = |w: f64, x: [[f64; 2]; 2]| [0, 1].map(|c| (1.0 - w) * x[0][c] + w * x[1][c]);
+            // The arrow at fraction w of the edge, and whether it pushes.
+            let arrow = |w: f64| {
+                let f = mix(w, *p);
+                (mix(w, ends), [factor * f[0], -factor * f[1]], f[0] * normal[0] + f[1] * normal[1] < 0.0)
+            };
+            // Arrows stand outside the body, so the line along their tails bends where the normal part changes its sign.
+            let tail = |w: f64| {
+                let (at, v, pushes) = arrow(w);
+                if pushes { [at[0] - v[0], at[1] - v[1]] } else { [at[0] + v[0], at[1] + v[1]] }
+            };
+            let bends = arrow(0.0).2 != arrow(1.0).2;
+            let steps = if bends { 8 } else { 1 };
+            tails.push_str(&polyline(&(0..=steps).map(|k| tail(f64::from(k) / f64::from(steps))).collect::<Vec<_>>()));
+            let length = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
+            while next <= length {
+                let (at, v, pushes) = arrow(next / length);
+                symbols::arrow(svg, look::LOAD, at, v, !pushes);
+                next += 16.0;
+            }
+            next -= length;
         }
-        carried = s - length;
     }
-    svg.path(look::LOAD, r#"stroke-width="1" stroke-opacity="0.6""#, &tails);
+    svg.path(look::LOAD, r#"fill-opacity="0" stroke-width="1" stroke-opacity="0.6""#, &tails);
     let text = format!("largest traction {}", significant(largest, 4));
     svg.text(look::DIM, [WIDTH - 6.0, svg.height - 8.0], Anchor::End, &text);
 }

@@ -14,6 +14,8 @@ pub(crate) mod look {
     pub const LINE: &str = r##"class="line" fill="none" stroke="#1f2328""##;
     /// A line of the background.
     pub const GRID: &str = r##"class="grid" fill="none" stroke="#d1d9e0""##;
+    /// Edges of the mesh.
+    pub const MESH: &str = r##"class="mesh" fill="none" stroke="#8996a3" stroke-opacity="0.55""##;
     /// A support.
     pub const SUPPORT: &str = r##"class="support" fill="none" stroke="#57606a""##;
     /// A load.

@@ -24,8 +24,8 @@ pub(super) fn pictures(dossier: &Dossier) -> Markup {
                         }
                     }
                 }
-                (shapes(dossier))
                 @for contact in &dossier.report.contact { (pressure_figure(contact)) }
+                (shapes(dossier))
                 (maps(dossier))
                 @if !dossier.report.history.is_empty() { (history_figure(dossier)) }
             }
@@ -62,7 +62,7 @@ fn shapes(dossier: &Dossier) -> Markup {
                 (PreEscaped(deformed::deformed(dossier.problem, &name, field, &all, scale)))
                 figcaption {
                     b { "Deformed shape, " (name) ". " }
-                    "Displacements times " b { (significant(scale, 3)) } ". Dotted: undeformed. Red: the two sides of the contact; where they part, \
+                    "Displacements times " b { (significant(scale, 3)) } ". Dashed grey: undeformed. Red: the two sides of the contact; where they part, \
                     it has opened."
                     @if gap && scale > 1.0 {
                         " The bodies start with a gap that is not drawn to this scale, so the sides may seem to overlap."

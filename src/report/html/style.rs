@@ -34,6 +34,7 @@ code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhe
 .card .big{font-size:1.7rem;font-weight:700;line-height:1.2;margin:2px 0 4px}
 .first{display:grid;gap:14px;margin-top:14px;grid-template-columns:minmax(0,1fr)}
 @media(min-width:900px){.first{grid-template-columns:minmax(0,1.25fr) minmax(0,1fr)}}
+.first.alone{grid-template-columns:minmax(0,1fr)}.alone .answers{grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr))}
 .gallery{display:grid;gap:16px;grid-template-columns:repeat(auto-fit,minmax(min(100%,430px),1fr))}
 figure{margin:0;background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:12px 14px;min-width:0}
 figure svg,.card svg{display:block;width:100%;height:auto;max-width:640px;margin:0 auto}
@@ -57,13 +58,14 @@ tr.no td{background:var(--bad-bg)}
 .notes li{margin-bottom:6px}
 .words dt{font-weight:600;margin-top:10px}.words dd{margin:2px 0 0;max-width:78ch;color:var(--dim)}
 footer{color:var(--dim);font-size:.88rem;padding-top:30px;padding-bottom:40px}
+@media(max-width:560px){figure,.card{padding:10px 8px}svg{font-size:15.5px}.card h3,.card p,.card .big,figcaption{padding:0 6px}}
 @media(prefers-color-scheme:dark){
 :root{--paper:#0d1117;--sheet:#151b23;--ink:#e6edf3;--dim:#9aa4af;--rule:#30363d;--good:#3fb950;--bad:#ff7b72;--warn:#d29922;--accent:#58a6ff;--good-bg:#12261a;--bad-bg:#2d1618;--warn-bg:#2b2413}
 svg .ink{fill:#e6edf3}svg .dim{fill:#9aa4af}svg .line{stroke:#e6edf3}svg .grid{stroke:#363d47}svg .support{stroke:#aab4bf}
 svg .load{fill:#f0a45d;stroke:#f0a45d}svg .contact{stroke:#ff7b72}svg .bad{fill:#ff7b72}svg .band{fill:#58a6ff;fill-opacity:.3}
 svg .b0{fill:#234566}svg .b1{fill:#57461f}svg .b2{fill:#24503a}svg .b3{fill:#4d3a55}svg .b4{fill:#5c362f}svg .b5{fill:#3b4250}
 svg .s0{stroke:#58a6ff}svg .s1{stroke:#ff9457}svg .s2{stroke:#3ccf9b}svg .s3{stroke:#d990c4}svg .s4{stroke:#d9b23c}svg .s5{stroke:#aab4bf}
-svg text{stroke:#151b23}svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
+svg text[paint-order]{stroke:#151b23}svg .mesh{stroke:#8b98a5}svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
 }
 @media print{
 body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}

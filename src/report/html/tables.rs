@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
-use crate::report::words::basis_word;
+use crate::report::words::{basis_word, upper_from};
 use crate::report::{DualSummary, Energy, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
@@ -67,7 +67,7 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                 thead { tr { th { "quantity" } th.n { "value" } th { "meaning" } } }
                 tbody {
                     (row("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"))
-                    (row("upper bound", significant(energy.upper, digits), &format!("best admissible 𝓛(v), from {}", clean(&energy.upper_from))))
+                    (row("upper bound", significant(energy.upper, digits), &format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from))))
                     (row("gap", significant(energy.gap, 6), "upper − lower"))
                     (row("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"))
                     (row("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"))
@@ -159,7 +159,7 @@ fn solvers(report: &Report) -> Markup {
             }))
             @for primal in &report.primal {
                 p { b { (clean(&primal.name)) } ", seconds by phase" }
-                (phases(&primal.seconds))
+                (phases(&in_order(&primal.seconds)))
             }
         }
     }
@@ -186,20 +186,20 @@ fn dual_solver(dual: &DualSummary) -> Markup {
                 } }
             }
         }))
-        (phases(&names.into_iter().map(|(name, value)| (name.to_string(), value)).collect()))
+        (phases(&names))
     }
 }
 
+fn in_order(seconds: &BTreeMap<String, f64>) -> Vec<(&str, f64)> {
+    seconds.iter().map(|(name, s)| (name.as_str(), *s)).collect()
+}
+
 /// Seconds by phase as one bar; `total` is its length, and what the phases leave of it is shown as the rest.
-fn phases(all: &BTreeMap<String, f64>) -> Markup {
+fn phases(all: &[(&str, f64)]) -> Markup {
     let valid = |s: f64| s.is_finite() && s > 0.0;
-    let mut parts: Vec<(&str, f64)> = all
-        .iter()
-        .filter(|(name, s)| name.as_str() != "total" && valid(**s))
-        .map(|(name, s)| (name.as_str(), *s))
-        .collect();
+    let mut parts: Vec<(&str, f64)> = all.iter().copied().filter(|(name, s)| *name != "total" && valid(*s)).collect();
     let sum: f64 = parts.iter().map(|part| part.1).sum();
-    let total = all.get("total").copied().filter(|s| valid(*s)).unwrap_or(sum).max(sum);
+    let total = all.iter().find(|(name, s)| *name == "total" && valid(*s)).map_or(sum, |total| total.1.max(sum));
     if total - sum > 0.005 * total {
         parts.push(("rest", total - sum));
     }
@@ -254,6 +254,6 @@ fn provenance(report: &Report) -> Markup {
                 tr { th { "Cargo.lock, SHA-256" } td.long { code { (clean(&made.lock_sha256)) } } }
             } }
         }))
-        @if !made.seconds.is_empty() { p { b { "The whole run" } ", seconds by phase" } (phases(&made.seconds)) }
+        @if !made.seconds.is_empty() { p { b { "The whole run" } ", seconds by phase" } (phases(&in_order(&made.seconds))) }
     }
 }

@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, significant, vector};
-use crate::report::words::{accuracy, basis_word, failing, meaning, status_symbol, status_word};
+use crate::report::words::{accuracy, basis_word, failing, meaning, status_symbol, status_word, upper_from};
 use crate::report::{Report, Status};
 
 pub(super) fn first_screen(report: &Report) -> Markup {
@@ -23,7 +23,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
                 }
             }
             (failures(report))
-            div.first {
+            div class=(if report.energy.is_some() { "first" } else { "first alone" }) {
                 @if report.energy.is_some() { (bracket_card(report)) }
                 div.answers {
                     (agreement(report))
@@ -47,12 +47,15 @@ fn headline(status: Status) -> &'static str {
 /// The failing checks, each with its numbers and what it means.
 fn failures(report: &Report) -> Markup {
     let failing = failing(report);
+    let mut meanings: Vec<&str> = failing.iter().map(|check| meaning(check)).collect();
+    meanings.sort_unstable();
+    meanings.dedup();
     html! {
         @if !failing.is_empty() {
             section.failures aria-label="failing checks" {
                 h2 { "✘ " (failing.len()) " of " (report.checks.len()) " checks did not pass" }
                 ol {
-                    @for check in failing {
+                    @for check in &failing {
                         li {
                             span.name { (clean(&check.name)) }
                             @if let Some(difference) = check.difference {
@@ -64,10 +67,11 @@ fn failures(report: &Report) -> Markup {
                                 }
                             }
                             div { (clean(&check.why)) }
-                            div { b { "What it means: " } (meaning(check)) }
                         }
                     }
                 }
+                h3 { "What it means" }
+                @for meaning in meanings { p { (meaning) } }
             }
         }
     }
@@ -82,8 +86,10 @@ fn bracket_card(report: &Report) -> Markup {
                 @let digits = digits_to_tell(energy.lower, energy.upper);
                 p {
                     "Stresses in equilibrium give " b { (significant(energy.lower, digits)) } ", the best admissible displacement ("
-                    (clean(&energy.upper_from)) ") gives " b { (significant(energy.upper, digits)) }
-                    ". The exact energy is between them. Marks: one per computed energy."
+                    (upper_from(&energy.upper_from)) ") gives " b { (significant(energy.upper, digits)) }
+                    ". "
+                    @if energy.lower <= energy.upper { "The exact energy is between them." }
+                    @else { b { "That is the wrong way round, which cannot be: one of the models is wrong." } }
                 }
             }
         }
@@ -119,7 +125,10 @@ fn distance(report: &Report) -> Markup {
             @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
                 div.big { "≤ " (percent(energy.relative_error_bound)) }
             }
-            p { (accuracy(report)) }
+            p {
+                (accuracy(report))
+                @if report.status == Status::Disagree { " It presumes that the models are right, which the failing checks put in doubt." }
+            }
             @for primal in &report.primal {
                 @if let Some(bound) = primal.relative_error_bound {
                     p { (clean(&primal.name)) ": at most " b { (percent(bound)) } "." }

@@ -1,0 +1,165 @@
+//! The made-up numbers of [`super::sample`].
+
+use std::collections::BTreeMap;
+
+use super::sample::{Verdict, contact_pressure};
+use super::*;
+use crate::compare::{Basis, Check};
+use crate::dual::Phases;
+use crate::problem::Problem;
+
+/// A report that agrees with `verdict`: two of four checks fail where it is to disagree.
+pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
+    let failed = verdict == Verdict::Disagree;
+    let (lower, upper) = (-1.7972865675, -1.79391);
+    let p2 = if failed { -1.8109 } else { -1.7958503770 };
+    let complementary = 1.7972865675;
+    let energy = Energy {
+        lower,
+        upper,
+        gap: upper - lower,
+        relative_error_bound: ((upper - lower) / complementary).sqrt(),
+        upper_from: "free".into(),
+        free_upper: Some(upper),
+        gap_local: Some(upper - lower),
+        complementary,
+        widening: 3e-14,
+        guaranteed: true,
+    };
+    let primal = |name: &str, degree, energy: f64| PrimalSummary {
+        name: name.into(),
+        solver: "FEniCSx".into(),
+        version: "0.5.2".into(),
+        degree,
+        energy,
+        admissible: true,
+        relative_error_bound: (energy > lower).then(|| ((energy - lower) / complementary).sqrt()),
+        iterations: 4,
+        unknowns: 1234 * degree,
+        seconds: BTreeMap::from([("assemble".into(), 0.3), ("solve".into(), 0.5), ("total".into(), 0.9)]),
+    };
+    let verdict_text = match verdict {
+        Verdict::Agree => "The two models agree within everything the theory allows.",
+        Verdict::Disagree => "The two models disagree: 2 of 4 checks failed.",
+        Verdict::Infeasible => "No equilibrium: left <a&b> would fly off to the left.",
+        Verdict::Failed => "The reference model stopped: SNES diverged.",
+    };
+    let solved = verdict != Verdict::Infeasible;
+    Report {
+        schema_version: 1,
+        scene: problem.scene.name.clone(),
+        title: problem.scene.title.clone(),
+        command: "verify".into(),
+        status: verdict,
+        verdict: verdict_text.into(),
+        energy: solved.then_some(energy),
+        dual: solved.then(|| DualSummary {
+            method: "condensed".into(),
+            triangles: problem.mesh.triangles.len(),
+            unknowns: 4 * problem.mesh.edges.len(),
+            iterations: 3,
+            equilibrium_residual: 3e-15,
+            seconds: Phases { read: 0.01, assemble: 0.02, factor: 0.05, contact: 0.01, recover: 0.02, total: 0.11 },
+        }),
+        primal: vec![primal("FEniCSx P1", 1, -1.7321463913), primal("FEniCSx P2", 2, p2)],
+        contact: vec![contact(failed)],
+        stress: Some(StressSummary {
+            against: "FEniCSx P2".into(),
+            relative_energy_norm_difference: 0.0412,
+            worst_triangle: 1,
+            worst_at: [0.99, 0.61],
+            worst_share: 0.083,
+            von_mises_max: TwoSides { dual: 4.31, primal: Some(4.22) },
+            component_l2_difference: ComponentDifference { xx: 0.011, yy: 0.008, xy: 0.004, von_mises: 0.012 },
+        }),
+        checks: checks(failed, lower, p2),
+        notes: problem.notes.clone(),
+        history: [(16, 1.1e-1), (120, 4.4e-2), (900, 1.3e-2), (5900, 4.1e-3)]
+            .map(|(triangles, bound)| HistoryRow {
+                triangles,
+                unknowns: 6 * triangles,
+                lower,
+                upper,
+                relative_error_bound: bound,
+                seconds: 1e-5 * triangles as f64,
+            })
+            .to_vec(),
+        provenance: Provenance {
+            version: "0.1.0".into(),
+            components: BTreeMap::from([("dolfinx".into(), "0.5.2".into()), ("faer".into(), "0.24.4".into())]),
+            scene_sha256: "0123456789abcdef".repeat(4),
+            mesh_sha256: "fedcba9876543210".repeat(4),
+            lock_sha256: "00ff".repeat(16),
+            threads: 1,
+            seconds: BTreeMap::from([("dual".into(), 0.11), ("primal".into(), 1.9), ("total".into(), 2.1)]),
+        },
+    }
+}
+
+fn contact(failed: bool) -> ContactSummary {
+    let steps: Vec<[f64; 2]> = (0..8)
+        .flat_map(|k| [k, k + 1].map(|j| [f64::from(j) / 8.0, contact_pressure((f64::from(k) + 0.5) / 8.0)]))
+        .collect();
+    let factor = if failed { -0.6 } else { 1.0 };
+    let smooth = (0..=16).map(|k| f64::from(k) / 16.0).map(|s| [s, factor * contact_pressure(s)]).collect();
+    let trace = (0..=16)
+        .map(|k| f64::from(k) / 16.0)
+        .map(|s| [s, factor * contact_pressure(s) + 0.1 * (20.0 * s).sin()])
+        .collect();
+    let profile = |model: &str, points| Profile { model: model.into(), points };
+    ContactSummary {
+        name: "left_face|right_face".into(),
+        resultant: TwoSides { dual: [-0.5, 0.0], primal: Some([-0.5 * factor, 0.0]) },
+        moment: TwoSides { dual: 0.0833, primal: Some(0.0829) },
+        pressure_max: TwoSides { dual: 2.01, primal: Some(1.97) },
+        pressure_max_at: TwoSides { dual: [1.0, 0.0], primal: Some([1.0, 0.0]) },
+        open_fraction: 0.375,
+        open_fraction_primal: Some(0.375),
+        contact_ends: vec![0.5],
+        pressure_l2_difference: Some(0.034),
+        length: 1.0,
+        profiles: vec![
+            profile("dual", steps),
+            profile("FEniCSx P2 reactions", smooth),
+            profile("FEniCSx P2 trace", trace),
+        ],
+    }
+}
+
+fn checks(failed: bool, lower: f64, p2: f64) -> Vec<Check> {
+    let sign = if failed { -1.0 } else { 1.0 };
+    vec![
+        Check::at_most(
+            "sharpness",
+            0.0433,
+            0.15,
+            0.0,
+            Basis::Chosen,
+            "The bracket has to be sharp enough to tell a wrong model from a right one.",
+        ),
+        Check::at_most(
+            "energy.order.P2",
+            lower,
+            p2,
+            1e-9,
+            Basis::Guaranteed,
+            "An admissible displacement cannot have less energy than −Π(λ_h).",
+        ),
+        Check::equal(
+            "contact.left_face|right_face.resultant <a&b>",
+            -0.5,
+            -0.5 * sign,
+            1e-2,
+            Basis::Guaranteed,
+            "Both sides carry the same force.",
+        ),
+        Check::equal(
+            "gap.local",
+            0.0033765,
+            0.0033765,
+            1e-9,
+            Basis::RoundOff,
+            "The gap computed from energies and from local terms.",
+        ),
+    ]
+}
