@@ -11,3 +11,4 @@ pub mod problem;
 pub mod report;
 pub mod scene;
 pub mod statics;
+pub mod study;

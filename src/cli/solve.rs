@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use super::options::{Limits, RunOptions, SolveOptions};
+use super::session::{DualRun, Session, remarks};
 use super::{CliError, Exit};
-use crate::scene::Scene;
+use crate::compare::{Allowances, compare};
+use crate::study::{Fields, Findings, assemble};
 
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
@@ -28,6 +30,25 @@ pub struct Args {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
-    Scene::read(&args.scene)?;
-    Err(CliError::stopped(Exit::Failed, "`solve` is not part of this build", "use a build with solvers"))
+    let session = Session::open("solve", &args.scene, &args.solve, args.run.quiet)?;
+    let folder = args.run.folder(&session.scene);
+    let DualRun { certified, history, stopped } = session.solve(&args.solve, &args.limits, &folder)?;
+    let comparison =
+        compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &Allowances::default());
+    let fields = Fields::new(&certified, &comparison);
+    let dossier = assemble(
+        Findings {
+            command: session.command,
+            certified: &certified,
+            comparison: &comparison,
+            history,
+            notes: remarks(stopped),
+            threads: session.threads(),
+            seconds: vec![("whole run", session.start.elapsed().as_secs_f64())],
+            components: Vec::new(),
+            failure: None,
+        },
+        &fields,
+    );
+    session.close(&dossier, &folder)
 }

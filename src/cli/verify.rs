@@ -1,10 +1,14 @@
 //! `hypercircle verify`: dual and primal model of one scene, compared.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
-use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
+use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
+use super::session::{DualRun, Session, remarks};
 use super::{CliError, Exit};
-use crate::scene::Scene;
+use crate::compare::compare;
+use crate::primal::{self, PrimalError};
+use crate::study::{Fields, Findings, assemble, candidates, pins};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -24,6 +28,24 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// Run the displacement model on N MPI ranks
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub ranks: Option<u32>,
+    /// Give the displacement model at most S seconds
+    #[arg(long, value_name = "S", default_value_t = 1800.0, value_parser = positive)]
+    pub primal_seconds: f64,
+    /// Plant a bug in the displacement model; the comparison must catch it
+    #[arg(long, value_enum, hide = true)]
+    pub sabotage: Option<Planted>,
+}
+
+/// A bug to plant in the displacement model, to see the comparison catch it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Planted {
+    /// One sign of the stiffness is wrong
+    FlipSign,
+    /// One contact row is missing
+    DropRow,
 }
 
 /// Solves the scene twice and compares.
@@ -31,6 +53,66 @@ pub struct Args {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
-    Scene::read(&args.scene)?;
-    Err(CliError::stopped(Exit::Failed, "`verify` is not part of this build", "use a build with solvers"))
+    let session = Session::open("verify", &args.scene, &args.solve, args.run.quiet)?;
+    let folder = args.run.folder(&session.scene);
+    let DualRun { certified, history, stopped } = session.solve(&args.solve, &args.limits, &folder)?;
+    let in_stresses = session.start.elapsed().as_secs_f64();
+
+    session.progress.phase("solving in displacements with FEniCSx");
+    let options = primal::Options {
+        sabotage: args.sabotage.map(|s| match s {
+            Planted::FlipSign => primal::Sabotage::FlipSign,
+            Planted::DropRow => primal::Sabotage::DropRow,
+        }),
+        ranks: args.ranks.map(|n| n as usize),
+        timeout: Duration::from_secs_f64(args.primal_seconds),
+        ..primal::Options::default()
+    };
+    let solutions = primal::run(&certified.problem, &pins(&certified.statics), &options);
+    let in_displacements = session.start.elapsed().as_secs_f64() - in_stresses;
+
+    session.progress.phase("comparing");
+    let allow = args.judge.allowances();
+    let (solutions, failure) = match solutions {
+        Ok(solutions) => (solutions, None),
+        Err(error) => (Vec::new(), Some(error)),
+    };
+    let components = solutions
+        .first()
+        .map(|s| {
+            vec![("dolfinx".to_string(), s.solver_version.clone()), ("petsc4py".to_string(), s.petsc_version.clone())]
+        })
+        .unwrap_or_default();
+    let candidates = candidates(&certified.problem, solutions);
+    let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
+    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
+    let baseline = args.judge.against_baseline(&certified, &comparison, &allow)?;
+    comparison.checks.extend(baseline);
+    let fields = Fields::new(&certified, &comparison);
+    let dossier = assemble(
+        Findings {
+            command: session.command,
+            certified: &certified,
+            comparison: &comparison,
+            history,
+            notes: remarks(stopped),
+            threads: session.threads(),
+            seconds: vec![
+                ("stresses", in_stresses),
+                ("displacements", in_displacements),
+                ("whole run", session.start.elapsed().as_secs_f64()),
+            ],
+            components,
+            failure: failure.as_ref().map(ToString::to_string),
+        },
+        &fields,
+    );
+    let exit = session.close(&dossier, &folder)?;
+    match failure {
+        None => Ok(exit),
+        Some(error) => {
+            let exit = if matches!(error, PrimalError::NotInstalled(_)) { Exit::NotInstalled } else { Exit::Failed };
+            Err(CliError::stopped(exit, error.to_string(), ""))
+        }
+    }
 }

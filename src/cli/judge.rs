@@ -1,0 +1,51 @@
+//! Tolerances and baselines from the command line.
+
+use super::options::JudgeOptions;
+use super::{CliError, Exit};
+use crate::compare::{Allowances, Check, Comparison};
+use crate::study::{Baseline, Certified};
+
+impl JudgeOptions {
+    /// The tolerances given with `--allow`.
+    pub fn allowances(&self) -> Allowances {
+        Allowances::new(self.allow.iter().map(|a| (a.name.clone(), a.value)).collect())
+    }
+
+    /// Refuses a tolerance for a check that does not exist; where checks could not be made, any name may be meant.
+    ///
+    /// # Errors
+    /// An unknown name.
+    pub fn refuse_unknown(&self, allow: &Allowances, checks: &[Check], incomplete: bool) -> Result<(), CliError> {
+        let unknown = allow.unknown(checks);
+        let meant: Vec<&&str> = unknown.iter().filter(|name| !name.starts_with("baseline/")).collect();
+        if incomplete || meant.is_empty() {
+            return Ok(());
+        }
+        let names: Vec<&str> = checks.iter().map(|c| c.name.as_str()).collect();
+        Err(CliError::stopped(
+            Exit::BadInput,
+            format!("--allow names a check that was not made: {}", meant[0]),
+            format!("use one of {}, or the last part of one", names.join(", ")),
+        ))
+    }
+
+    /// Compares with the baseline, or writes it.
+    ///
+    /// # Errors
+    /// The baseline cannot be read or written.
+    pub fn against_baseline(
+        &self,
+        certified: &Certified,
+        comparison: &Comparison,
+        allow: &Allowances,
+    ) -> Result<Vec<Check>, CliError> {
+        let Some(file) = &self.baseline else { return Ok(Vec::new()) };
+        let present = Baseline::new(certified, comparison);
+        let refused = |e: crate::study::BaselineError| CliError::stopped(Exit::BadInput, e.to_string(), "");
+        if self.accept {
+            present.write(file).map_err(refused)?;
+            return Ok(Vec::new());
+        }
+        Ok(present.checks(&Baseline::read(file).map_err(refused)?, allow))
+    }
+}

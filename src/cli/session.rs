@@ -1,0 +1,141 @@
+//! What the solving commands share: from the scene file to a bracket, and from a dossier to files and a verdict.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::options::{Limits, Method, SolveOptions};
+use super::progress::Progress;
+use super::{CliError, Exit};
+use crate::dual::{ActiveSet, Condensed, DualMethod, Options};
+use crate::problem::{Note, Problem};
+use crate::report::{self, Dossier, HistoryRow, Status};
+use crate::scene::Scene;
+use crate::study::{self, Certified, StudyError};
+
+/// A scene on its way through a command.
+pub struct Session {
+    /// The scene.
+    pub scene: Scene,
+    /// Sign of life.
+    pub progress: Progress,
+    /// When the command started.
+    pub start: Instant,
+    /// Name of the command.
+    pub command: &'static str,
+    quiet: bool,
+    threads: usize,
+}
+
+/// The dual side of a command.
+pub struct DualRun {
+    /// Problem, solution and bracket.
+    pub certified: Certified,
+    /// Mesh by mesh, where the mesh was refined adaptively.
+    pub history: Vec<HistoryRow>,
+    /// Why refinement stopped before the tolerance was reached.
+    pub stopped: Option<String>,
+}
+
+impl Session {
+    /// Reads the scene.
+    ///
+    /// # Errors
+    /// The scene is refused.
+    pub fn open(command: &'static str, scene: &Path, solve: &SolveOptions, quiet: bool) -> Result<Self, CliError> {
+        let start = Instant::now();
+        let scene = Scene::read(scene)?;
+        let threads = solve.threads as usize;
+        // A second command in one process keeps the pool of the first.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        Ok(Session { scene, progress: Progress::new(quiet), start, command, quiet, threads })
+    }
+
+    /// Threads in use.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`.
+    ///
+    /// # Errors
+    /// Bad input, a solver that failed, or no equilibrium.
+    pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
+        self.progress.phase("reading the mesh");
+        let problem = self.problem(solve)?;
+        let read = self.start.elapsed().as_secs_f64();
+        self.progress.phase(format!("solving in stresses on {} triangles", problem.mesh.triangles.len()));
+        let method = method(solve.method);
+        let options = Options { threads: self.threads, ..Options::default() };
+        let _ = limits;
+        match study::certify(problem, method.as_ref(), &options) {
+            Ok(mut certified) => {
+                certified.dual.seconds.read = read;
+                Ok(DualRun { certified, history: Vec::new(), stopped: None })
+            }
+            Err(error) => Err(self.refuse(error, folder)),
+        }
+    }
+
+    fn problem(&self, solve: &SolveOptions) -> Result<Problem, CliError> {
+        let refused = |e: crate::problem::ProblemError| {
+            CliError::stopped(Exit::BadInput, format!("{}: {e}", self.scene.path.display()), "")
+        };
+        let problem = Problem::load(self.scene.clone()).map_err(refused)?;
+        problem.refine_uniform(solve.refine as usize).map_err(refused)
+    }
+
+    fn refuse(&self, error: StudyError, folder: &Path) -> CliError {
+        let message = format!("{}: {error}", self.scene.path.display());
+        match error {
+            StudyError::NoEquilibrium { sentence, motion, problem, .. } => {
+                let dossier = study::infeasible(self.command, &problem, &sentence, motion, self.threads);
+                if let Err(error) = report::write(&dossier, folder) {
+                    return CliError::stopped(Exit::Failed, error.to_string(), "");
+                }
+                let remedy = format!("see {}, or hold the body with a support", folder.join("report.html").display());
+                CliError::stopped(Exit::NoEquilibrium, message, remedy)
+            }
+            StudyError::BeyondMesh { .. } => {
+                CliError::stopped(Exit::Failed, message, "refine the mesh, for instance with --refine or --tolerance")
+            }
+            StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
+        }
+    }
+
+    /// Writes the files and says the verdict.
+    ///
+    /// # Errors
+    /// The files cannot be written.
+    pub fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
+        self.progress.phase("writing the report");
+        report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
+        if !self.quiet {
+            let report = &dossier.report;
+            println!("{}", report.verdict);
+            for check in report.checks.iter().filter(|c| !c.passed) {
+                println!("  failed: {}: {}", check.name, check.why);
+            }
+            println!("report: {}", folder.join("report.html").display());
+        }
+        Ok(match dossier.report.status {
+            Status::Agree => Exit::Agree,
+            Status::Disagree => Exit::Disagree,
+            Status::Infeasible => Exit::NoEquilibrium,
+            Status::Failed => Exit::Failed,
+        })
+    }
+}
+
+/// The solver of that name.
+pub fn method(name: Method) -> Box<dyn DualMethod> {
+    match name {
+        Method::Condensed => Box::new(Condensed),
+        Method::ActiveSet => Box::new(ActiveSet::default()),
+        Method::Clarabel | Method::Uzawa => Box::new(Condensed),
+    }
+}
+
+/// Remarks of the run for the report.
+pub fn remarks(stopped: Option<String>) -> Vec<Note> {
+    stopped.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect()
+}

@@ -1,0 +1,81 @@
+//! The dual side of a run: from a problem to a bracket.
+
+use std::time::Instant;
+
+use crate::bounds::Bracket;
+use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options};
+use crate::problem::Problem;
+use crate::statics::{self, Equilibrium, Statics, StaticsError};
+
+/// A problem with its dual solution and bracket.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    /// Scene and mesh.
+    pub problem: Problem,
+    /// What rigid motions are held.
+    pub statics: Statics,
+    /// λ_h.
+    pub dual: DualSolution,
+    /// The two bounds that follow from it.
+    pub bracket: Bracket,
+}
+
+/// Why there is no bracket.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Whether there is an equilibrium could not be decided.
+    #[error(transparent)]
+    Statics(#[from] StaticsError),
+    /// There is none.
+    #[error("{sentence}")]
+    NoEquilibrium {
+        /// Which bodies move, and how.
+        sentence: String,
+        /// The motion, as a displacement of every vertex.
+        motion: Motion,
+        /// The work of the loads on it.
+        work: f64,
+        /// The problem it belongs to.
+        problem: Box<Problem>,
+    },
+    /// There is one, but no stress field of this mesh can express it.
+    #[error(
+        "no equilibrated stress exists on this mesh: {sentence}. The loads press on less than the last third of an edge; \
+         refine the mesh at the end of the contact"
+    )]
+    BeyondMesh {
+        /// What would have to be expressed.
+        sentence: String,
+    },
+    /// The dual solver failed.
+    #[error(transparent)]
+    Dual(#[from] DualError),
+}
+
+/// Checks the statics of `problem`, solves the dual problem, and brackets the energy.
+///
+/// # Errors
+/// [`StudyError`].
+pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
+    let start = Instant::now();
+    let statics = statics::check(&problem)?;
+    match &statics.equilibrium {
+        Equilibrium::Impossible { motion, work, sentence, .. } => {
+            return Err(StudyError::NoEquilibrium {
+                sentence: sentence.clone(),
+                motion: motion.at_vertices(&problem, &statics.components),
+                work: *work,
+                problem: Box::new(problem),
+            });
+        }
+        Equilibrium::Possible { beyond_mesh: Some(_), .. } => {
+            return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
+        }
+        Equilibrium::Possible { .. } => {}
+    }
+    let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
+    let mut dual = dual::solve(method, &problem, &motions, options)?;
+    let bracket = Bracket::new(&problem, &dual);
+    dual.seconds.total = start.elapsed().as_secs_f64();
+    Ok(Certified { problem, statics, dual, bracket })
+}

@@ -1,0 +1,237 @@
+//! From results to the data behind the report.
+
+use super::Certified;
+use super::provenance::provenance;
+use crate::bounds::UpperBound;
+use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::dual::Motion;
+use crate::element::Displacement;
+use crate::problem::{Note, Problem};
+use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
+
+/// What a run found.
+#[derive(Debug)]
+pub struct Findings<'a> {
+    /// `verify`, `solve` or `certify`.
+    pub command: &'a str,
+    /// The dual side.
+    pub certified: &'a Certified,
+    /// The comparison; without displacement models it still holds the checks of the bracket.
+    pub comparison: &'a Comparison,
+    /// Adaptive refinement, mesh by mesh.
+    pub history: Vec<HistoryRow>,
+    /// Remarks of the run itself.
+    pub notes: Vec<Note>,
+    /// Threads used.
+    pub threads: usize,
+    /// Seconds by phase of the whole run.
+    pub seconds: Vec<(&'static str, f64)>,
+    /// Versions of programs that took part.
+    pub components: Vec<(String, String)>,
+    /// Why the displacement side is missing, where it should be there.
+    pub failure: Option<String>,
+}
+
+/// Puts the report and its fields together.
+pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
+    let Certified { problem, dual, .. } = findings.certified;
+    let report = report(&findings);
+    let mut displacements: Vec<(String, &Displacement)> = Vec::new();
+    if let Ok(free) = &findings.certified.bracket.free {
+        displacements.push(("free upper bound".to_string(), &free.displacement));
+    }
+    for judged in &findings.comparison.judged {
+        displacements.push((judged.candidate.name.clone(), &judged.field.displacement));
+    }
+    Dossier { report, problem, dual: Some(dual), displacements, maps: fields.maps.clone(), motion: None }
+}
+
+/// Scalar fields for pictures and VTU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fields {
+    maps: Vec<Map>,
+}
+
+impl Fields {
+    /// Computes the maps of a run.
+    pub fn new(certified: &Certified, comparison: &Comparison) -> Self {
+        let Certified { problem, dual, bracket, .. } = certified;
+        let count = problem.mesh.triangles.len();
+        let means: Vec<[f64; 3]> = (0..count).map(|t| dual.stress.mean(t)).collect();
+        let mut maps = vec![Map {
+            key: "von_mises_dual",
+            title: "Von Mises stress, dual solution",
+            values: von_mises_map(problem, &means),
+        }];
+        if let Some(best) = comparison.best.map(|b| &comparison.judged[b]) {
+            maps.push(Map {
+                key: "von_mises_primal",
+                title: "Von Mises stress, best displacement solution",
+                values: von_mises_map(problem, &primal_means(problem, best)),
+            });
+            maps.push(Map {
+                key: "stress_difference",
+                title: "Stress difference: root of the energy density of λ_h − σ(u_h)",
+                values: density(problem, &best.field.local.triangles),
+            });
+        }
+        if let Some((upper, _)) = comparison.upper(bracket) {
+            maps.push(Map {
+                key: "error_contribution",
+                title: "Share of each triangle in the gap between the bounds",
+                values: shares(problem, upper),
+            });
+        }
+        Fields { maps }
+    }
+}
+
+/// Square root of twice the term per area: the local size of a stress difference in energy units.
+fn density(problem: &Problem, terms: &[f64]) -> Vec<f64> {
+    terms.iter().enumerate().map(|(t, v)| (2.0 * v.max(0.0) / problem.mesh.area(t)).sqrt()).collect()
+}
+
+/// Local terms of the gap relative to their sum; those of a contact pair go to the triangle on its first side.
+pub fn shares(problem: &Problem, upper: &UpperBound) -> Vec<f64> {
+    let mut terms = upper.local.triangles.clone();
+    for (interface, values) in problem.interfaces.iter().zip(&upper.local.pairs) {
+        for (pair, value) in interface.pairs.iter().zip(values) {
+            if let Some(t) = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]) {
+                terms[t] += value;
+            }
+        }
+    }
+    let total = upper.local.total;
+    if total > 0.0 {
+        terms.iter_mut().for_each(|v| *v /= total);
+    }
+    terms
+}
+
+fn report(findings: &Findings<'_>) -> Report {
+    let Certified { problem, statics, dual, bracket } = findings.certified;
+    let comparison = findings.comparison;
+    let mut notes = problem.notes.clone();
+    let remark = |text: &String| Note { weakens_guarantee: false, text: text.clone() };
+    notes.extend(statics.notes.iter().map(remark));
+    notes.extend(dual.notes.iter().map(remark));
+    notes.extend(findings.notes.iter().cloned());
+    let guaranteed = !notes.iter().any(|n| n.weakens_guarantee);
+    let energy = comparison.upper(bracket).map(|(upper, from)| Energy {
+        lower: bracket.lower(),
+        upper: upper.upper(),
+        gap: upper.upper() - bracket.lower(),
+        relative_error_bound: bracket.relative_error(upper.upper()),
+        upper_from: from.to_string(),
+        free_upper: bracket.free.as_ref().ok().map(UpperBound::upper),
+        gap_local: bracket.free.as_ref().ok().map(|f| f.local.total),
+        complementary: bracket.complementary.strain,
+        widening: bracket.lower_widening + upper.widening,
+        guaranteed,
+    });
+    let status = match (&findings.failure, comparison.agrees()) {
+        (Some(_), _) => Status::Failed,
+        (None, true) => Status::Agree,
+        (None, false) => Status::Disagree,
+    };
+    let mut provenance = provenance(problem, findings.threads);
+    provenance.components.extend(findings.components.iter().cloned());
+    provenance.seconds.extend(findings.seconds.iter().map(|(k, v)| (k.to_string(), *v)));
+    Report {
+        schema_version: 1,
+        scene: problem.scene.name.clone(),
+        title: problem.scene.title.clone(),
+        command: findings.command.to_string(),
+        status,
+        verdict: verdict(findings, energy.as_ref()),
+        energy,
+        dual: Some(DualSummary {
+            method: dual.method.to_string(),
+            triangles: problem.mesh.triangles.len(),
+            unknowns: dual.unknowns,
+            iterations: dual.iterations,
+            equilibrium_residual: dual.equilibrium.residual(),
+            seconds: dual.seconds,
+        }),
+        primal: comparison
+            .judged
+            .iter()
+            .map(|j| PrimalSummary {
+                name: j.candidate.name.clone(),
+                solver: j.candidate.solver.clone(),
+                version: j.candidate.version.clone(),
+                degree: j.candidate.degree,
+                energy: j.candidate.reported.unwrap_or(j.field.potential.total()),
+                admissible: j.is_admissible(),
+                relative_error_bound: Some(j.relative_error(bracket)),
+                iterations: j.candidate.iterations,
+                unknowns: j.candidate.unknowns,
+                seconds: j.candidate.seconds.clone(),
+            })
+            .collect(),
+        contact: comparison.contacts.clone(),
+        stress: comparison.stress.clone(),
+        checks: comparison.checks.clone(),
+        notes,
+        history: findings.history.clone(),
+        provenance,
+    }
+}
+
+/// The verdict in one sentence.
+fn verdict(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
+    if let Some(failure) = &findings.failure {
+        return format!("No comparison was made: {failure}");
+    }
+    let failed: Vec<&str> = findings.comparison.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
+    let bound = energy.map_or(String::new(), |e| {
+        let what = if e.guaranteed { "guaranteed" } else { "indicated" };
+        format!(
+            " The exact energy lies between {:.8e} and {:.8e}; the {what} relative energy-norm error is at most {:.3} %.",
+            e.lower,
+            e.upper,
+            100.0 * e.relative_error_bound
+        )
+    });
+    let models = findings.comparison.judged.len();
+    match (failed.as_slice(), models) {
+        ([], 0) => format!("The bracket holds.{bound}"),
+        ([], _) => format!("The stress and displacement models agree.{bound}"),
+        ([one], _) => format!("One check failed: {one}.{bound}"),
+        (several, _) => format!("{} checks failed, first {}.{bound}", several.len(), several[0]),
+    }
+}
+
+/// The report on a scene without equilibrium.
+pub fn infeasible<'a>(
+    command: &str,
+    problem: &'a Problem,
+    sentence: &str,
+    motion: Motion,
+    threads: usize,
+) -> Dossier<'a> {
+    Dossier {
+        report: Report {
+            schema_version: 1,
+            scene: problem.scene.name.clone(),
+            title: problem.scene.title.clone(),
+            command: command.to_string(),
+            status: Status::Infeasible,
+            verdict: sentence.to_string(),
+            energy: None,
+            dual: None,
+            primal: Vec::new(),
+            contact: Vec::new(),
+            stress: None,
+            checks: Vec::new(),
+            notes: problem.notes.clone(),
+            history: Vec::new(),
+            provenance: provenance(problem, threads),
+        },
+        problem,
+        dual: None,
+        displacements: Vec::new(),
+        maps: Vec::new(),
+        motion: Some(motion),
+    }
+}
