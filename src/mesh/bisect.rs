@@ -4,11 +4,9 @@
 //! refinement edges of the halves are the ones opposite the new vertex. The triangles that can arise from one triangle
 //! fall into four similarity classes, so angles stay bounded however often this is repeated.
 
-use std::collections::HashMap;
-
-use super::Triangulation;
 use super::labels::{Pair, pair};
 use super::quarter::middle;
+use super::{Map, Triangulation};
 
 /// For every triangle the local index of its refinement edge.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,7 +54,7 @@ pub struct Bisected {
 pub fn bisect(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], facing: &[[usize; 2]]) -> Bisected {
     let cut = close(mesh, refinement, marked, facing);
     let mut points = mesh.points.clone();
-    let mut middles: HashMap<Pair, usize> = HashMap::new();
+    let mut middles: Map<Pair, usize> = Map::default();
     let mut label = mesh.label();
     for (e, edge) in mesh.edges.iter().enumerate().filter(|(e, _)| cut[*e]) {
         let [a, b] = edge.vertices;
@@ -91,7 +89,7 @@ pub fn bisect(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usiz
 /// The edges to cut: the refinement edges of marked triangles, and with any edge of a triangle its refinement edge, and
 /// with an edge of a contact the one opposite.
 fn close(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], facing: &[[usize; 2]]) -> Vec<bool> {
-    let mut opposite: HashMap<usize, usize> = HashMap::with_capacity(2 * facing.len());
+    let mut opposite: Map<usize, usize> = Map::default();
     for &[e, f] in facing {
         opposite.extend([(e, f), (f, e)]);
     }
@@ -108,7 +106,7 @@ fn close(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], f
 }
 
 /// Cuts a triangle, given with its refinement edge first, and its halves where their refinement edges are cut too.
-fn halve([a, b, c]: [usize; 3], middles: &HashMap<Pair, usize>, into: &mut Vec<[usize; 3]>) {
+fn halve([a, b, c]: [usize; 3], middles: &Map<Pair, usize>, into: &mut Vec<[usize; 3]>) {
     match middles.get(&pair(a, b)) {
         None => into.push([a, b, c]),
         Some(&m) => {

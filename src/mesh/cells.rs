@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::error::{MeshError, at};
-use super::{RawMesh, labels::suggestion};
+use super::{Map, RawMesh, labels::suggestion};
 use crate::problem::Note;
 use crate::scene::Scene;
 
@@ -30,7 +30,8 @@ pub(super) fn check(raw: &RawMesh, scene: &Scene, notes: &mut Vec<Note>) -> Resu
     }
     check_points(raw, scene)?;
     let body_of: HashMap<&str, usize> = scene.bodies.iter().enumerate().map(|(i, b)| (b.name.as_str(), i)).collect();
-    let mut seen: HashMap<[usize; 3], (usize, usize)> = HashMap::with_capacity(raw.triangles.len());
+    let mut seen: Map<[usize; 3], (usize, usize)> = Map::default();
+    seen.reserve(raw.triangles.len());
     let mut strangers = Vec::new();
     let mut cells = Cells { triangles: Vec::with_capacity(raw.triangles.len()), body: Vec::new() };
     for (number, (corners, name)) in raw.triangles.iter().enumerate() {

@@ -1,19 +1,20 @@
-//! Places where two parts of a body touch without being bonded: hanging nodes and doubled vertices.
+//! Places where two parts of a body, or two bodies, touch without being bonded: hanging nodes and doubled vertices.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::Triangulation;
 use super::boxes::{BoxTree, around};
 use super::error::{MeshError, at};
 use super::labels::contact_names;
+use super::polyline::key;
 use crate::problem::Note;
 use crate::scene::Scene;
 
 /// Distance from an edge, and from its ends, in parts of its length.
 const CLOSE: f64 = 1e-9;
 
-/// A vertex inside a boundary edge of its own body is an error; two edges of one body at the same place are a slit,
-/// which may be meant, and make a note. Contact sides are left to the gluing.
+/// A vertex inside a boundary edge of its own body is an error; two edges at the same place may be meant, and make a
+/// note. Contact sides are left to the gluing.
 pub(super) fn check(mesh: &Triangulation, scene: &Scene, notes: &mut Vec<Note>) -> Result<(), MeshError> {
     let sides = contact_names(scene);
     let in_contact = |e: usize| mesh.edges[e].name.is_some_and(|n| sides.contains(&mesh.names[n].as_str()));
@@ -40,26 +41,29 @@ pub(super) fn check(mesh: &Triangulation, scene: &Scene, notes: &mut Vec<Note>) 
             }
         }
     }
-    let mut slit = vec![0_usize; scene.bodies.len()];
-    let mut seen: HashMap<[[u64; 2]; 2], Option<usize>> = HashMap::new();
+    let mut touching: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    let mut seen: HashMap<[[u64; 2]; 2], usize> = HashMap::new();
     for &e in &boundary {
-        let [a, b] = ends(e).map(|p| p.map(f64::to_bits));
-        if let (Some(other), Some(here)) = (seen.get(&[b, a]), body(e))
-            && *other == Some(here)
-        {
-            slit[here] += 1;
+        let [a, b] = ends(e).map(key);
+        let Some(here) = body(e) else { continue };
+        if let Some(&other) = seen.get(&[b, a]) {
+            *touching.entry([here.min(other), here.max(other)]).or_insert(0) += 1;
         }
-        seen.insert([a, b], body(e));
+        seen.insert([a, b], here);
     }
-    for (body, edges) in scene.bodies.iter().zip(slit).filter(|(_, edges)| *edges > 0) {
-        notes.push(Note {
-            weakens_guarantee: false,
-            text: format!(
-                "body '{}' is cut open along {edges} edges, whose vertices are doubled: they are free of each other; \
-                 merge the vertices if the body is whole",
-                body.name
-            ),
-        });
+    for ([first, second], edges) in touching {
+        let [first, second] = [first, second].map(|i| &scene.bodies[i].name);
+        let text = if first == second {
+            format!(
+                "body '{first}' is cut open along {edges} edges, whose vertices are doubled: the two sides are free of each \
+                 other; merge the vertices if the body is whole"
+            )
+        } else {
+            format!(
+                "bodies '{first}' and '{second}' touch along {edges} edges without a contact: they are free of each other"
+            )
+        };
+        notes.push(Note { weakens_guarantee: false, text });
     }
     Ok(())
 }

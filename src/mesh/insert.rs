@@ -1,9 +1,7 @@
 //! New vertices on boundary edges.
 
-use std::collections::HashMap;
-
-use super::Triangulation;
 use super::labels::{Pair, pair};
+use super::{Map, Triangulation};
 
 impl Triangulation {
     /// Puts vertices on boundary edges, given as (edge, point); the triangle that owns the edge is cut from its
@@ -12,13 +10,13 @@ impl Triangulation {
     /// # Errors
     /// A point that lies so far beside its edge that a triangle would turn over.
     pub(crate) fn with_inserted(&self, at: &[(usize, [f64; 2])]) -> Result<Triangulation, [f64; 2]> {
-        let mut on_edge: HashMap<usize, Vec<[f64; 2]>> = HashMap::new();
+        let mut on_edge: Map<usize, Vec<[f64; 2]>> = Map::default();
         for (edge, point) in at {
             on_edge.entry(*edge).or_default().push(*point);
         }
         let mut edges: Vec<usize> = on_edge.keys().copied().collect();
         edges.sort_unstable();
-        let mut owner: HashMap<Pair, usize> = HashMap::new();
+        let mut owner: Map<Pair, usize> = Map::default();
         for &e in &edges {
             let [a, b] = self.edges[e].vertices;
             owner.extend(self.edges[e].triangles[0].map(|t| (pair(a, b), t)));

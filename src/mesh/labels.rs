@@ -1,9 +1,10 @@
 //! Which edge carries which name, and which edges are cut open because a contact runs along them.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use super::error::{MeshError, at};
-use super::{RawMesh, cells::Cells};
+use super::halves::HalfEdges;
+use super::{Map, RawMesh, cells::Cells};
 use crate::problem::Note;
 use crate::scene::{ContactSides, MeshSource, Scene};
 
@@ -24,7 +25,7 @@ pub(super) struct Labels {
     /// Distinct names in order of appearance.
     pub names: Vec<String>,
     /// Name of edge i (opposite corner i) of a triangle.
-    pub of: HashMap<Side, usize>,
+    pub of: Map<Side, usize>,
     /// Interior edges along which a contact separates two bodies.
     pub cut: HashSet<Pair>,
 }
@@ -58,25 +59,23 @@ pub(crate) fn contact_names(scene: &Scene) -> Vec<&str> {
 }
 
 /// Gives the named segments of `raw` to the edges of its cells.
-///
-/// `sides` lists for every edge its one or two sides.
 pub(super) fn assign(
     raw: &RawMesh,
     cells: &Cells,
-    sides: &HashMap<Pair, Vec<Side>>,
+    halves: &HalfEdges,
     scene: &Scene,
     notes: &mut Vec<Note>,
 ) -> Result<Labels, MeshError> {
     let used = used_names(scene);
     let mut order: Vec<Pair> = Vec::new();
-    let mut on: HashMap<Pair, Vec<&str>> = HashMap::new();
+    let mut on: Map<Pair, Vec<&str>> = Map::default();
     let mut idle: Vec<&str> = Vec::new();
     for ([a, b], name) in &raw.segments {
         let key = pair(*a, *b);
         if name.is_empty() {
             continue;
         }
-        if !sides.contains_key(&key) {
+        if halves.joining(*a, *b).next().is_none() {
             if used.contains(&name.as_str()) {
                 let ends = [*a, *b].map(|v| at(raw.points[v]));
                 let what = format!("has the segment {} to {}, which is no edge of a triangle", ends[0], ends[1]);
@@ -101,7 +100,8 @@ pub(super) fn assign(
             idle.extend(names);
         }
         let place = key.map(|v| at(raw.points[v])).join(" to ");
-        match (sides[&key].as_slice(), carrying.as_slice()) {
+        let sides: Vec<Side> = halves.joining(key[0], key[1]).map(|side| (side / 3, side % 3)).collect();
+        match (sides.as_slice(), carrying.as_slice()) {
             ([side], []) => labels.put(*side, names[0]),
             ([side], [name]) => labels.put(*side, name),
             ([_], [first, second, ..]) => {

@@ -14,6 +14,7 @@ pub mod glue;
 #[cfg(test)]
 mod glue_tests;
 pub mod gmsh;
+mod halves;
 mod hanging;
 mod insert;
 pub(crate) mod labels;
@@ -28,6 +29,9 @@ mod topology;
 mod topology_tests;
 
 pub use error::MeshError;
+
+/// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
+pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
 use crate::problem::Note;
 use crate::scene::{MeshSource, Scene};

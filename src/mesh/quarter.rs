@@ -1,9 +1,7 @@
 //! Uniform refinement.
 
-use std::collections::HashMap;
-
-use super::Triangulation;
 use super::labels::pair;
+use super::{Map, Triangulation};
 
 /// The middle of an edge; the same bits from either end, so that contact sides keep matching.
 pub(crate) fn middle(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
@@ -24,7 +22,7 @@ impl Triangulation {
             triangles.extend([[a, r, q], [r, b, p], [q, p, c], [p, q, r]]);
         }
         let body = self.body.iter().flat_map(|&b| [b; 4]).collect();
-        let mut label = HashMap::new();
+        let mut label = Map::default();
         for (e, edge) in self.edges.iter().enumerate() {
             if let Some(name) = edge.name {
                 label.extend(edge.vertices.map(|v| (pair(v, first + e), name)));

@@ -1,12 +1,11 @@
 //! From cells and named segments to a [`Triangulation`]: edges, names, and vertices of their own wherever two cells
 //! are not bonded.
 
-use std::collections::HashMap;
-
 use super::cells::{self, Cells};
 use super::error::{MeshError, at};
-use super::labels::{self, Labels, Pair, Side, pair};
-use super::{Edge, RawMesh, Triangulation, hanging, overlap};
+use super::halves::HalfEdges;
+use super::labels::{self, Labels, Pair, pair};
+use super::{Edge, Map, RawMesh, Triangulation, hanging, overlap};
 use crate::problem::Note;
 use crate::scene::Scene;
 
@@ -22,9 +21,10 @@ impl Triangulation {
     pub fn new(raw: RawMesh, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
         let mut notes = Vec::new();
         let cells = cells::check(&raw, scene, &mut notes)?;
-        let sides = match_sides(&raw, &cells, scene)?;
-        let labels = labels::assign(&raw, &cells, &sides, scene, &mut notes)?;
-        let mesh = split(&raw, cells, &sides, labels);
+        let halves = HalfEdges::new(&cells.triangles, raw.points.len());
+        check_edges(&raw, &cells, &halves, scene)?;
+        let labels = labels::assign(&raw, &cells, &halves, scene, &mut notes)?;
+        let mesh = split(&raw, cells, &halves, labels);
         overlap::check(&mesh, scene)?;
         hanging::check(&mesh, scene, &mut notes)?;
         Ok((mesh, notes))
@@ -38,30 +38,36 @@ impl Triangulation {
         triangles: Vec<[usize; 3]>,
         body: Vec<usize>,
         names: Vec<String>,
-        label: &HashMap<Pair, usize>,
+        label: &Map<Pair, usize>,
     ) -> Triangulation {
+        let halves = HalfEdges::new(&triangles, points.len());
         let mut edges: Vec<Edge> = Vec::with_capacity(triangles.len() * 3 / 2 + 8);
-        let mut index: HashMap<Pair, usize> = HashMap::with_capacity(edges.capacity());
-        let mut triangle_edges = Vec::with_capacity(triangles.len());
-        for (t, corners) in triangles.iter().enumerate() {
-            triangle_edges.push([0, 1, 2].map(|i| {
-                let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
-                let e = *index.entry(pair(a, b)).or_insert(edges.len());
-                if e == edges.len() {
-                    let name = label.get(&pair(a, b)).copied();
-                    edges.push(Edge { vertices: [a, b], triangles: [Some(t), None], name });
-                } else {
-                    edges[e].triangles[1] = Some(t);
-                    edges[e].name = None;
+        let mut triangle_edges: Vec<[usize; 3]> = Vec::with_capacity(triangles.len());
+        for t in 0..triangles.len() {
+            let mut found = [0; 3];
+            for (i, found) in found.iter_mut().enumerate() {
+                let [a, b] = HalfEdges::ends(&triangles, 3 * t + i);
+                match halves.joining(a, b).find(|other| *other < 3 * t + i) {
+                    Some(earlier) => {
+                        *found = triangle_edges[earlier / 3][earlier % 3];
+                        edges[*found].triangles[1] = Some(t);
+                    }
+                    None => {
+                        *found = edges.len();
+                        edges.push(Edge { vertices: [a, b], triangles: [Some(t), None], name: None });
+                    }
                 }
-                e
-            }));
+            }
+            triangle_edges.push(found);
+        }
+        for edge in edges.iter_mut().filter(|edge| edge.is_boundary()) {
+            edge.name = label.get(&pair(edge.vertices[0], edge.vertices[1])).copied();
         }
         Triangulation { points, triangles, body, edges, triangle_edges, names }
     }
 
     /// The names of the boundary edges, in the form that [`Triangulation::connect`] takes.
-    pub(crate) fn label(&self) -> HashMap<Pair, usize> {
+    pub(crate) fn label(&self) -> Map<Pair, usize> {
         self.edges.iter().filter_map(|e| Some((pair(e.vertices[0], e.vertices[1]), e.name?))).collect()
     }
 
@@ -78,49 +84,42 @@ impl Triangulation {
     }
 }
 
-/// For every edge the (triangle, local edge) on its sides, two at most and on opposite sides.
-fn match_sides(raw: &RawMesh, cells: &Cells, scene: &Scene) -> Result<HashMap<Pair, Vec<Side>>, MeshError> {
-    let mut sides: HashMap<Pair, Vec<Side>> = HashMap::with_capacity(cells.triangles.len() * 3 / 2);
-    for (t, corners) in cells.triangles.iter().enumerate() {
-        for i in 0..3 {
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
-            let found = sides.entry(pair(a, b)).or_default();
-            found.push((t, i));
-            let place = format!("{} to {}", at(raw.points[a]), at(raw.points[b]));
-            if found.len() > 2 {
-                return Err(MeshError::cells(
-                    scene,
-                    format!("the edge {place} belongs to three triangles"),
-                    "in a plane at most two triangles share an edge: remove the cells that overlap",
-                ));
-            }
-            if let [(other, j), _] = found[..]
-                && cells.triangles[other][(j + 1) % 3] == a
-            {
-                return Err(MeshError::cells(
-                    scene,
-                    format!("two triangles overlap: both lie on the same side of the edge {place}"),
-                    "remove one of them, or give the two bodies their own vertices",
-                ));
-            }
+/// No edge has more than two triangles, and two lie on opposite sides of it.
+fn check_edges(raw: &RawMesh, cells: &Cells, halves: &HalfEdges, scene: &Scene) -> Result<(), MeshError> {
+    for side in 0..3 * cells.triangles.len() {
+        let [a, b] = HalfEdges::ends(&cells.triangles, side);
+        let place = || format!("{} to {}", at(raw.points[a]), at(raw.points[b]));
+        let mut others = halves.joining(a, b).filter(|other| *other != side);
+        let (other, third) = (others.next(), others.next());
+        if third.is_some() {
+            let what = format!("the edge {} belongs to three triangles", place());
+            let remedy = "in a plane at most two triangles share an edge: remove the cells that overlap";
+            return Err(MeshError::cells(scene, what, remedy));
+        }
+        if other.is_some_and(|other| HalfEdges::ends(&cells.triangles, other)[0] == a) {
+            let what = format!("two triangles overlap: both lie on the same side of the edge {}", place());
+            let remedy = "remove one of them, or give the two bodies their own vertices";
+            return Err(MeshError::cells(scene, what, remedy));
         }
     }
-    Ok(sides)
+    Ok(())
 }
 
 /// Gives every fan of triangles around a vertex, connected through edges that are not cut, its own vertex.
-fn split(raw: &RawMesh, cells: Cells, sides: &HashMap<Pair, Vec<Side>>, labels: Labels) -> Triangulation {
+fn split(raw: &RawMesh, cells: Cells, halves: &HalfEdges, labels: Labels) -> Triangulation {
     let corner = |t: usize, i: usize| 3 * t + i;
     let mut parent: Vec<usize> = (0..3 * cells.triangles.len()).collect();
-    for (key, both) in sides {
-        let [(t, i), (u, j)] = both[..] else { continue };
-        if !labels.cut.contains(key) {
+    for side in 0..parent.len() {
+        let [a, b] = HalfEdges::ends(&cells.triangles, side);
+        let Some(other) = halves.joining(a, b).find(|other| *other > side) else { continue };
+        if labels.cut.is_empty() || !labels.cut.contains(&pair(a, b)) {
+            let (t, i, u, j) = (side / 3, side % 3, other / 3, other % 3);
             join(&mut parent, corner(t, (i + 1) % 3), corner(u, (j + 2) % 3));
             join(&mut parent, corner(t, (i + 2) % 3), corner(u, (j + 1) % 3));
         }
     }
     // The first fan of a vertex keeps its place among the vertices, further ones are appended.
-    let mut vertex_of_fan: HashMap<usize, usize> = HashMap::new();
+    let mut vertex_of_fan: Vec<Option<usize>> = vec![None; parent.len()];
     let mut owner: Vec<Option<usize>> = vec![None; raw.points.len()];
     for (t, corners) in cells.triangles.iter().enumerate() {
         for i in 0..3 {
@@ -130,7 +129,7 @@ fn split(raw: &RawMesh, cells: Cells, sides: &HashMap<Pair, Vec<Side>>, labels: 
     let mut points = Vec::with_capacity(raw.points.len());
     for (v, fan) in owner.iter().enumerate() {
         if let Some(fan) = fan {
-            vertex_of_fan.insert(*fan, points.len());
+            vertex_of_fan[*fan] = Some(points.len());
             points.push(raw.points[v].map(|x| x + 0.0));
         }
     }
@@ -138,7 +137,7 @@ fn split(raw: &RawMesh, cells: Cells, sides: &HashMap<Pair, Vec<Side>>, labels: 
     for (t, corners) in cells.triangles.iter().enumerate() {
         triangles.push([0, 1, 2].map(|i| {
             let fan = root(&mut parent, corner(t, i));
-            *vertex_of_fan.entry(fan).or_insert_with(|| {
+            *vertex_of_fan[fan].get_or_insert_with(|| {
                 points.push(raw.points[corners[i]].map(|x| x + 0.0));
                 points.len() - 1
             })

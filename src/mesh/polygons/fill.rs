@@ -10,7 +10,7 @@ use spade::{
 const ANGLE: f64 = 27.0;
 
 /// Largest area in squares of the edge length: between an equilateral triangle (0.43) and two of them.
-const AREA: f64 = 0.6;
+const AREA: f64 = 0.66;
 
 /// Largest number of vertices that a size may ask for.
 pub(super) const MOST: f64 = 2e7;

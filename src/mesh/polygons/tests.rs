@@ -10,7 +10,8 @@ use crate::scene::{Gap, Polygon, Scene};
 fn meshed(scene: &Scene) -> Triangulation {
     let (raw, notes) = mesh(scene).expect("good polygons");
     assert!(notes.is_empty(), "{notes:?}");
-    let (mesh, _) = Triangulation::new(raw, scene).expect("a good mesh");
+    let (mesh, notes) = Triangulation::new(raw, scene).expect("a good mesh");
+    assert!(notes.iter().all(|n| n.text.contains("touch along") && n.text.contains("without a contact")), "{notes:?}");
     assert_consistent(&mesh);
     mesh
 }
