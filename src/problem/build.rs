@@ -88,7 +88,7 @@ impl Problem {
     }
 
     /// The same problem with the triangles `marked` bisected, and what else that asks for, see
-    /// [`bisect`](crate::mesh::bisect::bisect). Also gives the refinement edges of the new triangles, and for each new
+    /// [`bisect`]. Also gives the refinement edges of the new triangles, and for each new
     /// triangle the old one it comes from.
     ///
     /// # Errors
