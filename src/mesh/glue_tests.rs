@@ -55,27 +55,23 @@ fn sides_with_different_divisions_get_the_vertices_of_both() {
 
 #[test]
 fn a_corner_triangle_takes_vertices_on_two_edges() {
-    let corner = RawMesh {
-        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
-        triangles: vec![([0, 1, 2], "a".into())],
-        segments: vec![([0, 1], "a_right".into()), ([1, 2], "a_right".into())],
-    };
-    let mut raw = both(corner, grid("b", [1.0, 0.0], [2.0, 1.0], [1, 3]));
-    raw = both(raw, grid("b", [0.0, -1.0], [1.0, 0.0], [4, 1]));
-    raw.segments.retain(|(_, name)| ["a_right", "b_left", "b_top"].contains(&name.as_str()));
-    for (ends, name) in &mut raw.segments {
-        let on = |v: usize| raw.points[v];
-        if name.starts_with('b') {
-            let [p, q] = ends.map(on);
-            *name = if p[0] == 1.0 && q[0] == 1.0 && p[1] >= 0.0 && q[1] >= 0.0 || p[1] == 0.0 && q[1] == 0.0 {
-                "b_left".into()
-            } else {
-                String::new()
-            };
-        }
+    // The triangle lies in the corner of an L, whose edges are divided; every corner takes its turn as the first.
+    for turn in 0..3 {
+        let mut cell = [0, 1, 2];
+        cell.rotate_left(turn);
+        let corner = RawMesh {
+            points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
+            triangles: vec![(cell, "a".into())],
+            segments: vec![([0, 1], "a_right".into()), ([1, 2], "a_right".into())],
+        };
+        let mut upright = grid("b", [1.0, 0.0], [2.0, 1.0], [1, 3]);
+        let mut flat = grid("b", [0.0, -1.0], [1.0, 0.0], [4, 1]);
+        upright.segments.retain(|(_, name)| name == "b_left");
+        flat.segments.retain(|(_, name)| name == "b_top");
+        flat.segments.iter_mut().for_each(|(_, name)| *name = "b_left".into());
+        let (mesh, _) = glued(both(corner, both(upright, flat)), &meet(Gap::Constant(0.0)));
+        assert_eq!(mesh.boundary("a_right").len(), 7);
     }
-    let (mesh, _) = glued(raw, &meet(Gap::Constant(0.0)));
-    assert_eq!(mesh.boundary("a_right").len(), 7);
 }
 
 #[test]

@@ -156,6 +156,15 @@ fn files_that_are_refused() {
     let binary = fixture(BLOCKS[1]);
     refuse(&binary[..binary.len() / 2], &["byte ", "truncated"]);
     refuse(&fixture(BLOCKS[3])[..1500], &["byte ", "truncated"]);
+    let old = fixture(BLOCKS[3]);
+    let section = old.windows(10).position(|w| w == b"$Elements\n").expect("a section") + 10;
+    // After the line with the count: element type, length of the run, number of tags.
+    let run = section + old[section..].iter().position(|b| *b == b'\n').expect("a line") + 1 + 4;
+    for wrong in [0_i32, -1, 1_000_000] {
+        let mut bytes = old.clone();
+        bytes[run..run + 4].copy_from_slice(&wrong.to_le_bytes());
+        refuse(&bytes, &["$Elements, byte", "a run of", "write it again"]);
+    }
     let mark = b"4.1 1 8\n".len() + b"$MeshFormat\n".len();
     let mut marked = binary;
     marked[mark] = 7;
