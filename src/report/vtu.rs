@@ -142,13 +142,12 @@ impl Sheet {
         bytes.extend(data);
         let length = bytes.len() as u64 - 8;
         bytes[..8].copy_from_slice(&length.to_le_bytes());
-        let components = components.to_string();
-        let element = self.xml.create_element("DataArray").with_attributes([
-            ("type", kind),
-            ("Name", name),
-            ("NumberOfComponents", components.as_str()),
-            ("format", "binary"),
-        ]);
+        let attributes = [("type", kind), ("Name", name), ("format", "binary")];
+        let mut element = self.xml.create_element("DataArray").with_attributes(attributes);
+        // Scalars go without the count, as VTK itself writes them: some readers make a column of one otherwise.
+        if components > 1 {
+            element = element.with_attribute(("NumberOfComponents", components.to_string().as_str()));
+        }
         element.write_text_content(BytesText::from_escaped(STANDARD.encode(bytes)))?;
         Ok(())
     }

@@ -10,10 +10,12 @@ fn arrays(xml: &str) -> BTreeMap<String, (String, usize, Vec<u8>)> {
     loop {
         match reader.read_event().unwrap() {
             Event::Start(start) if start.name().as_ref() == b"DataArray" => {
-                let get =
-                    |key: &str| start.try_get_attribute(key).unwrap().unwrap().unescape_value().unwrap().into_owned();
+                let find =
+                    |key: &str| start.try_get_attribute(key).unwrap().map(|a| a.unescape_value().unwrap().into_owned());
+                let get = |key: &str| find(key).unwrap();
                 assert_eq!(get("format"), "binary");
-                current = Some((get("Name"), get("type"), get("NumberOfComponents").parse::<usize>().unwrap()));
+                let components = find("NumberOfComponents").map_or(1, |n| n.parse::<usize>().unwrap());
+                current = Some((get("Name"), get("type"), components));
             }
             Event::Text(text) => {
                 if let Some((name, kind, components)) = current.take() {
@@ -84,12 +86,25 @@ fn points_cells_and_fields_fit_together() {
             assert_eq!(stress[3 * p + 1], 0.05 * (t % 3) as f64);
         }
     }
-    // At every point the displacement is the formula's, which is linear on no edge but exact at the vertices.
-    let vertices = &sample.problem.mesh.points;
+    // The displacement is the sample's formula at the vertices, and its mean at the centroids, since it is linear there.
     let u = floats(&arrays["displacement_free"].2);
-    let corner = (0..9 * triangles).find(|&p| points[3 * p] == 0.0 && points[3 * p + 1] == 0.0).unwrap();
-    assert!(vertices.contains(&[0.0, 0.0]));
-    assert!((u[3 * corner] - 1.8).abs() < 1e-14 && u[3 * corner + 2] == 0.0);
+    let formula = |x: f64, y: f64, left: bool| {
+        let lift = if left { 0.8 * (y - 0.5).max(0.0) } else { 0.0 };
+        [(2.0 - x) * (0.9 - 0.3 * y) - lift, 0.15 * y * (2.0 - x) * if left { 1.3 } else { 1.0 }]
+    };
+    for p in 0..9 * triangles {
+        let corners = sample.problem.mesh.corners(p / 9).map(|[x, y]| formula(x, y, p / 9 < triangles / 2));
+        for c in 0..2 {
+            let expected = match p % 3 {
+                2 => corners.iter().map(|v| v[c]).sum::<f64>() / 3.0,
+                _ => formula(points[3 * p], points[3 * p + 1], p / 9 < triangles / 2)[c],
+            };
+            assert!((u[3 * p + c] - expected).abs() < 1e-14, "point {p}");
+        }
+        assert_eq!(u[3 * p + 2], 0.0);
+    }
+    let offsets: Vec<i64> = (1..=3 * triangles as i64).map(|k| 3 * k).collect();
+    assert_eq!(ints(&arrays["offsets"].2), offsets);
 }
 
 #[test]
