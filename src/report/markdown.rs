@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
-use super::words::{accuracy, basis_word, failing, status_symbol, status_word, upper_from};
+use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from};
 use super::{Report, Status};
 
 /// How many failing checks are listed before the rest is only counted.
@@ -14,7 +14,7 @@ pub fn summary(report: &Report) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail, so the results of `write!` below carry no information.
     let symbol = if report.status == Status::Agree { "✅" } else { status_symbol(report.status) };
-    let _ = writeln!(text, "## {symbol} {}: {}\n", cell(&report.title), status_word(report.status));
+    let _ = writeln!(text, "## {symbol} {}: {}\n", cell(&report.title), headline(report));
     let _ = writeln!(text, "{}\n", cell(&report.verdict));
     bracket(&mut text, report);
     checks(&mut text, report);
@@ -156,6 +156,14 @@ mod tests {
         let text = summary(&report);
         assert!(text.lines().count() < 40, "{text}");
         assert!(text.contains(": agree") && text.contains(&format!("All {} checks passed.", report.checks.len())));
+    }
+
+    #[test]
+    fn without_a_second_model_nothing_agrees() {
+        let mut report = Sample::new(2, Verdict::Agree).dossier().report;
+        report.primal.clear();
+        let text = summary(&report);
+        assert!(text.contains(": passed") && !text.contains(": agree"), "{text}");
     }
 
     #[test]

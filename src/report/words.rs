@@ -13,6 +13,14 @@ pub(crate) fn status_word(status: Status) -> &'static str {
     }
 }
 
+/// The verdict for a heading. Where there is no second model nothing can agree: then the checks of the one passed.
+pub(crate) fn headline(report: &Report) -> &'static str {
+    match report.status {
+        Status::Agree if report.primal.is_empty() => "passed",
+        status => status_word(status),
+    }
+}
+
 /// A symbol that tells the verdicts apart without colour.
 pub(crate) fn status_symbol(status: Status) -> &'static str {
     match status {
@@ -41,12 +49,12 @@ pub(crate) fn meaning(check: &Check) -> &'static str {
              more. At least one of the two models is wrong, or they do not solve the same scene."
         }
         (_, Basis::RoundOff) => {
-            "Round-off: the two numbers are equal in exact arithmetic, and differ here by more than rounding explains. One of them was \
-             computed or transferred wrongly."
+            "Round-off: the two numbers are equal in exact arithmetic, and differ here by more than rounding explains. \
+             One of them was computed or transferred wrongly."
         }
         (_, Basis::Chosen) => {
-            "Chosen: theory sets no limit here, the tolerance was chosen. The models differ more than that: look at the pictures, \
-             refine the mesh, or allow more if the difference is understood."
+            "Chosen: theory sets no limit here, the tolerance was chosen. The models differ more than that: look at the \
+             pictures, refine the mesh, or allow more if the difference is understood."
         }
     }
 }
@@ -83,14 +91,12 @@ pub(crate) fn accuracy(report: &Report) -> String {
     match &report.energy {
         Some(energy) if energy.relative_error_bound.is_finite() => {
             let bound = percent(energy.relative_error_bound);
+            let differs =
+                format!("The exact stress differs from the computed one by at most {bound} in the energy norm");
             if energy.guaranteed {
-                format!(
-                    "The exact stress differs from the computed one by at most {bound} in the energy norm. This is guaranteed, not estimated."
-                )
+                format!("{differs}. This is guaranteed, not estimated.")
             } else {
-                format!(
-                    "The exact stress differs from the computed one by at most {bound} in the energy norm, for the data as represented on the mesh; the notes say what weakens the guarantee."
-                )
+                format!("{differs}, for the data as represented on the mesh; the notes say what weakens the guarantee.")
             }
         }
         _ => "No two-sided bound was obtained, so nothing can be said about the distance from the exact solution."

@@ -54,13 +54,18 @@ fn stroke(series: usize) -> String {
 /// A curve that is interrupted where a number is missing, with its markers.
 fn curve(svg: &mut Svg, series: usize, points: &[Option<[f64; 2]>]) {
     let mut d = String::new();
-    let mut pen_down = false;
+    let mut pen: Option<[f64; 2]> = None;
     for point in points {
-        if let Some(p) = point {
-            // Writing to a String cannot fail.
-            let _ = write!(d, "{}{} {}", if pen_down { 'L' } else { 'M' }, px(p[0]), px(p[1]));
+        match (point, pen) {
+            // On a fine mesh many points fall on the same spot of the page.
+            (Some(p), Some(last)) if (p[0] - last[0]).hypot(p[1] - last[1]) < 0.3 => {}
+            (Some(p), _) => {
+                // Writing to a String cannot fail.
+                let _ = write!(d, "{}{} {}", if pen.is_some() { 'L' } else { 'M' }, px(p[0]), px(p[1]));
+                pen = *point;
+            }
+            (None, _) => pen = None,
         }
-        pen_down = point.is_some();
     }
     svg.path(&stroke(series), "", &d);
     let every = points.len().div_ceil(MARKERS).max(1);

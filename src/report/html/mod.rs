@@ -20,7 +20,7 @@ pub fn page(dossier: &Dossier) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (clean(&report.title)) " · " (super::words::status_word(report.status)) }
+                title { (clean(&report.title)) " · " (super::words::headline(report)) }
                 style { (maud::PreEscaped(style::CSS)) }
             }
             body {

@@ -36,7 +36,8 @@ fn checks(report: &Report) -> Markup {
             (scroll("checks", html! {
                 table {
                     thead { tr {
-                        th { "check" } th { "passed" } th.n { "value" } th.n { "held against" } th.n { "difference" } th.n { "allowed" }
+                        th { "check" } th { "passed" } th.n { "value" } th.n { "held against" }
+                        th.n { "difference" } th.n { "allowed" }
                         th.n { "margin" } th { "basis" } th { "why" }
                     } }
                     tbody { @for check in list {
@@ -49,7 +50,8 @@ fn checks(report: &Report) -> Markup {
                             }
                             td.n { (optional(check.value, 8)) } td.n { (optional(check.reference, 8)) }
                             td.n { (optional(check.difference, 3)) } td.n { (significant(check.allowed, 3)) }
-                            td.n { (optional(check.margin, 3)) } td { (basis_word(check.basis)) } td.why { (clean(&check.why)) }
+                            td.n { (optional(check.margin, 3)) } td { (basis_word(check.basis)) }
+                            td.why { (clean(&check.why)) }
                         }
                     } }
                 }
@@ -60,24 +62,42 @@ fn checks(report: &Report) -> Markup {
 
 fn energies(report: &Report, energy: &Energy) -> Markup {
     let digits = digits_to_tell(energy.lower, energy.upper).max(10);
-    let row = |name: &str, value: String, text: &str| html! { tr { td { (name) } td.n { (value) } td.why { (text) } } };
+    let upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
+    let guaranteed = if energy.guaranteed { "yes" } else { "for the data on the mesh" };
+    let rows = [
+        ("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"),
+        ("upper bound", significant(energy.upper, digits), upper.as_str()),
+        ("gap", significant(energy.gap, 6), "upper − lower"),
+        ("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"),
+        ("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"),
+        (
+            "gap of the free bound, local",
+            optional(energy.gap_local, 10),
+            "constitutive-relation error plus contact complementarity, integrated triangle by triangle",
+        ),
+        ("complementary energy", significant(energy.complementary, digits), "𝒮(λ_h) = ½∫ a λ_h : λ_h"),
+        (
+            "widening",
+            significant(energy.widening, 3),
+            "what rounding and residual equilibrium can have cost, contained in both bounds",
+        ),
+        ("guaranteed", guaranteed.to_string(), "whether the bracket holds for the scene as written"),
+    ];
+    let primal_meaning =
+        |admissible| if admissible { "admissible: an upper bound" } else { "not admissible everywhere: no bound" };
     html! {
         (scroll("energies", html! {
             table {
                 thead { tr { th { "quantity" } th.n { "value" } th { "meaning" } } }
                 tbody {
-                    (row("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"))
-                    (row("upper bound", significant(energy.upper, digits), &format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from))))
-                    (row("gap", significant(energy.gap, 6), "upper − lower"))
-                    (row("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"))
-                    (row("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"))
-                    (row("gap of the free bound, local", optional(energy.gap_local, 10), "constitutive-relation error plus contact complementarity, integrated triangle by triangle"))
-                    (row("complementary energy", significant(energy.complementary, digits), "𝒮(λ_h) = ½∫ a λ_h : λ_h"))
-                    (row("widening", significant(energy.widening, 3), "what rounding and residual equilibrium can have cost, contained in both bounds"))
-                    (row("guaranteed", if energy.guaranteed { "yes".into() } else { "for the data on the mesh".into() }, "whether the bracket holds for the scene as written"))
+                    @for (name, value, meaning) in &rows {
+                        tr { td { (name) } td.n { (value) } td.why { (meaning) } }
+                    }
                     @for primal in &report.primal {
-                        (row(&format!("𝓛 of {}", clean(&primal.name)), significant(primal.energy, digits),
-                            if primal.admissible { "admissible: an upper bound" } else { "not admissible everywhere: no bound" }))
+                        tr {
+                            td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
+                            td.why { (primal_meaning(primal.admissible)) }
+                        }
                     }
                 }
             }
@@ -91,14 +111,17 @@ fn contacts(report: &Report) -> Markup {
         (scroll("contacts", html! {
             table {
                 thead { tr {
-                    th { "contact" } th { "model" } th.n { "force" } th.n { "moment" } th.n { "largest pressure" } th.n { "at" } th.n { "open" }
+                    th { "contact" } th { "model" } th.n { "force" } th.n { "moment" } th.n { "largest pressure" }
+                    th.n { "at" } th.n { "open" }
                     th.n { "ends of contact" } th.n { "pressure difference" }
                 } }
                 tbody { @for contact in &report.contact {
                     tr {
                         td.long rowspan="2" { code { (clean(&contact.name)) } br; "length " (significant(contact.length, 4)) }
-                        td { "dual" } td.n { (vector(contact.resultant.dual, 7)) } td.n { (significant(contact.moment.dual, 7)) }
-                        td.n { (significant(contact.pressure_max.dual, 5)) } td.n { (vector(contact.pressure_max_at.dual, 4)) }
+                        td { "dual" } td.n { (vector(contact.resultant.dual, 7)) }
+                        td.n { (significant(contact.moment.dual, 7)) }
+                        td.n { (significant(contact.pressure_max.dual, 5)) }
+                        td.n { (vector(contact.pressure_max_at.dual, 4)) }
                         td.n { (percent(contact.open_fraction)) }
                         td.n rowspan="2" {
                             @if contact.contact_ends.is_empty() { "–" }
@@ -108,7 +131,8 @@ fn contacts(report: &Report) -> Markup {
                     }
                     tr {
                         td { "primal" } td.n { (contact.resultant.primal.map_or("–".to_string(), |r| vector(r, 7))) }
-                        td.n { (optional(contact.moment.primal, 7)) } td.n { (optional(contact.pressure_max.primal, 5)) }
+                        td.n { (optional(contact.moment.primal, 7)) }
+                        td.n { (optional(contact.pressure_max.primal, 5)) }
                         td.n { (contact.pressure_max_at.primal.map_or("–".to_string(), |p| vector(p, 4))) }
                         td.n { (contact.open_fraction_primal.map_or("–".to_string(), percent)) }
                     }
@@ -128,10 +152,13 @@ fn stress(report: &Report) -> Markup {
         }
         (scroll("stress differences", html! {
             table {
-                thead { tr { th.n { "σ_xx" } th.n { "σ_yy" } th.n { "σ_xy" } th.n { "von Mises" } th.n { "largest von Mises, dual" } th.n { "primal" } } }
+                thead { tr { th.n { "σ_xx" } th.n { "σ_yy" } th.n { "σ_xy" } th.n { "von Mises" }
+                th.n { "largest von Mises, dual" } th.n { "primal" } } }
                 tbody { tr {
-                    td.n { (percent(parts.xx)) } td.n { (percent(parts.yy)) } td.n { (percent(parts.xy)) } td.n { (percent(parts.von_mises)) }
-                    td.n { (significant(stress.von_mises_max.dual, 5)) } td.n { (optional(stress.von_mises_max.primal, 5)) }
+                    td.n { (percent(parts.xx)) } td.n { (percent(parts.yy)) } td.n { (percent(parts.xy)) }
+                    td.n { (percent(parts.von_mises)) }
+                    td.n { (significant(stress.von_mises_max.dual, 5)) }
+                    td.n { (optional(stress.von_mises_max.primal, 5)) }
                 } }
             }
         }))
@@ -146,12 +173,15 @@ fn solvers(report: &Report) -> Markup {
                 table {
                     caption { "Displacement models" }
                     thead { tr {
-                        th { "model" } th { "program" } th.n { "degree" } th.n { "unknowns" } th.n { "iterations" } th { "admissible" } th.n { "error at most" }
+                        th { "model" } th { "program" } th.n { "degree" } th.n { "unknowns" } th.n { "iterations" }
+                        th { "admissible" } th.n { "error at most" }
                         th.n { "seconds" }
                     } }
                     tbody { @for primal in &report.primal { tr {
-                        td.long { (clean(&primal.name)) } td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
-                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) } td { @if primal.admissible { "yes" } @else { "no" } }
+                        td.long { (clean(&primal.name)) }
+                        td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
+                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) }
+                        td { @if primal.admissible { "yes" } @else { "no" } }
                         td.n { (primal.relative_error_bound.map_or("–".to_string(), percent)) }
                         td.n { (optional(primal.seconds.get("total").copied(), 3)) }
                     } } }
@@ -179,9 +209,11 @@ fn dual_solver(dual: &DualSummary) -> Markup {
         (scroll("dual solver", html! {
             table {
                 caption { "Dual solve" }
-                thead { tr { th { "method" } th.n { "triangles" } th.n { "unknowns" } th.n { "contact steps" } th.n { "equilibrium residual" } th.n { "seconds" } } }
+                thead { tr { th { "method" } th.n { "triangles" } th.n { "unknowns" } th.n { "contact steps" }
+                th.n { "equilibrium residual" } th.n { "seconds" } } }
                 tbody { tr {
-                    td { (dual.method) } td.n { (grouped(dual.triangles)) } td.n { (grouped(dual.unknowns)) } td.n { (dual.iterations) }
+                    td { (dual.method) } td.n { (grouped(dual.triangles)) } td.n { (grouped(dual.unknowns)) }
+                    td.n { (dual.iterations) }
                     td.n { (significant(dual.equilibrium_residual, 3)) } td.n { (significant(s.total, 3)) }
                 } }
             }
@@ -223,11 +255,14 @@ fn history(report: &Report) -> Markup {
     html! {
         (scroll("adaptive refinement", html! {
             table {
-                thead { tr { th.n { "mesh" } th.n { "triangles" } th.n { "unknowns" } th.n { "lower bound" } th.n { "upper bound" } th.n { "error at most" } th.n { "seconds since start" } } }
+                thead { tr { th.n { "mesh" } th.n { "triangles" } th.n { "unknowns" } th.n { "lower bound" }
+                th.n { "upper bound" } th.n { "error at most" } th.n { "seconds since start" } } }
                 tbody { @for (i, row) in report.history.iter().enumerate() { tr {
                     @let digits = digits_to_tell(row.lower, row.upper);
-                    td.n { (i + 1) } td.n { (grouped(row.triangles)) } td.n { (grouped(row.unknowns)) } td.n { (significant(row.lower, digits)) }
-                    td.n { (significant(row.upper, digits)) } td.n { (percent(row.relative_error_bound)) } td.n { (significant(row.seconds, 3)) }
+                    td.n { (i + 1) } td.n { (grouped(row.triangles)) } td.n { (grouped(row.unknowns)) }
+                    td.n { (significant(row.lower, digits)) }
+                    td.n { (significant(row.upper, digits)) } td.n { (percent(row.relative_error_bound)) }
+                    td.n { (significant(row.seconds, 3)) }
                 } } }
             }
         }))
@@ -247,7 +282,8 @@ fn provenance(report: &Report) -> Markup {
     html! {
         (scroll("provenance", html! {
             table { tbody {
-                tr { th { "hypercircle" } td { (clean(&made.version)) ", " (made.threads) @if made.threads == 1 { " thread" } @else { " threads" } } }
+                tr { th { "hypercircle" }
+                td { (clean(&made.version)) ", " (made.threads) @if made.threads == 1 { " thread" } @else { " threads" } } }
                 @for (name, version) in &made.components { tr { th { (clean(name)) } td.long { (clean(version)) } } }
                 tr { th { "scene, SHA-256" } td.long { code { (clean(&made.scene_sha256)) } } }
                 tr { th { "mesh, SHA-256" } td.long { code { (clean(&made.mesh_sha256)) } } }

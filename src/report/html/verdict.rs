@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, significant, vector};
-use crate::report::words::{accuracy, basis_word, failing, meaning, status_symbol, status_word, upper_from};
+use crate::report::words::{accuracy, basis_word, failing, headline, meaning, status_symbol, status_word, upper_from};
 use crate::report::{Report, Status};
 
 pub(super) fn first_screen(report: &Report) -> Markup {
@@ -18,7 +18,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
             div class=(format!("verdict {}", status_word(report.status))) role="status" {
                 span.symbol aria-hidden="true" { (status_symbol(report.status)) }
                 div {
-                    div.word { (headline(report.status)) }
+                    div.word { (headline(report).to_uppercase()) (gloss(report)) }
                     p { (clean(&report.verdict)) }
                 }
             }
@@ -35,12 +35,13 @@ pub(super) fn first_screen(report: &Report) -> Markup {
     }
 }
 
-fn headline(status: Status) -> &'static str {
-    match status {
-        Status::Agree => "AGREE",
-        Status::Disagree => "DISAGREE",
-        Status::Infeasible => "INFEASIBLE: no equilibrium exists",
-        Status::Failed => "FAILED: there is nothing to trust here",
+/// What the verdict means, where the word alone does not say it.
+fn gloss(report: &Report) -> &'static str {
+    match report.status {
+        Status::Agree if report.primal.is_empty() => ": the bounds are in order, no second model was run",
+        Status::Agree | Status::Disagree => "",
+        Status::Infeasible => ": no equilibrium exists",
+        Status::Failed => ": a solver failed, there is no comparison",
     }
 }
 
