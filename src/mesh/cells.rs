@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::error::{MeshError, at};
 use super::{Map, RawMesh, labels::suggestion};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::Scene;
 
 /// Twice the area over the square of the longest edge, below which a triangle counts as degenerate. The test is

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{MeshError, RawMesh, foreign, gmsh};
-use crate::problem::Note;
+use crate::scene::Note;
 
 /// Reads a mesh file: `.msh` natively, everything else through meshio.
 ///

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::gmsh::content::{Content, Element, Kind};
 use super::{MeshError, RawMesh};
-use crate::problem::Note;
+use crate::scene::Note;
 
 const SCRIPT: &str = include_str!("foreign.py");
 /// Exit code of the script when the interpreter has no meshio.

@@ -9,7 +9,7 @@ use super::boxes::{BoxTree, around};
 use super::error::at;
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::{Contact, ContactSides, Gap, Scene};
 
 /// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex

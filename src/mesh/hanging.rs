@@ -7,7 +7,7 @@ use super::boxes::{BoxTree, around};
 use super::error::{MeshError, at};
 use super::labels::contact_names;
 use super::polyline::key;
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::Scene;
 
 /// Distance from an edge, and from its ends, in parts of its length.

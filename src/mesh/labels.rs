@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::{Map, RawMesh, cells::Cells};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::{ContactSides, MeshSource, Scene};
 
 /// An edge without direction.

@@ -33,7 +33,7 @@ pub use error::MeshError;
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::{MeshSource, Scene};
 
 /// Reads or makes the mesh of `scene`, checks it, and makes contact sides match.

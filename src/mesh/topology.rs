@@ -6,7 +6,7 @@ use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::labels::{self, Labels, Pair, pair};
 use super::{Edge, Map, RawMesh, Triangulation, hanging, overlap};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::Scene;
 
 impl Triangulation {

@@ -2,7 +2,7 @@
 
 use super::testing::*;
 use super::{MeshError, RawMesh, Triangulation};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::{Gap, Load, Scene};
 
 const PRESSURE: Load = Load::Pressure(1.0);

@@ -9,6 +9,7 @@ mod tests;
 pub use error::ProblemError;
 
 use crate::mesh::Triangulation;
+pub use crate::scene::Note;
 use crate::scene::Scene;
 
 /// A scene and a mesh that fit together.
@@ -75,15 +76,6 @@ pub struct ContactPair {
     pub arc: [f64; 2],
     /// Gap g at the two ends; linear between.
     pub gap: [f64; 2],
-}
-
-/// A remark about the representation of the scene.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
-pub struct Note {
-    /// Whether it makes the bounds less than guaranteed for the scene as written.
-    pub weakens_guarantee: bool,
-    /// The remark, one sentence or two.
-    pub text: String,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

@@ -8,7 +8,7 @@ mod html;
 mod json;
 mod junit;
 mod markdown;
-mod number;
+pub(crate) mod number;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]

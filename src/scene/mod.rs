@@ -206,3 +206,12 @@ impl Gap {
         }
     }
 }
+
+/// A remark about how a scene was represented.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
+pub struct Note {
+    /// Whether it makes the bounds less than guaranteed for the scene as written.
+    pub weakens_guarantee: bool,
+    /// The remark, one sentence or two.
+    pub text: String,
+}

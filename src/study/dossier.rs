@@ -7,6 +7,7 @@ use crate::compare::{Comparison, primal_means, von_mises_map};
 use crate::dual::Motion;
 use crate::element::Displacement;
 use crate::problem::{Note, Problem};
+use crate::report::number::{digits_to_tell, percent, significant};
 use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
 
 /// What a run found.
@@ -187,10 +188,10 @@ fn verdict(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let bound = energy.map_or(String::new(), |e| {
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
         format!(
-            " The exact energy lies between {:.8e} and {:.8e}; the {what} relative energy-norm error is at most {:.3} %.",
-            e.lower,
-            e.upper,
-            100.0 * e.relative_error_bound
+            " The exact energy lies between {} and {}; the {what} relative energy-norm error is at most {}.",
+            significant(e.lower, digits_to_tell(e.lower, e.upper)),
+            significant(e.upper, digits_to_tell(e.lower, e.upper)),
+            percent(e.relative_error_bound)
         )
     });
     let models = findings.comparison.judged.len();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::mesh::error::at;
 use crate::mesh::{MeshError, RawMesh};
-use crate::problem::Note;
+use crate::scene::Note;
 
 /// Deviation from the plane, and of a mid-node from the middle, in parts of a length, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;

@@ -15,7 +15,7 @@ use content::Content;
 use cursor::{Cursor, Encoding, shortened};
 
 use super::{MeshError, RawMesh};
-use crate::problem::Note;
+use crate::scene::Note;
 
 const SAVE_AGAIN: &str = "save it as MSH 4.1 or 2.2 (gmsh -save -format msh41)";
 

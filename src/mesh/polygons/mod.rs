@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 use super::polyline::key;
 use super::{MeshError, RawMesh};
-use crate::problem::Note;
+use crate::scene::Note;
 use crate::scene::{MeshSource, Scene};
 
 /// Meshes the polygons of `scene`. Each body gets vertices of its own.
