@@ -1,5 +1,7 @@
 //! The seam between the dual problem and the methods that solve it.
 
+use std::sync::Arc;
+
 use faer::Par;
 
 use super::{Motion, Phases};
@@ -47,11 +49,16 @@ pub struct Options {
     pub threads: usize,
     /// First guess of the closed contact ends, from a similar problem.
     pub closed: Option<Vec<bool>>,
+    /// Told now and then how many iterations an iterative method has made and what residual it has reached.
+    pub progress: Option<Progress>,
 }
+
+/// Receives iterations made and relative residual reached.
+pub type Progress = Arc<dyn Fn(usize, f64) + Send + Sync>;
 
 impl Default for Options {
     fn default() -> Self {
-        Options { element: &Block, threads: 1, closed: None }
+        Options { element: &Block, threads: 1, closed: None, progress: None }
     }
 }
 
@@ -94,4 +101,31 @@ pub enum DualError {
         /// What to do.
         advice: String,
     },
+    /// No stress balances the loads with contact tractions that only press.
+    #[error(
+        "no stress balances the loads: a motion that supports and contacts allow gains the work {work:.6e} for a largest \
+         edge displacement of one; add a support or change the loads"
+    )]
+    Infeasible {
+        /// The motion, as mean displacement moments ∫ u q_p ds at the two ends of every edge, scaled so that the largest
+        /// mean displacement of an edge is one.
+        certificate: Vec<[[f64; 2]; 2]>,
+        /// Work of the loads on it, positive.
+        work: f64,
+    },
+}
+
+impl DualError {
+    /// [`DualError::Infeasible`] from moments of any size and the work of the loads on them.
+    pub(super) fn infeasible(problem: &Problem, mut certificate: Vec<[[f64; 2]; 2]>, work: f64) -> Self {
+        let mut largest = 0.0_f64;
+        for (e, [a, b]) in certificate.iter().enumerate() {
+            largest = largest.max((a[0] + b[0]).hypot(a[1] + b[1]) / problem.mesh.edge_frame(e).0);
+        }
+        if largest > 0.0 {
+            certificate.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|m| *m /= largest);
+            return DualError::Infeasible { certificate, work: work / largest };
+        }
+        DualError::Infeasible { certificate, work }
+    }
 }
