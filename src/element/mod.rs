@@ -12,12 +12,14 @@
 mod block;
 mod compliance;
 mod field;
+mod interpolate;
 pub mod quadrature;
 pub mod subtriangle;
 
 pub use block::Block;
 pub use compliance::Compliance;
 pub use field::{Displacement, StressField, lattice_len};
+pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 
 use std::borrow::Cow;
 

@@ -1,0 +1,39 @@
+//! Measures the rates and constants of the theory and writes them to `docs/data/`.
+//!
+//! `cargo run --release --example theory_rates`
+
+#[path = "../tests/support/theory/mod.rs"]
+mod theory;
+
+use std::path::Path;
+
+use serde_json::json;
+use theory::{constant, rates};
+
+const COMMAND: &str = "cargo run --release --example theory_rates";
+const FINER: [usize; 5] = [8, 16, 32, 64, 128];
+const SIZES: [usize; 5] = [4, 8, 16, 32, 64];
+const ANGLES: [f64; 10] = [60.0, 50.0, 40.0, 30.0, 20.0, 15.0, 10.0, 5.0, 2.0, 1.0];
+
+fn main() -> std::io::Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/data");
+    std::fs::create_dir_all(&folder)?;
+    let write = |name: &str, value: serde_json::Value| {
+        std::fs::write(folder.join(name), format!("{:#}\n", value))?;
+        println!("wrote docs/data/{name}");
+        Ok::<(), std::io::Error>(())
+    };
+
+    let rows: Vec<_> = ANGLES.iter().map(|&angle| constant::worst(angle, 31, 500)).collect();
+    for row in &rows {
+        println!("c({:4.1}°) = {:12.4}   c sin²α = {:.4}", row.angle, row.constant, row.times_sin_squared);
+    }
+    write("element_constant.json", json!({ "command": COMMAND, "rows": rows }))?;
+
+    let studies: Vec<_> = rates::interpolation(&FINER).into_iter().chain(rates::contact(&SIZES)).collect();
+    for s in &studies {
+        let errors: Vec<String> = s.meshes.iter().map(|m| format!("{:.2e}", m.error)).collect();
+        println!("{:32} {:16} {:44} {:.2}   {}", s.solution, s.family, s.quantity, s.rate, errors.join(" "));
+    }
+    write("rates.json", json!({ "command": COMMAND, "studies": studies }))
+}
