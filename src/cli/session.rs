@@ -9,8 +9,8 @@ use super::{CliError, Exit};
 use crate::dual::{ActiveSet, Condensed, DualMethod, Options};
 use crate::problem::{Note, Problem};
 use crate::report::{self, Dossier, HistoryRow, Status};
-use crate::scene::Scene;
-use crate::study::{self, Certified, StudyError};
+use crate::scene::{MeshSource, Scene};
+use crate::study::{self, Adapted, Certified, Goal, StudyError};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -63,25 +63,52 @@ impl Session {
         self.progress.phase("reading the mesh");
         let problem = self.problem(solve)?;
         let read = self.start.elapsed().as_secs_f64();
-        self.progress.phase(format!("solving in stresses on {} triangles", problem.mesh.triangles.len()));
+        let phase = |triangles: usize| self.progress.phase(format!("solving in stresses on {triangles} triangles"));
+        phase(problem.mesh.triangles.len());
         let method = method(solve.method);
         let options = Options { threads: self.threads, ..Options::default() };
-        let _ = limits;
-        match study::certify(problem, method.as_ref(), &options) {
-            Ok(mut certified) => {
-                certified.dual.seconds.read = read;
-                Ok(DualRun { certified, history: Vec::new(), stopped: None })
+        let run = match solve.tolerance {
+            None => study::certify(problem, method.as_ref(), &options).map(|certified| DualRun {
+                certified,
+                history: Vec::new(),
+                stopped: None,
+            }),
+            Some(tolerance) => {
+                let Limits { max_triangles, max_seconds } = *limits;
+                let goal = Goal { max_triangles, max_seconds, ..Goal::new(tolerance) };
+                let told = |row: &HistoryRow| {
+                    let bound = 100.0 * row.relative_error_bound;
+                    let text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
+                    self.progress.phase(text);
+                };
+                study::adapt(problem, method.as_ref(), &options, &goal, told)
+                    .map(|Adapted { certified, history, stopped }| DualRun { certified, history, stopped })
             }
-            Err(error) => Err(self.refuse(error, folder)),
-        }
+        };
+        let mut run = run.map_err(|error| self.refuse(error, folder))?;
+        run.certified.dual.seconds.read = read;
+        Ok(run)
     }
 
     fn problem(&self, solve: &SolveOptions) -> Result<Problem, CliError> {
         let refused = |e: crate::problem::ProblemError| {
             CliError::stopped(Exit::BadInput, format!("{}: {e}", self.scene.path.display()), "")
         };
-        let problem = Problem::load(self.scene.clone()).map_err(refused)?;
-        problem.refine_uniform(solve.refine as usize).map_err(refused)
+        let mut scene = self.scene.clone();
+        let mut coarsened = None;
+        if let (Some(_), MeshSource::Geometry { size, .. }) = (solve.tolerance, &mut scene.mesh) {
+            coarsened = size.take();
+        }
+        let problem = Problem::load(scene).map_err(refused)?;
+        let mut problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
+        problem.notes.extend(coarsened.map(|size| Note {
+            weakens_guarantee: false,
+            text: format!(
+                "geometry.size = {size} was not used: refinement to a tolerance starts from the coarsest mesh that \
+                 represents the scene."
+            ),
+        }));
+        Ok(problem)
     }
 
     fn refuse(&self, error: StudyError, folder: &Path) -> CliError {
@@ -98,6 +125,7 @@ impl Session {
             StudyError::BeyondMesh { .. } => {
                 CliError::stopped(Exit::Failed, message, "refine the mesh, for instance with --refine or --tolerance")
             }
+            StudyError::Mesh(_) => CliError::stopped(Exit::BadInput, message, ""),
             StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
         }
     }

@@ -6,7 +6,7 @@ use super::options::{Limits, RunOptions, SolveOptions};
 use super::session::{DualRun, Session, remarks};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, compare};
-use crate::study::{Fields, Findings, assemble};
+use crate::study::{Fields, Findings, assemble, tolerance_check};
 
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
@@ -33,8 +33,10 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("solve", &args.scene, &args.solve, args.run.quiet)?;
     let folder = args.run.folder(&session.scene);
     let DualRun { certified, history, stopped } = session.solve(&args.solve, &args.limits, &folder)?;
-    let comparison =
-        compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &Allowances::default());
+    let allow = Allowances::default();
+    let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
+    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(&certified, &comparison, wanted, &allow));
+    comparison.checks.extend(wanted);
     let fields = Fields::new(&certified, &comparison);
     let dossier = assemble(
         Findings {

@@ -8,7 +8,7 @@ use super::session::{DualRun, Session, remarks};
 use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};
-use crate::study::{Fields, Findings, assemble, candidates, pins};
+use crate::study::{Fields, Findings, assemble, candidates, pins, tolerance_check};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -85,6 +85,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         .unwrap_or_default();
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
+    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(&certified, &comparison, wanted, &allow));
+    comparison.checks.extend(wanted);
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
     let baseline = args.judge.against_baseline(&certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);

@@ -139,6 +139,10 @@ pub struct HistoryRow {
     pub relative_error_bound: f64,
     /// Seconds since the start.
     pub seconds: f64,
+    /// Seconds on this mesh alone: refinement to it is not contained, statics, solve and bracket are.
+    pub step_seconds: f64,
+    /// The exponent r of bound ≈ C · unknowns⁻ʳ between the mesh before and this one; `null` on the first.
+    pub rate: Option<f64>,
 }
 
 /// What made the numbers.

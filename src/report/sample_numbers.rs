@@ -82,6 +82,8 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
                 upper,
                 relative_error_bound: bound,
                 seconds: 1e-5 * triangles as f64,
+                step_seconds: 8e-6 * triangles as f64,
+                rate: (triangles > 16).then_some(0.6),
             })
             .to_vec(),
         provenance: Provenance {

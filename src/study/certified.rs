@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::bounds::Bracket;
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options};
-use crate::problem::Problem;
+use crate::problem::{Problem, ProblemError};
 use crate::statics::{self, Equilibrium, Statics, StaticsError};
 
 /// A problem with its dual solution and bracket.
@@ -50,6 +50,9 @@ pub enum StudyError {
     /// The dual solver failed.
     #[error(transparent)]
     Dual(#[from] DualError),
+    /// A refined mesh does not fit the scene.
+    #[error(transparent)]
+    Mesh(#[from] ProblemError),
 }
 
 /// Checks the statics of `problem`, solves the dual problem, and brackets the energy.
@@ -57,21 +60,40 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let start = Instant::now();
-    let statics = statics::check(&problem)?;
+    let statics = balance(&problem)?;
+    solve_balanced(problem, statics, method, options)
+}
+
+/// The statics of a problem that has an equilibrium, on this mesh or a finer one.
+///
+/// # Errors
+/// [`StudyError::NoEquilibrium`], or the question could not be decided.
+pub(super) fn balance(problem: &Problem) -> Result<Statics, StudyError> {
+    let statics = statics::check(problem)?;
     match &statics.equilibrium {
-        Equilibrium::Impossible { motion, work, sentence, .. } => {
-            return Err(StudyError::NoEquilibrium {
-                sentence: sentence.clone(),
-                motion: motion.at_vertices(&problem, &statics.components),
-                work: *work,
-                problem: Box::new(problem),
-            });
-        }
-        Equilibrium::Possible { beyond_mesh: Some(_), .. } => {
-            return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
-        }
-        Equilibrium::Possible { .. } => {}
+        Equilibrium::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
+            sentence: sentence.clone(),
+            motion: motion.at_vertices(problem, &statics.components),
+            work: *work,
+            problem: Box::new(problem.clone()),
+        }),
+        Equilibrium::Possible { .. } => Ok(statics),
+    }
+}
+
+/// Solves a problem with an equilibrium and brackets its energy.
+///
+/// # Errors
+/// [`StudyError::BeyondMesh`], [`StudyError::Dual`].
+pub(super) fn solve_balanced(
+    problem: Problem,
+    statics: Statics,
+    method: &dyn DualMethod,
+    options: &Options,
+) -> Result<Certified, StudyError> {
+    let start = Instant::now();
+    if let Equilibrium::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
+        return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
     }
     let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
     let mut dual = dual::solve(method, &problem, &motions, options)?;

@@ -62,6 +62,8 @@ mod tests {
             upper: 0.0,
             relative_error_bound: 3.0 * (unknowns as f64).powf(-0.75),
             seconds: 0.0,
+            step_seconds: 0.0,
+            rate: None,
         };
         let rows: Vec<HistoryRow> = [10, 50, 700, 3000].map(row).to_vec();
         assert!((rate(&rows).unwrap() - 0.75).abs() < 1e-12);

@@ -256,16 +256,19 @@ fn history(report: &Report) -> Markup {
         (scroll("adaptive refinement", html! {
             table {
                 thead { tr { th.n { "mesh" } th.n { "triangles" } th.n { "unknowns" } th.n { "lower bound" }
-                th.n { "upper bound" } th.n { "error at most" } th.n { "seconds since start" } } }
+                th.n { "upper bound" } th.n { "error at most" } th.n { "rate" } th.n { "seconds" }
+                th.n { "seconds since start" } } }
                 tbody { @for (i, row) in report.history.iter().enumerate() { tr {
                     @let digits = digits_to_tell(row.lower, row.upper);
                     td.n { (i + 1) } td.n { (grouped(row.triangles)) } td.n { (grouped(row.unknowns)) }
                     td.n { (significant(row.lower, digits)) }
                     td.n { (significant(row.upper, digits)) } td.n { (percent(row.relative_error_bound)) }
+                    td.n { (optional(row.rate, 2)) } td.n { (significant(row.step_seconds, 3)) }
                     td.n { (significant(row.seconds, 3)) }
                 } } }
             }
         }))
+        p { "Rate: the power of the unknowns that the error falls with, from the mesh before. Seconds: on this mesh alone." }
     }
 }
 

@@ -1,0 +1,236 @@
+//! Adaptive refinement until the guaranteed error is small enough.
+//!
+//! solve → local terms of the gap → mark → bisect, on meshes that grow by a fixed factor, so that all solves together
+//! cost little more than twice the last one. The indicators are the terms of the gap between the free upper bound and
+//! the lower bound themselves (constitutive-relation error of each triangle, complementarity of each contact pair):
+//! their sum is what the tolerance is set on. Both bounds hold on every mesh, so refinement decides how soon the
+//! tolerance is reached and nothing else.
+
+use std::time::Instant;
+
+use super::certified::{Certified, StudyError, balance, solve_balanced};
+use super::indicators::Indicators;
+use super::warm_start::closed_ends;
+use crate::compare::{Allowances, Basis, Check, Comparison};
+use crate::dual::{DualMethod, Options};
+use crate::mesh::bisect::RefinementEdges;
+use crate::problem::Problem;
+use crate::report::HistoryRow;
+use crate::statics::{Equilibrium, Statics};
+
+/// Triangles of the next mesh per triangle of this one: the solves on meshes that grow by g cost g/(g − 1) times the
+/// last one, if a solve costs in proportion to its triangles, and less where it costs more.
+const GROWTH: f64 = 2.2;
+
+/// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
+const AIM: f64 = 0.92;
+
+/// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
+const MOST_AT_ENDS: usize = 60;
+
+/// What an adaptive run is to reach, and where it stops at the latest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// Largest guaranteed relative energy-norm error.
+    pub tolerance: f64,
+    /// No mesh has more triangles than this, unless the first one has.
+    pub max_triangles: Option<usize>,
+    /// No refinement begins after so many seconds.
+    pub max_seconds: Option<f64>,
+    /// Part of the gap that the triangles marked in one round carry (Dörfler's bulk parameter), in (0, 1].
+    pub bulk: f64,
+}
+
+impl Goal {
+    /// This tolerance without limits.
+    pub fn new(tolerance: f64) -> Self {
+        Goal { tolerance, max_triangles: None, max_seconds: None, bulk: 0.6 }
+    }
+}
+
+/// The result of an adaptive run.
+#[derive(Debug, Clone)]
+pub struct Adapted {
+    /// On the last mesh.
+    pub certified: Certified,
+    /// Mesh by mesh.
+    pub history: Vec<HistoryRow>,
+    /// Why refinement stopped before the tolerance was reached.
+    pub stopped: Option<String>,
+}
+
+/// Refines `problem` until the guaranteed relative energy-norm error is at most `goal.tolerance`; `on_step` hears of
+/// every mesh.
+///
+/// # Errors
+/// [`StudyError`]; a limit that is reached is no error, see [`Adapted::stopped`].
+pub fn adapt(
+    mut problem: Problem,
+    method: &dyn DualMethod,
+    options: &Options,
+    goal: &Goal,
+    mut on_step: impl FnMut(&HistoryRow),
+) -> Result<Adapted, StudyError> {
+    let start = Instant::now();
+    let mut refinement = RefinementEdges::longest(&problem.mesh);
+    let mut options = options.clone();
+    let mut history: Vec<HistoryRow> = Vec::new();
+    loop {
+        let began = Instant::now();
+        let statics;
+        (problem, refinement, statics) = expressible(problem, refinement)?;
+        let certified = solve_balanced(problem, statics, method, &options)?;
+        let seconds = [start.elapsed().as_secs_f64(), began.elapsed().as_secs_f64()];
+        let row = row(&certified, seconds, history.last());
+        on_step(&row);
+        history.push(row);
+        if row.relative_error_bound <= goal.tolerance {
+            return Ok(Adapted { certified, history, stopped: None });
+        }
+        let spent = start.elapsed().as_secs_f64();
+        let limit = match (&certified.bracket.free, goal.max_seconds) {
+            (Err(reason), _) => Some(format!("no upper bound could be built ({reason})")),
+            (_, Some(most)) if spent >= most => Some(format!("{most} seconds have passed")),
+            _ => None,
+        };
+        let finer = match limit {
+            Some(_) => None,
+            None => refined(&certified, &refinement, goal, row.relative_error_bound)?,
+        };
+        let Some((next, edges)) = finer else {
+            let reason = limit.unwrap_or_else(|| match goal.max_triangles {
+                Some(most) => format!("the next mesh would have more than {most} triangles"),
+                None => "the triangles are as small as numbers can resolve".to_string(),
+            });
+            return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal)), certified, history });
+        };
+        options.closed = Some(closed_ends(&certified.problem, &certified.dual.closed, &next));
+        (problem, refinement) = (next, edges);
+    }
+}
+
+fn row(certified: &Certified, [seconds, step_seconds]: [f64; 2], before: Option<&HistoryRow>) -> HistoryRow {
+    let Certified { problem, dual, bracket, .. } = certified;
+    let upper = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper());
+    let relative_error_bound = bracket.relative_error(upper);
+    let rate = before.map(|b| {
+        (b.relative_error_bound / relative_error_bound).ln() / (dual.unknowns as f64 / b.unknowns as f64).ln()
+    });
+    HistoryRow {
+        triangles: problem.mesh.triangles.len(),
+        unknowns: dual.unknowns,
+        lower: bracket.lower(),
+        upper,
+        relative_error_bound,
+        seconds,
+        step_seconds,
+        rate: rate.filter(|r| r.is_finite()),
+    }
+}
+
+fn stopped(reason: &str, row: &HistoryRow, goal: &Goal) -> String {
+    format!(
+        "Refinement stopped before the tolerance of {} % was reached, because {reason}: the guaranteed relative \
+         energy-norm error is {:.3} % with {} triangles.",
+        100.0 * goal.tolerance,
+        100.0 * row.relative_error_bound,
+        row.triangles
+    )
+}
+
+/// Whether the tolerance that was asked for is reached, with the best upper bound of the run.
+pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance: f64, allow: &Allowances) -> Check {
+    const NAME: &str = "bracket/tolerance";
+    let allowed = allow.get(NAME, tolerance);
+    match comparison.upper(&certified.bracket) {
+        Some((upper, _)) => Check::at_most(
+            NAME,
+            certified.bracket.relative_error(upper.upper()),
+            0.0,
+            allowed,
+            Basis::Chosen,
+            "The guaranteed relative energy-norm error against the tolerance that was asked for.",
+        ),
+        None => Check::not_made(NAME, allowed, Basis::Chosen, "There is no upper bound to hold the tolerance against."),
+    }
+}
+
+/// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
+fn expressible(
+    mut problem: Problem,
+    mut refinement: RefinementEdges,
+) -> Result<(Problem, RefinementEdges, Statics), StudyError> {
+    for _ in 0..MOST_AT_ENDS {
+        let statics = balance(&problem)?;
+        if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
+            return Ok((problem, refinement, statics));
+        }
+        let (next, edges, _) = problem.bisect(&refinement, &contact_ends(&problem))?;
+        (problem, refinement) = (next, edges);
+    }
+    let statics = balance(&problem)?;
+    Ok((problem, refinement, statics))
+}
+
+/// The triangles at the first and last edge of every straight stretch of contact.
+fn contact_ends(problem: &Problem) -> Vec<usize> {
+    let mut marked = Vec::new();
+    for interface in &problem.interfaces {
+        let pairs = &interface.pairs;
+        for (k, pair) in pairs.iter().enumerate() {
+            let straight_on = |other: Option<usize>| {
+                other.and_then(|o| pairs.get(o)).is_some_and(|o| {
+                    let meets = o.first.iter().any(|v| pair.first.contains(v));
+                    meets && (o.normal[0] - pair.normal[0]).hypot(o.normal[1] - pair.normal[1]) < 1e-9
+                })
+            };
+            if straight_on(k.checked_sub(1)) && straight_on(Some(k + 1)) {
+                continue;
+            }
+            marked.extend(pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]));
+        }
+    }
+    marked.sort_unstable();
+    marked.dedup();
+    marked
+}
+
+/// The next mesh: rounds of Dörfler marking with predicted indicators, until the mesh has grown enough or the predicted
+/// bound meets the tolerance. `None` where not even one round fits below the limit.
+fn refined(
+    certified: &Certified,
+    refinement: &RefinementEdges,
+    goal: &Goal,
+    bound: f64,
+) -> Result<Option<(Problem, RefinementEdges)>, StudyError> {
+    let Ok(free) = &certified.bracket.free else { return Ok(None) };
+    let mut indicators = Indicators::new(&certified.problem, free);
+    // The part of the gap that may stay: the bound is its root.
+    let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2);
+    let grown = GROWTH * certified.problem.mesh.triangles.len() as f64;
+    let mut finer: Option<(Problem, RefinementEdges)> = None;
+    loop {
+        let (problem, edges) = finer.as_ref().map_or((&certified.problem, refinement), |(p, e)| (p, e));
+        let (next, next_edges, parent) = problem.bisect(edges, &indicators.marked(goal.bulk))?;
+        let count = next.mesh.triangles.len();
+        if goal.max_triangles.is_some_and(|most| count > most) || !resolvable(&next) {
+            return Ok(finer);
+        }
+        indicators.inherit(&problem.mesh, &next.mesh, &parent);
+        finer = Some((next, next_edges));
+        if count as f64 >= grown || indicators.total() <= enough {
+            return Ok(finer);
+        }
+    }
+}
+
+/// Whether the smallest triangles are still far above the spacing of numbers at their corners.
+fn resolvable(problem: &Problem) -> bool {
+    const SMALLEST: f64 = 1e-11;
+    let mesh = &problem.mesh;
+    let mut size = 0.0_f64;
+    for p in &mesh.points {
+        size = size.max(p[0].abs()).max(p[1].abs());
+    }
+    (0..mesh.edges.len()).all(|e| mesh.edge_frame(e).0 > SMALLEST * size)
+}
