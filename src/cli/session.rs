@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit};
-use crate::dual::{ActiveSet, Condensed, DualMethod, Options};
+use crate::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Options, Uzawa};
 use crate::problem::{Note, Problem};
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Scene};
@@ -159,7 +159,8 @@ pub fn method(name: Method) -> Box<dyn DualMethod> {
     match name {
         Method::Condensed => Box::new(Condensed),
         Method::ActiveSet => Box::new(ActiveSet::default()),
-        Method::Clarabel | Method::Uzawa => Box::new(Condensed),
+        Method::Clarabel => Box::new(Clarabel::default()),
+        Method::Uzawa => Box::new(Uzawa::default()),
     }
 }
 

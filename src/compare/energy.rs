@@ -11,8 +11,6 @@ use crate::problem::{Condition, Problem};
 const IDENTITY: f64 = 1e-9;
 /// What an iterative solver may leave in the identities of a minimiser, relative to 𝒮(λ_h).
 const SOLVER: f64 = 1e-7;
-/// Largest equilibrium residual of a stress field whose energy is called a bound.
-const EQUILIBRIUM: f64 = 1e-9;
 
 /// Checks on the dual solution and its own bracket.
 pub fn dual_checks(dual: &DualSolution, bracket: &Bracket, best_upper: f64, allow: &Allowances) -> Vec<Check> {
@@ -30,10 +28,10 @@ pub fn dual_checks(dual: &DualSolution, bracket: &Bracket, best_upper: f64, allo
         name,
         dual.equilibrium.residual(),
         0.0,
-        allow.get(name, EQUILIBRIUM),
+        allow.get(name, dual.accuracy),
         Basis::RoundOff,
         "Tractions are continuous, match the loads, and contacts only push: measured on the stresses, relative to the \
-         applied load. Only an equilibrated stress gives a lower bound.",
+         applied load. What is left of equilibrium has been taken off the lower bound.",
     ));
     match &bracket.free {
         Ok(free) => {
@@ -145,7 +143,7 @@ fn two_ways(who: &str, bracket: &Bracket, upper: f64, local: f64, allow: &Allowa
         &name,
         upper - bracket.complementary.lower(),
         local,
-        allow.get(&name, IDENTITY * bracket.complementary.strain),
+        allow.get(&name, IDENTITY * bracket.complementary.strain + bracket.lower_widening),
         Basis::RoundOff,
         "The gap from the two energies, and from local integration of the constitutive error and the contact \
          complementarity.",

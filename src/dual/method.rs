@@ -13,6 +13,11 @@ pub trait DualMethod: Sync {
     /// Name on the command line and in reports.
     fn name(&self) -> &'static str;
 
+    /// The equilibrium residual that the method promises, relative to the load.
+    fn accuracy(&self) -> f64 {
+        1e-9
+    }
+
     /// Solves `problem`; `motions` are the rigid motions that neither supports nor closed contacts resist, on which the
     /// loads are known to do no work.
     ///

@@ -49,6 +49,8 @@ pub struct DualSolution {
     pub iterations: usize,
     /// Violation of equilibrium, measured on the stresses and relative to the applied load.
     pub equilibrium: Equilibrium,
+    /// The equilibrium residual that the method promised.
+    pub accuracy: f64,
     /// Seconds by phase.
     pub seconds: Phases,
     /// What the method wants the reader to know.
@@ -102,6 +104,7 @@ pub fn solve(
         unknowns: found.unknowns,
         iterations: found.iterations,
         equilibrium,
+        accuracy: method.accuracy(),
         seconds,
         notes: found.notes,
     })
