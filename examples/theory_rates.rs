@@ -1,4 +1,5 @@
-//! Measures the rates and constants of the theory and writes them to `docs/data/`.
+//! Measures the rates and constants of the theory, writes them to `docs/data/`, and prints the tables of
+//! `docs/theory.md`.
 //!
 //! `cargo run --release --example theory_rates`
 
@@ -8,7 +9,7 @@ mod theory;
 use std::path::Path;
 
 use serde_json::json;
-use theory::{constant, rates};
+use theory::{constant, rates, tables};
 
 const COMMAND: &str = "cargo run --release --example theory_rates";
 const FINER: [usize; 5] = [8, 16, 32, 64, 128];
@@ -25,15 +26,17 @@ fn main() -> std::io::Result<()> {
     };
 
     let rows: Vec<_> = ANGLES.iter().map(|&angle| constant::worst(angle, 31, 500)).collect();
-    for row in &rows {
-        println!("c({:4.1}°) = {:12.4}   c sin²α = {:.4}", row.angle, row.constant, row.times_sin_squared);
-    }
     write("element_constant.json", json!({ "command": COMMAND, "rows": rows }))?;
-
     let studies: Vec<_> = rates::interpolation(&FINER).into_iter().chain(rates::contact(&SIZES)).collect();
-    for s in &studies {
-        let errors: Vec<String> = s.meshes.iter().map(|m| format!("{:.2e}", m.error)).collect();
-        println!("{:32} {:16} {:44} {:.2}   {}", s.solution, s.family, s.quantity, s.rate, errors.join(" "));
+    write("rates.json", json!({ "command": COMMAND, "studies": studies }))?;
+
+    let tables = [
+        tables::constants(&rows),
+        tables::rates(&studies, &tables::INTERPOLATION),
+        tables::rates(&studies, &tables::CONTACT),
+    ];
+    for line in tables.concat() {
+        println!("{line}");
     }
-    write("rates.json", json!({ "command": COMMAND, "studies": studies }))
+    Ok(())
 }

@@ -3,7 +3,9 @@
 #[path = "support/theory/mod.rs"]
 mod theory;
 
+use theory::constant::Row;
 use theory::rates::{self, Measured, Study, fitted};
+use theory::tables;
 
 /// The meshes that a test can afford; the committed studies go on to finer ones.
 const INTERPOLATION: [usize; 4] = [8, 16, 32, 64];
@@ -74,5 +76,27 @@ fn committed_rates_keep_what_the_theorems_promise() {
         for study in of {
             assert!(study.rate > 4.0 - RESOLUTION, "{study:?}");
         }
+    }
+}
+
+#[derive(serde::Deserialize)]
+struct Constants {
+    rows: Vec<Row>,
+}
+
+/// The tables of the documentation show the committed numbers.
+#[test]
+fn the_documentation_shows_the_committed_numbers() {
+    let page = include_str!("../docs/theory.md");
+    let studies = committed().studies;
+    let constants: Constants =
+        serde_json::from_str(include_str!("../docs/data/element_constant.json")).expect("committed constants");
+    let lines = [
+        tables::constants(&constants.rows),
+        tables::rates(&studies, &tables::INTERPOLATION),
+        tables::rates(&studies, &tables::CONTACT),
+    ];
+    for line in lines.concat() {
+        assert!(page.lines().any(|l| l == line), "docs/theory.md lacks the line {line}");
     }
 }

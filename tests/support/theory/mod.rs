@@ -10,6 +10,7 @@ pub mod fields;
 pub mod meshes;
 pub mod quadrature;
 pub mod rates;
+pub mod tables;
 pub mod westergaard;
 
 /// Equally likely numbers in [0, 1), the same on every machine (SplitMix64).
