@@ -23,7 +23,13 @@ use crate::statics::{Equilibrium, Statics};
 const GROWTH: f64 = 2.2;
 
 /// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
-const AIM: f64 = 0.92;
+const AIM: f64 = 0.95;
+
+/// How far growth and prediction may be off before a round is made smaller.
+const SLACK: f64 = 0.1;
+
+/// Largest factor by which a prediction that fell short corrects the next one.
+const MOST_CORRECTION: f64 = 4.0;
 
 /// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
 const MOST_AT_ENDS: usize = 60;
@@ -75,6 +81,7 @@ pub fn adapt(
     let mut refinement = RefinementEdges::longest(&problem.mesh);
     let mut options = options.clone();
     let mut history: Vec<HistoryRow> = Vec::new();
+    let mut forecast = Forecast { gap: f64::NAN, correction: 1.0 };
     loop {
         let began = Instant::now();
         let statics;
@@ -87,6 +94,7 @@ pub fn adapt(
         if row.relative_error_bound <= goal.tolerance {
             return Ok(Adapted { certified, history, stopped: None });
         }
+        forecast.learn(&certified);
         let spent = start.elapsed().as_secs_f64();
         let limit = match (&certified.bracket.free, goal.max_seconds) {
             (Err(reason), _) => Some(format!("no upper bound could be built ({reason})")),
@@ -95,7 +103,7 @@ pub fn adapt(
         };
         let finer = match limit {
             Some(_) => None,
-            None => refined(&certified, &refinement, goal, row.relative_error_bound)?,
+            None => refined(&certified, &refinement, goal, row.relative_error_bound, &mut forecast)?,
         };
         let Some((next, edges)) = finer else {
             let reason = limit.unwrap_or_else(|| match goal.max_triangles {
@@ -195,6 +203,23 @@ fn contact_ends(problem: &Problem) -> Vec<usize> {
     marked
 }
 
+/// The gap predicted for the next mesh, and how the last prediction turned out.
+struct Forecast {
+    gap: f64,
+    correction: f64,
+}
+
+impl Forecast {
+    /// Singularities make the gap fall more slowly than predicted, and by about as much from one mesh to the next.
+    fn learn(&mut self, certified: &Certified) {
+        if let Ok(free) = &certified.bracket.free
+            && self.gap > 0.0
+        {
+            self.correction = (free.local.total / self.gap).clamp(1.0, MOST_CORRECTION);
+        }
+    }
+}
+
 /// The next mesh: rounds of Dörfler marking with predicted indicators, until the mesh has grown enough or the predicted
 /// bound meets the tolerance. `None` where not even one round fits below the limit.
 fn refined(
@@ -202,23 +227,38 @@ fn refined(
     refinement: &RefinementEdges,
     goal: &Goal,
     bound: f64,
+    forecast: &mut Forecast,
 ) -> Result<Option<(Problem, RefinementEdges)>, StudyError> {
     let Ok(free) = &certified.bracket.free else { return Ok(None) };
     let mut indicators = Indicators::new(&certified.problem, free);
     // The part of the gap that may stay: the bound is its root.
-    let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2);
+    let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2) / forecast.correction;
     let grown = GROWTH * certified.problem.mesh.triangles.len() as f64;
     let mut finer: Option<(Problem, RefinementEdges)> = None;
     loop {
         let (problem, edges) = finer.as_ref().map_or((&certified.problem, refinement), |(p, e)| (p, e));
-        let (next, next_edges, parent) = problem.bisect(edges, &indicators.marked(goal.bulk))?;
-        let count = next.mesh.triangles.len();
-        if goal.max_triangles.is_some_and(|most| count > most) || !resolvable(&next) {
-            return Ok(finer);
-        }
-        indicators.inherit(&problem.mesh, &next.mesh, &parent);
-        finer = Some((next, next_edges));
-        if count as f64 >= grown || indicators.total() <= enough {
+        let mut bulk = goal.bulk;
+        // The last round is tried with smaller parts, down to a sixteenth, while it would overshoot.
+        let (next, predicted) = loop {
+            let (mesh, edges, parent) = problem.bisect(edges, &indicators.marked(bulk))?;
+            let predicted = indicators.inherited(&problem.mesh, &mesh.mesh, &parent);
+            let count = mesh.mesh.triangles.len();
+            let too_many = goal.max_triangles.is_some_and(|most| count > most);
+            let too_far = count as f64 > (1.0 + SLACK) * grown || predicted.total() < (1.0 - SLACK) * enough;
+            bulk *= 0.5;
+            if (too_many || too_far) && bulk > goal.bulk / 20.0 {
+                continue;
+            }
+            if too_many || !resolvable(&mesh) {
+                return Ok(finer);
+            }
+            break ((mesh, edges), predicted);
+        };
+        let count = next.0.mesh.triangles.len();
+        indicators = predicted;
+        forecast.gap = indicators.total();
+        finer = Some(next);
+        if count as f64 >= (1.0 - SLACK) * grown || indicators.total() <= enough {
             return Ok(finer);
         }
     }

@@ -52,11 +52,11 @@ impl Indicators {
     }
 
     /// Predicts the terms on a finer mesh, each from the triangle it came from, as for a smooth solution.
-    pub fn inherit(&mut self, coarse: &Triangulation, fine: &Triangulation, parent: &[usize]) {
+    pub fn inherited(&self, coarse: &Triangulation, fine: &Triangulation, parent: &[usize]) -> Indicators {
         let part = |(t, &p): (usize, &usize)| match fine.area(t) / coarse.area(p) {
             whole if whole > 0.9 => self.terms[p],
             part => self.terms[p] * part.powi(DECAY),
         };
-        self.terms = parent.iter().enumerate().map(part).collect();
+        Indicators { terms: parent.iter().enumerate().map(part).collect() }
     }
 }
