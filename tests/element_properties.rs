@@ -40,8 +40,8 @@ fn mode_field(element: &dyn EquilibriumElement, modes: &Modes<'_>, k: usize) -> 
     let mut field = StressField::zeros(element.degree(), 1);
     let n = modes.parameters();
     for (node, value) in field.block_mut(0).iter_mut().enumerate() {
-        for c in 0..3 {
-            value[c] = modes.stress()[(node * 3 + c) * n + k];
+        for (c, v) in value.iter_mut().enumerate() {
+            *v = modes.stress()[(node * 3 + c) * n + k];
         }
     }
     field

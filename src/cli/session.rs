@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit};
-use crate::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Options, Uzawa};
+use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Uzawa};
 use crate::problem::{Note, Problem};
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Scene};
@@ -124,6 +124,9 @@ impl Session {
             }
             StudyError::BeyondMesh { .. } => {
                 CliError::stopped(Exit::Failed, message, "refine the mesh, for instance with --refine or --tolerance")
+            }
+            StudyError::Dual(DualError::Infeasible { .. }) => {
+                CliError::stopped(Exit::NoEquilibrium, message, "hold the body with a support, or change the load")
             }
             StudyError::Mesh(_) => CliError::stopped(Exit::BadInput, message, ""),
             StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
