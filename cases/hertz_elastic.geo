@@ -13,8 +13,8 @@ For body In {0:1}
 EndFor
 Physical Surface("upper") = {1};
 Physical Surface("lower") = {2};
-Physical Curve("upper_face") = {1};
-Physical Curve("lower_face") = {11};
+Physical Curve("upper_face") = {1, 2};
+Physical Curve("lower_face") = {11, 12};
 Physical Curve("top") = {4};
 Physical Curve("ground") = {14};
 Physical Curve("upper_axis") = {5};

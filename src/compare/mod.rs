@@ -4,8 +4,10 @@ mod candidate;
 mod check;
 mod contact;
 mod energy;
+mod nodal;
 mod outcome;
 mod pressure;
+mod resultant;
 mod stress;
 mod tolerance;
 

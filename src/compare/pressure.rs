@@ -85,6 +85,27 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
     (force, moment)
 }
 
+/// Moment about the origin of reactions as they act on the first side. The middle Bernstein coefficient of a linear
+/// function is its value at the midpoint, so that a reaction of a pair acts there.
+pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
+    let cross = |[x, y]: [f64; 2], n: [f64; 2], r: f64| -r * (x * n[1] - y * n[0]);
+    let mut normal = std::collections::HashMap::new();
+    let mut moment = 0.0;
+    for (k, pair) in interface.pairs.iter().enumerate() {
+        for v in pair.first {
+            normal.entry(v).or_insert(pair.normal);
+        }
+        let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
+        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let edge = reactions.edge.as_ref().and_then(|e| e.get(k)).copied().unwrap_or(0.0);
+        moment += cross(middle, pair.normal, edge);
+    }
+    for (v, r) in reactions.vertices.iter().zip(&reactions.vertex) {
+        moment += normal.get(v).map_or(0.0, |n| cross(problem.mesh.points[*v], *n, *r));
+    }
+    moment
+}
+
 /// Largest value and where it is.
 pub fn maximum(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> (f64, [f64; 2]) {
     let mut best = (0.0, interface.pairs.first().map_or([0.0; 2], |p| problem.mesh.points[p.first[0]]));
@@ -117,6 +138,26 @@ pub fn l2(interface: &Interface, p: &[Piece], q: &[Piece]) -> (f64, f64) {
 pub fn open_length(interface: &Interface, pieces: &[Piece], threshold: f64) -> f64 {
     let open = |p: &Piece| p.iter().all(|&v| v <= threshold);
     interface.pairs.iter().zip(pieces).filter(|(_, p)| open(p)).map(|(pair, _)| pair.length).sum()
+}
+
+/// Where two models disagree about contact.
+pub struct Disagreement {
+    /// Length of the edges that only one of them calls open.
+    pub length: f64,
+    /// The longest of them.
+    pub longest: f64,
+}
+
+/// Compares which edges carry more than a threshold of pressure in two models.
+pub fn disagreement(interface: &Interface, p: (&[Piece], f64), q: (&[Piece], f64)) -> Disagreement {
+    let open = |pieces: &[Piece], threshold: f64, k: usize| pieces[k].iter().all(|&v| v <= threshold);
+    let lengths = interface.pairs.iter().enumerate().filter(|(k, _)| open(p.0, p.1, *k) != open(q.0, q.1, *k));
+    let mut found = Disagreement { length: 0.0, longest: 0.0 };
+    for (_, pair) in lengths {
+        found.length += pair.length;
+        found.longest = found.longest.max(pair.length);
+    }
+    found
 }
 
 /// Arc lengths at which contact begins or ends.

@@ -3,8 +3,8 @@
 /// Defaults of the chosen tolerances, by the last part of the check name.
 pub const CHOSEN: [(&str, f64, &str); 4] = [
     ("sharpness", 0.15, "a bracket wider than this could not tell two models apart"),
-    ("pressure-l2", 0.25, "the energy bound does not control the pressure in L²"),
-    ("pressure-max", 0.35, "a maximum is not controlled by the energy bound"),
+    ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
+    ("pressure-max", 0.35, "where no reactions are given, nothing bounds a maximum"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
 ];
 

@@ -1,0 +1,165 @@
+//! Contact pressure of both models, averaged with the same weights: the one comparison of pressures that has a bound.
+//!
+//! Let φ be the hat function of a vertex of Γ_K, n the normal of the first side, and w = φ n the displacement that moves
+//! this vertex alone. Where supports and other contacts let w pass, both models are in equilibrium with it:
+//!
+//! ∫ λ_h : e(w) = L(w) + ∫_{ΓK} T_n φ,   ∫ σ(u_h) : e(w) = L(w) − R(φ),
+//!
+//! with R(φ) the reaction conjugate to φ. The difference of the two pressures is therefore no larger than that of the
+//! stresses in the triangles around the vertex:
+//!
+//! |∫ (−T_n) φ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
+//!
+//! It holds for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
+
+use std::collections::{HashMap, HashSet};
+
+use super::candidate::{Judged, Reactions};
+use super::pressure::Piece;
+use crate::dual::modes::materials;
+use crate::problem::{Condition, Interface, Problem};
+
+/// Mean pressures at a vertex of Γ_K, weighted by its hat function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodalPressure {
+    /// ∫ φ ds.
+    pub weight: f64,
+    /// ∫ (−T_n) φ / ∫ φ of the dual solution.
+    pub dual: f64,
+    /// R(φ) / ∫ φ of the displacement solution, per thickness.
+    pub primal: f64,
+    /// Largest difference of the two that the stresses around the vertex explain.
+    pub allowed: f64,
+}
+
+/// How two nodal pressures compare over a whole interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodalDifference {
+    /// L² norm of the dual ones.
+    pub norm: f64,
+    /// L² norm of the differences.
+    pub l2: f64,
+    /// L² norm of what is allowed.
+    pub l2_allowed: f64,
+    /// Largest of each model.
+    pub largest: [f64; 2],
+    /// By how much these two may differ.
+    pub largest_allowed: f64,
+}
+
+/// Mean pressures at the vertices of `interface` (number `index`) where w is free to move; `own` is the dual pressure,
+/// `reactions` those of the solution in `judged`.
+pub fn nodal_pressures(
+    problem: &Problem,
+    (index, interface): (usize, &Interface),
+    own: &[Piece],
+    judged: &Judged,
+    reactions: &Reactions,
+) -> Vec<NodalPressure> {
+    let normals = free_normals(problem, index, interface);
+    let thickness = problem.scene.thickness;
+    // Per vertex: ∫ φ and ∫ (−T_n) φ.
+    let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
+    let mut force: HashMap<usize, f64> =
+        reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
+    for (k, (pair, p)) in interface.pairs.iter().zip(own).enumerate() {
+        for (v, near, far) in [(pair.first[0], p[0], p[2]), (pair.first[1], p[2], p[0])] {
+            let sum = sums.entry(v).or_default();
+            sum[0] += 0.5 * pair.length;
+            sum[1] += pair.length / 6.0 * (2.0 * near + far);
+            // The middle Bernstein coefficient of a hat function is one half.
+            let middle = reactions.edge.as_ref().and_then(|e| e.get(k)).copied().unwrap_or(0.0);
+            *force.entry(v).or_default() += 0.5 * middle;
+        }
+    }
+    let explained = explained(problem, judged, &normals);
+    let mut vertices: Vec<usize> = normals.into_keys().collect();
+    vertices.sort_unstable();
+    vertices
+        .into_iter()
+        .map(|v| {
+            let [weight, pressure] = sums[&v];
+            NodalPressure {
+                weight,
+                dual: pressure / weight,
+                primal: force[&v] / (thickness * weight),
+                allowed: explained.get(&v).copied().unwrap_or(0.0) / (thickness * weight),
+            }
+        })
+        .collect()
+}
+
+/// Compares the mean pressures of one interface; `None` without any.
+pub fn difference(nodes: &[NodalPressure]) -> Option<NodalDifference> {
+    let l2 = |of: &dyn Fn(&NodalPressure) -> f64| nodes.iter().map(|n| n.weight * of(n).powi(2)).sum::<f64>().sqrt();
+    let top = |of: fn(&NodalPressure) -> f64| nodes.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
+    let (dual, primal) = (top(|n| n.dual)?, top(|n| n.primal)?);
+    Some(NodalDifference {
+        norm: l2(&|n| n.dual),
+        l2: l2(&|n| n.dual - n.primal),
+        l2_allowed: l2(&|n| n.allowed),
+        largest: [dual.dual, primal.primal],
+        // max p − max q is at most p − q where p is largest, and at least p − q where q is.
+        largest_allowed: dual.allowed.max(primal.allowed),
+    })
+}
+
+/// The vertices of the first side at which w = φ n is admissible in both directions but for this contact, with n.
+fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashMap<usize, [f64; 2]> {
+    let mut normals: HashMap<usize, [f64; 2]> = HashMap::new();
+    let mut held: HashSet<usize> = HashSet::new();
+    for pair in &interface.pairs {
+        for v in pair.first {
+            let n = *normals.entry(v).or_insert(pair.normal);
+            if dot(n, pair.normal) < 1.0 - ALIGNED {
+                held.insert(v);
+            }
+        }
+    }
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        for v in problem.mesh.edges[e].vertices {
+            let Some(&n) = normals.get(&v) else { continue };
+            let across = || dot(n, problem.mesh.edge_frame(e).1).abs() > ALIGNED;
+            let stops = match condition {
+                Condition::Interior | Condition::Traction(_) => false,
+                Condition::Clamped(_) => true,
+                Condition::Contact { interface, side: 0, .. } if *interface == index => false,
+                Condition::Roller | Condition::Contact { .. } => across(),
+            };
+            if stops {
+                held.insert(v);
+            }
+        }
+    }
+    normals.retain(|v, _| !held.contains(v));
+    normals
+}
+
+/// Cosines within this of 0 or 1 are.
+const ALIGNED: f64 = 1e-9;
+
+/// Σ_T ‖λ_h − σ(u_h)‖_T ‖e(φ n)‖_T for the hat function of each vertex, thickness included.
+fn explained(problem: &Problem, judged: &Judged, normals: &HashMap<usize, [f64; 2]>) -> HashMap<usize, f64> {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let mut sums: HashMap<usize, f64> = HashMap::new();
+    for (t, vertices) in mesh.triangles.iter().enumerate() {
+        for (i, v) in vertices.iter().enumerate() {
+            let Some(n) = normals.get(v) else { continue };
+            let corners = mesh.corners(t);
+            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            let area = mesh.area(t);
+            // ∇φ is perpendicular to the opposite edge; its sign does not matter here.
+            let g = [(a[1] - b[1]) / (2.0 * area), (b[0] - a[0]) / (2.0 * area)];
+            let e = [n[0] * g[0], n[1] * g[1], 0.5 * (n[0] * g[1] + n[1] * g[0])];
+            let motion = problem.scene.thickness * area * materials[mesh.body[t]].strain_product(e, e);
+            let stress = 2.0 * judged.field.local.triangles[t];
+            *sums.entry(*v).or_default() += (stress * motion).sqrt();
+        }
+    }
+    sums
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
