@@ -1,10 +1,18 @@
 //! `hypercircle certify`: somebody else's displacement field against the dual bound.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
-use super::options::{JudgeOptions, RunOptions, SolveOptions};
+use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
+use super::session::{DualRun, Session, remarks};
 use super::{CliError, Exit};
-use crate::scene::Scene;
+use crate::compare::{Comparison, compare};
+use crate::problem::Note;
+use crate::study::{Fields, Findings, ForeignField, assemble};
+
+/// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
+/// jump is a combination of six rounded values with weights that add up to six.
+const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
@@ -15,6 +23,9 @@ pub struct Args {
     /// The displacement field, in any format that meshio reads
     #[arg(long, value_name = "FILE")]
     pub displacement: PathBuf,
+    /// Name of the point data that is the displacement, where it is not displacement, u or disp
+    #[arg(long, value_name = "NAME")]
+    pub field: Option<String>,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
@@ -29,8 +40,77 @@ pub struct Args {
 /// Measures the field against the bound.
 ///
 /// # Errors
-/// The scene is refused, or no answer can be given.
+/// The scene or the field is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
-    Scene::read(&args.scene)?;
-    Err(CliError::stopped(Exit::Failed, "`certify` is not part of this build", "use a build with solvers"))
+    let session = Session::open("certify", &args.scene, &args.solve, args.run.quiet)?;
+    refuse_refinement(&args.solve)?;
+    let folder = args.run.folder(&session.scene);
+    let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
+    session.progress.phase("reading the displacement");
+    let start = Instant::now();
+    let field = ForeignField::read(&args.displacement, args.field.as_deref()).map_err(refused)?;
+    let reading = start.elapsed().as_secs_f64();
+    let limits = Limits { max_triangles: None, max_seconds: None };
+    let DualRun { certified, history, stopped } = session.solve(&args.solve, &limits, &folder)?;
+    let candidate = field.candidate(&certified.problem, reading).map_err(refused)?;
+
+    session.progress.phase("comparing");
+    let rounding = field.is_single_precision().then(|| (format!("admissible/{}", candidate.name), SINGLE));
+    let allow = args.judge.allowances().after(rounding);
+    let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
+    args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
+    let baseline = args.judge.against_baseline(&certified, &comparison, &allow)?;
+    comparison.checks.extend(baseline);
+    let mut notes = remarks(stopped);
+    notes.extend(repairs(&comparison));
+    let fields = Fields::new(&certified, &comparison);
+    let dossier = assemble(
+        Findings {
+            command: session.command,
+            certified: &certified,
+            comparison: &comparison,
+            history,
+            notes,
+            threads: session.threads(),
+            seconds: vec![("reading the displacement", reading), ("whole run", session.start.elapsed().as_secs_f64())],
+            components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
+            failure: None,
+        },
+        &fields,
+    );
+    session.close(&dossier, &folder)
+}
+
+/// A field lives on its own mesh, so there is nothing to refine.
+fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
+    let option = match (solve.refine, solve.tolerance) {
+        (0, None) => return Ok(()),
+        (0, Some(_)) => "--tolerance",
+        _ => "--refine",
+    };
+    Err(CliError::stopped(
+        Exit::BadInput,
+        format!("{option} changes the mesh, and a displacement field is certified on the mesh it comes with"),
+        format!("leave {option} out; refine in the program that makes the field, and certify what it then writes"),
+    ))
+}
+
+/// What was done to fields that are not admissible.
+fn repairs(comparison: &Comparison) -> Vec<Note> {
+    let inadmissible = comparison.judged.iter().filter(|j| !j.is_admissible());
+    inadmissible
+        .map(|j| Note {
+            weakens_guarantee: false,
+            text: format!(
+                "{} misses the supports by {:.2e} and penetrates by {:.2e}, relative to its largest displacement. Its own \
+                 energy {:.8e} is no upper bound; the bound of this report belongs to the nearest admissible field, with \
+                 the energy {:.8e}.",
+                j.candidate.name,
+                j.violation.support,
+                j.violation.penetration,
+                j.field.potential.total(),
+                j.admissible.potential.total()
+            ),
+        })
+        .collect()
 }

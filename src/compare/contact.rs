@@ -110,7 +110,8 @@ fn primal_side(
     if solution.is_some() {
         checks.push(resultant_check(problem, bracket, best, interface, summary.resultant.dual, force, allow));
     }
-    if summary.pressure_max.dual <= 0.0 {
+    // A field that solves nothing promises no pressure; its trace is shown, and judged by the energy alone.
+    if !best.candidate.is_solution || summary.pressure_max.dual <= 0.0 {
         return;
     }
     let nodes = solution.map(|r| nodal_pressures(problem, (index, interface), own, best, r)).unwrap_or_default();

@@ -81,6 +81,18 @@ pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allo
             "The energy that the displacement program reports against the energy of its field, integrated here.",
         ));
     }
+    if !judged.candidate.is_solution {
+        let name = format!("certified/{who}/energy-error");
+        checks.push(Check::at_most(
+            &name,
+            judged.relative_error(bracket),
+            0.0,
+            allow.chosen(&name),
+            Basis::Chosen,
+            "The guaranteed relative energy-norm error of the stress of this field, made admissible where it was not: \
+             √((𝓛(v) + Π(λ_h)) / 𝒮(λ_h)).",
+        ));
+    }
     if judged.candidate.is_solution && is_cone(problem) {
         let name = format!("energy/identity/{who}");
         checks.push(Check::equal(

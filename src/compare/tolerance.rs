@@ -1,8 +1,9 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
 /// Defaults of the chosen tolerances, by the last part of the check name.
-pub const CHOSEN: [(&str, f64, &str); 4] = [
+pub const CHOSEN: [(&str, f64, &str); 5] = [
     ("sharpness", 0.15, "a bracket wider than this could not tell two models apart"),
+    ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
     ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
     ("pressure-max", 0.35, "where no reactions are given, nothing bounds a maximum"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
@@ -18,6 +19,12 @@ impl Allowances {
     /// From NAME=VALUE pairs; NAME is the whole name of a check or its last part.
     pub fn new(entries: Vec<(String, f64)>) -> Self {
         Allowances { entries }
+    }
+
+    /// The same, over values that hold where the command line says nothing.
+    pub fn after(mut self, defaults: impl IntoIterator<Item = (String, f64)>) -> Self {
+        self.entries.splice(0..0, defaults);
+        self
     }
 
     /// The allowed value of the check `name`, or `default`.

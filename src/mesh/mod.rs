@@ -18,6 +18,7 @@ mod halves;
 mod hanging;
 mod insert;
 pub(crate) mod labels;
+pub(crate) mod meshio;
 mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;

@@ -68,7 +68,8 @@ pub struct Energy {
     pub gap: f64,
     /// √(gap / 𝒮(λ_h)).
     pub relative_error_bound: f64,
-    /// Which displacement gives `upper`: `free`, `FEniCSx P1`, `FEniCSx P2`, `certified field`.
+    /// Which displacement gives `upper`: `free`, `FEniCSx P1`, `FEniCSx P2`, or the file of a certified
+    /// field.
     pub upper_from: String,
     /// The upper bound from the dual solve alone; `null` where none could be built.
     pub free_upper: Option<f64>,

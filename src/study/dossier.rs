@@ -197,6 +197,9 @@ fn verdict(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let models = findings.comparison.judged.len();
     match (failed.as_slice(), models) {
         ([], 0) => format!("The bracket holds.{bound}"),
+        ([], _) if findings.command == "certify" => {
+            format!("The displacement field is admissible and its energy respects the bound.{bound}")
+        }
         ([], _) => format!("The stress and displacement models agree.{bound}"),
         ([one], _) => format!("One check failed: {one}.{bound}"),
         (several, _) => format!("{} checks failed, first {}.{bound}", several.len(), several[0]),

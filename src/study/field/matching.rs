@@ -1,0 +1,152 @@
+//! The triangles of a field, found again in the mesh of a scene.
+//!
+//! Triangles are matched by their centroids and then corner by corner. Points are not enough: bodies that meet at a
+//! contact have two vertices at equal coordinates, and which point belongs to which body only the triangles say. A file
+//! that has merged such points gives both vertices the same displacement; one that has a point of its own for every
+//! triangle is read as the continuous field it must be.
+
+use super::{FieldError, ForeignField};
+use crate::mesh::Triangulation;
+use crate::mesh::error::at;
+use crate::problem::Problem;
+
+/// Distance, in parts of the longest edge of a triangle, within which two points are one.
+const CLOSE: f64 = 1e-6;
+/// Difference between two values of one point, in parts of the largest displacement, that counts as round-off.
+const JUMP: f64 = 1e-6;
+/// A direction along no line that meshes are likely to follow: sorted along it, few centroids are close neighbours.
+const DIRECTION: [f64; 2] = [0.540_302_305_868_139_8, 0.841_470_984_807_896_5];
+const REMEDY: &str = "certify on the mesh of the field: name it as file under [mesh] in the scene";
+
+/// Values on the vertices and edges of a mesh.
+pub(super) struct Matched {
+    pub degree: usize,
+    pub vertex: Vec<[f64; 2]>,
+    pub middle: Vec<[f64; 2]>,
+}
+
+/// Brings `field` onto the mesh of `problem`.
+pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, FieldError> {
+    let mesh = &problem.mesh;
+    let partners = partners(field, mesh)?;
+    let size = field.values.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut vertex: Vec<Option<[f64; 2]>> = vec![None; mesh.points.len()];
+    let mut middle: Vec<Option<[f64; 2]>> = vec![None; mesh.edges.len()];
+    let mut degree = 1;
+    for (t, (number, corners)) in partners.into_iter().enumerate() {
+        let nodes = &field.triangles[number];
+        let value = |node: usize| {
+            field.values[node].ok_or_else(|| {
+                let what = format!("there is no finite displacement at point {} {}", node + 1, at(field.points[node]));
+                field.fault(what, "write a finite value at every point of a triangle")
+            })
+        };
+        let put = |slot: &mut Option<[f64; 2]>, u: [f64; 2], point: [f64; 2]| match slot {
+            Some(other) if (other[0] - u[0]).abs().max((other[1] - u[1]).abs()) > JUMP * size => {
+                let what = format!("the displacement jumps inside a body, at {}", at(point));
+                Err(field.fault(what, "only a continuous field has an energy: write it in a continuous space"))
+            }
+            Some(_) => Ok(()),
+            None => {
+                *slot = Some(u);
+                Ok(())
+            }
+        };
+        let u = [value(nodes[corners[0]])?, value(nodes[corners[1]])?, value(nodes[corners[2]])?];
+        for i in 0..3 {
+            let v = mesh.triangles[t][i];
+            put(&mut vertex[v], u[i], mesh.points[v])?;
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let mean = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            let ends = [mesh.triangles[t][j], mesh.triangles[t][k]].map(|v| mesh.points[v]);
+            let halfway = mean(ends[0], ends[1]);
+            let between = match nodes.get(middle_node(corners[j], corners[k])) {
+                Some(&node) => {
+                    degree = 2;
+                    if distance(field.points[node], halfway) > tolerance(field, &mesh.corners(t)) {
+                        let what = format!(
+                            "triangle {} is curved: its mid-node {} is not halfway",
+                            number + 1,
+                            at(field.points[node])
+                        );
+                        return Err(field.fault(what, "write the field on straight triangles"));
+                    }
+                    value(node)?
+                }
+                None => mean(u[j], u[k]),
+            };
+            put(&mut middle[mesh.triangle_edges[t][i]], between, halfway)?;
+        }
+    }
+    // Every triangle has a partner, and every vertex and edge a triangle.
+    let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect();
+    Ok(Matched { degree, vertex: all(vertex), middle: all(middle) })
+}
+
+/// Place, among the nodes of a triangle, of the one between two corners.
+fn middle_node(a: usize, b: usize) -> usize {
+    match a + b {
+        1 => 3,
+        3 => 4,
+        _ => 5,
+    }
+}
+
+/// For each triangle of `mesh` the triangle of `field`, and which of its corners are those of the mesh's, in order.
+fn partners(field: &ForeignField, mesh: &Triangulation) -> Result<Vec<(usize, [usize; 3])>, FieldError> {
+    let along = |p: [f64; 2]| DIRECTION[0] * p[0] + DIRECTION[1] * p[1];
+    let mut order: Vec<(f64, usize)> =
+        (0..mesh.triangles.len()).map(|t| (along(centroid(&mesh.corners(t))), t)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut found: Vec<Option<(usize, [usize; 3])>> = vec![None; mesh.triangles.len()];
+    for (number, nodes) in field.triangles.iter().enumerate() {
+        let corners = [0, 1, 2].map(|i| field.points[nodes[i]]);
+        let close = tolerance(field, &corners);
+        let place = along(centroid(&corners));
+        let start = order.partition_point(|(key, _)| *key < place - close);
+        let near = order[start..].iter().take_while(|(key, _)| *key <= place + close);
+        let partner = near.filter_map(|(_, t)| Some((*t, same_corners(&mesh.corners(*t), &corners, close)?)));
+        // Of two that overlap within the tolerance, one that is still free.
+        let Some((t, permutation)) = partner.min_by_key(|(t, _)| found[*t].is_some()) else {
+            let what = format!("{} is not in the mesh of the scene", describe(number, corners));
+            return Err(field.fault(what, REMEDY));
+        };
+        if let Some((other, _)) = found[t] {
+            let what = format!("{} is there twice, as triangle {} too", describe(number, corners), other + 1);
+            return Err(field.fault(what, "write every triangle once"));
+        }
+        found[t] = Some((number, permutation));
+    }
+    let complete = |(t, partner): (usize, Option<_>)| {
+        partner.ok_or_else(|| {
+            let corners = mesh.corners(t).map(at).join(", ");
+            field.fault(format!("the triangle {corners} of the scene's mesh is not in it"), REMEDY)
+        })
+    };
+    found.into_iter().enumerate().map(complete).collect()
+}
+
+/// The corners of `found` that are those of `wanted`, if the two triangles are one.
+fn same_corners(wanted: &[[f64; 2]; 3], found: &[[f64; 2]; 3], close: f64) -> Option<[usize; 3]> {
+    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    ORDERS.into_iter().find(|order| (0..3).all(|i| distance(wanted[i], found[order[i]]) <= close))
+}
+
+/// Within what distance points of a triangle are one: the tolerance, and the rounding of single precision.
+fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
+    let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
+    let far = corners.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    CLOSE * longest + if field.single { f64::from(f32::EPSILON) * far } else { 0.0 }
+}
+
+fn centroid(corners: &[[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+fn describe(number: usize, corners: [[f64; 2]; 3]) -> String {
+    format!("triangle {} with the corners {}", number + 1, corners.map(at).join(", "))
+}

@@ -1,0 +1,223 @@
+//! A displacement field from a file: read, and brought onto the mesh of a scene.
+
+mod matching;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use crate::compare::Candidate;
+use crate::mesh::meshio;
+use crate::problem::Problem;
+
+const SCRIPT: &str = include_str!("read.py");
+const INSTEAD: &str = "write it as VTU, with triangles and the displacement as point data";
+/// What programs call a displacement, in lower case.
+const USUAL: [&str; 3] = ["displacement", "u", "disp"];
+/// Largest third component, in parts of the largest displacement, that counts as none.
+const FLAT: f64 = 1e-9;
+
+/// A displacement file that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("displacement file {}: {what}; {remedy}", .file.display())]
+pub struct FieldError {
+    /// The file.
+    pub file: PathBuf,
+    /// What was found, with the point or triangle it concerns.
+    pub what: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// A displacement on triangles of its own: whatever program it comes from, nothing about it is taken on trust.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForeignField {
+    file: PathBuf,
+    sha256: String,
+    /// Coordinates of every point.
+    points: Vec<[f64; 2]>,
+    /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
+    triangles: Vec<Vec<usize>>,
+    /// Displacement of every point; `None` where the file has no finite number.
+    values: Vec<Option<[f64; 2]>>,
+    /// Whether the displacement is stored in single precision.
+    single: bool,
+}
+
+#[derive(Deserialize)]
+struct Content {
+    points: Vec<Vec<Option<f64>>>,
+    single: bool,
+    triangles: Vec<Vec<usize>>,
+    others: Vec<String>,
+    fields: BTreeMap<String, Data>,
+}
+
+#[derive(Deserialize)]
+struct Data {
+    values: Option<Vec<Vec<Option<f64>>>>,
+    single: bool,
+}
+
+impl ForeignField {
+    /// Reads triangles and displacement of `file`, in any format that meshio reads. `name` is the name of the point
+    /// data; without it, point data called `displacement`, `u` or `disp` in any case is looked for, and the exact
+    /// `displacement` has precedence.
+    ///
+    /// # Errors
+    /// [`FieldError`] when the file cannot be read, or does not hold one plane displacement on triangles.
+    pub fn read(file: &Path, name: Option<&str>) -> Result<Self, FieldError> {
+        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
+        let kind = std::fs::metadata(file)
+            .map_err(|e| fault(format!("cannot be opened: {e}"), "check the path given with --displacement"))?;
+        if kind.is_dir() {
+            return Err(fault("this is a directory".into(), "give the path of the file in it"));
+        }
+        if !kind.is_file() {
+            return Err(fault("this is not a regular file".into(), "write the field into a file"));
+        }
+        let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
+        let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        let text = meshio::run(SCRIPT, file, INSTEAD).map_err(|f| fault(f.what, &f.remedy))?;
+        let content: Content =
+            serde_json::from_slice(&text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
+        Self::new(file, sha256, content, name)
+    }
+
+    fn new(file: &Path, sha256: String, content: Content, name: Option<&str>) -> Result<Self, FieldError> {
+        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
+        if let Some(kind) = content.others.first() {
+            let what = format!("it has cells of the kind '{kind}'");
+            return Err(fault(what, "write the field on straight triangles with three or six nodes"));
+        }
+        if content.triangles.is_empty() {
+            return Err(fault("there is no triangle in it".into(), INSTEAD));
+        }
+        let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
+        let rows = data.values.as_deref().unwrap_or_default();
+        let points: Option<Vec<[f64; 2]>> =
+            content.points.iter().map(|p| Some([*p.first()?.as_ref()?, *p.get(1)?.as_ref()?])).collect();
+        let Some(points) = points else {
+            return Err(fault("a point has no finite coordinates".into(), "write the file again"));
+        };
+        if rows.len() != points.len() {
+            let what = format!("'{name}' has {} values for {} points", rows.len(), points.len());
+            return Err(fault(what, "write one value for every point"));
+        }
+        let damaged = content.triangles.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));
+        if let Some(t) = damaged {
+            let what = format!("triangle {} refers to a point beyond the {} of the file", t + 1, points.len());
+            return Err(fault(what, "write the file again"));
+        }
+        let size = rows.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if let Some(i) = rows.iter().position(|r| matches!(r.get(2), Some(Some(w)) if w.abs() > FLAT * size)) {
+            let what = format!("'{name}' has a third component at point {} that is not zero", i + 1);
+            return Err(fault(what, "this program is plane: write a displacement in the plane z = 0"));
+        }
+        let values = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
+        let single = data.single || content.single;
+        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single })
+    }
+
+    /// The name of the file, by which reports and checks call the field.
+    pub fn name(&self) -> String {
+        self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// SHA-256 of the file.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
+    /// Whether the file keeps seven digits of the displacement, so that supports and contact can be met to seven only.
+    pub fn is_single_precision(&self) -> bool {
+        self.single
+    }
+
+    /// The field on the mesh of `problem`, which must be the mesh of the field: the same triangles in any numbering and
+    /// orientation.
+    ///
+    /// # Errors
+    /// [`FieldError`] names the first triangle or point that does not fit.
+    pub fn candidate(&self, problem: &Problem, seconds: f64) -> Result<Candidate, FieldError> {
+        let matched = matching::onto(self, problem)?;
+        let nodes = if matched.degree == 2 { matched.middle.len() } else { 0 } + matched.vertex.len();
+        Ok(Candidate {
+            name: self.name(),
+            solver: "displacement file".into(),
+            version: String::new(),
+            degree: matched.degree,
+            vertex: matched.vertex,
+            middle: matched.middle,
+            reported: None,
+            is_solution: false,
+            reactions: None,
+            iterations: 0,
+            unknowns: 2 * nodes,
+            seconds: BTreeMap::from([("total".to_string(), seconds)]),
+        })
+    }
+
+    fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {
+        FieldError { file: self.file.clone(), what, remedy: remedy.into() }
+    }
+}
+
+type Chosen<'a> = (&'a str, &'a Data);
+
+/// The point data that is the displacement.
+fn choose<'a>(fields: &'a BTreeMap<String, Data>, wanted: Option<&str>) -> Result<Chosen<'a>, (String, &'static str)> {
+    let all: Vec<&str> = fields.keys().map(String::as_str).collect();
+    let listed = |names: &[&str]| if names.is_empty() { "none".to_string() } else { names.join(", ") };
+    let vectors: Vec<Chosen> =
+        fields.iter().filter(|(_, d)| d.values.is_some()).map(|(name, d)| (name.as_str(), d)).collect();
+    let exact = wanted.unwrap_or("displacement");
+    if let Some(found) = vectors.iter().find(|(name, _)| *name == exact) {
+        return Ok(*found);
+    }
+    if let Some(wanted) = wanted {
+        let what =
+            format!("it has no point data '{wanted}' with two or three components (point data: {})", listed(&all));
+        return Err((what, "give one of these with --field, or write the displacement as point data"));
+    }
+    let usual: Vec<Chosen> =
+        vectors.into_iter().filter(|(name, _)| USUAL.contains(&name.to_lowercase().as_str())).collect();
+    match usual.as_slice() {
+        [one] => Ok(*one),
+        [] => Err((
+            format!("it has no vector field on points called displacement, u or disp (point data: {})", listed(&all)),
+            "write the displacement as point data of that name with two or three components, or name it with --field",
+        )),
+        several => {
+            let names: Vec<&str> = several.iter().map(|(name, _)| *name).collect();
+            Err((format!("several fields may be the displacement: {}", names.join(", ")), "choose one with --field"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(names: &[(&str, bool)]) -> BTreeMap<String, Data> {
+        let data = |vector: bool| Data { values: vector.then(Vec::new), single: false };
+        names.iter().map(|(name, vector)| (name.to_string(), data(*vector))).collect()
+    }
+
+    #[test]
+    fn the_displacement_is_found_by_name_and_doubt_is_told() {
+        let choice = |names: &[(&str, bool)], wanted| choose(&named(names), wanted).map(|c| c.0.to_string());
+        assert_eq!(choice(&[("U", true), ("p", false)], None), Ok("U".into()));
+        assert_eq!(choice(&[("u", true), ("displacement", true)], None), Ok("displacement".into()));
+        assert_eq!(choice(&[("u", true), ("f", true)], Some("f")), Ok("f".into()));
+        let several = choice(&[("U", true), ("u", true), ("disp", true)], None).unwrap_err().0;
+        assert!(several.contains("U, disp, u"), "{several}");
+        for wanted in [None, Some("u")] {
+            let (what, _) = choice(&[("u", false), ("traction", true)], wanted).unwrap_err();
+            assert!(what.contains("traction, u"), "{what}");
+        }
+        assert!(choice(&[], None).unwrap_err().0.contains("none"));
+    }
+}

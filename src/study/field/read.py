@@ -1,0 +1,62 @@
+"""Prints the triangles and the point data of a file as JSON. Needs meshio."""
+
+import contextlib
+import io
+import json
+import math
+import sys
+
+try:
+    import meshio
+except ImportError as error:
+    print(error, file=sys.stderr)
+    sys.exit(44)
+
+source, target = sys.argv[1:]
+
+
+def read():
+    """Points, cell blocks and point data; of a time series the last step."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            mesh = meshio.read(source)
+        return mesh.points, mesh.cells, mesh.point_data
+    except (Exception, SystemExit) as error:
+        if source.lower().endswith((".xdmf", ".xmf")):
+            with contextlib.suppress(Exception), meshio.xdmf.TimeSeriesReader(source) as series:
+                points, cells = series.read_points_cells()
+                return points, cells, series.read_data(series.num_steps - 1)[1]
+        lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
+        sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
+
+
+def rows(array):
+    """Lists of numbers, with null for what is not finite."""
+    return [[float(x) if math.isfinite(x) else None for x in row] for row in array]
+
+
+points, cells, data = read()
+shapes = {"triangle": 3, "triangle6": 6, "VTK_LAGRANGE_TRIANGLE": None}
+triangles, others = [], []
+for block in cells:
+    nodes = block.data
+    if block.type in shapes and nodes.ndim == 2 and nodes.shape[1] in (3, 6):
+        triangles.extend(nodes.tolist())
+    elif block.type not in ("vertex", "line", "line3"):
+        others.append(block.type)
+fields = {}
+for name, values in data.items():
+    vector = values.ndim == 2 and values.shape[1] in (2, 3) and values.dtype.kind in "fiu"
+    fields[name] = {
+        "values": rows(values) if vector else None,
+        "single": values.dtype.kind == "f" and values.dtype.itemsize < 8,
+    }
+with open(target, "w", encoding="utf-8") as out:
+    json.dump({
+        "points": rows(points),
+        "single": points.dtype.itemsize < 8,
+        "triangles": triangles,
+        "others": others,
+        "fields": fields,
+    }, out)
