@@ -20,7 +20,7 @@ use crate::statics::{Equilibrium, Statics};
 
 /// Triangles of the next mesh per triangle of this one: the solves on meshes that grow by g cost g/(g − 1) times the
 /// last one, if a solve costs in proportion to its triangles, and less where it costs more.
-const GROWTH: f64 = 2.2;
+const GROWTH: f64 = 2.4;
 
 /// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
 const AIM: f64 = 0.95;
