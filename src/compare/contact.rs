@@ -23,7 +23,7 @@ const NO_TRACE: f64 = 0.05;
 /// Edges on which the models may disagree about contact, at its end.
 const SETTLED: f64 = 3.0;
 /// Round-off and solver accuracy of a single reaction, relative to all forces.
-const REACTION: f64 = 1e-9;
+const REACTION: f64 = 1e-8;
 
 /// Compares the contacts; `best` is the displacement solution to compare with, `all` those to draw.
 pub fn compare(
@@ -69,7 +69,7 @@ pub fn compare(
                 .push(Profile { model: format!("{name} trace"), points: profile(interface, &pieces, false) });
         }
         if let Some(best) = best {
-            primal_side(problem, bracket, best, (index, interface), &own, allow, &mut summary, &mut checks);
+            primal_side(problem, dual, bracket, best, (index, interface), &own, allow, &mut summary, &mut checks);
         }
         summaries.push(summary);
     }
@@ -79,6 +79,7 @@ pub fn compare(
 #[allow(clippy::too_many_arguments)]
 fn primal_side(
     problem: &Problem,
+    dual: &DualSolution,
     bracket: &Bracket,
     best: &Judged,
     (index, interface): (usize, &Interface),
@@ -114,7 +115,7 @@ fn primal_side(
     if !best.candidate.is_solution || summary.pressure_max.dual <= 0.0 {
         return;
     }
-    let nodes = solution.map(|r| nodal_pressures(problem, (index, interface), own, best, r)).unwrap_or_default();
+    let nodes = solution.map(|r| nodal_pressures(problem, (index, interface), own, dual, best, r)).unwrap_or_default();
     match nodal::difference(&nodes) {
         Some(difference) => checks.extend(bounded_pressure(problem, interface, &difference, allow)),
         None => checks.extend(chosen_pressure(summary, allow)),
@@ -140,22 +141,32 @@ fn bounded_pressure(
     interface: &Interface,
     nodes: &NodalDifference,
     allow: &Allowances,
-) -> [Check; 2] {
+) -> [Check; 3] {
     let name = |last: &str| format!("contact/{}/{last}", interface.name);
     let shortest = interface.pairs.iter().map(|p| p.length).fold(f64::INFINITY, f64::min);
     let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
-    let (l2_name, max_name) = (name("pressure-l2"), name("pressure-max"));
+    let (l2_name, max_name, reactions_name) = (name("pressure-l2"), name("pressure-max"), name("reactions"));
+    let thickness = problem.scene.thickness;
     let norm = nodes.norm.max(f64::MIN_POSITIVE);
     let largest = nodes.largest[0].max(f64::MIN_POSITIVE);
+    let round_off = REACTION * forces(problem).max(thickness * norm * length.sqrt());
     // A force known to round-off is a pressure known to round-off over the length it acts on.
-    let round_off = REACTION * forces(problem).max(problem.scene.thickness * norm * length.sqrt())
-        / (problem.scene.thickness * shortest);
+    let pressure_off = round_off / (thickness * shortest);
     [
+        Check::at_most(
+            &reactions_name,
+            thickness * nodes.unexplained,
+            0.0,
+            allow.get(&reactions_name, round_off),
+            Basis::RoundOff,
+            "Every reaction of the displacement model differs from the dual force at its vertex by exactly the work of \
+             λ_h − σ(u_h) on moving this vertex alone; the largest remainder.",
+        ),
         Check::at_most(
             &l2_name,
             nodes.l2 / norm,
             0.0,
-            allow.get(&l2_name, (nodes.l2_allowed + round_off * length.sqrt()) / norm),
+            allow.get(&l2_name, (nodes.l2_allowed + pressure_off * length.sqrt()) / norm),
             Basis::Guaranteed,
             "Contact pressures averaged with the hat function of each vertex, L² difference relative to the dual ones: \
              the reaction at a vertex differs at most by what λ_h − σ(u_h) around it does on moving this vertex alone.",
@@ -165,7 +176,7 @@ fn bounded_pressure(
             nodes.largest[0],
             nodes.largest[1],
             (nodes.largest[0] - nodes.largest[1]).abs() / largest,
-            allow.get(&max_name, (nodes.largest_allowed + round_off) / largest),
+            allow.get(&max_name, (nodes.largest_allowed + pressure_off) / largest),
             Basis::Guaranteed,
             "Largest of the contact pressures averaged with the hat function of each vertex, relative difference: \
              limited by λ_h − σ(u_h) around that vertex.",

@@ -5,17 +5,19 @@
 //!
 //! ∫ λ_h : e(w) = L(w) + ∫_{ΓK} T_n φ,   ∫ σ(u_h) : e(w) = L(w) − R(φ),
 //!
-//! with R(φ) the reaction conjugate to φ. The difference of the two pressures is therefore no larger than that of the
-//! stresses in the triangles around the vertex:
+//! with R(φ) the reaction conjugate to φ. The difference of the two pressures is therefore the work of the difference of
+//! the stresses in the triangles around the vertex, and no larger than its size:
 //!
-//! |∫ (−T_n) φ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
+//! ∫ (−T_n) φ − R(φ) = −∫ (λ_h − σ(u_h)) : e(w),   |∫ (−T_n) φ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
 //!
-//! It holds for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
+//! The equation holds to round-off for a correct solution, the inequality says what its two sides may amount to. Both hold for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
 
 use std::collections::{HashMap, HashSet};
 
 use super::candidate::{Judged, Reactions};
 use super::pressure::Piece;
+use super::stress::primal_means;
+use crate::dual::DualSolution;
 use crate::dual::modes::materials;
 use crate::problem::{Condition, Interface, Problem};
 
@@ -28,7 +30,9 @@ pub struct NodalPressure {
     pub dual: f64,
     /// R(φ) / ∫ φ of the displacement solution, per thickness.
     pub primal: f64,
-    /// Largest difference of the two that the stresses around the vertex explain.
+    /// −∫ (λ_h − σ(u_h)) : e(w) / ∫ φ, per thickness: what dual − primal has to be.
+    pub explained: f64,
+    /// What it may be at most, from the size of λ_h − σ(u_h).
     pub allowed: f64,
 }
 
@@ -41,6 +45,8 @@ pub struct NodalDifference {
     pub l2: f64,
     /// L² norm of what is allowed.
     pub l2_allowed: f64,
+    /// Largest force that the stresses leave unexplained, per thickness.
+    pub unexplained: f64,
     /// Largest of each model.
     pub largest: [f64; 2],
     /// By how much these two may differ.
@@ -53,6 +59,7 @@ pub fn nodal_pressures(
     problem: &Problem,
     (index, interface): (usize, &Interface),
     own: &[Piece],
+    dual: &DualSolution,
     judged: &Judged,
     reactions: &Reactions,
 ) -> Vec<NodalPressure> {
@@ -72,18 +79,20 @@ pub fn nodal_pressures(
             *force.entry(v).or_default() += 0.5 * middle;
         }
     }
-    let explained = explained(problem, judged, &normals);
+    let works = works(problem, dual, judged, &normals);
     let mut vertices: Vec<usize> = normals.into_keys().collect();
     vertices.sort_unstable();
     vertices
         .into_iter()
         .map(|v| {
             let [weight, pressure] = sums[&v];
+            let [work, size] = works.get(&v).copied().unwrap_or_default();
             NodalPressure {
                 weight,
                 dual: pressure / weight,
                 primal: force[&v] / (thickness * weight),
-                allowed: explained.get(&v).copied().unwrap_or(0.0) / (thickness * weight),
+                explained: -work / weight,
+                allowed: size / weight,
             }
         })
         .collect()
@@ -98,6 +107,7 @@ pub fn difference(nodes: &[NodalPressure]) -> Option<NodalDifference> {
         norm: l2(&|n| n.dual),
         l2: l2(&|n| n.dual - n.primal),
         l2_allowed: l2(&|n| n.allowed),
+        unexplained: nodes.iter().fold(0.0, |m, n| m.max(n.weight * (n.dual - n.primal - n.explained).abs())),
         largest: [dual.dual, primal.primal],
         // max p − max q is at most p − q where p is largest, and at least p − q where q is.
         largest_allowed: dual.allowed.max(primal.allowed),
@@ -138,23 +148,34 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
 /// Cosines within this of 0 or 1 are.
 const ALIGNED: f64 = 1e-9;
 
-/// Σ_T ‖λ_h − σ(u_h)‖_T ‖e(φ n)‖_T for the hat function of each vertex, thickness included.
-fn explained(problem: &Problem, judged: &Judged, normals: &HashMap<usize, [f64; 2]>) -> HashMap<usize, f64> {
+/// ∫ (λ_h − σ(u_h)) : e(φ n) and Σ_T ‖λ_h − σ(u_h)‖_T ‖e(φ n)‖_T for the hat function of each vertex, per thickness.
+fn works(
+    problem: &Problem,
+    dual: &DualSolution,
+    judged: &Judged,
+    normals: &HashMap<usize, [f64; 2]>,
+) -> HashMap<usize, [f64; 2]> {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let mut sums: HashMap<usize, f64> = HashMap::new();
+    let means = primal_means(problem, judged);
+    let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
     for (t, vertices) in mesh.triangles.iter().enumerate() {
         for (i, v) in vertices.iter().enumerate() {
             let Some(n) = normals.get(v) else { continue };
             let corners = mesh.corners(t);
-            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            let (p, a, b) = (corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]);
             let area = mesh.area(t);
-            // ∇φ is perpendicular to the opposite edge; its sign does not matter here.
-            let g = [(a[1] - b[1]) / (2.0 * area), (b[0] - a[0]) / (2.0 * area)];
+            // ∇φ is perpendicular to the opposite edge; twice the area, with the sign of the triangle's orientation.
+            let twice = (a[0] - p[0]) * (b[1] - p[1]) - (a[1] - p[1]) * (b[0] - p[0]);
+            let g = [(a[1] - b[1]) / twice, (b[0] - a[0]) / twice];
             let e = [n[0] * g[0], n[1] * g[1], 0.5 * (n[0] * g[1] + n[1] * g[0])];
-            let motion = problem.scene.thickness * area * materials[mesh.body[t]].strain_product(e, e);
-            let stress = 2.0 * judged.field.local.triangles[t];
-            *sums.entry(*v).or_default() += (stress * motion).sqrt();
+            let (l, s) = (dual.stress.mean(t), means[t]);
+            let d = [l[0] - s[0], l[1] - s[1], l[2] - s[2]];
+            let stress = 2.0 * judged.field.local.triangles[t] / problem.scene.thickness;
+            let motion = area * materials[mesh.body[t]].strain_product(e, e);
+            let sum = sums.entry(*v).or_default();
+            sum[0] += area * (d[0] * e[0] + d[1] * e[1] + 2.0 * d[2] * e[2]);
+            sum[1] += (stress * motion).sqrt();
         }
     }
     sums
