@@ -1,0 +1,123 @@
+//! The contact checks on a displacement field made by hand: uniform compression of two blocks, E = 1, ν = 0.
+
+mod support;
+
+use std::collections::BTreeMap;
+
+use hypercircle::bounds::Bracket;
+use hypercircle::compare::{Allowances, Basis, Candidate, Check, Reactions, compare};
+use hypercircle::dual::{self, Condensed, Options};
+use hypercircle::problem::Problem;
+use support::Blocks;
+
+fn problem(n: usize) -> Problem {
+    Blocks { n, materials: [(1.0, 0.0); 2], load: (1.0, 0.0), ..Blocks::default() }.problem()
+}
+
+/// u = (2 − x, 0) with its reactions: a pressure of 1 against hat functions, in Bernstein form.
+fn exact(problem: &Problem) -> Candidate {
+    let mesh = &problem.mesh;
+    let u = |[x, _]: [f64; 2]| [2.0 - x, 0.0];
+    let middle = |e: usize| {
+        let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+        u([0.5 * (a[0] + b[0]), 0.0])
+    };
+    let pairs = &problem.interfaces[0].pairs;
+    let third = pairs[0].length / 3.0;
+    let mut vertices = vec![pairs[0].first[0]];
+    vertices.extend(pairs.iter().map(|p| p.first[1]));
+    let ends = [0, vertices.len() - 1];
+    let vertex = (0..vertices.len()).map(|i| if ends.contains(&i) { third } else { 2.0 * third }).collect();
+    Candidate {
+        name: "by hand".to_string(),
+        solver: "hand".to_string(),
+        version: String::new(),
+        degree: 2,
+        vertex: mesh.points.iter().map(|p| u(*p)).collect(),
+        middle: (0..mesh.edges.len()).map(middle).collect(),
+        reported: Some(-1.0),
+        is_solution: true,
+        reactions: Some(vec![Reactions {
+            vertices,
+            vertex,
+            edge: Some(vec![third; pairs.len()]),
+            resultant: [-1.0, 0.0],
+        }]),
+        iterations: 1,
+        unknowns: 1,
+        seconds: BTreeMap::new(),
+    }
+}
+
+fn checks(problem: &Problem, candidate: Candidate) -> Vec<Check> {
+    let dual = dual::solve(&Condensed, problem, &[], &Options::default()).expect("solves");
+    let bracket = Bracket::new(problem, &dual);
+    compare(problem, &dual, &bracket, vec![candidate], &Allowances::default()).checks
+}
+
+fn failed(checks: &[Check]) -> Vec<&str> {
+    checks.iter().filter(|c| !c.passed).map(|c| c.name.rsplit('/').next().unwrap_or(&c.name)).collect()
+}
+
+fn reactions(candidate: &mut Candidate) -> &mut Reactions {
+    &mut candidate.reactions.as_mut().expect("reactions")[0]
+}
+
+#[test]
+fn the_exact_field_passes_every_check() {
+    let problem = problem(4);
+    let checks = checks(&problem, exact(&problem));
+    assert!(failed(&checks).is_empty(), "{:?}", failed(&checks));
+    for last in ["reactions", "pressure-l2", "pressure-max", "resultant"] {
+        let check = checks.iter().find(|c| c.name.ends_with(&format!("/{last}"))).expect("made");
+        assert!(check.difference.expect("a number") < 1e-12 && check.basis != Basis::Chosen, "{check:?}");
+    }
+}
+
+#[test]
+fn force_at_the_wrong_vertex_is_noticed_though_the_resultant_is_right() {
+    let problem = problem(4);
+    let mut candidate = exact(&problem);
+    reactions(&mut candidate).vertex[1] += 1e-4;
+    reactions(&mut candidate).vertex[2] -= 1e-4;
+    assert_eq!(failed(&checks(&problem, candidate)), ["reactions", "pressure-l2", "pressure-max"]);
+}
+
+#[test]
+fn reactions_that_do_not_belong_to_the_displacement_are_noticed() {
+    let problem = problem(4);
+    let mut candidate = exact(&problem);
+    // Still admissible, and its energy is reported truly: only it is no solution.
+    for u in candidate.vertex.iter_mut().chain(&mut candidate.middle) {
+        u[0] *= 1.01;
+    }
+    candidate.reported = Some(1.01_f64.powi(2) - 2.0 * 1.01);
+    let checks = checks(&problem, candidate);
+    assert_eq!(failed(&checks), ["by hand", "reactions"], "{checks:?}");
+    assert!(checks.iter().any(|c| c.name == "energy/identity/by hand" && !c.passed));
+}
+
+#[test]
+fn half_a_contact_that_carries_nothing_is_noticed() {
+    let problem = problem(16);
+    let mut candidate = exact(&problem);
+    let own = reactions(&mut candidate);
+    own.vertex[9..].fill(0.0);
+    own.edge.as_mut().expect("degree 2")[8..].fill(0.0);
+    let checks = checks(&problem, candidate);
+    let open = checks.iter().find(|c| c.name.ends_with("open-length")).expect("made");
+    assert!(!open.passed && (open.difference.expect("a number") - 7.0 / 16.0).abs() < 1e-9, "{open:?}");
+}
+
+#[test]
+fn a_field_without_reactions_is_compared_by_its_trace() {
+    let problem = problem(4);
+    let mut candidate = exact(&problem);
+    candidate.reactions = None;
+    candidate.is_solution = false;
+    let checks = checks(&problem, candidate);
+    assert!(failed(&checks).is_empty(), "{:?}", failed(&checks));
+    assert!(!checks.iter().any(|c| c.name.ends_with("/reactions") || c.name.ends_with("/resultant")));
+    let l2 = checks.iter().find(|c| c.name.ends_with("/pressure-l2")).expect("made");
+    assert_eq!((l2.basis, l2.allowed), (Basis::Chosen, 0.25));
+}
