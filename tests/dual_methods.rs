@@ -31,7 +31,7 @@ const UZAWA: Uzawa = Uzawa { step_length: None, most_iterations: 200_000, tolera
 /// All methods reach `energy`, where it is known, and each other: energies, equilibrium, contact tractions, contact
 /// state.
 fn agree(what: &str, problem: &Problem, motions: &[Motion], energy: Option<f64>) -> DualSolution {
-    let condensed = run(&Condensed, problem, motions);
+    let condensed = run(&Condensed::default(), problem, motions);
     let reference = lower(problem, &condensed);
     if let Some(energy) = energy {
         assert!((reference - energy).abs() <= 1e-9 * energy.abs(), "{what}: condensed {reference} for {energy}");
@@ -82,7 +82,7 @@ fn every_method_carries_the_free_upper_bound() {
         let v = admissible(&problem, &run(method, &problem, &[])).expect("an admissible displacement");
         potential(&problem, &v).total()
     };
-    let condensed = upper(&Condensed);
+    let condensed = upper(&Condensed::default());
     // Above every lower bound, and above the energy of the exact solution as finer meshes know it.
     assert!(condensed > -1.79642);
     for method in [&Clarabel::default() as &dyn DualMethod, &UZAWA, &Uzawa::plain()] {

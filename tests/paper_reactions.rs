@@ -50,7 +50,8 @@ fn solve(scene: Scene, shape: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> (Problem,
     let raw = blocks(4, Family::Vaulted, shape);
     let (mesh, notes) = Triangulation::new(raw, &scene).expect("a valid mesh");
     let problem = Problem::new(scene, mesh, notes).expect("a valid problem");
-    let found = dual::solve(&Condensed, &problem, &free_motions(&problem), &Options::default()).expect("solves");
+    let found =
+        dual::solve(&Condensed::default(), &problem, &free_motions(&problem), &Options::default()).expect("solves");
     (problem, found.stress)
 }
 

@@ -44,7 +44,7 @@ fn bracket(blocks: &Blocks, method: &dyn DualMethod) -> (f64, f64, f64, usize, f
 
 #[test]
 fn scene_a_reproduces_the_independent_energies() {
-    for method in [&Condensed as &dyn DualMethod, &ActiveSet::default()] {
+    for method in [&Condensed::default() as &dyn DualMethod, &ActiveSet::default()] {
         for (n, energy, open_ends) in SCENE_A {
             let (lower, upper, _, open, residual) = bracket(&Blocks { n, ..Blocks::default() }, method);
             assert!((lower - energy).abs() < 1e-9, "{} at n = {n}: {lower} for {energy}", method.name());
@@ -58,7 +58,8 @@ fn scene_a_reproduces_the_independent_energies() {
 #[test]
 fn scene_b_stays_closed() {
     for (n, energy) in SCENE_B {
-        let (lower, _, _, open, _) = bracket(&Blocks { n, load: (1.5, -1.8), ..Blocks::default() }, &Condensed);
+        let (lower, _, _, open, _) =
+            bracket(&Blocks { n, load: (1.5, -1.8), ..Blocks::default() }, &Condensed::default());
         assert!((lower - energy).abs() < 1e-9);
         assert_eq!(open, 0);
     }
@@ -69,7 +70,7 @@ fn the_bracket_does_not_widen_towards_incompressibility() {
     for n in [8, 16] {
         let gaps = [0.3, 0.49, 0.4999, 0.499999].map(|nu| {
             let (lower, upper, strain, _, _) =
-                bracket(&Blocks { n, materials: [(1.0, nu); 2], ..Blocks::default() }, &Condensed);
+                bracket(&Blocks { n, materials: [(1.0, nu); 2], ..Blocks::default() }, &Condensed::default());
             (upper - lower) / strain
         });
         println!("{gaps:?}");

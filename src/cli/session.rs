@@ -160,7 +160,7 @@ impl Session {
 /// The solver of that name.
 pub fn method(name: Method) -> Box<dyn DualMethod> {
     match name {
-        Method::Condensed => Box::new(Condensed),
+        Method::Condensed => Box::new(Condensed::default()),
         Method::ActiveSet => Box::new(ActiveSet::default()),
         Method::Clarabel => Box::new(Clarabel::default()),
         Method::Uzawa => Box::new(Uzawa::default()),

@@ -5,8 +5,8 @@ use std::time::Instant;
 use faer::sparse::SparseColMat;
 
 use super::factor::{Factor, SymbolicFactor};
-use super::hybrid::{Motion, held_unknowns, ordering, parameters, residual, stresses};
-use super::system::System;
+use super::hybrid::{Motion, explain, held_unknowns, ordering, parameters, residual, stresses};
+use super::system::{System, isolate};
 use super::{DualError, DualMethod, Found, Options, Phases};
 use crate::problem::Problem;
 
@@ -37,7 +37,9 @@ impl DualMethod for ActiveSet {
         let start = Instant::now();
         let held = held_unknowns(problem, &system, motions);
         let first_jump = system.unknowns.first_jump;
-        let symbolic = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(&system)?)?;
+        let broken = |breakdown| explain(problem, &system, breakdown);
+        let symbolic = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(problem, &system));
+        let symbolic = symbolic.map_err(broken)?;
         seconds.factor = start.elapsed().as_secs_f64();
 
         let mut closed = vec![true; system.jump_bound.len()];
@@ -45,8 +47,8 @@ impl DualMethod for ActiveSet {
         for step in 1..=self.most_steps {
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
-            let factor =
-                Factor::new(symbolic.take().ok_or(DualError::ContactUndetermined)?, matrix.as_ref(), options.par())?;
+            let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
+            let factor = Factor::new(structure, matrix.as_ref(), options.par()).map_err(broken)?;
             seconds.factor += start.elapsed().as_secs_f64();
 
             let start = Instant::now();
@@ -122,6 +124,6 @@ fn constrained(system: &System, held: &[usize], closed: &[bool]) -> (SparseColMa
         }
     }
     let mut matrix = system.matrix.clone();
-    system.isolate(&mut matrix, |d| fixed[d].is_some());
+    isolate(&mut matrix, |d| fixed[d].is_some());
     (matrix, fixed)
 }

@@ -9,23 +9,38 @@
 use std::time::Instant;
 
 use faer::Mat;
-use faer::sparse::SparseColMat;
 
 use super::factor::{Factor, SymbolicFactor};
-use super::hybrid::{Motion, held_unknowns, ordering, parameters, residual, stresses};
-use super::qp;
-use super::system::System;
+use super::hybrid::{Motion, explain, held_unknowns, ordering, parameters, residual, stresses};
+use super::long_contact::LongContact;
+use super::qp::{self, ContactState};
+use super::system::{System, isolate};
 use super::{DualError, DualMethod, Found, Options, Phases};
 use crate::problem::Problem;
 
 /// The default method.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Condensed;
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Condensed {
+    /// Limit of refinements on the stresses. It ends earlier where round-off is reached; none leaves the stresses as the
+    /// first solve gives them.
+    pub most_refinements: usize,
+    /// Longest contact, in jumps (two for each pair), whose Schur complement is formed as a dense matrix. Longer ones are
+    /// solved iteratively, with the factor as it is stored.
+    pub longest_dense: usize,
+}
+
+impl Default for Condensed {
+    fn default() -> Self {
+        Condensed { most_refinements: 8, longest_dense: 6000 }
+    }
+}
 
 /// Refinement ends when a step no longer improves the residual by this factor …
 const WORTHWHILE: f64 = 0.25;
-/// … or after this many steps.
-const MOST_REFINEMENTS: usize = 8;
+/// … or when the traction jumps are this small against the loads.
+const ROUND_OFF: f64 = 2e-14;
+/// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
+const BROKEN: f64 = 1e-9;
 
 impl DualMethod for Condensed {
     fn name(&self) -> &'static str {
@@ -35,41 +50,48 @@ impl DualMethod for Condensed {
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
-        let system = System::new(problem, options);
+        let mut system = System::new(problem, options);
         seconds.assemble = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let reduced = Reduced::new(problem, &system, motions, options)?;
+        let reduced = Reduced::new(problem, &mut system, motions, options)?;
         seconds.factor = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let schur = reduced.schur();
-        let (_, c) = reduced.condense(&schur, &system.rhs);
+        let contact = Contact::new(&reduced, self.longest_dense);
+        let (y, c) = reduced.condense(&system.rhs);
         let warm = options.closed.as_deref().filter(|closed| closed.len() == system.jump_bound.len());
-        let state = qp::solve(&schur.matrix, &c, &system.jump_bound, warm);
+        let state = contact.solve(&c, &system.jump_bound, warm)?;
+        let notes = contact.notes(state.steps, self.longest_dense);
         seconds.contact = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let mut x = reduced.finish(&schur, &system.rhs, |_| Some(state.jumps.clone()))?;
+        let mut x = reduced.expand(y, &state.jumps);
+        let traction = contact.gradient(&c, &state.jumps);
+        reduced.check(&system, &x, &traction)?;
         let mut s = parameters(problem, &system, &x, true);
         let mut r = reduced.free_residual(residual(problem, &system, &s), &state.closed);
+        let enough = ROUND_OFF * largest(&system.external);
         let mut worst = largest(&r);
-        let mut refinements = 0;
-        while refinements < MOST_REFINEMENTS && worst > 0.0 {
-            let no_move = vec![0.0; state.closed.len()];
-            let dx = reduced.finish(&schur, &r, |c| qp::with_closed(&schur.matrix, c, &no_move, &state.closed))?;
+        let no_move = vec![0.0; state.closed.len()];
+        for _ in 0..self.most_refinements {
+            if worst <= enough {
+                break;
+            }
+            let (y, c) = reduced.condense(&r);
+            let jumps = contact.with_closed(&c, &no_move, &state.closed).ok_or(DualError::ContactUndetermined)?;
+            let dx = reduced.expand(y, &jumps);
             let ds = parameters(problem, &system, &dx, false);
             let trial: Vec<f64> = s.iter().zip(&ds).map(|(a, b)| a + b).collect();
             let trial_r = reduced.free_residual(residual(problem, &system, &trial), &state.closed);
             let trial_worst = largest(&trial_r);
-            refinements += 1;
             if trial_worst >= worst {
                 break;
             }
-            let enough = trial_worst > WORTHWHILE * worst;
+            let slow = trial_worst > WORTHWHILE * worst;
             x.iter_mut().zip(&dx).for_each(|(a, b)| *a += b);
             (s, r, worst) = (trial, trial_r, trial_worst);
-            if enough {
+            if slow {
                 break;
             }
         }
@@ -83,7 +105,7 @@ impl DualMethod for Condensed {
             unknowns: system.unknowns.count,
             iterations: state.steps,
             seconds,
-            notes: Vec::new(),
+            notes,
         })
     }
 }
@@ -100,61 +122,36 @@ struct Reduced {
     shift: f64,
 }
 
-/// The Schur complement on Γ_K.
-struct Schur {
-    lower: Mat<f64>,
-    matrix: Mat<f64>,
-}
-
 impl Reduced {
-    fn new(problem: &Problem, system: &System, motions: &[Motion], options: &Options) -> Result<Self, DualError> {
+    /// Factorises; the matrix of `system` becomes the definite one.
+    fn new(problem: &Problem, system: &mut System, motions: &[Motion], options: &Options) -> Result<Self, DualError> {
         let first_jump = system.unknowns.first_jump;
         let held = held_unknowns(problem, system, motions);
-        let symbolic = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(system)?)?;
-        let (matrix, shift) = definite(system, &held);
-        let factor = Factor::new(symbolic, matrix.as_ref(), options.par())?;
+        let shift = make_definite(system, &held);
+        let factor = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(problem, system))
+            .and_then(|symbolic| Factor::new(symbolic, system.matrix.as_ref(), options.par()))
+            .map_err(|breakdown| explain(problem, system, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
     }
 
-    fn schur(&self) -> Schur {
-        let lower = self.factor.trailing();
-        let mut matrix = &lower * lower.transpose();
-        for i in 0..matrix.nrows() {
-            matrix[(i, i)] -= self.shift;
-        }
-        Schur { lower, matrix }
-    }
-
     /// L⁻¹b, and the load c = b_J − K_J1 K_11⁻¹ b_1 on the jumps.
-    fn condense(&self, schur: &Schur, b: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn condense(&self, b: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut b = b.to_vec();
         for &d in &self.held {
             b[d] = 0.0;
         }
         let y = self.factor.forward(&b);
-        let tail = Mat::from_fn(y.len() - self.first_jump, 1, |i, _| y[self.first_jump + i]);
-        let c = &schur.lower * tail;
-        (y, (0..c.nrows()).map(|i| c[(i, 0)]).collect())
+        let c = self.factor.trailing_times(&y[self.first_jump..]);
+        (y, c)
     }
 
-    /// Solves for all unknowns, with the jumps that `choose` makes of their load c.
-    fn finish(
-        &self,
-        schur: &Schur,
-        b: &[f64],
-        choose: impl FnOnce(&[f64]) -> Option<Vec<f64>>,
-    ) -> Result<Vec<f64>, DualError> {
-        let (mut y, c) = self.condense(schur, b);
-        let jumps = choose(&c).ok_or(DualError::ContactUndetermined)?;
+    /// All unknowns, from L⁻¹b and the jumps.
+    fn expand(&self, mut y: Vec<f64>, jumps: &[f64]) -> Vec<f64> {
         // L_JJᵀ j in place of the tail: back-substitution then reproduces j and solves for the rest.
-        let j = Mat::from_fn(jumps.len(), 1, |i, _| jumps[i]);
-        let tail = schur.lower.transpose() * j;
-        for i in 0..jumps.len() {
-            y[self.first_jump + i] = tail[(i, 0)];
-        }
+        y[self.first_jump..].copy_from_slice(&self.factor.trailing_transpose_times(jumps));
         let mut x = self.factor.backward(y);
-        x[self.first_jump..].copy_from_slice(&jumps);
-        Ok(x)
+        x[self.first_jump..].copy_from_slice(jumps);
+        x
     }
 
     /// The residual where it should vanish: not on held unknowns, not on closed jumps.
@@ -169,17 +166,95 @@ impl Reduced {
         }
         r
     }
+
+    /// Kx − b vanishes before the jumps and is `traction` on them, or the factor is not that of the matrix.
+    fn check(&self, system: &System, x: &[f64], traction: &[f64]) -> Result<(), DualError> {
+        if system.unknowns.count == 0 {
+            return Ok(());
+        }
+        let mut left = system.multiply(x);
+        left.iter_mut().zip(&system.rhs).for_each(|(l, b)| *l -= b);
+        for &d in &self.held {
+            left[d] = 0.0;
+        }
+        for (i, t) in traction.iter().enumerate() {
+            left[self.first_jump + i] -= self.shift * x[self.first_jump + i] + t;
+        }
+        let columns = system.matrix.symbolic().col_ptr();
+        let diagonal = columns[..x.len()].iter().fold(0.0_f64, |m, &k| m.max(system.matrix.val()[k]));
+        let size = diagonal * largest(x) + largest(&system.rhs);
+        // A sum notices what a maximum passes over: values that are not numbers.
+        let found = left.iter().map(|l| l.abs()).sum::<f64>() / left.len() as f64 / size.max(f64::MIN_POSITIVE);
+        if found <= BROKEN {
+            return Ok(());
+        }
+        let reason = format!(
+            "a solve with its factor leaves a residual of {found:.1e} where {BROKEN:.0e} would be too much already"
+        );
+        Err(DualError::Factorisation { reason })
+    }
 }
 
-/// K with held unknowns taken out and the jump diagonal shifted.
-fn definite(system: &System, held: &[usize]) -> (SparseColMat<usize, f64>, f64) {
-    let mut matrix = system.matrix.clone();
-    let (symbolic, values) = matrix.parts_mut();
+/// The problem on Γ_K, by the length of the contact.
+enum Contact<'a> {
+    Dense(Mat<f64>),
+    Long(LongContact<'a>, usize),
+}
+
+impl<'a> Contact<'a> {
+    fn new(reduced: &'a Reduced, longest_dense: usize) -> Self {
+        let m = reduced.factor.trailing_len();
+        if m > longest_dense {
+            return Contact::Long(LongContact::new(&reduced.factor, reduced.shift), m);
+        }
+        let lower = reduced.factor.trailing();
+        let mut matrix = &lower * lower.transpose();
+        for i in 0..m {
+            matrix[(i, i)] -= reduced.shift;
+        }
+        Contact::Dense(matrix)
+    }
+
+    fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
+        match self {
+            Contact::Dense(s) => qp::solve(s, c, bound, warm),
+            Contact::Long(s, _) => s.solve(c, bound, warm),
+        }
+    }
+
+    /// S j − c.
+    fn gradient(&self, c: &[f64], jumps: &[f64]) -> Vec<f64> {
+        match self {
+            Contact::Dense(s) => qp::gradient(s, c, jumps),
+            Contact::Long(s, _) => s.apply(jumps).iter().zip(c).map(|(s, c)| s - c).collect(),
+        }
+    }
+
+    fn with_closed(&self, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
+        match self {
+            Contact::Dense(s) => qp::with_closed_or_springs(s, c, bound, closed),
+            Contact::Long(s, _) => Some(s.with_closed(c, bound, closed)),
+        }
+    }
+
+    fn notes(&self, steps: usize, longest_dense: usize) -> Vec<String> {
+        match self {
+            Contact::Dense(_) => Vec::new(),
+            Contact::Long(_, m) => vec![format!(
+                "the contact has {m} ends, more than the {longest_dense} that are solved with a dense matrix: its state \
+                 was found iteratively (MPRGP, {steps} steps)"
+            )],
+        }
+    }
+}
+
+/// Takes held unknowns out of K and shifts the jump diagonal by its largest entry, which is returned.
+pub fn make_definite(system: &mut System, held: &[usize]) -> f64 {
+    let jumps = system.unknowns.first_jump..system.unknowns.count;
+    let (symbolic, values) = system.matrix.parts_mut();
     let columns = symbolic.col_ptr();
-    let first_jump = system.unknowns.first_jump;
-    let diagonal = |values: &[f64], j: usize| values[columns[j]];
-    let shift = (first_jump..system.unknowns.count).map(|j| diagonal(values, j)).fold(0.0, f64::max);
-    for j in first_jump..system.unknowns.count {
+    let shift = jumps.clone().map(|j| values[columns[j]]).fold(0.0, f64::max);
+    for j in jumps {
         values[columns[j]] += shift;
     }
     if !held.is_empty() {
@@ -187,7 +262,7 @@ fn definite(system: &System, held: &[usize]) -> (SparseColMat<usize, f64>, f64) 
         for &d in held {
             is_held[d] = true;
         }
-        system.isolate(&mut matrix, |d| is_held[d]);
+        isolate(&mut system.matrix, |d| is_held[d]);
     }
-    (matrix, shift)
+    shift
 }

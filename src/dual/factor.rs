@@ -1,46 +1,55 @@
 //! Sparse Cholesky with the jumps ordered last, so that the end of the factor holds the Schur complement on Γ_K.
 
-use std::time::Instant;
-
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side, Spec};
 
-use super::DualError;
+/// Why a matrix could not be factorised.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Breakdown {
+    /// The matrix is not positive definite; the pivot of this unknown shows it.
+    NotPositive(usize),
+    /// Out of memory, or too large for the index type.
+    TooLarge(String),
+}
 
 /// Symbolic factorisation: the fill-reducing ordering and the structure of the factor.
 #[derive(Debug)]
 pub struct SymbolicFactor {
-    inner: SymbolicCholesky<usize>,
+    /// `None` where there are no unknowns.
+    inner: Option<SymbolicCholesky<usize>>,
     forward: Vec<usize>,
     leading: usize,
-    /// Wall-clock seconds it took.
-    pub seconds: f64,
 }
 
 impl SymbolicFactor {
     /// Analyses the lower triangle `pattern`; unknowns from `leading` on keep their order and come last.
     ///
     /// `order` is a fill-reducing ordering of the unknowns before `leading`.
+    ///
+    /// # Errors
+    /// [`Breakdown::TooLarge`].
     pub fn new(
         pattern: SymbolicSparseColMatRef<'_, usize>,
         leading: usize,
         order: Vec<usize>,
-    ) -> Result<Self, DualError> {
-        let start = Instant::now();
+    ) -> Result<Self, Breakdown> {
         let n = pattern.ncols();
         let mut forward = order;
         forward.extend(leading..n);
         let mut inverse = vec![0; n];
         for (new, &old) in forward.iter().enumerate() {
             inverse[old] = new;
+        }
+        if n == 0 {
+            return Ok(SymbolicFactor { inner: None, forward, leading });
         }
         let inner = factorize_symbolic_cholesky(
             pattern,
@@ -51,25 +60,9 @@ impl SymbolicFactor {
                 ..Default::default()
             },
         )
-        .map_err(|e| DualError::Factorisation { reason: format!("{e:?}") })?;
-        Ok(SymbolicFactor { inner, forward, leading, seconds: start.elapsed().as_secs_f64() })
+        .map_err(|e| Breakdown::TooLarge(e.to_string()))?;
+        Ok(SymbolicFactor { inner: Some(inner), forward, leading })
     }
-
-    /// Number of entries of the factor, explicit zeros of its dense blocks included.
-    pub fn entries(&self) -> usize {
-        self.inner.len_val()
-    }
-}
-
-/// Approximate minimum degree ordering of a graph given by its lower triangle.
-pub fn minimum_degree(columns: &[usize], rows: &[usize]) -> Result<Vec<usize>, DualError> {
-    let n = columns.len() - 1;
-    let graph = SymbolicSparseColMatRef::new_checked(n, n, columns, None, rows);
-    let (mut forward, mut inverse) = (vec![0; n], vec![0; n]);
-    let mut memory = MemBuffer::new(amd::order_maybe_unsorted_scratch::<usize>(n, rows.len()));
-    amd::order_maybe_unsorted(&mut forward, &mut inverse, graph, amd::Control::default(), MemStack::new(&mut memory))
-        .map_err(|e| DualError::Factorisation { reason: format!("{e:?}") })?;
-    Ok(forward)
 }
 
 /// Numeric factorisation P A Pᵀ = L Lᵀ.
@@ -84,13 +77,14 @@ impl Factor {
     /// Factorises the matrix whose lower triangle is given.
     ///
     /// # Errors
-    /// [`DualError::Factorisation`] where the matrix is not positive definite.
-    pub fn new(symbolic: SymbolicFactor, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Self, DualError> {
-        let mut values = vec![0.0; symbolic.inner.len_val()];
+    /// [`Breakdown`].
+    pub fn new(symbolic: SymbolicFactor, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Self, Breakdown> {
+        let Some(inner) = &symbolic.inner else { return Ok(Factor { symbolic, values: Vec::new(), par }) };
+        let mut values = vec![0.0; inner.len_val()];
         let params = Spec::default();
-        let mut memory = MemBuffer::new(symbolic.inner.factorize_numeric_llt_scratch::<f64>(par, params));
-        symbolic
-            .inner
+        let mut memory = MemBuffer::try_new(inner.factorize_numeric_llt_scratch::<f64>(par, params))
+            .map_err(|_| Breakdown::TooLarge("out of memory".to_string()))?;
+        inner
             .factorize_numeric_llt(
                 &mut values,
                 matrix,
@@ -100,7 +94,9 @@ impl Factor {
                 MemStack::new(&mut memory),
                 params,
             )
-            .map_err(|e| DualError::Factorisation { reason: format!("{e:?}") })?;
+            .map_err(|LltError::NonPositivePivot { index }| {
+                Breakdown::NotPositive(symbolic.forward.get(index).copied().unwrap_or(0))
+            })?;
         Ok(Factor { symbolic, values, par })
     }
 
@@ -109,37 +105,36 @@ impl Factor {
         self.symbolic
     }
 
-    fn supernodal(&self) -> SupernodalLltRef<'_, usize, f64> {
-        match self.symbolic.inner.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => SupernodalLltRef::new(symbolic, &self.values),
+    fn supernodal(&self) -> Option<SupernodalLltRef<'_, usize, f64>> {
+        match self.symbolic.inner.as_ref()?.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => Some(SupernodalLltRef::new(symbolic, &self.values)),
             SymbolicCholeskyRaw::Simplicial(_) => unreachable!("the supernodal variant is forced"),
         }
+    }
+
+    fn memory(&self) -> MemBuffer {
+        let inner = self.symbolic.inner.as_ref();
+        MemBuffer::new(inner.map_or(Default::default(), |s| s.solve_in_place_scratch::<f64>(1, self.par)))
     }
 
     /// y = L⁻¹ P b, in the order of the factor.
     pub fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut y: Vec<f64> = self.symbolic.forward.iter().map(|&old| b[old]).collect();
         let n = y.len();
-        let mut memory = MemBuffer::new(self.symbolic.inner.solve_in_place_scratch::<f64>(1, self.par));
-        self.supernodal().l_solve_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut y, n, 1),
-            self.par,
-            MemStack::new(&mut memory),
-        );
+        if let Some(factor) = self.supernodal() {
+            let y = MatMut::from_column_major_slice_mut(&mut y, n, 1);
+            factor.l_solve_with_conj(Conj::No, y, self.par, MemStack::new(&mut self.memory()));
+        }
         y
     }
 
     /// x = Pᵀ L⁻ᵀ y.
     pub fn backward(&self, mut y: Vec<f64>) -> Vec<f64> {
         let n = y.len();
-        let mut memory = MemBuffer::new(self.symbolic.inner.solve_in_place_scratch::<f64>(1, self.par));
-        self.supernodal().l_transpose_solve_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(&mut y, n, 1),
-            self.par,
-            MemStack::new(&mut memory),
-        );
+        if let Some(factor) = self.supernodal() {
+            let y = MatMut::from_column_major_slice_mut(&mut y, n, 1);
+            factor.l_transpose_solve_with_conj(Conj::No, y, self.par, MemStack::new(&mut self.memory()));
+        }
         let mut x = vec![0.0; n];
         for (value, &old) in y.iter().zip(&self.symbolic.forward) {
             x[old] = *value;
@@ -152,25 +147,84 @@ impl Factor {
         self.backward(self.forward(b))
     }
 
-    /// The trailing block L_JJ of the factor, where J are the unknowns ordered last.
-    pub fn trailing(&self) -> Mat<f64> {
+    /// Number of unknowns ordered last, J.
+    pub fn trailing_len(&self) -> usize {
+        self.symbolic.forward.len() - self.symbolic.leading
+    }
+
+    /// Visits the columns of L_JJ, where J are the unknowns ordered last: `visit(k, diagonal part, rows, values)` with
+    /// the entries of column k from its diagonal down to where the supernode ends, then rows of J with their values.
+    fn trailing_columns(&self, mut visit: impl FnMut(usize, &[f64], &[usize], &[f64])) {
         let first = self.symbolic.leading;
-        let n = self.symbolic.forward.len();
-        let mut out = Mat::zeros(n - first, n - first);
-        let factor = self.supernodal();
-        for s in 0..factor.symbolic().n_supernodes() {
+        let Some(factor) = self.supernodal() else { return };
+        let nodes = factor.symbolic();
+        let begin = nodes.supernode_end().partition_point(|&end| end <= first);
+        for s in begin..nodes.n_supernodes() {
             let node = factor.supernode(s);
             let (start, size) = (node.start(), node.val().ncols());
             for column in first.max(start)..start + size {
-                let values = node.val().col(column - start);
-                for row in column..start + size {
-                    out[(row - first, column - first)] = values[row - start];
-                }
-                for (k, &row) in node.pattern().iter().enumerate() {
-                    out[(row - first, column - first)] = values[size + k];
+                if let Some(values) = node.val().col(column - start).try_as_col_major() {
+                    let (own, below) = values.as_slice().split_at(size);
+                    visit(column - first, &own[column - start..], node.pattern(), below);
                 }
             }
         }
+    }
+
+    /// L_JJ as a dense matrix.
+    pub fn trailing(&self) -> Mat<f64> {
+        let (m, first) = (self.trailing_len(), self.symbolic.leading);
+        let mut out = Mat::zeros(m, m);
+        self.trailing_columns(|k, own, rows, below| {
+            for (i, value) in own.iter().enumerate() {
+                out[(k + i, k)] = *value;
+            }
+            for (&row, value) in rows.iter().zip(below) {
+                out[(row - first, k)] = *value;
+            }
+        });
+        out
+    }
+
+    /// The diagonal of L_JJ L_JJᵀ.
+    pub fn trailing_squares(&self) -> Vec<f64> {
+        let first = self.symbolic.leading;
+        let mut out = vec![0.0; self.trailing_len()];
+        self.trailing_columns(|k, own, rows, below| {
+            for (o, l) in out[k..].iter_mut().zip(own) {
+                *o += l * l;
+            }
+            for (&row, l) in rows.iter().zip(below) {
+                out[row - first] += l * l;
+            }
+        });
+        out
+    }
+
+    /// L_JJ v.
+    pub fn trailing_times(&self, v: &[f64]) -> Vec<f64> {
+        let first = self.symbolic.leading;
+        let mut out = vec![0.0; v.len()];
+        self.trailing_columns(|k, own, rows, below| {
+            for (o, l) in out[k..].iter_mut().zip(own) {
+                *o += l * v[k];
+            }
+            for (&row, l) in rows.iter().zip(below) {
+                out[row - first] += l * v[k];
+            }
+        });
+        out
+    }
+
+    /// L_JJᵀ v.
+    pub fn trailing_transpose_times(&self, v: &[f64]) -> Vec<f64> {
+        let first = self.symbolic.leading;
+        let mut out = vec![0.0; v.len()];
+        self.trailing_columns(|k, own, rows, below| {
+            let near: f64 = own.iter().zip(&v[k..]).map(|(l, x)| l * x).sum();
+            let far: f64 = rows.iter().zip(below).map(|(&row, l)| l * v[row - first]).sum();
+            out[k] = near + far;
+        });
         out
     }
 }

@@ -3,44 +3,47 @@
 use rayon::prelude::*;
 
 use super::DualError;
-use super::factor::minimum_degree;
+use super::dissection::nested_dissection;
+use super::factor::Breakdown;
 use super::system::System;
+use super::unknowns::EdgeMoments;
 use crate::element::StressField;
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.
 pub type Motion = Vec<[f64; 2]>;
 
-/// Fill-reducing ordering of the unknowns that are not jumps, found on the graph of blocks.
-pub fn ordering(system: &System) -> Result<Vec<usize>, DualError> {
+/// Fill-reducing ordering of the unknowns that are not jumps.
+pub fn ordering(problem: &Problem, system: &System) -> Vec<usize> {
     let unknowns = &system.unknowns;
-    let blocks = unknowns.blocks.iter().take_while(|b| b.start < unknowns.first_jump).count();
-    let mut block_of = vec![0; unknowns.first_jump];
-    for (b, block) in unknowns.blocks[..blocks].iter().enumerate() {
-        block_of[block.start..block.start + block.len].fill(b);
-    }
-    let matrix = system.matrix.symbolic();
-    let (mut columns, mut rows) = (vec![0], Vec::new());
-    for block in &unknowns.blocks[..blocks] {
-        // The first column of a block lists its neighbours in order, unknown by unknown.
-        let list = &matrix.row_idx()[matrix.col_ptr()[block.start]..matrix.col_ptr()[block.start + 1]];
-        let mut last = usize::MAX;
-        for &row in list.iter().filter(|&&row| row < unknowns.first_jump) {
-            if block_of[row] != last {
-                last = block_of[row];
-                rows.push(last);
+    let blocks = nested_dissection(problem, unknowns).into_iter().map(|b| unknowns.blocks[b]);
+    blocks.flat_map(|block| block.start..block.start + block.len).collect()
+}
+
+/// What a breakdown of the factorisation means on the mesh.
+pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> DualError {
+    let reason = match breakdown {
+        Breakdown::TooLarge(reason) => reason,
+        Breakdown::NotPositive(unknown) => {
+            let block_of = system.unknowns.block_of();
+            let has = |e: &usize| {
+                let (blocks, len) = system.unknowns.blocks_of_edge(*e, &block_of);
+                blocks[..len].contains(&(block_of[unknown] as usize))
+            };
+            let mesh = &problem.mesh;
+            match (0..mesh.edges.len()).find(has) {
+                Some(e) => {
+                    let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+                    let [x, y] = [0, 1].map(|c| 0.5 * (a[c] + b[c]));
+                    let t = mesh.edges[e].triangles[0].unwrap_or(0);
+                    let body = &problem.scene.bodies[mesh.body[t]].name;
+                    format!("nothing resists a motion of the edge at ({x}, {y}) of {body}")
+                }
+                None => format!("the pivot of unknown {unknown} is not positive"),
             }
         }
-        columns.push(rows.len());
-    }
-    let order = minimum_degree(&columns, &rows)?;
-    Ok(order
-        .into_iter()
-        .flat_map(|b| {
-            let block = unknowns.blocks[b];
-            block.start..block.start + block.len
-        })
-        .collect())
+    };
+    DualError::Factorisation { reason }
 }
 
 /// Unknowns to hold at zero so that exactly the given motions are removed: as many as there are motions.
@@ -94,9 +97,10 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
     let mesh = &problem.mesh;
     let mut moments = system.unknowns.moments(problem, x);
     if !given {
-        let zero = system.unknowns.moments(problem, &vec![0.0; x.len()]);
-        for (m, z) in moments.as_flattened_mut().as_flattened_mut().iter_mut().zip(zero.as_flattened().as_flattened()) {
-            *m -= z;
+        for (m, edge) in moments.iter_mut().zip(&system.unknowns.edges) {
+            if let EdgeMoments::Given(_) = edge {
+                *m = [[0.0; 2]; 2];
+            }
         }
     }
     let n = system.modes.of(0).parameters();

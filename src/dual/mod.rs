@@ -5,16 +5,19 @@
 
 mod active_set;
 mod condensed;
+mod dissection;
 pub mod equilibrium;
 mod factor;
 mod hybrid;
 mod interior;
+mod long_contact;
 mod method;
 pub mod modes;
 pub mod paper;
 pub mod qp;
 mod system;
 mod unknowns;
+pub mod yardstick;
 
 use std::time::Instant;
 

@@ -1,10 +1,16 @@
 //! The contact problem on Γ_K alone: min ½ jᵀSj − cᵀj over jumps j ≤ g, with the dense Schur complement S.
 //!
-//! Primal–dual active sets (block principal pivoting), started from closed contact. Where the blocks do not settle, the
-//! method of Lawson and Hanson on g − j ≥ 0 finishes: it changes one end at a time and cannot cycle.
+//! Primal–dual active sets (block principal pivoting), started from closed contact. Where the blocks come back to a
+//! state they have been in, or meet an open set that leaves a body without hold, a primal active-set method in the
+//! manner of Lawson and Hanson finishes: it changes one end at a time, the energy falls with every step, and no state
+//! can come twice.
+
+use std::collections::HashSet;
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
+
+use super::DualError;
 
 /// The contact state.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,33 +25,51 @@ pub struct ContactState {
 
 /// Steps of block pivoting before the careful method takes over.
 const BLOCK_STEPS: usize = 40;
+/// Tension and penetration below this fraction of the largest are round-off: an end that grazes keeps its state.
+pub const GRAZING: f64 = 1e-13;
+/// What is added to the diagonal of S, relative to its largest entry, where the open part has free motions.
+const REGULAR: f64 = 1e-13;
 
 /// Solves the bound-constrained problem; `start` gives a first guess of the closed ends (all, where there is none).
-pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> ContactState {
-    let m = c.len();
-    let mut closed = start.map_or_else(|| vec![true; m], <[bool]>::to_vec);
-    for step in 1..=BLOCK_STEPS {
+///
+/// # Errors
+/// [`DualError::ContactUndetermined`] where the energy has no minimum, [`DualError::NotConverged`] where round-off keeps
+/// the state from settling.
+pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> Result<ContactState, DualError> {
+    let mut closed = start.map_or_else(|| vec![true; c.len()], <[bool]>::to_vec);
+    let mut seen = HashSet::new();
+    while seen.len() < BLOCK_STEPS && seen.insert(closed.clone()) {
         let Some(jumps) = with_closed(s, c, bound, &closed) else { break };
-        let gradient = gradient(s, c, &jumps);
-        let next: Vec<bool> =
-            (0..m).map(|i| if closed[i] { gradient[i] <= 0.0 } else { jumps[i] > bound[i] }).collect();
+        let next = next_state(&gradient(s, c, &jumps), &jumps, bound, c, &closed);
         if next == closed {
-            return ContactState { jumps, closed, steps: step };
+            return Ok(ContactState { jumps, closed, steps: seen.len() });
         }
         closed = next;
     }
-    one_by_one(s, c, bound)
+    let last = with_closed(s, c, bound, &closed);
+    let state = one_by_one(s, c, bound, last.as_deref())?;
+    Ok(ContactState { steps: seen.len() + state.steps, ..state })
+}
+
+/// The primal–dual step: closed ends under tension open, open ends that penetrate close.
+pub fn next_state(tension: &[f64], jumps: &[f64], bound: &[f64], c: &[f64], closed: &[bool]) -> Vec<bool> {
+    let slack = GRAZING * largest(c).max(largest(tension));
+    let depth = GRAZING * largest(jumps).max(largest(bound));
+    let end = |i: usize| if closed[i] { tension[i] <= slack } else { jumps[i] > bound[i] + depth };
+    (0..c.len()).map(end).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// Normal tractions S j − c: the derivative of the energy with respect to the jumps.
 pub fn gradient(s: &Mat<f64>, c: &[f64], j: &[f64]) -> Vec<f64> {
-    let m = c.len();
     let mut out: Vec<f64> = c.iter().map(|v| -v).collect();
     for (k, &jk) in j.iter().enumerate() {
         if jk != 0.0 {
-            let column = s.col(k);
-            for i in 0..m {
-                out[i] += column[i] * jk;
+            for (o, v) in out.iter_mut().zip(s.col(k).iter()) {
+                *o += v * jk;
             }
         }
     }
@@ -54,81 +78,102 @@ pub fn gradient(s: &Mat<f64>, c: &[f64], j: &[f64]) -> Vec<f64> {
 
 /// Jumps with the closed ones at their bound and the others in equilibrium; `None` where those are not determined.
 pub fn with_closed(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
+    equilibrium(s, c, bound, closed, 0.0)
+}
+
+/// [`with_closed`], with open ends held by weak springs where nothing else holds them. The stress of the result is
+/// right to the stiffness of the springs, and refinement takes that error away.
+pub fn with_closed_or_springs(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
+    with_closed(s, c, bound, closed).or_else(|| equilibrium(s, c, bound, closed, springs(s)))
+}
+
+fn springs(s: &Mat<f64>) -> f64 {
+    REGULAR * (0..s.nrows()).map(|i| s[(i, i)]).fold(0.0, f64::max)
+}
+
+fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: f64) -> Option<Vec<f64>> {
     let open: Vec<usize> = (0..c.len()).filter(|&i| !closed[i]).collect();
     let mut jumps: Vec<f64> = (0..c.len()).map(|i| if closed[i] { bound[i] } else { 0.0 }).collect();
     if open.is_empty() {
         return Some(jumps);
     }
     let residual = gradient(s, c, &jumps);
-    let block = Mat::from_fn(open.len(), open.len(), |i, k| s[(open[i], open[k])]);
+    let entry = |i: usize, k: usize| s[(open[i], open[k])] + if i == k { spring } else { 0.0 };
+    let block = Mat::from_fn(open.len(), open.len(), entry);
     let rhs = Mat::from_fn(open.len(), 1, |i, _| -residual[open[i]]);
-    let factor = block.llt(Side::Lower).ok()?;
-    let x = factor.solve(&rhs);
+    let x = block.llt(Side::Lower).ok()?.solve(&rhs);
     for (k, &i) in open.iter().enumerate() {
-        if !x[(k, 0)].is_finite() {
-            return None;
-        }
         jumps[i] = x[(k, 0)];
     }
-    Some(jumps)
+    jumps.iter().all(|j| j.is_finite()).then_some(jumps)
 }
 
-/// Lawson–Hanson: opens the end under the largest tension, one at a time, and closes again what would penetrate.
-fn one_by_one(s: &Mat<f64>, c: &[f64], bound: &[f64]) -> ContactState {
+/// Opens the end under the largest tension, one at a time, and closes again what would penetrate. `near` gives jumps
+/// to start from, feasible or not.
+pub fn one_by_one(s: &Mat<f64>, c: &[f64], bound: &[f64], near: Option<&[f64]>) -> Result<ContactState, DualError> {
     let m = c.len();
-    let mut closed = vec![true; m];
-    let mut jumps = bound.to_vec();
-    let largest = (0..m).map(|i| s[(i, i)]).fold(0.0, f64::max);
-    let scale = c.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-    let mut regular = s.clone();
-    for i in 0..m {
-        // Only decides the path; the final state is solved with S itself wherever that is possible.
-        regular[(i, i)] += 1e-13 * largest;
-    }
-    let mut steps = 0;
+    let mut jumps = near.map_or_else(|| bound.to_vec(), |j| j.iter().zip(bound).map(|(j, g)| j.min(*g)).collect());
+    let mut closed: Vec<bool> = jumps.iter().zip(bound).map(|(j, g)| j == g).collect();
+    let scale = largest(c).max(largest(&gradient(s, c, bound)));
+    let most_steps = 10 * m + 100;
     let mut barred = vec![false; m];
-    while steps < 10 * m + 100 {
-        steps += 1;
+    // The start is settled before the first end opens.
+    let mut opening = None;
+    let mut wanted = 0.0;
+    for steps in 1..=most_steps {
+        settle(s, c, bound, &mut jumps, &mut closed, opening, &mut barred)?;
         let tension = gradient(s, c, &jumps);
         let candidate = (0..m)
-            .filter(|&i| closed[i] && !barred[i] && tension[i] > 1e-12 * scale)
+            .filter(|&i| closed[i] && !barred[i] && tension[i] > GRAZING * scale)
             .max_by(|&a, &b| tension[a].total_cmp(&tension[b]));
-        let Some(opening) = candidate else { break };
-        closed[opening] = false;
-        loop {
-            let Some(target) = with_closed(&regular, c, bound, &closed) else {
-                closed[opening] = true;
-                barred[opening] = true;
-                break;
-            };
-            let mut length = 1.0_f64;
-            let mut blocking = None;
-            for i in (0..m).filter(|&i| !closed[i] && target[i] > bound[i]) {
-                let ratio = (bound[i] - jumps[i]) / (target[i] - jumps[i]);
-                if ratio < length {
-                    (length, blocking) = (ratio.max(0.0), Some(i));
-                }
-            }
-            for i in 0..m {
-                jumps[i] += length * (target[i] - jumps[i]);
-            }
-            match blocking {
-                None => {
-                    barred.fill(false);
-                    break;
-                }
-                Some(i) => {
-                    closed[i] = true;
-                    jumps[i] = bound[i];
-                    if i == opening {
-                        barred[i] = true;
-                    }
-                }
+        let Some(next) = candidate else {
+            return Ok(ContactState { jumps, closed, steps });
+        };
+        wanted = tension[next];
+        closed[next] = false;
+        opening = Some(next);
+    }
+    Err(DualError::NotConverged {
+        method: "active set",
+        iterations: most_steps,
+        residual: wanted / scale,
+        wanted: GRAZING,
+        advice: "the contact state keeps changing within round-off; use another method".to_string(),
+    })
+}
+
+/// Moves to the minimum over the open ends, and closes those that stop the way there.
+fn settle(
+    s: &Mat<f64>,
+    c: &[f64],
+    bound: &[f64],
+    jumps: &mut [f64],
+    closed: &mut [bool],
+    opening: Option<usize>,
+    barred: &mut [bool],
+) -> Result<(), DualError> {
+    loop {
+        let target = with_closed_or_springs(s, c, bound, closed).ok_or(DualError::ContactUndetermined)?;
+        let mut length = 1.0_f64;
+        let mut blocking = None;
+        for i in (0..jumps.len()).filter(|&i| !closed[i] && target[i] > bound[i]) {
+            let ratio = (bound[i] - jumps[i]) / (target[i] - jumps[i]);
+            if ratio < length {
+                (length, blocking) = (ratio.max(0.0), Some(i));
             }
         }
+        for (jump, target) in jumps.iter_mut().zip(&target) {
+            *jump += length * (target - *jump);
+        }
+        let Some(i) = blocking else {
+            barred.fill(false);
+            return Ok(());
+        };
+        closed[i] = true;
+        jumps[i] = bound[i];
+        if Some(i) == opening {
+            // Its tension was round-off.
+            barred[i] = true;
+        }
     }
-    if let Some(exact) = with_closed(s, c, bound, &closed) {
-        jumps = exact;
-    }
-    ContactState { jumps, closed, steps: BLOCK_STEPS + steps }
 }

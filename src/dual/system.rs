@@ -93,33 +93,28 @@ impl System {
                 [pair.length * (2.0 * a + b) / 6.0, pair.length * (a + 2.0 * b) / 6.0]
             })
             .collect();
-        let symbolic = SymbolicSparseColMat::new_checked(
-            unknowns.count,
-            unknowns.count,
-            pattern.columns.clone(),
-            None,
-            pattern.rows.clone(),
-        );
+        let symbolic =
+            SymbolicSparseColMat::new_checked(unknowns.count, unknowns.count, pattern.columns, None, pattern.rows);
         System { unknowns, modes, matrix: SparseColMat::new(symbolic, values), rhs, external, jump_bound }
-    }
-
-    /// Takes the given unknowns out of a copy of K: their rows and columns become those of a diagonal matrix.
-    pub fn isolate(&self, matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> bool) {
-        let (symbolic, values) = matrix.parts_mut();
-        let (columns, rows) = (symbolic.col_ptr(), symbolic.row_idx());
-        for j in 0..self.unknowns.count {
-            let own = given(j);
-            for k in columns[j]..columns[j + 1] {
-                if rows[k] != j && (own || given(rows[k])) {
-                    values[k] = 0.0;
-                }
-            }
-        }
     }
 
     /// y = K x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         symmetric_multiply(self.matrix.as_ref(), x)
+    }
+}
+
+/// Takes the given unknowns out of a symmetric matrix: their rows and columns become those of a diagonal matrix.
+pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> bool) {
+    let (symbolic, values) = matrix.parts_mut();
+    let (columns, rows) = (symbolic.col_ptr(), symbolic.row_idx());
+    for j in 0..columns.len() - 1 {
+        let own = given(j);
+        for k in columns[j]..columns[j + 1] {
+            if rows[k] != j && (own || given(rows[k])) {
+                values[k] = 0.0;
+            }
+        }
     }
 }
 
@@ -208,10 +203,7 @@ struct Pattern {
 impl Pattern {
     fn new(problem: &Problem, unknowns: &Unknowns) -> Self {
         let blocks = unknowns.blocks.clone();
-        let mut block_of = vec![0_u32; unknowns.count];
-        for (b, block) in blocks.iter().enumerate() {
-            block_of[block.start..block.start + block.len].fill(b as u32);
-        }
+        let block_of = unknowns.block_of();
         let mut touching: Vec<(u32, u32)> = Vec::new();
         for edges in &problem.mesh.triangle_edges {
             let mut all = [0; 9];

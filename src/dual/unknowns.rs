@@ -74,8 +74,6 @@ pub struct Unknowns {
     pub blocks: Vec<Block>,
     /// Moments of each edge of the mesh.
     pub edges: Vec<EdgeMoments>,
-    /// Block of the jumps of each contact pair, interface by interface.
-    pub jump_blocks: Vec<Vec<usize>>,
     /// Number of unknowns.
     pub count: usize,
     /// First jump; all unknowns from here on are jumps.
@@ -137,7 +135,7 @@ impl Unknowns {
                 }
             })
             .collect();
-        Unknowns { blocks, edges, jump_blocks, count: next, first_jump }
+        Unknowns { blocks, edges, count: next, first_jump }
     }
 
     /// The two components of the moment at end `end` (0 or 1, in the order of the edge's vertices) of an edge with
@@ -170,6 +168,15 @@ impl Unknowns {
                 [across, along]
             }
         }
+    }
+
+    /// The block of each unknown.
+    pub fn block_of(&self) -> Vec<u32> {
+        let mut block_of = vec![0; self.count];
+        for (b, block) in self.blocks.iter().enumerate() {
+            block_of[block.start..block.start + block.len].fill(b as u32);
+        }
+        block_of
     }
 
     /// Blocks that the moments of edge `e` depend on, and how many.

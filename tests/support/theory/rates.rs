@@ -106,7 +106,8 @@ pub fn contact_errors(solution: &Solution, n: usize, family: Family) -> (f64, [f
     let corners = corners(&problem);
     let body = &problem.mesh.body;
     let exact = |b: usize, x: [f64; 2]| solution.stress(b, x);
-    let found = dual::solve(&Condensed, &problem, &free_motions(&problem), &Options::default()).expect("solves");
+    let found =
+        dual::solve(&Condensed::default(), &problem, &free_motions(&problem), &Options::default()).expect("solves");
     assert!(found.equilibrium.residual() < 1e-9, "residual {}", found.equilibrium.residual());
     let (l2, largest) = stress_error(&corners, body, &found.stress, exact);
     let interpolated = stress_error(&corners, body, &interpolant(&problem.mesh, exact), exact).0;
