@@ -189,7 +189,7 @@ fn one_at_a_time_costs_about_one_solve_for_each_open_end() {
         }
     });
     let s = Mat::from_fn(m, m, |i, j| s[(i, j)] + if i == j { 1.0 } else { 0.0 });
-    let c: Vec<f64> = (0..m).map(|i| (6.283 * i as f64 / m as f64).cos() - 0.2).collect();
+    let c: Vec<f64> = (0..m).map(|i| (std::f64::consts::TAU * i as f64 / m as f64).cos() - 0.2).collect();
     let g = vec![0.0; m];
     let block = qp::solve(&s, &c, &g, None).expect("a contact state");
     let careful = qp::one_by_one(&s, &c, &g, None).expect("a contact state");

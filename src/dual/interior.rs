@@ -159,8 +159,10 @@ impl ConicProgram {
         q.iter_mut().for_each(|v| *v = -*v);
         let mut b = residual(problem, system, &vec![0.0; columns]);
         b.iter_mut().zip(&row_scale).for_each(|(b, d)| *b *= d);
-        let size = q.iter().chain(&b).fold(0.0_f64, |m, v| m.max(v.abs()));
-        let size = if size > 0.0 { size } else { 1.0 };
+        // Stresses are of the size of the loads, or of the prescribed displacements where there are none. A wide gap
+        // makes q large at ends that never close and says nothing about the stresses.
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let size = [largest(&b), largest(&q)].into_iter().find(|&s| s > 0.0).unwrap_or(1.0);
         q.iter_mut().chain(&mut b).for_each(|v| *v /= size);
 
         let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());

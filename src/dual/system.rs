@@ -60,9 +60,9 @@ impl System {
                 .map(|t| local(problem, &unknowns, &modes, t))
                 .collect();
             for (local, load) in &locals {
-                for a in 0..12 {
+                for (a, value) in load.iter().enumerate() {
                     for &(dof, coefficient) in &local.terms[a][..local.len[a]] {
-                        rhs[dof] += coefficient * load[a];
+                        rhs[dof] += coefficient * value;
                     }
                     for b in 0..=a {
                         if local.len[a] == 0 || local.len[b] == 0 {
@@ -182,8 +182,8 @@ fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) ->
         }
     }
     if fixed != [0.0; 9] {
-        for a in 0..12 {
-            load[a] -= (0..9).map(|k| local.rows[a][k] * fixed[k]).sum::<f64>();
+        for (value, row) in load.iter_mut().zip(&local.rows) {
+            *value -= row.iter().zip(&fixed).map(|(r, f)| r * f).sum::<f64>();
         }
     }
     (local, load)
