@@ -50,7 +50,7 @@ fn exact(problem: &Problem) -> Candidate {
 }
 
 fn checks(problem: &Problem, candidate: Candidate) -> Vec<Check> {
-    let dual = dual::solve(&Condensed, problem, &[], &Options::default()).expect("solves");
+    let dual = dual::solve(&Condensed::default(), problem, &[], &Options::default()).expect("solves");
     let bracket = Bracket::new(problem, &dual);
     compare(problem, &dual, &bracket, vec![candidate], &Allowances::default()).checks
 }
