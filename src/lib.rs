@@ -59,6 +59,8 @@ pub mod element;
 pub mod mesh;
 pub mod primal;
 pub mod problem;
+#[cfg(feature = "python")]
+mod python;
 pub mod report;
 pub mod scene;
 pub mod statics;
