@@ -1,14 +1,34 @@
-//! The two-sided bracket that a dual solution gives without any help.
+//! The two-sided bracket that a dual solution gives without any help, widened by what rounding can have cost.
+//!
+//! Four things separate the numbers computed from bounds in exact arithmetic; each has its term, none is estimated from
+//! the result.
+//! 1. *Evaluation.* Every energy is a sum of products of a few numbers. One relative error u in each of them changes the
+//!    energy by at most u times its sensitivity Σ |∂E/∂x| |x|, which is added up along with it: not the size of the
+//!    terms alone, because near ν = ½, in bodies that turn and in slivers the numbers behind a term are much larger
+//!    than the term. The sums themselves are compensated (Neumaier) and add one unit of the result.
+//! 2. *Equilibrium between elements.* λ_h misses equilibrium by what [`Equilibrium`] measures on every edge. An exactly
+//!    equilibrated field λ_h + δ is near; aλ_h being the strain of the edge displacement, Π changes by the traction
+//!    jumps of δ times the moments of that displacement, up to ½‖δ‖²_a, the square of a rounding error. The absolute
+//!    values are added up, so that no cancellation is relied upon.
+//! 3. *Equilibrium inside the elements*, where it is a property of the basis and not measured: a rounding error of λ_h
+//!    times the displacement along the boundary of the triangle.
+//! 4. *Admissibility* of the displacement: supports and gaps are met to a rounding error of the displacement, and what
+//!    that is worth is the traction times that error; the same expression.
+//!
+//! [`Equilibrium`]: crate::dual::Equilibrium
 
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::upper::{NoUpperBound, admissible};
 use crate::dual::DualSolution;
-use crate::element::Displacement;
+use crate::element::{Displacement, StressField};
 use crate::problem::Problem;
 
-/// Unit round-offs that evaluating one term of an energy is allowed to cost: the arithmetic of a term has fewer than
-/// a hundred operations, each with an error of at most one unit, on numbers of the size of the term.
-const ROUNDING_PER_TERM: f64 = 128.0 * f64::EPSILON;
+/// Relative errors that the evaluation of one term can pick up: fewer than a hundred operations, each with an error of
+/// at most half a unit.
+const ROUNDING_PER_TERM: f64 = 64.0 * f64::EPSILON;
+
+/// Relative error of a nodal stress in the balance of its triangle, or of a displacement in a support or contact.
+const ROUNDING_PER_VALUE: f64 = 16.0 * f64::EPSILON;
 
 /// Lower bound, free upper bound, and the gap between them in local terms.
 #[derive(Debug, Clone)]
@@ -39,7 +59,9 @@ impl UpperBound {
     pub fn new(problem: &Problem, dual: &DualSolution, displacement: Displacement) -> Self {
         let potential = potential(problem, &displacement);
         let local = local_gap(problem, &dual.stress, &displacement);
-        UpperBound { widening: ROUNDING_PER_TERM * potential.magnitude, displacement, potential, local }
+        let size = |t: usize| displacement.values[t].iter().fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1])));
+        let widening = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
+        UpperBound { widening, displacement, potential, local }
     }
 
     /// 𝓛(v), plus what rounding can have cost.
@@ -52,7 +74,16 @@ impl Bracket {
     /// Computes both sides.
     pub fn new(problem: &Problem, dual: &DualSolution) -> Self {
         let complementary = complementary(problem, &dual.stress);
-        let rounding = ROUNDING_PER_TERM * complementary.magnitude;
+        let size = |t: usize| {
+            let edges = problem.mesh.triangle_edges[t];
+            // A linear displacement is at most four times its moments over the length.
+            let at = |e: usize| {
+                let [a, b] = dual.moments[e];
+                4.0 * (a[0].hypot(a[1]) + b[0].hypot(b[1])) / problem.mesh.edge_frame(e).0
+            };
+            edges.map(at).into_iter().fold(0.0, f64::max)
+        };
+        let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
         let free = admissible(problem, dual).map(|v| UpperBound::new(problem, dual, v));
         Bracket { complementary, lower_widening: rounding + remainder, free }
@@ -67,4 +98,16 @@ impl Bracket {
     pub fn relative_error(&self, upper: f64) -> f64 {
         ((upper - self.lower()).max(0.0) / self.complementary.strain).sqrt()
     }
+}
+
+/// A rounding error of the tractions on the boundary of every triangle times the displacement there, whose size `size`
+/// gives by triangle; thickness included.
+fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize) -> f64) -> f64 {
+    let mesh = &problem.mesh;
+    let term = |t: usize| {
+        let perimeter: f64 = mesh.triangle_edges[t].iter().map(|&e| mesh.edge_frame(e).0).sum();
+        let largest = stress.block(t).iter().flatten().fold(0.0_f64, |m, s| m.max(s.abs()));
+        perimeter * largest * size(t)
+    };
+    ROUNDING_PER_VALUE * problem.scene.thickness * (0..mesh.triangles.len()).map(term).sum::<f64>()
 }

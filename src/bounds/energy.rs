@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::strain::{strains, sub_area};
+use super::strain::{spread, strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::edge_traction;
 use crate::dual::modes::materials;
@@ -27,6 +27,8 @@ pub struct Complementary {
     pub gap_work: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
+    /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
+    pub sensitivity: f64,
 }
 
 impl Complementary {
@@ -41,23 +43,28 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     let mesh = &problem.mesh;
     let materials = materials(problem);
     let rule = triangle_rule(2 * stress.degree());
-    let strain: Vec<f64> = (0..mesh.triangles.len())
+    let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
-            let mut sum = 0.0;
+            let (mut sum, mut sensitivity) = (0.0, 0.0);
             for sub in 0..3 {
                 for (bary, weight) in rule {
                     let value = stress.at(t, sub, *bary);
                     sum += 0.5 * weight * third * material.product(value, value);
                 }
+                for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+                    let value = stress.at(t, sub, corner);
+                    sensitivity += third / 3.0 * absolute(value) * absolute(material.strain(value));
+                }
             }
-            sum
+            (sum, sensitivity * shape(mesh.corners(t)))
         })
         .collect();
-    let strain: Sum = strain.into_iter().collect();
+    let strain: Sum = terms.iter().map(|t| t.0).collect();
+    let sensitivity: f64 = terms.iter().map(|t| t.1).sum();
     let mut support = Sum::default();
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let Condition::Clamped(u0) = condition {
@@ -79,6 +86,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         support_work: t * support.value(),
         gap_work: t * gap.value(),
         magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
+        sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
     }
 }
 
@@ -101,6 +109,8 @@ pub struct Potential {
     pub work: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
+    /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
+    pub sensitivity: f64,
 }
 
 impl Potential {
@@ -114,28 +124,32 @@ impl Potential {
 pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
+    let terms: Vec<[f64; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
             let corners = mesh.corners(t);
-            let (mut strain, mut work) = (0.0, 0.0);
+            let (mut strain, mut work, mut sensitivity) = (0.0, 0.0, 0.0);
             for sub in 0..3 {
                 let area = sub_area(corners);
-                for e in strains(corners, sub, &v.sub(t, sub)) {
+                let u = v.sub(t, sub);
+                let spread = spread(corners, sub, &u);
+                for e in strains(corners, sub, &u) {
                     strain += 0.5 * area / 3.0 * materials[body].strain_product(e, e);
+                    sensitivity += area / 3.0 * absolute(materials[body].stress(e)) * spread;
                 }
-                for u in &v.sub(t, sub)[3..] {
+                for u in &u[3..] {
                     work += area / 3.0 * (force[0] * u[0] + force[1] * u[1]);
                 }
             }
-            (strain, work)
+            [strain, work, sensitivity * shape(corners)]
         })
         .collect();
-    let strain: Sum = terms.iter().map(|t| t.0).collect();
-    let mut work: Sum = terms.iter().map(|t| t.1).collect();
+    let strain: Sum = terms.iter().map(|t| t[0]).collect();
+    let mut work: Sum = terms.iter().map(|t| t[1]).collect();
+    let sensitivity: f64 = terms.iter().map(|t| t[2]).sum();
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let Condition::Traction([pa, pb]) = condition
             && (*pa != [0.0; 2] || *pb != [0.0; 2])
@@ -152,7 +166,21 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
         strain: t * strain.value(),
         work: t * work.value(),
         magnitude: t * (strain.magnitude() + work.magnitude()),
+        sensitivity: t * (sensitivity + work.magnitude()),
     }
+}
+
+fn absolute(s: [f64; 3]) -> f64 {
+    s[0].abs() + s[1].abs() + s[2].abs()
+}
+
+/// What relative errors of the edge vectors do to the area, relative to it: one for a good triangle, its aspect ratio
+/// for a sliver.
+fn shape(corners: [[f64; 2]; 3]) -> f64 {
+    let square = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
+    let [a, b, c] = corners;
+    let longest = square(a, b).max(square(b, c)).max(square(c, a));
+    (longest / (6.0 * sub_area(corners))).max(1.0)
 }
 
 /// Values of `v` at the first end, the middle and the second end of a boundary edge.

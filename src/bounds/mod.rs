@@ -2,11 +2,13 @@
 
 mod bracket;
 pub mod energy;
+mod mid;
 pub mod strain;
 mod sum;
 pub mod upper;
 
 pub use bracket::{Bracket, UpperBound};
 pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+pub use mid::mid_field;
 pub use sum::Sum;
 pub use upper::{NoUpperBound, Violation, admissible, repaired};

@@ -5,7 +5,7 @@ use super::tolerance::Allowances;
 use super::{Basis, Check};
 use crate::bounds::Bracket;
 use crate::dual::DualSolution;
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 
 /// Round-off allowed in an identity between energies, relative to 𝒮(λ_h).
 const IDENTITY: f64 = 1e-9;
@@ -93,7 +93,7 @@ pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allo
              √((𝓛(v) + Π(λ_h)) / 𝒮(λ_h)).",
         ));
     }
-    if judged.candidate.is_solution && is_cone(problem) {
+    if judged.candidate.is_solution && problem.is_cone() {
         let name = format!("energy/identity/{who}");
         checks.push(Check::equal(
             &name,
@@ -160,10 +160,4 @@ fn two_ways(who: &str, bracket: &Bracket, upper: f64, local: f64, allow: &Allowa
         "The gap from the two energies, and from local integration of the constitutive error and the contact \
          complementarity.",
     )
-}
-
-/// Whether gap and prescribed displacements vanish, so that K is a cone.
-fn is_cone(problem: &Problem) -> bool {
-    let no_gap = problem.interfaces.iter().flat_map(|i| &i.pairs).all(|p| p.gap == [0.0; 2]);
-    no_gap && problem.conditions.iter().all(|c| !matches!(c, Condition::Clamped(u) if *u != [0.0; 2]))
 }

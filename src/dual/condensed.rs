@@ -119,7 +119,8 @@ struct Reduced {
     factor: Factor,
     held: Vec<usize>,
     first_jump: usize,
-    shift: f64,
+    /// What was added to the diagonal of each jump.
+    shift: Vec<f64>,
 }
 
 impl Reduced {
@@ -178,7 +179,7 @@ impl Reduced {
             left[d] = 0.0;
         }
         for (i, t) in traction.iter().enumerate() {
-            left[self.first_jump + i] -= self.shift * x[self.first_jump + i] + t;
+            left[self.first_jump + i] -= self.shift[i] * x[self.first_jump + i] + t;
         }
         let columns = system.matrix.symbolic().col_ptr();
         let diagonal = columns[..x.len()].iter().fold(0.0_f64, |m, &k| m.max(system.matrix.val()[k]));
@@ -205,12 +206,12 @@ impl<'a> Contact<'a> {
     fn new(reduced: &'a Reduced, longest_dense: usize) -> Self {
         let m = reduced.factor.trailing_len();
         if m > longest_dense {
-            return Contact::Long(LongContact::new(&reduced.factor, reduced.shift), m);
+            return Contact::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
         }
         let lower = reduced.factor.trailing();
         let mut matrix = &lower * lower.transpose();
         for i in 0..m {
-            matrix[(i, i)] -= reduced.shift;
+            matrix[(i, i)] -= reduced.shift[i];
         }
         Contact::Dense(matrix)
     }
@@ -248,13 +249,15 @@ impl<'a> Contact<'a> {
     }
 }
 
-/// Takes held unknowns out of K and shifts the jump diagonal by its largest entry, which is returned.
-pub fn make_definite(system: &mut System, held: &[usize]) -> f64 {
+/// Takes held unknowns out of K and shifts the diagonal of every jump by itself; returns the shifts.
+///
+/// On a graded mesh the entries differ by many orders of magnitude, and a common shift would drown those of long edges.
+pub fn make_definite(system: &mut System, held: &[usize]) -> Vec<f64> {
     let jumps = system.unknowns.first_jump..system.unknowns.count;
     let (symbolic, values) = system.matrix.parts_mut();
     let columns = symbolic.col_ptr();
-    let shift = jumps.clone().map(|j| values[columns[j]]).fold(0.0, f64::max);
-    for j in jumps {
+    let shift: Vec<f64> = jumps.clone().map(|j| values[columns[j]]).collect();
+    for (j, shift) in jumps.zip(&shift) {
         values[columns[j]] += shift;
     }
     if !held.is_empty() {

@@ -102,8 +102,11 @@ impl Equilibrium {
             }
             gross[body] += norm(f) * area;
         }
-        let resultant =
-            (0..bodies).map(|b| if gross[b] > 0.0 { norm(force[b]) / gross[b] } else { 0.0 }).fold(0.0, f64::max);
+        // A body without load carries nothing but rounding errors, which are not to be compared with each other.
+        let least = 1e-3 * gross.iter().copied().fold(0.0, f64::max);
+        let resultant = (0..bodies)
+            .map(|b| if gross[b] > 0.0 { norm(force[b]) / f64::max(gross[b], least) } else { 0.0 })
+            .fold(0.0, f64::max);
         let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
         Equilibrium {
             jump: relative(jump),

@@ -12,7 +12,7 @@ use super::qp::{ContactState, next_state};
 /// S as an operator, scaled to a diagonal of ones.
 pub struct LongContact<'a> {
     factor: &'a Factor,
-    shift: f64,
+    shift: &'a [f64],
     /// 1/√S_ii.
     scale: Vec<f64>,
 }
@@ -28,16 +28,18 @@ const POLISHING: usize = 20;
 
 impl<'a> LongContact<'a> {
     /// The Schur complement at the end of `factor`, whose diagonal was raised by `shift`.
-    pub fn new(factor: &'a Factor, shift: f64) -> Self {
+    pub fn new(factor: &'a Factor, shift: &'a [f64]) -> Self {
         let diagonal = factor.trailing_squares();
-        let scale = diagonal.iter().map(|d| 1.0 / (d - shift).max(1e-14 * shift).sqrt()).collect();
+        let scale = diagonal.iter().zip(shift).map(|(d, s)| 1.0 / (d - s).max(1e-14 * s).sqrt()).collect();
         LongContact { factor, shift, scale }
     }
 
     /// S v.
     pub fn apply(&self, v: &[f64]) -> Vec<f64> {
         let mut out = self.factor.trailing_times(&self.factor.trailing_transpose_times(v));
-        out.iter_mut().zip(v).for_each(|(o, v)| *o -= self.shift * v);
+        for ((o, v), shift) in out.iter_mut().zip(v).zip(self.shift) {
+            *o -= shift * v;
+        }
         out
     }
 

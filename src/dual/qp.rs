@@ -27,7 +27,7 @@ pub struct ContactState {
 const BLOCK_STEPS: usize = 40;
 /// Tension and penetration below this fraction of the largest are round-off: an end that grazes keeps its state.
 pub const GRAZING: f64 = 1e-13;
-/// What is added to the diagonal of S, relative to its largest entry, where the open part has free motions.
+/// What is added to the diagonal of S, relative to each entry, where the open part has free motions.
 const REGULAR: f64 = 1e-13;
 
 /// Solves the bound-constrained problem; `start` gives a first guess of the closed ends (all, where there is none).
@@ -84,11 +84,7 @@ pub fn with_closed(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> O
 /// [`with_closed`], with open ends held by weak springs where nothing else holds them. The stress of the result is
 /// right to the stiffness of the springs, and refinement takes that error away.
 pub fn with_closed_or_springs(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
-    with_closed(s, c, bound, closed).or_else(|| equilibrium(s, c, bound, closed, springs(s)))
-}
-
-fn springs(s: &Mat<f64>) -> f64 {
-    REGULAR * (0..s.nrows()).map(|i| s[(i, i)]).fold(0.0, f64::max)
+    with_closed(s, c, bound, closed).or_else(|| equilibrium(s, c, bound, closed, REGULAR))
 }
 
 fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: f64) -> Option<Vec<f64>> {
@@ -98,7 +94,7 @@ fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: 
         return Some(jumps);
     }
     let residual = gradient(s, c, &jumps);
-    let entry = |i: usize, k: usize| s[(open[i], open[k])] + if i == k { spring } else { 0.0 };
+    let entry = |i: usize, k: usize| s[(open[i], open[k])] * if i == k { 1.0 + spring } else { 1.0 };
     let block = Mat::from_fn(open.len(), open.len(), entry);
     let rhs = Mat::from_fn(open.len(), 1, |i, _| -residual[open[i]]);
     let x = block.llt(Side::Lower).ok()?.solve(&rhs);

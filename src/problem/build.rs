@@ -81,6 +81,12 @@ impl Problem {
         Problem::new(self.scene.clone(), mesh, self.notes.clone())
     }
 
+    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
+    pub fn is_cone(&self) -> bool {
+        let no_gap = self.interfaces.iter().flat_map(|i| &i.pairs).all(|p| p.gap == [0.0; 2]);
+        no_gap && self.conditions.iter().all(|c| !matches!(c, Condition::Clamped(u) if *u != [0.0; 2]))
+    }
+
     /// The edges of the two sides of all contacts between bodies, facing each other.
     pub fn facing_edges(&self) -> Vec<[usize; 2]> {
         let pairs = self.interfaces.iter().flat_map(|interface| &interface.pairs);

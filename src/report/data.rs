@@ -5,7 +5,7 @@ use serde::Serialize;
 
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 use crate::dual::{DualSolution, Phases};
-use crate::element::Displacement;
+use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
 
 /// `report.json`.
@@ -79,6 +79,15 @@ pub struct Energy {
     pub complementary: f64,
     /// By how much rounding and residual equilibrium widened the bracket, already contained in `lower` and `upper`.
     pub widening: f64,
+    /// Largest relative energy-norm error of the mid-field (λ_h + σ(v))/2, with v the displacement that gives `upper`:
+    /// half of `relative_error_bound` where no contact complementarity takes part.
+    pub mid_error_bound: f64,
+    /// Two numbers between which −2𝓛(u) lies: the work ∫F·u + ∫P·u of the loads, less the work ∫T·u0 + ∫T_n g of the
+    /// reactions on prescribed displacements and gaps.
+    pub enclosed_work: [f64; 2],
+    /// Two numbers between which the compliance ∫F·u + ∫P·u lies, twice the elastic energy; `null` where prescribed
+    /// displacements or gaps take part in the work.
+    pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
 }
@@ -176,6 +185,8 @@ pub struct Dossier<'a> {
     pub dual: Option<&'a DualSolution>,
     /// Displacements by name; the first is the free upper bound where there is one.
     pub displacements: Vec<(String, &'a Displacement)>,
+    /// The stress half-way between λ_h and that of the best displacement.
+    pub mid: Option<&'a StressField>,
     /// Scalar fields on triangles for maps and VTU: name, one value per triangle.
     pub maps: Vec<Map>,
     /// A rigid motion to show, for a scene without equilibrium: displacement per vertex.

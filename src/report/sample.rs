@@ -54,6 +54,7 @@ impl Sample {
             problem: &self.problem,
             dual: (!infeasible).then_some(&self.dual),
             displacements: self.displacements.iter().map(|(name, field)| (name.clone(), field)).collect(),
+            mid: None,
             maps: vec![
                 map("stress_difference", "Difference of the stresses", &|x, y| {
                     (x - 1.0).powi(2) + 0.1 * (9.0 * y).sin().abs()

@@ -24,6 +24,9 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         gap_local: Some(upper - lower),
         complementary,
         widening: 3e-14,
+        mid_error_bound: 0.5 * ((upper - lower) / complementary).sqrt(),
+        enclosed_work: [-2.0 * upper, -2.0 * lower],
+        compliance: Some([-2.0 * upper, -2.0 * lower]),
         guaranteed: true,
     };
     let primal = |name: &str, degree, energy: f64| PrimalSummary {

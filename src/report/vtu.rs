@@ -22,7 +22,7 @@ const SINGLE_PRECISION_FROM: usize = 100_000;
 
 /// The VTK unstructured grid: for every triangle three cells with three points each.
 ///
-/// Point data: `dual_stress` (xx, yy, xy), `von_mises` and `pressure` of λ_h, `displacement_…` of every model and the
+/// Point data: `dual_stress` (xx, yy, xy), `von_mises` and `pressure` of λ_h, `mid_stress` (xx, yy, xy), `displacement_…` of every model and the
 /// rigid `motion` where there is one (three components, the last zero). Cell data: `triangle`, `body` and the maps.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
@@ -67,6 +67,9 @@ fn point_data(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
         out.field("dual_stress", 3, &corner_values(mesh, stress))?;
         out.field("von_mises", 1, &corner_values(mesh, |t, i| [von_mises(problem, t, stress(t, i))]))?;
         out.field("pressure", 1, &corner_values(mesh, |t, i| [mean_pressure(problem, t, stress(t, i))]))?;
+    }
+    if let Some(mid) = dossier.mid.filter(|mid| mid.len() == mesh.triangles.len()) {
+        out.field("mid_stress", 3, &corner_values(mesh, |t, (sub, k)| mid.at(t, sub, CORNERS[k])))?;
     }
     let mut names = Vec::new();
     for (name, displacement) in &dossier.displacements {

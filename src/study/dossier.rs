@@ -2,10 +2,10 @@
 
 use super::Certified;
 use super::provenance::provenance;
-use crate::bounds::UpperBound;
+use crate::bounds::{Bracket, UpperBound, mid_field};
 use crate::compare::{Comparison, primal_means, von_mises_map};
 use crate::dual::Motion;
-use crate::element::Displacement;
+use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
 use crate::report::number::{digits_to_tell, percent, significant};
 use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
@@ -44,13 +44,22 @@ pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
     for judged in &findings.comparison.judged {
         displacements.push((judged.candidate.name.clone(), &judged.field.displacement));
     }
-    Dossier { report, problem, dual: Some(dual), displacements, maps: fields.maps.clone(), motion: None }
+    Dossier {
+        report,
+        problem,
+        dual: Some(dual),
+        displacements,
+        mid: fields.mid.as_ref(),
+        maps: fields.maps.clone(),
+        motion: None,
+    }
 }
 
 /// Scalar fields for pictures and VTU.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fields {
     maps: Vec<Map>,
+    mid: Option<StressField>,
 }
 
 impl Fields {
@@ -76,14 +85,16 @@ impl Fields {
                 values: density(problem, &best.field.local.triangles),
             });
         }
+        let mut mid = None;
         if let Some((upper, _)) = comparison.upper(bracket) {
+            mid = mid_field(problem, &dual.stress, &upper.displacement);
             maps.push(Map {
                 key: "error_contribution",
                 title: "Share of each triangle in the gap between the bounds",
                 values: shares(problem, upper),
             });
         }
-        Fields { maps }
+        Fields { maps, mid }
     }
 }
 
@@ -128,6 +139,9 @@ fn report(findings: &Findings<'_>) -> Report {
         gap_local: bracket.free.as_ref().ok().map(|f| f.local.total),
         complementary: bracket.complementary.strain,
         widening: bracket.lower_widening + upper.widening,
+        mid_error_bound: upper.mid_error(upper.upper() - bracket.lower()) / (2.0 * bracket.complementary.strain).sqrt(),
+        enclosed_work: enclosed_work(upper, bracket),
+        compliance: problem.is_cone().then(|| enclosed_work(upper, bracket)),
         guaranteed,
     });
     let status = match (&findings.failure, comparison.agrees()) {
@@ -177,6 +191,12 @@ fn report(findings: &Findings<'_>) -> Report {
         history: findings.history.clone(),
         provenance,
     }
+}
+
+/// −2𝓛(u), enclosed.
+fn enclosed_work(upper: &UpperBound, bracket: &Bracket) -> [f64; 2] {
+    // Zero minus the number: never a negative zero.
+    [0.0 - 2.0 * upper.upper(), 0.0 - 2.0 * bracket.lower()]
 }
 
 /// The verdict in one sentence.
@@ -235,6 +255,7 @@ pub fn infeasible<'a>(
         problem,
         dual: None,
         displacements: Vec::new(),
+        mid: None,
         maps: Vec::new(),
         motion: Some(motion),
     }

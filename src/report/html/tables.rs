@@ -64,11 +64,25 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
     let digits = digits_to_tell(energy.lower, energy.upper).max(10);
     let upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
     let guaranteed = if energy.guaranteed { "yes" } else { "for the data on the mesh" };
+    let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
+    let (work, meaning) = match energy.compliance {
+        Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
+        None => (
+            "enclosed work",
+            "encloses the work of the loads less that of the reactions on prescribed displacements and gaps",
+        ),
+    };
     let rows = [
         ("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"),
         ("upper bound", significant(energy.upper, digits), upper.as_str()),
         ("gap", significant(energy.gap, 6), "upper − lower"),
         ("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"),
+        (
+            "mid-field error bound",
+            percent(energy.mid_error_bound),
+            "of (λ_h + σ(v))/2, the stress half-way between the two bounds, in the energy norm",
+        ),
+        (work, interval(energy.enclosed_work), meaning),
         ("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"),
         (
             "gap of the free bound, local",

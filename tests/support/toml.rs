@@ -1,0 +1,78 @@
+//! Scene files, put together piece by piece.
+
+use std::fmt::Write;
+
+/// The text of a scene with `[geometry]`: E = 1 and ν = 0.3 unless said otherwise, plane strain.
+#[derive(Clone, Default)]
+pub struct Toml {
+    polygons: String,
+    bodies: Vec<(String, [f64; 2], (f64, f64))>,
+    conditions: String,
+}
+
+impl Toml {
+    /// A polygon of a body, with the names of its edges.
+    pub fn polygon<const N: usize>(mut self, body: &str, points: &[[f64; 2]], edges: [&str; N]) -> Self {
+        write!(self.polygons, "[[geometry.polygons]]\nbody = \"{body}\"\npoints = {points:?}\nedges = {edges:?}\n")
+            .expect("a string takes any text");
+        if !self.bodies.iter().any(|b| b.0 == body) {
+            self.bodies.push((body.to_string(), [0.0; 2], (1.0, 0.3)));
+        }
+        self
+    }
+
+    /// The body force of a body.
+    pub fn force(mut self, body: &str, force: [f64; 2]) -> Self {
+        self.bodies.iter_mut().filter(|b| b.0 == body).for_each(|b| b.1 = force);
+        self
+    }
+
+    /// E and ν of a body.
+    pub fn material(mut self, body: &str, young: f64, poisson: f64) -> Self {
+        self.bodies.iter_mut().filter(|b| b.0 == body).for_each(|b| b.2 = (young, poisson));
+        self
+    }
+
+    /// Any table, as written in the file.
+    pub fn table(mut self, text: &str) -> Self {
+        self.conditions.push_str(text);
+        self.conditions.push('\n');
+        self
+    }
+
+    pub fn clamp(self, on: &str) -> Self {
+        self.table(&format!("[[supports]]\non = \"{on}\"\ntype = \"clamped\""))
+    }
+
+    pub fn roller(self, on: &str) -> Self {
+        self.table(&format!("[[supports]]\non = \"{on}\"\ntype = \"roller\""))
+    }
+
+    pub fn traction(self, on: &str, value: [f64; 2]) -> Self {
+        self.table(&format!("[[tractions]]\non = \"{on}\"\nvalue = {value:?}"))
+    }
+
+    pub fn pressure(self, on: &str, pressure: f64) -> Self {
+        self.table(&format!("[[tractions]]\non = \"{on}\"\npressure = {pressure:?}"))
+    }
+
+    pub fn contact(self, first: &str, second: &str) -> Self {
+        self.table(&format!("[[contacts]]\nbetween = [\"{first}\", \"{second}\"]"))
+    }
+
+    pub fn rigid(self, on: &str) -> Self {
+        self.table(&format!("[[contacts]]\non = \"{on}\""))
+    }
+
+    /// The scene file.
+    pub fn text(&self) -> String {
+        let mut text = "[model]\nkinematics = \"plane-strain\"\n[geometry]\n".to_string();
+        text.push_str(&self.polygons);
+        for (name, [fx, fy], (young, poisson)) in &self.bodies {
+            write!(text, "[bodies.{name}]\nyoung = {young:?}\npoisson = {poisson:?}\nbody_force = [{fx:?}, {fy:?}]\n")
+                .expect("a string takes any text");
+        }
+        text.push_str(&self.conditions);
+        text
+    }
+}
