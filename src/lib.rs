@@ -52,16 +52,20 @@
 //! ```
 
 pub mod bounds;
+pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod dual;
 pub mod element;
+pub mod measure;
 pub mod mesh;
+pub mod plot;
 pub mod primal;
 pub mod problem;
 #[cfg(feature = "python")]
 mod python;
 pub mod report;
 pub mod scene;
+pub mod stability;
 pub mod statics;
 pub mod study;

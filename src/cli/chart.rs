@@ -1,11 +1,14 @@
 //! `hypercircle chart`: accuracy against time, every method and refinement.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::value_parser;
 
 use super::options::{RunOptions, positive};
+use super::progress::Progress;
 use super::{CliError, Exit};
+use crate::chart::{self, Campaign, CampaignError, Chart, Plan, Status, fastest};
+use crate::measure::Method;
 use crate::scene::Scene;
 
 /// Options of `chart`.
@@ -23,6 +26,18 @@ pub struct Args {
     /// Keep the runs that an interrupted chart has saved
     #[arg(long)]
     pub resume: bool,
+    /// Uniform refinements from 0 to N
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u32).range(0..=8))]
+    pub refine: u32,
+    /// Runs of each kind; the median counts
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u32).range(1..=99))]
+    pub repeats: u32,
+    /// Only these methods; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = known)]
+    pub method: Vec<Method>,
+    /// Few refinements, one run each
+    #[arg(long)]
+    pub reduced: bool,
     /// Threads to use
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,
@@ -31,14 +46,105 @@ pub struct Args {
     pub run: RunOptions,
 }
 
+fn known(name: &str) -> Result<Method, String> {
+    let names = Method::ALL.map(Method::name).join(", ");
+    Method::of_name(name).ok_or_else(|| format!("there is no method {name}; choose from {names}"))
+}
+
+impl Args {
+    fn plan(&self) -> Plan {
+        let mut plan = Plan {
+            levels: self.refine as usize + 1,
+            repeats: self.repeats as usize,
+            threads: self.threads as usize,
+            ..Plan::default()
+        };
+        if self.reduced {
+            plan = Plan { levels: plan.levels.min(2), repeats: 1, budget: 10.0, reference: 0.01, ..plan };
+        }
+        if let Some(budget) = self.budget {
+            plan.budget = budget;
+        }
+        if !self.method.is_empty() {
+            plan.methods = Method::ALL.into_iter().filter(|m| self.method.contains(m)).collect();
+        }
+        plan
+    }
+}
+
 /// Runs every method on every scene.
 ///
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     // All scenes are read before the first run, which may be hours before the last.
-    for scene in &args.scenes {
-        Scene::read(scene)?;
+    let mut scenes: Vec<Scene> = Vec::new();
+    for path in &args.scenes {
+        let scene = Scene::read(path)?;
+        if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
+            let message = format!("{} and {} have the same name", other.path.display(), path.display());
+            return Err(CliError::stopped(Exit::BadInput, message, "rename one of the files, or chart them apart"));
+        }
+        scenes.push(scene);
     }
-    Err(CliError::stopped(Exit::Failed, "`chart` is not part of this build", "use a build with solvers"))
+    let folder = args.run.folder_named(scenes.first().filter(|_| scenes.len() == 1).map_or("chart", |s| &s.name));
+    let failed = |e: CampaignError| CliError::stopped(Exit::Failed, e.to_string(), "");
+    let kept = if args.resume { chart::read(&folder).map_err(|e| failed(e.into()))? } else { None };
+    let program = this_program()?;
+    let progress = Progress::new(args.run.quiet);
+    let plan = args.plan();
+    let campaign = Campaign { plan: &plan, program: &program, folder: &folder, progress: &|what| progress.phase(what) };
+    let chart = campaign.run(&scenes, kept).map_err(failed)?;
+    chart::write(&chart, &folder).map_err(|e| failed(e.into()))?;
+    drop(progress);
+    if let Some(wanted) = args.wanted {
+        print!("{}", choices(&chart, wanted));
+    }
+    if !args.run.quiet {
+        println!("chart: {}", Path::new(&folder).join("chart.html").display());
+    }
+    Ok(Exit::Agree)
+}
+
+/// The file that this process runs.
+pub(super) fn this_program() -> Result<PathBuf, CliError> {
+    std::env::current_exe().map_err(|e| {
+        CliError::stopped(Exit::Failed, format!("the program cannot find itself to start its runs: {e}"), "")
+    })
+}
+
+/// The fastest runs for the error `wanted`, one line a scene and kind of error.
+fn choices(chart: &Chart, wanted: f64) -> String {
+    let mut text = String::new();
+    for scene in &chart.scenes {
+        for (guaranteed, words) in [(true, "guaranteed"), (false, "true")] {
+            let line = match fastest(scene, wanted, guaranteed) {
+                Some(choice) => {
+                    let how = match choice.run.tolerance {
+                        Some(tolerance) => format!("--tolerance {tolerance}"),
+                        None => format!("--refine {}", choice.run.level),
+                    };
+                    format!(
+                        "{} {how}: {:.3} s, {words} error {:.3} %, {} unknowns",
+                        choice.run.method.name(),
+                        choice.plot.whole.median,
+                        100.0 * choice.error,
+                        choice.plot.unknowns
+                    )
+                }
+                None => format!("no run has a {words} error of {} % or less", 100.0 * wanted),
+            };
+            text.push_str(&format!("{}: {line}\n", scene.name));
+        }
+        let marked = scene.runs.iter().filter(|r| r.status == Status::OverBudget);
+        for run in marked {
+            text.push_str(&format!(
+                "{}: {} was over the budget at level {}\n",
+                scene.name,
+                run.method.name(),
+                run.level
+            ));
+        }
+    }
+    text
 }

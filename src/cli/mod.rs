@@ -8,6 +8,7 @@ pub mod chart;
 pub mod error;
 pub mod exit;
 pub mod judge;
+pub mod measure;
 pub mod options;
 pub mod progress;
 pub mod schema;
@@ -46,6 +47,9 @@ pub enum Command {
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
     Stability(stability::Args),
+    /// One run for a chart or a matrix, printed as JSON
+    #[command(hide = true)]
+    Measure(measure::Args),
     /// Print the JSON Schema of a file format
     Schema(schema::Args),
 }
@@ -79,6 +83,7 @@ fn run(command: &Command) -> Result<Exit, CliError> {
         Command::Certify(args) => certify::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
+        Command::Measure(args) => measure::run(args),
         Command::Schema(args) => schema::run(args),
     }
 }

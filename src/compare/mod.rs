@@ -6,7 +6,7 @@ mod contact;
 mod energy;
 mod nodal;
 mod outcome;
-mod pressure;
+pub mod pressure;
 mod resultant;
 mod stress;
 mod tolerance;

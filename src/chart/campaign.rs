@@ -1,0 +1,247 @@
+//! Makes the runs of a chart, one after the other, and saves after each.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use sha2::{Digest, Sha256};
+
+use super::data::{Chart, Cold, Run, SCHEMA_VERSION, SceneChart, Status};
+use super::judge::judge;
+use super::reference::{self, REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};
+use super::store::{self, StoreError};
+use crate::measure::{self, End, Ended, Limits, Machine, Measured, Method};
+use crate::scene::Scene;
+
+/// What to run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The methods.
+    pub methods: Vec<Method>,
+    /// Uniform refinements 0 … levels − 1; the adaptive method divides its tolerance by two from one to the next.
+    pub levels: usize,
+    /// Runs of each kind.
+    pub repeats: usize,
+    /// Seconds that a run may take.
+    pub budget: f64,
+    /// Guaranteed relative error that the reference bracket is refined to.
+    pub reference: f64,
+    /// Threads.
+    pub threads: usize,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Plan {
+            methods: Method::ALL.to_vec(),
+            levels: 4,
+            repeats: 3,
+            budget: 60.0,
+            reference: REFERENCE_ADAPTIVE,
+            threads: 1,
+        }
+    }
+}
+
+/// Tolerance of the adaptive method at level 0.
+const FIRST_TOLERANCE: f64 = 0.08;
+/// Triangles at which an adaptive run of a chart stops.
+const MOST_TRIANGLES: usize = 400_000;
+/// The reference may take this many budgets.
+const REFERENCE_BUDGETS: f64 = 5.0;
+
+/// Why a chart was not finished.
+#[derive(Debug, thiserror::Error)]
+pub enum CampaignError {
+    /// The files.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The program could not start itself.
+    #[error("a run could not be started: {0}")]
+    Start(std::io::Error),
+    /// A scene that disappeared.
+    #[error("{path}: {source}")]
+    Scene {
+        /// Which.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+}
+
+/// A chart in progress.
+pub struct Campaign<'a> {
+    /// What to run.
+    pub plan: &'a Plan,
+    /// This program.
+    pub program: &'a Path,
+    /// Where results go.
+    pub folder: &'a Path,
+    /// Told what is being run.
+    pub progress: &'a dyn Fn(String),
+}
+
+impl Campaign<'_> {
+    /// Makes the runs that `chart` does not have yet.
+    ///
+    /// # Errors
+    /// [`CampaignError`]; runs that fail are no errors but results.
+    pub fn run(&self, scenes: &[Scene], kept: Option<Chart>) -> Result<Chart, CampaignError> {
+        let machine = Machine::here();
+        let mut kept = kept.filter(|chart| chart.machine == machine && chart.threads == self.plan.threads);
+        let mut chart = Chart {
+            schema_version: SCHEMA_VERSION,
+            machine,
+            repeats: self.plan.repeats,
+            budget: self.plan.budget,
+            threads: self.plan.threads,
+            scenes: Vec::new(),
+        };
+        for scene in scenes {
+            let sha256 = hash(&scene.path)?;
+            let earlier = kept.as_mut().and_then(|chart| {
+                let place = chart.scenes.iter().position(|s| s.name == scene.name && s.sha256 == sha256)?;
+                Some(chart.scenes.swap_remove(place))
+            });
+            let own = match earlier {
+                Some(earlier) => earlier,
+                None => SceneChart {
+                    name: scene.name.clone(),
+                    title: scene.title.clone(),
+                    reference: self.reference(scene)?,
+                    sha256,
+                    cold: Vec::new(),
+                    runs: Vec::new(),
+                },
+            };
+            chart.scenes.push(own);
+            store::save(&chart, self.folder)?;
+            self.scene(scene, &mut chart)?;
+        }
+        Ok(chart)
+    }
+
+    /// The runs of the last scene of `chart`.
+    fn scene(&self, scene: &Scene, chart: &mut Chart) -> Result<(), CampaignError> {
+        for &method in &self.plan.methods {
+            let mut stopped: Option<String> = None;
+            for level in 0..self.plan.levels {
+                let Some(own) = chart.scenes.last_mut() else { return Ok(()) };
+                if method.is_primal() && level == 0 && own.cold.iter().all(|c| c.method != method) {
+                    own.cold.extend(self.cold(scene, method)?);
+                }
+                let run = match (own.run(method, level), &stopped) {
+                    (Some(run), _) if !matches!(run.status, Status::Skipped(_)) => run.clone(),
+                    (_, Some(reason)) => self.without_numbers(method, level, Status::Skipped(reason.clone())),
+                    _ => {
+                        (self.progress)(format!("{}: {}, level {level}", scene.name, method.name()));
+                        self.repeat(scene, method, level, own)?
+                    }
+                };
+                if let Status::OverBudget | Status::Failed(_) = run.status {
+                    stopped = Some(format!("level {level} was over the budget or failed"));
+                }
+                own.runs.retain(|r| (r.method, r.level) != (method, level));
+                own.runs.push(run);
+                store::save(chart, self.folder)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn without_numbers(&self, method: Method, level: usize, status: Status) -> Run {
+        Run { method, level, tolerance: tolerance(method, level), status, plot: None }
+    }
+
+    fn repeat(&self, scene: &Scene, method: Method, level: usize, own: &SceneChart) -> Result<Run, CampaignError> {
+        let mut repeats: Vec<Measured> = Vec::new();
+        for _ in 0..self.plan.repeats.max(1) {
+            let ended = self.once(scene, method, level, tolerance(method, level), self.plan.budget, None)?;
+            match ended {
+                Ended::Told(results) => repeats.extend(results),
+                Ended::OverBudget => return Ok(self.without_numbers(method, level, Status::OverBudget)),
+                Ended::Crashed(text) => return Ok(self.without_numbers(method, level, Status::Failed(text))),
+            }
+        }
+        Ok(match judge(&repeats, own.reference.as_ref().ok()) {
+            Err(reason) => self.without_numbers(method, level, Status::Failed(reason)),
+            Ok(plot) => Run { plot: Some(plot), ..self.without_numbers(method, level, Status::Done) },
+        })
+    }
+
+    fn once(
+        &self,
+        scene: &Scene,
+        method: Method,
+        refine: usize,
+        tolerance: Option<f64>,
+        budget: f64,
+        cache: Option<&Path>,
+    ) -> Result<Ended, CampaignError> {
+        let mut arguments: Vec<OsString> = vec!["scene".into(), scene.path.clone().into()];
+        let refine = if method == Method::Adaptive { 0 } else { refine };
+        let mut option = |name: &str, value: String| arguments.extend([name.into(), value.into()]);
+        option("--method", method.name().to_string());
+        option("--refine", refine.to_string());
+        option("--threads", self.plan.threads.to_string());
+        option("--seconds", budget.to_string());
+        if let Some(tolerance) = tolerance {
+            option("--tolerance", tolerance.to_string());
+            option("--max-triangles", MOST_TRIANGLES.to_string());
+        }
+        let limits = Limits { budget: Duration::from_secs_f64(budget), cache };
+        measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
+    }
+
+    fn reference(&self, scene: &Scene) -> Result<Result<super::Reference, String>, CampaignError> {
+        (self.progress)(format!("{}: the bracket to measure errors against", scene.name));
+        let budget = REFERENCE_BUDGETS * self.plan.budget;
+        let mut runs = Vec::new();
+        for method in reference::OF.into_iter().filter(|m| self.plan.methods.contains(m) || m.has_bracket()) {
+            let (what, refine, tolerance) = match method {
+                Method::Adaptive => (format!("to {} %", 100.0 * self.plan.reference), 0, Some(self.plan.reference)),
+                _ => (format!("{REFERENCE_PRIMAL} refinements"), REFERENCE_PRIMAL, None),
+            };
+            runs.push((what, self.once(scene, method, refine, tolerance, budget, None)?));
+        }
+        Ok(from_runs(&runs))
+    }
+
+    /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.
+    fn cold(&self, scene: &Scene, method: Method) -> Result<Option<Cold>, CampaignError> {
+        (self.progress)(format!("{}: first use of {}", scene.name, method.name()));
+        let Ok(cache) = tempfile::tempdir() else { return Ok(None) };
+        let phase = |name: &str| -> Result<Option<[f64; 2]>, CampaignError> {
+            let ended = self.once(scene, method, 0, None, REFERENCE_BUDGETS * self.plan.budget, Some(cache.path()))?;
+            let Ended::Told(results) = ended else { return Ok(None) };
+            let Some(run) = results.first().filter(|r| r.end == End::Solved) else { return Ok(None) };
+            let of = |wanted: &str| run.seconds.phases.iter().find(|(n, _)| n == wanted).map_or(0.0, |(_, s)| *s);
+            Ok(Some([of(name), of("import")]))
+        };
+        let (first, second) = (phase("compile")?, phase("compile")?);
+        Ok(first.zip(second).map(|([compile, _], [compile_warm, import])| Cold {
+            method,
+            compile,
+            compile_warm,
+            import,
+        }))
+    }
+}
+
+/// Tolerance of a run at `level`.
+fn tolerance(method: Method, level: usize) -> Option<f64> {
+    (method == Method::Adaptive).then(|| FIRST_TOLERANCE * 0.5_f64.powi(level as i32))
+}
+
+fn hash(path: &Path) -> Result<String, CampaignError> {
+    let bytes = std::fs::read(path).map_err(|source| CampaignError::Scene { path: path.to_path_buf(), source })?;
+    Ok(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect())
+}
+
+/// The reason in an end.
+pub(super) fn words(end: &End) -> &str {
+    match end {
+        End::Solved => "solved",
+        End::NoEquilibrium(text) | End::Refused(text) | End::NotConverged(text) | End::NotApplicable(text) => text,
+    }
+}

@@ -1,0 +1,90 @@
+//! Which method, which mesh: Pareto front, slopes, and the fastest run for a wanted accuracy.
+
+use super::data::{Plot, Run, SceneChart};
+use crate::measure::Method;
+
+/// A run that is good enough.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice<'a> {
+    /// The run.
+    pub run: &'a Run,
+    /// Its numbers.
+    pub plot: &'a Plot,
+    /// The error by which it was chosen.
+    pub error: f64,
+}
+
+/// The run that takes the least whole time with an error of at most `wanted`: by the guaranteed error, or by the true
+/// one, which only the reference bracket knows.
+pub fn fastest(scene: &SceneChart, wanted: f64, guaranteed: bool) -> Option<Choice<'_>> {
+    let error = |plot: &Plot| if guaranteed { plot.guaranteed } else { plot.true_error };
+    scene
+        .runs
+        .iter()
+        .filter_map(|run| {
+            let plot = run.plot.as_ref()?;
+            let error = error(plot)?;
+            (error <= wanted).then_some(Choice { run, plot, error })
+        })
+        .min_by(|a, b| a.plot.whole.median.total_cmp(&b.plot.whole.median))
+}
+
+/// Indices of the points (cost, error) that no other point beats in both, by increasing cost.
+pub fn pareto(points: &[[f64; 2]]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].iter().all(|v| v.is_finite())).collect();
+    order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])));
+    let mut best = f64::INFINITY;
+    order.retain(|&i| {
+        let better = points[i][1] < best;
+        best = best.min(points[i][1]);
+        better
+    });
+    order
+}
+
+/// Least-squares slope of log y over log x; `None` for fewer than two different x.
+pub fn slope(points: &[[f64; 2]]) -> Option<f64> {
+    let logs: Vec<[f64; 2]> =
+        points.iter().filter(|p| p[0] > 0.0 && p[1] > 0.0).map(|p| [p[0].ln(), p[1].ln()]).collect();
+    let n = logs.len() as f64;
+    let mean = [0, 1].map(|i| logs.iter().map(|p| p[i]).sum::<f64>() / n);
+    let spread: f64 = logs.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
+    let product: f64 = logs.iter().map(|p| (p[0] - mean[0]) * (p[1] - mean[1])).sum();
+    (spread > 1e-9).then(|| product / spread)
+}
+
+impl SceneChart {
+    /// Points (cost, error) of a method, coarse to fine; points without an error above zero are left out, a logarithmic
+    /// axis has no place for them.
+    pub fn points(
+        &self,
+        method: Method,
+        cost: impl Fn(&Plot) -> f64,
+        error: impl Fn(&Plot) -> Option<f64>,
+    ) -> Vec<[f64; 2]> {
+        self.done(method)
+            .filter_map(|(_, plot)| Some([cost(plot), error(plot)?]))
+            .filter(|p| p.iter().all(|v| v.is_finite() && *v > 0.0))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_leaves_out_what_is_beaten() {
+        let points = [[1.0, 1.0], [2.0, 0.5], [3.0, 0.7], [4.0, 0.1], [2.0, 0.6], [f64::NAN, 0.0]];
+        assert_eq!(pareto(&points), [0, 1, 3]);
+        assert_eq!(pareto(&[]), [0; 0]);
+    }
+
+    #[test]
+    fn a_power_law_has_its_exponent_as_slope() {
+        let points: Vec<[f64; 2]> = [1.0, 2.0, 5.0, 9.0].iter().map(|&x: &f64| [x, 7.0 * x.powf(-0.75)]).collect();
+        assert!((slope(&points).expect("four points") + 0.75).abs() < 1e-12);
+        assert_eq!(slope(&points[..1]), None);
+        assert_eq!(slope(&[[1.0, 1.0], [1.0, 2.0]]), None);
+    }
+}

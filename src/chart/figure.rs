@@ -1,0 +1,91 @@
+//! Error against cost, log–log.
+
+use super::choice::{pareto, slope};
+use super::data::{Plot, SceneChart, Status};
+use crate::measure::Method;
+use crate::plot::{PlotError, Scale, Series, Sheet, draw};
+use crate::report::number::significant;
+
+/// What an error costs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Seconds of the whole process.
+    Whole,
+    /// Seconds without start-up and reading.
+    Solve,
+    /// Unknowns.
+    Unknowns,
+}
+
+impl Axis {
+    fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Axis::Whole => ("Error against seconds, whole process", "seconds from start of the process to the answer"),
+            Axis::Solve => {
+                ("Error against seconds, solving only", "seconds without start-up, imports, compilation, reading")
+            }
+            Axis::Unknowns => ("Error against unknowns", "unknowns"),
+        }
+    }
+
+    fn cost(self, plot: &Plot) -> f64 {
+        match self {
+            Axis::Whole => plot.whole.median,
+            Axis::Solve => plot.solve.median,
+            Axis::Unknowns => plot.unknowns as f64,
+        }
+    }
+
+    fn spread(self, plot: &Plot) -> [f64; 2] {
+        match self {
+            Axis::Whole => [plot.whole.least, plot.whole.most],
+            Axis::Solve => [plot.solve.least, plot.solve.most],
+            Axis::Unknowns => [self.cost(plot); 2],
+        }
+    }
+}
+
+/// True error (full markers) and guaranteed error (hollow) of every method, with slopes and the Pareto front of the
+/// true errors.
+///
+/// # Errors
+/// What the drawing library reported.
+pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError> {
+    let mut series = Vec::new();
+    let mut notes = Vec::new();
+    for method in Method::ALL {
+        for (secondary, name) in [(false, "true"), (true, "guaranteed")] {
+            let error = |plot: &Plot| if secondary { plot.guaranteed } else { plot.true_error };
+            let points = scene.points(method, |p| axis.cost(p), error);
+            if points.is_empty() {
+                continue;
+            }
+            let fitted = slope(&points).map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
+            let spread = scene.done(method).filter(|(_, p)| error(p).is_some_and(|e| e > 0.0));
+            series.push(Series {
+                label: format!("{}, {name}{fitted}", method.name()),
+                ink: method.index(),
+                secondary,
+                spread: spread.map(|(_, p)| axis.spread(p)).collect(),
+                points,
+            });
+        }
+        if let Some(run) = scene.runs.iter().find(|r| r.method == method && r.status == Status::OverBudget) {
+            notes.push(format!("{}: over the budget at level {}", method.name(), run.level));
+        }
+    }
+    let all: Vec<[f64; 2]> = series.iter().filter(|s| !s.secondary).flat_map(|s| s.points.clone()).collect();
+    let front = pareto(&all).into_iter().map(|i| all[i]).collect();
+    let level = scene.reference.as_ref().ok().map(|r| (r.resolution(), "half the reference bracket".to_string()));
+    let (title, x) = axis.words();
+    draw(&Sheet {
+        title: format!("{title}: {}", scene.name),
+        labels: [x.to_string(), "relative error in the energy norm".to_string()],
+        x: Scale::Logarithmic,
+        series,
+        front,
+        level,
+        notes,
+        size: [1040, 560],
+    })
+}

@@ -1,0 +1,108 @@
+//! The methods that are measured against each other.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dual::{self, DualMethod};
+
+/// A way to answer a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// One sparse factorisation, contact on its Schur complement.
+    Condensed,
+    /// The same on meshes refined where the gap is.
+    Adaptive,
+    /// Active set, refactorising at each step.
+    ActiveSet,
+    /// Interior point.
+    Clarabel,
+    /// The paper's iteration.
+    Uzawa,
+    /// Linear displacements.
+    FenicsP1,
+    /// Quadratic displacements.
+    FenicsP2,
+}
+
+/// What a method is made of.
+pub enum Family {
+    /// Equilibrated stresses on the mesh as it is.
+    Dual(Box<dyn DualMethod>),
+    /// Equilibrated stresses on meshes that are refined on the way.
+    Adaptive(Box<dyn DualMethod>),
+    /// FEniCSx with displacements of this degree.
+    Primal(u8),
+}
+
+impl Method {
+    /// All of them, in the order of tables.
+    pub const ALL: [Method; 7] = [
+        Method::Condensed,
+        Method::Adaptive,
+        Method::ActiveSet,
+        Method::Clarabel,
+        Method::Uzawa,
+        Method::FenicsP1,
+        Method::FenicsP2,
+    ];
+
+    /// Name in files, on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Condensed => "condensed",
+            Method::Adaptive => "adaptive",
+            Method::ActiveSet => "active-set",
+            Method::Clarabel => "clarabel",
+            Method::Uzawa => "uzawa",
+            Method::FenicsP1 => "FEniCSx P1",
+            Method::FenicsP2 => "FEniCSx P2",
+        }
+    }
+
+    /// The method of that name.
+    pub fn of_name(name: &str) -> Option<Method> {
+        Self::ALL.into_iter().find(|m| m.name() == name)
+    }
+
+    /// Place in [`Method::ALL`].
+    pub fn index(self) -> usize {
+        Self::ALL.iter().position(|m| *m == self).unwrap_or(0)
+    }
+
+    /// What it is made of.
+    pub fn family(self) -> Family {
+        match self {
+            Method::Condensed => Family::Dual(Box::new(dual::Condensed)),
+            Method::Adaptive => Family::Adaptive(Box::new(dual::Condensed)),
+            Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
+            Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
+            Method::Uzawa => Family::Dual(Box::new(dual::Uzawa::default())),
+            Method::FenicsP1 => Family::Primal(1),
+            Method::FenicsP2 => Family::Primal(2),
+        }
+    }
+
+    /// Whether it delivers a two-sided bracket of its own.
+    pub fn has_bracket(self) -> bool {
+        !self.is_primal()
+    }
+
+    /// Whether it is the displacement model.
+    pub fn is_primal(self) -> bool {
+        matches!(self, Method::FenicsP1 | Method::FenicsP2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_is_found_by_its_name_and_place() {
+        for (i, method) in Method::ALL.into_iter().enumerate() {
+            assert_eq!(Method::of_name(method.name()), Some(method));
+            assert_eq!(method.index(), i);
+        }
+        assert_eq!(Method::of_name("newton"), None);
+    }
+}

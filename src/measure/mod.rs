@@ -1,0 +1,20 @@
+//! One method on one problem, in a process of its own: what it answered, how long it took, how much memory it had.
+//!
+//! [`measure`] is what happens inside that process, [`run`] starts it and reads what it prints. A crash, a hang or a
+//! memory peak then belongs to exactly one run.
+
+mod child;
+mod clock;
+mod machine;
+mod memory;
+mod method;
+mod primal;
+mod record;
+mod solve;
+
+pub use child::{Ended, Limits, run};
+pub use clock::Clock;
+pub use machine::Machine;
+pub use method::{Family, Method};
+pub use record::{Answer, End, Measured, Seconds, finite_or_null};
+pub use solve::{Settings, measure};

@@ -1,0 +1,136 @@
+//! Displacement models: the seconds and the memory are those of the process that FEniCSx runs in.
+
+use std::time::Duration;
+
+use super::memory::Watch;
+use super::record::{Answer, End, Measured, Seconds};
+use super::solve::variation;
+use super::{Clock, Method, Settings};
+use crate::bounds::{potential, repaired};
+use crate::compare::pressure::{maximum, reaction_pressure};
+use crate::compare::{Candidate, Reactions};
+use crate::primal::{self, PrimalError, PrimalSeconds};
+use crate::problem::Problem;
+use crate::statics;
+use crate::study::{candidates, pins};
+
+/// Solves in displacements of each degree, in one process.
+pub(super) fn displacements(
+    make: &impl Fn() -> Result<Problem, String>,
+    degrees: &[u8],
+    settings: &Settings,
+    clock: Clock,
+) -> Vec<Measured> {
+    let began = clock.elapsed();
+    let name = |degree: u8| if degree == 1 { Method::FenicsP1.name() } else { Method::FenicsP2.name() };
+    let all = |end: End| degrees.iter().map(|&d| Measured::without_answer(name(d), end.clone())).collect();
+    if settings.step_length.is_some() {
+        return all(End::NotApplicable("the method has no step length".to_string()));
+    }
+    let problem = match make() {
+        Ok(problem) => problem,
+        Err(reason) => return all(End::Refused(reason)),
+    };
+    let read = clock.elapsed();
+    let pins = match statics::check(&problem) {
+        Ok(statics) => pins(&statics),
+        Err(error) => return all(End::Refused(error.to_string())),
+    };
+    let asked = clock.elapsed();
+    let options = primal::Options {
+        degrees: degrees.to_vec(),
+        timeout: Duration::from_secs_f64(settings.seconds.max(1.0)),
+        ..primal::Options::default()
+    };
+    let watch = Watch::start();
+    let solved = primal::run(&problem, &pins, &options);
+    let ended = clock.elapsed();
+    let memory = watch.finish();
+    let solutions = match solved {
+        Ok(solutions) => solutions,
+        Err(error) => return all(failure(error)),
+    };
+    // What the process did for all degrees together, and the seconds that belong to one of them.
+    let outside =
+        ended - asked - solutions.iter().map(|s| s.seconds.total - s.seconds.import - s.seconds.mesh).sum::<f64>();
+    let clocks: Vec<PrimalSeconds> = solutions.iter().map(|s| s.seconds).collect();
+    let candidates = candidates(&problem, solutions);
+    candidates
+        .iter()
+        .zip(clocks)
+        .map(|(candidate, own)| Measured {
+            method: name(candidate.degree as u8).to_string(),
+            end: End::Solved,
+            answer: Some(answer(&problem, candidate)),
+            seconds: seconds(&own, outside, [began, read]),
+            peak_memory: memory,
+        })
+        .collect()
+}
+
+/// Phases of one degree, as if it had had the process to itself.
+fn seconds(own: &PrimalSeconds, outside: f64, [began, read]: [f64; 2]) -> Seconds {
+    let phases = [
+        ("start-up", began),
+        ("read", read - began),
+        // Start of the interpreter, writing and reading of the exchange files.
+        ("exchange", (outside - own.import - own.mesh).max(0.0)),
+        ("import", own.import),
+        ("mesh", own.mesh),
+        ("compile", own.compile),
+        ("assemble", own.assemble),
+        ("contact", own.solve),
+    ];
+    Seconds {
+        whole: phases.iter().map(|(_, s)| s).sum(),
+        solve: own.assemble + own.solve,
+        phases: phases.map(|(name, s)| (name.to_string(), s)).to_vec(),
+    }
+}
+
+fn failure(error: PrimalError) -> End {
+    let text = error.to_string();
+    match error {
+        PrimalError::NotInstalled(_) => End::NotApplicable(text),
+        PrimalError::TimedOut { .. } => End::NotConverged(text),
+        // The package gives one line for everything it noticed itself; anything else is a crash of the interpreter.
+        PrimalError::Failed { ref log, .. } => {
+            match log.lines().rev().find_map(|l| l.strip_prefix("hypercircle-reference: ")) {
+                Some(line) if line.contains("converge") || line.contains("iteration") => {
+                    End::NotConverged(line.to_string())
+                }
+                Some(line) => End::Refused(line.to_string()),
+                None => End::Refused(text),
+            }
+        }
+        _ => End::Refused(text),
+    }
+}
+
+/// Evaluates a solution with this program's own quadrature, on the nearest admissible field.
+fn answer(problem: &Problem, candidate: &Candidate) -> Answer {
+    let mut answer = Answer {
+        triangles: problem.mesh.triangles.len(),
+        unknowns: candidate.unknowns,
+        iterations: candidate.iterations,
+        ..Answer::default()
+    };
+    match repaired(problem, &candidate.vertex, &candidate.middle) {
+        Ok((field, violation)) => {
+            let energy = potential(problem, &field);
+            answer.upper = Some(energy.total());
+            answer.strain = Some(energy.strain);
+            answer.violation = Some(violation.largest());
+        }
+        Err(reason) => answer.missing = Some(reason.to_string()),
+    }
+    let none = Vec::new();
+    for (interface, reactions) in problem.interfaces.iter().zip(candidate.reactions.as_ref().unwrap_or(&none)) {
+        let pieces = reaction_pressure(problem, interface, reactions);
+        let Reactions { resultant, .. } = reactions;
+        answer.resultants.push(*resultant);
+        answer.pressure_max.push(maximum(problem, interface, &pieces).0);
+        answer.variation.push(variation(&pieces));
+    }
+    answer
+}

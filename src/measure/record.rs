@@ -1,0 +1,110 @@
+//! What a measured run leaves behind, as it travels between processes and into files.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// One run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Name of the method.
+    pub method: String,
+    /// How it ended.
+    pub end: End,
+    /// What it answered, where it did.
+    pub answer: Option<Answer>,
+    /// Where the time went.
+    pub seconds: Seconds,
+    /// Largest resident memory of the process that solved, in bytes; `None` where the system does not tell.
+    pub peak_memory: Option<u64>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", content = "reason", rename_all = "kebab-case")]
+pub enum End {
+    /// With an answer.
+    Solved,
+    /// With the reason why there is no equilibrium.
+    NoEquilibrium(String),
+    /// With the reason why this input is refused.
+    Refused(String),
+    /// An iteration did not arrive, and says so.
+    NotConverged(String),
+    /// The method has nothing to do with the question.
+    NotApplicable(String),
+}
+
+/// Wall-clock seconds of one run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Seconds {
+    /// From the start of the process to the answer: scene file in, numbers out.
+    pub whole: f64,
+    /// From mesh and data in memory to the answer: without start-up, imports, compilation and reading.
+    pub solve: f64,
+    /// Every phase in its order; they add up to `whole`.
+    pub phases: Vec<(String, f64)>,
+}
+
+/// The numbers of a run. Energies and forces include the thickness.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Answer {
+    /// Triangles of the (last) mesh.
+    pub triangles: usize,
+    /// Unknowns solved for.
+    pub unknowns: usize,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Guaranteed lower bound of the energy, where the method gives one.
+    #[serde(with = "finite_or_null")]
+    pub lower: Option<f64>,
+    /// Upper bound of the energy: of the bracket, or of the admissible displacement.
+    #[serde(with = "finite_or_null")]
+    pub upper: Option<f64>,
+    /// 𝒮(λ_h), what errors are relative to; for displacements ½∫ c e:e.
+    #[serde(with = "finite_or_null")]
+    pub strain: Option<f64>,
+    /// √(gap/𝒮(λ_h)), where the method gives a bracket.
+    #[serde(with = "finite_or_null")]
+    pub relative_error_bound: Option<f64>,
+    /// Violation of equilibrium relative to the loads; zero for displacements, which do not claim it.
+    #[serde(with = "finite_or_null")]
+    pub equilibrium: Option<f64>,
+    /// How far a displacement was from admissible, relative to its size.
+    #[serde(with = "finite_or_null")]
+    pub violation: Option<f64>,
+    /// Force on the first side of each contact.
+    pub resultants: Vec<[f64; 2]>,
+    /// Largest pressure of each contact.
+    pub pressure_max: Vec<f64>,
+    /// Total variation of the pressure along each contact.
+    pub variation: Vec<f64>,
+    /// Why there is no upper bound, or what else is missing.
+    pub missing: Option<String>,
+}
+
+/// Numbers that may be missing or not finite: both are null in JSON.
+pub mod finite_or_null {
+    use super::*;
+
+    /// Writes null for what is no number.
+    ///
+    /// # Errors
+    /// The serialiser's.
+    pub fn serialize<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+        value.filter(|v| v.is_finite()).serialize(serializer)
+    }
+
+    /// Reads a number or null.
+    ///
+    /// # Errors
+    /// The deserialiser's.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+        Option::<f64>::deserialize(deserializer)
+    }
+}
+
+impl Measured {
+    /// A run without an answer.
+    pub fn without_answer(method: &str, end: End) -> Self {
+        Measured { method: method.to_string(), end, answer: None, seconds: Seconds::default(), peak_memory: None }
+    }
+}

@@ -1,0 +1,193 @@
+//! What happens inside the process: make the problem, solve it, evaluate the answer.
+
+use serde::{Deserialize, Serialize};
+
+use super::Clock;
+use super::memory;
+use super::method::{Family, Method};
+use super::primal;
+use super::record::{Answer, End, Measured, Seconds};
+
+use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
+use crate::dual::paper::{Iteration, Program};
+use crate::dual::{DualError, DualMethod, Options, Uzawa};
+use crate::problem::Problem;
+use crate::study::{self, Certified, Goal, StudyError};
+
+/// Choices of a run that are not the problem's.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Threads.
+    pub threads: usize,
+    /// Largest guaranteed relative error of an adaptive run.
+    pub tolerance: Option<f64>,
+    /// Triangles beyond which an adaptive run stops.
+    pub max_triangles: Option<usize>,
+    /// Seconds that a process started from here may take.
+    pub seconds: f64,
+    /// Step length of the paper's plain iteration, relative to the largest that converges.
+    pub step_length: Option<f64>,
+}
+
+/// Solves what `make` makes with each of `methods`.
+///
+/// Displacement models share one process, so that imports are paid once; their seconds are each one's own.
+pub fn measure(
+    make: impl Fn() -> Result<Problem, String>,
+    methods: &[Method],
+    settings: &Settings,
+    clock: Clock,
+) -> Vec<Measured> {
+    let mut results = Vec::new();
+    let degrees: Vec<u8> = methods
+        .iter()
+        .filter_map(|m| match m.family() {
+            Family::Primal(degree) => Some(degree),
+            _ => None,
+        })
+        .collect();
+    for &method in methods {
+        let result = match method.family() {
+            Family::Dual(solver) => stresses(&make, method, solver.as_ref(), None, settings, clock),
+            Family::Adaptive(solver) => {
+                let goal = Goal {
+                    max_triangles: settings.max_triangles,
+                    ..Goal::new(settings.tolerance.unwrap_or(f64::MIN_POSITIVE))
+                };
+                stresses(&make, method, solver.as_ref(), Some(goal), settings, clock)
+            }
+            Family::Primal(_) => continue,
+        };
+        results.push(result);
+    }
+    if !degrees.is_empty() {
+        results.extend(primal::displacements(&make, &degrees, settings, clock));
+    }
+    results
+}
+
+fn stresses(
+    make: &impl Fn() -> Result<Problem, String>,
+    method: Method,
+    solver: &dyn DualMethod,
+    goal: Option<Goal>,
+    settings: &Settings,
+    clock: Clock,
+) -> Measured {
+    let began = clock.elapsed();
+    let problem = match make() {
+        Ok(problem) => problem,
+        Err(reason) => return Measured::without_answer(method.name(), End::Refused(reason)),
+    };
+    let read = clock.elapsed();
+    let stepped;
+    let solver: &dyn DualMethod = match settings.step_length {
+        None => solver,
+        Some(_) if method != Method::Uzawa => {
+            let reason = "the method has no step length".to_string();
+            return Measured::without_answer(method.name(), End::NotApplicable(reason));
+        }
+        Some(fraction) => match largest_step(&problem) {
+            Ok(largest) => {
+                stepped = Uzawa { step_length: Some(fraction * largest), ..Uzawa::plain() };
+                &stepped
+            }
+            Err(error) => return Measured::without_answer(method.name(), refusal(&StudyError::Dual(error))),
+        },
+    };
+    let options = Options { threads: settings.threads.max(1), ..Options::default() };
+    let solved = match goal {
+        None => study::certify(problem, solver, &options),
+        Some(goal) => study::adapt(problem, solver, &options, &goal, |_| {}).map(|adapted| adapted.certified),
+    };
+    let done = clock.elapsed();
+    match solved {
+        Err(error) => Measured::without_answer(method.name(), refusal(&error)),
+        Ok(certified) => Measured {
+            method: method.name().to_string(),
+            end: End::Solved,
+            seconds: seconds(&certified, goal.is_some(), [began, read, done]),
+            peak_memory: memory::own_peak(),
+            answer: Some(answer(&certified)),
+        },
+    }
+}
+
+/// 2/‖BA⁻¹Bᵀ‖.
+fn largest_step(problem: &Problem) -> Result<f64, DualError> {
+    let program = Program::new(problem)?;
+    Ok(2.0 / Iteration::new(&program).norm())
+}
+
+fn seconds(certified: &Certified, adaptive: bool, [began, read, done]: [f64; 3]) -> Seconds {
+    let p = &certified.dual.seconds;
+    let own = [("assemble", p.assemble), ("factor", p.factor), ("contact", p.contact), ("recover", p.recover)];
+    let mut phases = vec![("start-up".to_string(), began), ("read".to_string(), read - began)];
+    let mut rest = done - read;
+    if adaptive {
+        let last: f64 = own.iter().map(|(_, s)| s).sum();
+        phases.push(("coarser meshes".to_string(), 0.0));
+        rest -= last;
+    } else {
+        rest -= own.iter().map(|(_, s)| s).sum::<f64>();
+    }
+    phases.extend(own.map(|(name, s)| (name.to_string(), s)));
+    match adaptive {
+        // What is not the last solve is the meshes before it, with their bounds.
+        true => phases[2].1 = rest,
+        false => phases.push(("statics and bounds".to_string(), rest)),
+    }
+    Seconds { whole: done, solve: done - read, phases }
+}
+
+/// How a failure of the dual side is to be read.
+pub(super) fn refusal(error: &StudyError) -> End {
+    let reason = error.to_string();
+    match error {
+        StudyError::NoEquilibrium { .. } | StudyError::Dual(DualError::Infeasible { .. }) => End::NoEquilibrium(reason),
+        StudyError::Dual(DualError::NotConverged { .. }) => End::NotConverged(reason),
+        _ => End::Refused(reason),
+    }
+}
+
+fn answer(certified: &Certified) -> Answer {
+    let Certified { problem, dual, bracket, .. } = certified;
+    let upper = bracket.free.as_ref().ok().map(|free| free.upper());
+    let mut answer = Answer {
+        triangles: problem.mesh.triangles.len(),
+        unknowns: dual.unknowns,
+        iterations: dual.iterations,
+        lower: Some(bracket.lower()),
+        upper,
+        strain: Some(bracket.complementary.strain),
+        relative_error_bound: upper.map(|upper| bracket.relative_error(upper)),
+        equilibrium: Some(dual.equilibrium.residual()),
+        missing: bracket.free.as_ref().err().map(ToString::to_string),
+        ..Answer::default()
+    };
+    for (index, interface) in problem.interfaces.iter().enumerate() {
+        let pieces = dual_pressure(dual, index);
+        answer.resultants.push(resultant(problem, interface, &pieces).0);
+        answer.pressure_max.push(maximum(problem, interface, &pieces).0);
+        answer.variation.push(variation(&pieces));
+    }
+    answer
+}
+
+/// ∫ |dp| along a contact, jumps between edges included.
+pub(super) fn variation(pieces: &[Piece]) -> f64 {
+    let values: Vec<f64> = pieces.iter().flatten().copied().collect();
+    values.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variation_counts_every_way_up_and_down() {
+        assert_eq!(variation(&[[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]]), 4.0);
+        assert_eq!(variation(&[[0.0, 0.5, 1.0], [3.0, 3.0, 3.0]]), 3.0);
+        assert_eq!(variation(&[]), 0.0);
+    }
+}

@@ -1,0 +1,216 @@
+//! Curves on one pair of axes, with a legend beside them.
+
+use plotters::prelude::*;
+
+use super::{Ink, PlotError, Scale, accessible};
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Text in the legend.
+    pub label: String,
+    /// Which ink, see [`Ink::of`].
+    pub ink: usize,
+    /// Thin line and hollow markers: the second quantity of a method.
+    pub secondary: bool,
+    /// Points in the order of the line; those that an axis has no place for are left out.
+    pub points: Vec<[f64; 2]>,
+    /// Least and most x at each point, where they were measured.
+    pub spread: Vec<[f64; 2]>,
+}
+
+/// A figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// Heading.
+    pub title: String,
+    /// What x and y are.
+    pub labels: [String; 2],
+    /// How x is placed; y is logarithmic.
+    pub x: Scale,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// A front of points that no other beats, drawn as steps below everything else.
+    pub front: Vec<[f64; 2]>,
+    /// A horizontal line with its text.
+    pub level: Option<(f64, String)>,
+    /// Lines below the legend.
+    pub notes: Vec<String>,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+}
+
+const LEGEND: u32 = 260;
+const FONT: &str = "sans-serif";
+const GREY: RGBColor = RGBColor(105, 105, 105);
+
+/// The figure as SVG.
+///
+/// # Errors
+/// [`PlotError`] with what the drawing library reported.
+pub fn draw(sheet: &Sheet) -> Result<String, PlotError> {
+    let y = Scale::Logarithmic;
+    let place = |p: &[f64; 2]| Some((sheet.x.position(p[0])?, y.position(p[1])?));
+    let placed: Vec<Vec<(f64, f64)>> =
+        sheet.series.iter().map(|s| s.points.iter().filter_map(place).collect()).collect();
+    let front: Vec<(f64, f64)> = sheet.front.iter().filter_map(place).collect();
+    let level = sheet.level.as_ref().and_then(|(value, text)| Some((y.position(*value)?, text)));
+    let all = || placed.iter().flatten();
+    let x_axis = sheet.x.axis(all().map(|p| p.0));
+    let y_axis = y.axis(all().map(|p| p.1).chain(level.map(|l| l.0)));
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (sheet.size[0], sheet.size[1])).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (left, right) = root.split_horizontally(sheet.size[0].saturating_sub(LEGEND));
+        let mut chart = ChartBuilder::on(&left)
+            .caption(&sheet.title, (FONT, 17))
+            .margin(10)
+            .x_label_area_size(46)
+            .y_label_area_size(70)
+            .build_cartesian_2d(x_axis.clone(), y_axis.clone())?;
+        chart
+            .configure_mesh()
+            .x_desc(&sheet.labels[0])
+            .y_desc(&sheet.labels[1])
+            .axis_desc_style((FONT, 14))
+            .label_style((FONT, 12))
+            .bold_line_style(RGBColor(214, 214, 214))
+            .light_line_style(TRANSPARENT)
+            .draw()?;
+        if !front.is_empty() {
+            let mut steps = vec![(front[0].0, y_axis.range[1])];
+            for (i, p) in front.iter().enumerate() {
+                steps.push(*p);
+                let next = front.get(i + 1).map_or(x_axis.range[1], |n| n.0);
+                steps.push((next, p.1));
+            }
+            chart.draw_series([PathElement::new(steps, RGBColor(200, 200, 200).stroke_width(7))])?;
+        }
+        if let Some((value, _)) = level {
+            let ends = vec![(x_axis.range[0], value), (x_axis.range[1], value)];
+            chart.draw_series(DashedLineSeries::new(ends, 2, 3, GREY.stroke_width(1)))?;
+        }
+        for (series, points) in sheet.series.iter().zip(&placed) {
+            let ink = Ink::of(series.ink);
+            let style = ink.colour.stroke_width(if series.secondary { 1 } else { 2 });
+            match ink.dash {
+                None => chart.draw_series(LineSeries::new(points.clone(), style))?,
+                Some([length, space]) => {
+                    chart.draw_series(DashedLineSeries::new(points.clone(), length, space, style))?
+                }
+            };
+            for (p, spread) in series.points.iter().zip(&series.spread) {
+                let (Some(p), Some(a), Some(b)) = (place(p), sheet.x.position(spread[0]), sheet.x.position(spread[1]))
+                else {
+                    continue;
+                };
+                chart.draw_series([PathElement::new(vec![(a, p.1), (b, p.1)], ink.colour.stroke_width(1))])?;
+            }
+            for p in points {
+                if series.secondary {
+                    chart.draw_series([EmptyElement::at(*p) + Polygon::new(ink.marker, WHITE)])?;
+                    chart.draw_series([EmptyElement::at(*p) + outline(ink)])?;
+                } else {
+                    chart.draw_series([EmptyElement::at(*p) + Polygon::new(ink.marker, ink.colour)])?;
+                }
+            }
+        }
+        legend(&right, sheet, !front.is_empty(), level.map(|l| l.1.as_str()))?;
+        root.present()?;
+    }
+    Ok(accessible(&svg, &sheet.title))
+}
+
+fn outline(ink: Ink) -> PathElement<(i32, i32)> {
+    let mut corners = ink.marker.to_vec();
+    corners.extend(ink.marker.first());
+    PathElement::new(corners, ink.colour.stroke_width(1))
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
+fn legend(area: &Area<'_>, sheet: &Sheet, front: bool, level: Option<&str>) -> Result<(), PlotError> {
+    const ROW: i32 = 22;
+    let mut row = 44;
+    let text = |s: &str, at: (i32, i32)| Text::new(s.to_string(), at, (FONT, 13).into_font().color(&BLACK));
+    for series in &sheet.series {
+        let ink = Ink::of(series.ink);
+        let style = ink.colour.stroke_width(if series.secondary { 1 } else { 2 });
+        let (start, end) = ((4, row), (44, row));
+        match ink.dash {
+            None => area.draw(&PathElement::new(vec![start, end], style))?,
+            Some([length, space]) => {
+                let mut x = start.0;
+                while x < end.0 {
+                    area.draw(&PathElement::new(vec![(x, row), ((x + length).min(end.0), row)], style))?;
+                    x += length + space;
+                }
+            }
+        }
+        let centre = |(x, y): &(i32, i32)| (24 + x, row + y);
+        let mut corners: Vec<(i32, i32)> = ink.marker.iter().map(centre).collect();
+        if series.secondary {
+            area.draw(&Polygon::new(corners.clone(), WHITE))?;
+            corners.extend(corners.first().copied());
+            area.draw(&PathElement::new(corners, ink.colour.stroke_width(1)))?;
+        } else {
+            area.draw(&Polygon::new(corners, ink.colour))?;
+        }
+        area.draw(&text(&series.label, (52, row - 6)))?;
+        row += ROW;
+    }
+    if front {
+        area.draw(&PathElement::new(vec![(4, row), (44, row)], RGBColor(200, 200, 200).stroke_width(7)))?;
+        area.draw(&text("nothing is better in both", (52, row - 6)))?;
+        row += ROW;
+    }
+    if let Some(level) = level {
+        area.draw(&PathElement::new(vec![(4, row), (44, row)], GREY.stroke_width(1)))?;
+        area.draw(&text(level, (52, row - 6)))?;
+        row += ROW;
+    }
+    for note in &sheet.notes {
+        area.draw(&text(note, (4, row)))?;
+        row += ROW - 4;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(points: Vec<[f64; 2]>) -> Sheet {
+        Sheet {
+            title: "errors & \"time\"".to_string(),
+            labels: ["x".to_string(), "y".to_string()],
+            x: Scale::Logarithmic,
+            series: vec![Series { label: "a < b".to_string(), ink: 1, secondary: false, points, spread: Vec::new() }],
+            front: Vec::new(),
+            level: None,
+            notes: Vec::new(),
+            size: [800, 400],
+        }
+    }
+
+    #[test]
+    fn a_figure_is_well_formed_whatever_the_numbers() {
+        for points in [
+            vec![],
+            vec![[1.0, 1.0]],
+            vec![[0.0, 1.0], [f64::NAN, 2.0], [1.0, -3.0]],
+            vec![[1e-12, 1e12], [1e9, 1e-300]],
+        ] {
+            let svg = draw(&sheet(points)).expect("draws");
+            let mut reader = quick_xml::Reader::from_str(&svg);
+            loop {
+                match reader.read_event() {
+                    Ok(quick_xml::events::Event::Eof) => break,
+                    Ok(_) => {}
+                    Err(error) => panic!("{error}: {svg}"),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The matrix as a Markdown table, for the documentation and for a terminal.
+
+use std::fmt::Write;
+
+use super::data::{Cell, Matrix, Outcome, Row};
+
+/// Table, legend, and what stands behind every cell that is not correct.
+pub fn markdown(matrix: &Matrix) -> String {
+    let mut text = String::new();
+    let methods: Vec<&str> =
+        matrix.rows.first().map(|r| r.cells.iter().map(|c| c.method.name()).collect()).unwrap_or_default();
+    let _ = writeln!(text, "| regime | swept | {} |", methods.join(" | "));
+    let _ = writeln!(text, "|---|---|{}", "---|".repeat(methods.len()));
+    for row in &matrix.rows {
+        let swept = match (row.values.first(), row.values.last()) {
+            (Some(a), Some(b)) => format!("{}: {a} … {b}", row.parameter),
+            _ => row.parameter.clone(),
+        };
+        let cells: Vec<String> = row.cells.iter().map(|c| self::cell(row, c)).collect();
+        let _ = writeln!(text, "| {} | {} | {} |", escaped(&row.title), escaped(&swept), cells.join(" | "));
+    }
+    let signs = [
+        Outcome::Correct,
+        Outcome::Inaccurate,
+        Outcome::Refused,
+        Outcome::NoConvergence,
+        Outcome::Crash,
+        Outcome::Wrong,
+        Outcome::NotApplicable,
+    ];
+    let legend: Vec<String> = signs.iter().map(|o| format!("{} {}", o.sign(), o.words())).collect();
+    let _ = writeln!(
+        text,
+        "\n{}. A cell shows the worst outcome of the sweep and the last value before it was first other than correct.\n",
+        legend.join(", ")
+    );
+    for row in &matrix.rows {
+        let bad: Vec<&Cell> =
+            row.cells.iter().filter(|c| !matches!(c.worst, Outcome::Correct | Outcome::NotApplicable)).collect();
+        if bad.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, "- **{}**", escaped(&row.title));
+        for cell in bad {
+            if let Some(i) = cell.worst_at() {
+                let why = cell.steps[i].why.lines().next().unwrap_or_default();
+                let line = format!("{} at {}: {}", cell.method.name(), row.values[i], cell.worst.words());
+                let _ = writeln!(text, "  - {}: {}", escaped(&line), escaped(&shortened(why)));
+            }
+        }
+    }
+    text
+}
+
+fn cell(row: &Row, cell: &Cell) -> String {
+    let until = match (cell.worst, cell.correct_to()) {
+        (Outcome::Correct | Outcome::NotApplicable, _) => String::new(),
+        (_, Some(i)) => format!(" ({})", row.values[i]),
+        (_, None) => " (–)".to_string(),
+    };
+    format!("[{}{}](figures/stability-{}.svg)", cell.worst.sign(), escaped(&until), row.id)
+}
+
+/// The first 200 characters.
+pub(super) fn shortened(text: &str) -> String {
+    if text.chars().count() <= 200 { text.to_string() } else { text.chars().take(199).chain(['…']).collect() }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|").replace('<', "&lt;").replace('_', "\\_").replace('*', "\\*").replace('\n', " ")
+}
