@@ -60,7 +60,9 @@ pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError>
             if points.is_empty() {
                 continue;
             }
-            let fitted = slope(&points).map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
+            // Two points have a slope, but not one that says anything.
+            let fitted = slope(&points).filter(|_| points.len() > 2);
+            let fitted = fitted.map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
             let spread = scene.done(method).filter(|(_, p)| error(p).is_some_and(|e| e > 0.0));
             series.push(Series {
                 label: format!("{}, {name}{fitted}", method.name()),

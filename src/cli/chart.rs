@@ -46,7 +46,8 @@ pub struct Args {
     pub run: RunOptions,
 }
 
-fn known(name: &str) -> Result<Method, String> {
+/// The method of that name, or the names there are.
+pub(super) fn known(name: &str) -> Result<Method, String> {
     let names = Method::ALL.map(Method::name).join(", ");
     Method::of_name(name).ok_or_else(|| format!("there is no method {name}; choose from {names}"))
 }

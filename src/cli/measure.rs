@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, value_parser};
 
+use super::chart::known;
 use super::options::positive;
 use super::{CliError, Exit};
 use crate::measure::{Clock, Method, Settings, measure};
 use crate::problem::Problem;
-use crate::scene::Scene;
+use crate::scene::{MeshSource, Scene};
 use crate::stability;
 
 /// Options of `measure`.
@@ -68,10 +69,6 @@ pub struct Options {
     pub spawned: Option<u128>,
 }
 
-fn known(name: &str) -> Result<Method, String> {
-    Method::of_name(name).ok_or_else(|| format!("there is no method {name}"))
-}
-
 /// Runs and prints.
 ///
 /// # Errors
@@ -91,7 +88,11 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let results = match &args.what {
         What::Scene { scene, .. } => {
             let make = || {
-                let scene = Scene::read(scene).map_err(|e| e.to_string())?;
+                let mut scene = Scene::read(scene).map_err(|e| e.to_string())?;
+                // As `solve --tolerance` does: refinement to a tolerance starts from the coarsest mesh.
+                if let (Some(_), MeshSource::Geometry { size, .. }) = (options.tolerance, &mut scene.mesh) {
+                    *size = None;
+                }
                 refined(Problem::load(scene).map_err(|e| e.to_string())?)
             };
             measure(make, &options.method, &settings, clock)

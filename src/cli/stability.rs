@@ -2,7 +2,7 @@
 
 use clap::value_parser;
 
-use super::chart::this_program;
+use super::chart::{known as known_method, this_program};
 use super::options::{RunOptions, positive};
 use super::progress::Progress;
 use super::{CliError, Exit};
@@ -22,6 +22,9 @@ pub struct Args {
     /// Only these regimes; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known)]
     pub regime: Vec<&'static Regime>,
+    /// Only these methods; may be repeated
+    #[arg(long, value_name = "NAME", value_parser = known_method)]
+    pub method: Vec<Method>,
     /// End a run after SECONDS
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub budget: Option<f64>,
@@ -50,7 +53,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let all = || REGIMES.iter().copied().flatten().collect();
     let what = Sweep {
         regimes: if args.regime.is_empty() { all() } else { args.regime.clone() },
-        methods: Method::ALL.to_vec(),
+        methods: Method::ALL.into_iter().filter(|m| args.method.is_empty() || args.method.contains(m)).collect(),
         reduced: args.reduced,
         workers: args.threads.map_or(processors, |n| n as usize),
         budget: args.budget.unwrap_or(if args.reduced { BUDGET_REDUCED } else { BUDGET }),

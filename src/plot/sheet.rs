@@ -166,7 +166,9 @@ fn legend(area: &Area<'_>, sheet: &Sheet, front: bool, level: Option<&str>) -> R
         row += ROW;
     }
     if let Some(level) = level {
-        area.draw(&PathElement::new(vec![(4, row), (44, row)], GREY.stroke_width(1)))?;
+        for x in (4..44).step_by(5) {
+            area.draw(&PathElement::new(vec![(x, row), (x + 2, row)], GREY.stroke_width(1)))?;
+        }
         area.draw(&text(level, (52, row - 6)))?;
         row += ROW;
     }

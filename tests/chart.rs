@@ -1,0 +1,168 @@
+//! `hypercircle chart`: what is saved, kept, marked and printed.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn chart(folder: &Path, options: &[&str]) -> Output {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml");
+    let output = Command::new(env!("CARGO_BIN_EXE_hypercircle"))
+        .arg("chart")
+        .arg(scene)
+        .args(options)
+        .arg("--out")
+        .arg(folder)
+        .output()
+        .expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    output
+}
+
+fn json(folder: &Path) -> Value {
+    let text = std::fs::read_to_string(folder.join("chart.json")).expect("chart.json is there");
+    serde_json::from_str(&text).expect("chart.json is JSON")
+}
+
+/// Records of a CSV text after RFC 4180.
+fn records(text: &str) -> Vec<Vec<String>> {
+    let (mut all, mut record, mut cell, mut quoted) = (Vec::new(), Vec::new(), String::new(), false);
+    let mut letters = text.chars().peekable();
+    while let Some(c) = letters.next() {
+        match (c, quoted) {
+            ('"', true) if letters.peek() == Some(&'"') => cell.push(letters.next().unwrap_or('"')),
+            ('"', _) => quoted = !quoted,
+            (',', false) => record.push(std::mem::take(&mut cell)),
+            ('\r', false) => {}
+            ('\n', false) => {
+                record.push(std::mem::take(&mut cell));
+                all.push(std::mem::take(&mut record));
+            }
+            (other, _) => cell.push(other),
+        }
+    }
+    assert!(!quoted && cell.is_empty() && record.is_empty(), "the file ends inside a record");
+    all
+}
+
+const QUICK: [&str; 8] = ["--reduced", "--method", "condensed", "--method", "adaptive", "--refine", "1", "--quiet"];
+
+#[test]
+fn errors_fall_bounds_hold_and_phases_add_up() {
+    let folder = tempfile::tempdir().expect("a folder");
+    chart(folder.path(), &QUICK);
+    let chart = json(folder.path());
+    let scene = &chart["scenes"][0];
+    let reference = &scene["reference"]["Ok"];
+    let [lower, upper] = ["lower", "upper"].map(|key| reference[key].as_f64().expect("a number"));
+    // The exact energy of this scene, from meshes ten times finer: between −1.79642 and −1.79640.
+    assert!(lower < -1.79640 && -1.79642 < upper, "{lower} … {upper}");
+    let runs = scene["runs"].as_array().expect("runs");
+    assert_eq!(runs.len(), 4);
+    for run in runs {
+        let plot = &run["plot"];
+        let number = |key: &str| plot[key].as_f64().unwrap_or_else(|| panic!("{key} of {run}"));
+        assert!(number("lower") <= upper && number("upper") >= lower);
+        assert!(number("true_error") <= number("guaranteed") * 1.001 + 1e-3);
+        assert!(number("peak_memory") > 1e6);
+        let whole = plot["whole"]["median"].as_f64().expect("seconds");
+        let phases = plot["phases"].as_array().expect("phases");
+        let sum: f64 = phases.iter().map(|p| p[1].as_f64().expect("seconds")).sum();
+        assert!((sum - whole).abs() < 0.02 * whole + 1e-3, "phases of {sum} s in a run of {whole} s");
+        assert!(plot["solve"]["median"].as_f64().expect("seconds") <= whole);
+    }
+    let guaranteed = |i: usize| runs[i]["plot"]["guaranteed"].as_f64().expect("a number");
+    assert!(guaranteed(1) < 0.6 * guaranteed(0));
+    for name in ["chart.html", "chart.csv", "figures/chart-two_blocks-error-whole.svg"] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("chart.html")).expect("readable");
+    assert!(!page.contains("<script") && !page.contains("src=\"http") && page.contains("<svg"));
+}
+
+#[test]
+fn the_table_is_well_formed_and_agrees_with_the_json() {
+    let folder = tempfile::tempdir().expect("a folder");
+    chart(folder.path(), &QUICK);
+    let text = std::fs::read_to_string(folder.path().join("chart.csv")).expect("readable");
+    let records = records(&text);
+    let width = records[0].len();
+    assert!(records.iter().all(|r| r.len() == width));
+    let column = |name: &str| records[0].iter().position(|c| c == name).unwrap_or_else(|| panic!("no column {name}"));
+    let chart = json(folder.path());
+    let runs = chart["scenes"][0]["runs"].as_array().expect("runs");
+    assert_eq!(records.len(), runs.len() + 1);
+    for (record, run) in records[1..].iter().zip(runs) {
+        assert_eq!(record[column("method")], run["method"].as_str().expect("a name"));
+        let value: f64 = record[column("lower")].parse().expect("a number");
+        assert_eq!(value, run["plot"]["lower"].as_f64().expect("a number"));
+    }
+}
+
+#[test]
+fn a_resumed_chart_makes_only_the_runs_that_are_missing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    chart(folder.path(), &QUICK);
+    let mut saved = json(folder.path());
+    let runs = saved["scenes"][0]["runs"].as_array_mut().expect("runs");
+    // A value that no run can have shows that this one was kept, and the last one is forgotten.
+    runs[0]["plot"]["whole"]["median"] = Value::from(12345.0);
+    let forgotten = runs.pop().expect("a run");
+    std::fs::write(folder.path().join("chart.json"), saved.to_string()).expect("writable");
+
+    let mut again = QUICK.to_vec();
+    again.push("--resume");
+    chart(folder.path(), &again);
+    let resumed = json(folder.path());
+    let runs = resumed["scenes"][0]["runs"].as_array().expect("runs");
+    assert_eq!(runs[0]["plot"]["whole"]["median"].as_f64(), Some(12345.0));
+    assert_eq!(runs.len(), 4);
+    assert_eq!(runs[3]["plot"]["lower"], forgotten["plot"]["lower"]);
+
+    chart(folder.path(), &QUICK);
+    assert_ne!(json(folder.path())["scenes"][0]["runs"][0]["plot"]["whole"]["median"].as_f64(), Some(12345.0));
+}
+
+#[test]
+fn a_file_that_is_no_chart_is_not_resumed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("chart.json"), "{\"schema_version\": 1}").expect("writable");
+    let output = Command::new(env!("CARGO_BIN_EXE_hypercircle"))
+        .args(["chart", "cases/two_blocks.toml", "--resume", "--out"])
+        .arg(folder.path())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--resume"));
+}
+
+#[test]
+fn a_method_over_the_budget_is_marked_and_its_finer_runs_skipped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    chart(folder.path(), &["--method", "uzawa", "--refine", "2", "--repeats", "1", "--budget", "0.002", "--quiet"]);
+    let chart = json(folder.path());
+    let runs = chart["scenes"][0]["runs"].as_array().expect("runs");
+    let kinds: Vec<&str> = runs.iter().filter_map(|r| r["status"]["kind"].as_str()).collect();
+    assert_eq!(kinds, ["over-budget", "skipped", "skipped"]);
+    let page = std::fs::read_to_string(folder.path().join("chart.html")).expect("readable");
+    assert!(page.contains("over the budget") && page.contains("skipped"));
+}
+
+#[test]
+fn the_fastest_choice_for_an_accuracy_is_printed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut options = QUICK.to_vec();
+    options.extend(["--for", "0.05"]);
+    let output = chart(folder.path(), &options);
+    let text = String::from_utf8(output.stdout).expect("text");
+    let line = text.lines().find(|l| l.contains("guaranteed error")).unwrap_or_else(|| panic!("{text}"));
+    assert!(line.starts_with("two_blocks: ") && (line.contains("--refine") || line.contains("--tolerance")));
+    let percent: f64 = line
+        .split("guaranteed error ")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .and_then(|number| number.parse().ok())
+        .unwrap_or_else(|| panic!("{line}"));
+    assert!(percent <= 5.0);
+}
