@@ -72,8 +72,8 @@ impl Method {
     /// What it is made of.
     pub fn family(self) -> Family {
         match self {
-            Method::Condensed => Family::Dual(Box::new(dual::Condensed)),
-            Method::Adaptive => Family::Adaptive(Box::new(dual::Condensed)),
+            Method::Condensed => Family::Dual(Box::new(dual::Condensed::default())),
+            Method::Adaptive => Family::Adaptive(Box::new(dual::Condensed::default())),
             Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
             Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
             Method::Uzawa => Family::Dual(Box::new(dual::Uzawa::default())),

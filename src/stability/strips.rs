@@ -86,7 +86,7 @@ mod tests {
         let known = row.known();
         let [energy, strain] = known.energy.expect("closed");
         let problem = row.model().problem().expect("valid");
-        let found = certify(problem, &Condensed, &Options::default()).expect("solvable");
+        let found = certify(problem, &Condensed::default(), &Options::default()).expect("solvable");
         let upper = found.bracket.free.expect("an upper bound").upper();
         assert!((found.bracket.complementary.lower() - energy).abs() < 1e-11 * strain);
         assert!((upper - energy).abs() < 1e-11 * strain, "{upper} for {energy}");

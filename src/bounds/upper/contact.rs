@@ -16,6 +16,20 @@ pub struct End {
     normal: [f64; 2],
     low: f64,
     high: f64,
+    give: [f64; 2],
+}
+
+/// How much of a jump each side of `pair` gives way: the softer one more, so that moving a stiff body by what a soft one
+/// needs costs no energy. The two add up to one.
+fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
+    let young = |e: Option<usize>| {
+        let triangle = e.and_then(|e| problem.mesh.edges[e].triangles[0]);
+        triangle.map(|t| problem.scene.bodies[problem.mesh.body[t]].young)
+    };
+    match [young(pair.edges[0]), young(pair.edges[1])] {
+        [Some(first), Some(second)] => [1.0 / (1.0 + first / second), 1.0 / (1.0 + second / first)],
+        _ => [1.0, 0.0],
+    }
 }
 
 /// Sweeps over all ends; ends that share no vertex are settled by the first.
@@ -42,14 +56,16 @@ pub fn restrict_vertices(
             }
             let own = holds[end.first].project(end.normal);
             let other = end.second.map_or([0.0; 2], |v| holds[v].project(end.normal));
-            let weight = dot(own, end.normal) + dot(other, end.normal);
-            if weight < 1e-12 {
+            let room = [dot(own, end.normal), dot(other, end.normal)];
+            if room[0] + room[1] < 1e-12 {
                 continue;
             }
-            let step = off / weight;
-            shift(&mut vertex[end.first], own, -step);
+            // A side that supports hold gives nothing; the other one then gives all.
+            let give = [0, 1].map(|i| if room[i] < 1e-12 { 0.0 } else { end.give[i] });
+            let step = off / (give[0] * room[0] + give[1] * room[1]);
+            shift(&mut vertex[end.first], own, -step * give[0]);
             if let Some(v) = end.second {
-                shift(&mut vertex[v], other, step);
+                shift(&mut vertex[v], other, step * give[1]);
             }
             moved |= off.abs() > tolerance;
         }
@@ -84,6 +100,7 @@ pub fn ends_below_gap(problem: &Problem) -> Vec<End> {
                 normal: pair.normal,
                 low: f64::NEG_INFINITY,
                 high: pair.gap[end],
+                give: give(problem, pair),
             })
         })
         .collect()
@@ -108,6 +125,7 @@ pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
                     normal: pair.normal,
                     low: pair.gap[end] + 1.5 * low,
                     high: pair.gap[end],
+                    give: give(problem, pair),
                 });
             }
         }
@@ -149,10 +167,11 @@ pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f
         if b1 <= 0.0 {
             continue;
         }
-        let share = if other.is_some() { 0.25 } else { 0.5 };
-        shift(&mut middle[own], pair.normal, -share * b1);
+        // b1 changes by twice the jump at the midpoint.
+        let [first, second] = give(problem, pair);
+        shift(&mut middle[own], pair.normal, -0.5 * first * b1);
         if let Some(e) = other {
-            shift(&mut middle[e], pair.normal, share * b1);
+            shift(&mut middle[e], pair.normal, 0.5 * second * b1);
         }
     }
 }
