@@ -259,7 +259,7 @@ fn outside_the_border_body_and_motion_are_named() {
     assert_eq!(cases().len(), 20);
     for case in cases() {
         for excess in [1e-6, 0.1] {
-            match certify(problem(&(case.scene)(excess)), &Condensed, &Options::default()) {
+            match certify(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default()) {
                 Err(StudyError::NoEquilibrium { sentence, work, motion, .. }) => {
                     assert!(work > 0.0, "{}", case.name);
                     assert!(motion.iter().flatten().any(|u| u.abs() > 0.5), "{}: a picture shows nothing", case.name);
@@ -289,7 +289,7 @@ fn inside_the_border_every_scene_is_solved() {
     for case in cases() {
         for excess in [-1e-3, -0.1] {
             let goal = Goal { max_triangles: Some(1000), ..Goal::new(1e6) };
-            let adapted = adapt(problem(&(case.scene)(excess)), &Condensed, &Options::default(), &goal, |_| ());
+            let adapted = adapt(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default(), &goal, |_| ());
             let certified = adapted.unwrap_or_else(|e| panic!("{} by {excess}: {e}", case.name)).certified;
             let residual = certified.dual.equilibrium.residual();
             assert!(residual < 1e-9, "{} by {excess}: {residual:.1e}", case.name);
@@ -306,7 +306,7 @@ fn a_block_that_may_slide_is_solved_and_said_to_slide() {
         .polygon("block", &square(0.0, 0.0, 2.0, 1.0), ["foot", "", "load", ""])
         .traction("load", [0.0, -1.0])
         .rigid("foot");
-    let certified = certify(problem(&slab), &Condensed, &Options::default()).expect("solves");
+    let certified = certify(problem(&slab), &Condensed::default(), &Options::default()).expect("solves");
     // Uniaxial stress −1 in plane strain: ½ (1 − ν²)/E times the area.
     let exact = -0.5 * (1.0 - 0.09) * 2.0;
     assert!((certified.bracket.complementary.lower() - exact).abs() < 1e-12);
@@ -315,6 +315,6 @@ fn a_block_that_may_slide_is_solved_and_said_to_slide() {
     assert!(notes.contains("`block`") && notes.contains("slide"), "{notes}");
     // Pushed sideways by the least force it does not stand.
     let pushed = slab.force("block", [1e-6, 0.0]);
-    let error = certify(problem(&pushed), &Condensed, &Options::default()).expect_err("slides away");
+    let error = certify(problem(&pushed), &Condensed::default(), &Options::default()).expect_err("slides away");
     assert!(error.to_string().contains("slides"), "{error}");
 }
