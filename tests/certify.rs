@@ -107,6 +107,18 @@ fn the_exact_field_closes_the_bracket_in_any_numbering() {
 }
 
 #[test]
+fn the_files_of_dolfinx_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let problem = load(folder.path(), PRESSED);
+    for cells in [Cells::Linear, Cells::Quadratic] {
+        let field = FieldFile::new(&problem, cells, |_, p| exact(p)).reversed();
+        std::fs::write(folder.path().join("u.vtu"), field.vtu()).expect("writable");
+        let output = certify(folder.path(), &["--displacement", "u.vtu"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
 fn a_field_of_the_wrong_size_is_measured_exactly() {
     let folder = tempfile::tempdir().expect("a folder");
     let problem = load(folder.path(), PRESSED);

@@ -135,4 +135,29 @@ impl FieldFile {
         let _ = writeln!(text, "POINT_DATA {}\nVECTORS displacement double", self.points.len());
         text + &self.rows()
     }
+
+    /// The file as DOLFINx writes it: VTU of version 2.2 with Lagrange triangles.
+    pub fn vtu(&self) -> String {
+        let row = |text: &[String]| text.join(" ");
+        let points: Vec<String> = self.points.iter().map(|[x, y]| format!("{x:?} {y:?} 0")).collect();
+        let values: Vec<String> = self.values.iter().map(|[x, y]| format!("{x:?} {y:?} 0")).collect();
+        let nodes: Vec<String> = self.cells.iter().flatten().map(usize::to_string).collect();
+        let offsets: Vec<String> = (1..=self.cells.len()).map(|k| (k * self.cells[0].len()).to_string()).collect();
+        let array = |kind: &str, name: &str, width: usize, text: &[String]| {
+            let width = if width > 1 { format!(" NumberOfComponents=\"{width}\"") } else { String::new() };
+            format!("<DataArray type=\"{kind}\" Name=\"{name}\" format=\"ascii\"{width}>{}</DataArray>\n", row(text))
+        };
+        format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"2.2\">\n<UnstructuredGrid>\n\
+             <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>{}</Points>\n<Cells>{}{}{}</Cells>\n\
+             <PointData>{}</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
+            points.len(),
+            self.cells.len(),
+            array("Float64", "Points", 3, &points),
+            array("Int32", "connectivity", 1, &nodes),
+            array("Int32", "offsets", 1, &offsets),
+            array("Int8", "types", 1, &vec!["69".to_string(); self.cells.len()]),
+            array("Float64", "u", 3, &values),
+        )
+    }
 }

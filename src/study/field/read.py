@@ -4,6 +4,7 @@ import contextlib
 import io
 import json
 import math
+import re
 import sys
 
 try:
@@ -15,18 +16,41 @@ except ImportError as error:
 source, target = sys.argv[1:]
 
 
+def readable():
+    """The file to read: meshio refuses VTU of version 2, which newer VTK writes and which differs in nothing it needs."""
+    if not source.lower().endswith(".vtu"):
+        return source
+    with open(source, "rb") as file:
+        content = file.read()
+    head, rest = content[:500], content[500:]
+    older = re.sub(rb'(<VTKFile[^>]*\bversion=)"2\.\d+"', rb'\1"1.0"', head)
+    if older == head:
+        return source
+    copy = target + ".vtu"
+    with open(copy, "wb") as file:
+        file.write(older + rest)
+    return copy
+
+
 def read():
     """Points, cell blocks and point data; of a time series the last step."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            mesh = meshio.read(source)
+            mesh = meshio.read(readable())
         return mesh.points, mesh.cells, mesh.point_data
+    except ModuleNotFoundError as error:
+        sys.exit(f"the Python package {error.name} is missing")
     except (Exception, SystemExit) as error:
         if source.lower().endswith((".xdmf", ".xmf")):
-            with contextlib.suppress(Exception), meshio.xdmf.TimeSeriesReader(source) as series:
-                points, cells = series.read_points_cells()
-                return points, cells, series.read_data(series.num_steps - 1)[1]
+            try:
+                with meshio.xdmf.TimeSeriesReader(source) as series:
+                    points, cells = series.read_points_cells()
+                    return points, cells, series.read_data(series.num_steps - 1)[1]
+            except ModuleNotFoundError as missing:
+                sys.exit(f"the Python package {missing.name} is missing")
+            except Exception:
+                pass
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
 
