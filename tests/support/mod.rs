@@ -1,6 +1,8 @@
 //! Scenes that several tests share, built without the mesher of the library.
 #![allow(dead_code)]
 
+pub mod double_double;
+pub mod random;
 pub mod toml;
 
 use std::path::PathBuf;

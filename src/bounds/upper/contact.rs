@@ -35,16 +35,27 @@ fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 /// Sweeps over all ends; ends that share no vertex are settled by the first.
 const MOST_SWEEPS: usize = 200;
 
-/// Moves vertex values so that every vertex jump lies within its bounds.
+/// Moves vertex values so that no vertex jump exceeds the gap.
 ///
 /// # Errors
 /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for that.
-pub fn restrict_vertices(
-    problem: &Problem,
-    ends: &[End],
-    holds: &[Hold],
-    vertex: &mut [[f64; 2]],
-) -> Result<(), NoUpperBound> {
+pub fn restrict_vertices(problem: &Problem, holds: &[Hold], vertex: &mut [[f64; 2]]) -> Result<(), NoUpperBound> {
+    let ends = ends_below_gap(problem);
+    draw(&ends, holds, vertex);
+    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    for end in &ends {
+        let by = excess(end, vertex);
+        if by > 1e-12 * size {
+            let [x, y] = problem.mesh.points[end.first];
+            return Err(NoUpperBound::ForcedPenetration { x, y, by });
+        }
+    }
+    Ok(())
+}
+
+/// Moves vertex values so that vertex jumps lie within the bounds of `ends`, as far as these do not contradict each
+/// other: the normals of two short edges in line differ by rounding, and so does what they demand of a sliding vertex.
+pub fn draw(ends: &[End], holds: &[Hold], vertex: &mut [[f64; 2]]) {
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let tolerance = 1e-13 * size;
     for _ in 0..MOST_SWEEPS {
@@ -73,14 +84,6 @@ pub fn restrict_vertices(
             break;
         }
     }
-    for end in ends {
-        let by = excess(end, vertex);
-        if by > tolerance.max(1e-12 * size) {
-            let [x, y] = problem.mesh.points[end.first];
-            return Err(NoUpperBound::ForcedPenetration { x, y, by });
-        }
-    }
-    Ok(())
 }
 
 /// By how much the jump is above (positive) or below (negative) its bounds.
@@ -90,7 +93,7 @@ fn excess(end: &End, vertex: &[[f64; 2]]) -> f64 {
 }
 
 /// Both ends of all pairs, bounded by the gap alone.
-pub fn ends_below_gap(problem: &Problem) -> Vec<End> {
+fn ends_below_gap(problem: &Problem) -> Vec<End> {
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs
         .flat_map(|pair| {

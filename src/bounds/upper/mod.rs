@@ -56,7 +56,8 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
     for (value, hold) in vertex.iter_mut().zip(&holds) {
         *value = hold.impose(*value);
     }
-    contact::restrict_vertices(problem, &contact::ends_near(problem, dual), &holds, &mut vertex)?;
+    contact::draw(&contact::ends_near(problem, dual), &holds, &mut vertex);
+    contact::restrict_vertices(problem, &holds, &mut vertex)?;
     let mut middle: Vec<[f64; 2]> = (0..mesh.edges.len())
         .map(|e| {
             if let Condition::Clamped(u0) = problem.conditions[e] {
@@ -75,6 +76,7 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
         .collect();
     contact::restrict_middles(problem, &vertex, &mut middle);
     relax::relax(problem, &holds, &mut vertex, &mut middle);
+    contact::restrict_vertices(problem, &holds, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok(interior::fill(problem, &vertex, &middle))
 }
@@ -125,7 +127,7 @@ pub fn repaired(
             _ => {}
         }
     }
-    contact::restrict_vertices(problem, &contact::ends_below_gap(problem), &holds, &mut vertex)?;
+    contact::restrict_vertices(problem, &holds, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok((Displacement::from_p2(mesh, &vertex, &middle), violation))
 }

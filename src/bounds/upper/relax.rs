@@ -36,8 +36,11 @@ impl Freedoms {
                 (Facing::None, Hold::Line { normal, .. }) => freedoms.add([v, v], turned(*normal)),
                 (Facing::None, Hold::Fixed(_)) => {}
                 (Facing::Rigid(normal), Hold::Free) => freedoms.add([v, v], turned(*normal)),
-                (Facing::Vertex(other, normal), Hold::Free) if v < *other && holds[*other] == Hold::Free => {
-                    freedoms.across(v, *other, *normal);
+                (Facing::Vertex(other, normal), Hold::Free) => {
+                    let mutual = matches!(opposite[*other], Facing::Vertex(back, _) if back == v);
+                    if v < *other && mutual && holds[*other] == Hold::Free {
+                        freedoms.across(v, *other, *normal);
+                    }
                 }
                 // Where a contact meets a support, another contact or a corner of its own, nothing moves.
                 _ => {}
@@ -98,7 +101,8 @@ enum Facing {
 }
 
 fn opposite(problem: &Problem) -> Vec<Facing> {
-    const SAME: f64 = 1e-12;
+    // Normals of short edges in line differ by rounding.
+    const SAME: f64 = 1e-9;
     let mut facing = vec![Facing::None; problem.mesh.points.len()];
     let mut meet = |v: usize, found: Facing| {
         let same = |n: [f64; 2], m: [f64; 2]| (n[0] - m[0]).hypot(n[1] - m[1]) < SAME;

@@ -1,0 +1,122 @@
+//! How much larger the guaranteed error is than the true one, on random scenes.
+//!
+//! The error of λ_h is measured in energy: d = 𝓛(u) + Π(λ_h) = ½‖τ(u) − λ_h‖²_a + ∫ (−T_n(λ_h)) (g − u_n' − u_n'') ds,
+//! and the bound claims d ≤ gap. The effectivity is √(gap/d). 𝓛(u) is enclosed by a far finer mesh, hence d as well:
+//! the guarantee holds when the gap is at least the smallest d that the enclosure allows.
+//!
+//! Forty scenes; set `HYPERCIRCLE_SCENES` for another number.
+
+mod support;
+
+use hypercircle::dual::{Condensed, Options};
+use hypercircle::problem::Problem;
+use hypercircle::scene::Scene;
+use hypercircle::study::{Certified, Goal, StudyError, adapt};
+use support::random::Random;
+use support::toml::Toml;
+
+/// Two or three convex bodies on top of each other, each resting on the slanted edge of the one below.
+fn scene(random: &mut Random) -> Toml {
+    let bodies = 2 + random.below(2);
+    let mut toml = Toml::default();
+    let (mut left, mut right) = ([0.0, 0.0], [random.between(1.0, 2.0), 0.0]);
+    for k in 0..bodies {
+        let name = ["base", "middle", "top"][k];
+        let side = |which: &str| format!("{name}_{which}");
+        let (foot, east, head, west) = (side("foot"), side("east"), side("head"), side("west"));
+        let height = random.between(0.5, 1.5);
+        let lean = random.between(-0.2, 0.2);
+        let slant = random.between(-0.15, 0.15);
+        let p = [right[0] + lean + random.between(-0.2, 0.1), right[1] + height + slant];
+        let q = [left[0] + lean + random.between(-0.1, 0.2), left[1] + height];
+        let last = k + 1 == bodies;
+        let head_load = format!(
+            "value = [{:?}, {:?}]\ngradient = [[{:?}, 0.0], [{:?}, 0.0]]",
+            random.between(-0.3, 0.3),
+            -random.between(0.5, 2.0),
+            random.between(-0.2, 0.2),
+            random.between(-1.0, 1.0)
+        );
+        toml = if last && random.below(3) == 0 {
+            // A triangle, loaded on its right side.
+            toml.polygon(name, &[left, right, q], [&foot, &head, &west])
+        } else {
+            toml.polygon(name, &[left, right, p, q], [&foot, &east, &head, &west])
+        };
+        let poisson = [random.between(0.0, 0.45), 0.4999][usize::from(random.below(5) == 0)];
+        let young = 10f64.powf(random.between(-1.0, 1.0));
+        toml = toml.material(name, young, poisson).force(name, [0.0, -random.between(0.0, 0.5)]);
+        if k == 0 {
+            toml = toml.clamp(&foot);
+        } else {
+            let gap = match random.below(3) {
+                0 => random.between(0.0, 0.02).to_string(),
+                1 => format!(
+                    "[[0.0, {:?}], [0.4, 0.0], [9.0, {:?}]]",
+                    random.between(0.0, 0.1),
+                    random.between(0.0, 0.9)
+                ),
+                _ => "0.0".to_string(),
+            };
+            let below = ["base_head", "middle_head"][k - 1];
+            toml = toml.table(&format!("[[contacts]]\nbetween = [\"{below}\", \"{foot}\"]\ngap = {gap}"));
+            toml = match random.below(3) {
+                0 => toml.roller(&west),
+                1 => toml.table(&format!("[[contacts]]\non = \"{west}\"\ngap = {:?}", random.between(0.0, 0.01))),
+                _ => toml.clamp(&west),
+            };
+        }
+        if last {
+            toml = toml.table(&format!("[[tractions]]\non = \"{head}\"\n{head_load}"));
+        }
+        (left, right) = (q, p);
+    }
+    toml
+}
+
+fn upper(certified: &Certified) -> f64 {
+    certified.bracket.free.as_ref().expect("an upper bound").upper()
+}
+
+#[test]
+fn the_bound_is_never_below_the_error_and_seldom_far_above() {
+    let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(40, |n| n.parse().expect("a number of scenes"));
+    let mut random = Random::new(1981);
+    let (mut found, mut infeasible) = (Vec::new(), 0);
+    while found.len() < wanted {
+        let toml = scene(&mut random);
+        let coarse_bound = random.between(0.02, 0.2);
+        let text = toml.text();
+        let scene = Scene::parse(&text, "random.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let problem = Problem::load(scene).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let run = |problem: Problem, tolerance: f64| {
+            adapt(problem, &Condensed, &Options::default(), &Goal::new(tolerance), |_| ())
+        };
+        let coarse = match run(problem.clone(), coarse_bound) {
+            Ok(adapted) => adapted.certified,
+            Err(StudyError::NoEquilibrium { .. }) => {
+                infeasible += 1;
+                continue;
+            }
+            Err(error) => panic!("{error}\n{text}"),
+        };
+        let reached = coarse.bracket.relative_error(upper(&coarse));
+        let fine = run(problem, 0.08 * reached).unwrap_or_else(|e| panic!("{e}\n{text}")).certified;
+        let gap = upper(&coarse) - coarse.bracket.lower();
+        let [least, most] = [fine.bracket.lower(), upper(&fine)].map(|exact| exact - coarse.bracket.lower());
+        assert!(least <= gap, "the bound {gap:e} misses the error, which is at least {least:e}\n{text}");
+        assert!(fine.bracket.lower() <= upper(&coarse) && coarse.bracket.lower() <= upper(&fine), "{text}");
+        found.push((gap / (0.5 * (least.max(0.0) + most))).sqrt());
+    }
+    found.sort_by(f64::total_cmp);
+    let at = |part: f64| found[((found.len() - 1) as f64 * part).round() as usize];
+    println!(
+        "{wanted} scenes, {infeasible} more without equilibrium: effectivity from {:.2}, median {:.2}, nine tenths \
+         below {:.2}, up to {:.2}",
+        at(0.0),
+        at(0.5),
+        at(0.9),
+        at(1.0)
+    );
+    assert!(at(0.0) >= 1.0 && at(0.9) <= 3.0, "from {} to {}", at(0.0), at(0.9));
+}
