@@ -23,12 +23,12 @@ use crate::dual::DualSolution;
 use crate::element::{Displacement, StressField};
 use crate::problem::Problem;
 
-/// Relative errors that the evaluation of one term can pick up: fewer than a hundred operations, each with an error of
-/// at most half a unit.
-const ROUNDING_PER_TERM: f64 = 64.0 * f64::EPSILON;
+/// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
+/// error of at most half a unit.
+const ROUNDING_PER_TERM: f64 = 16.0 * f64::EPSILON;
 
 /// Relative error of a nodal stress in the balance of its triangle, or of a displacement in a support or contact.
-const ROUNDING_PER_VALUE: f64 = 16.0 * f64::EPSILON;
+const ROUNDING_PER_VALUE: f64 = 8.0 * f64::EPSILON;
 
 /// Lower bound, free upper bound, and the gap between them in local terms.
 #[derive(Debug, Clone)]

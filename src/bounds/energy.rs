@@ -8,7 +8,7 @@
 
 use rayon::prelude::*;
 
-use super::strain::{spread, strains, sub_area};
+use super::strain::{spreads, strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::edge_traction;
 use crate::dual::modes::materials;
@@ -135,8 +135,7 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
             for sub in 0..3 {
                 let area = sub_area(corners);
                 let u = v.sub(t, sub);
-                let spread = spread(corners, sub, &u);
-                for e in strains(corners, sub, &u) {
+                for (e, spread) in strains(corners, sub, &u).into_iter().zip(spreads(corners, sub, &u)) {
                     strain += 0.5 * area / 3.0 * materials[body].strain_product(e, e);
                     sensitivity += area / 3.0 * absolute(materials[body].stress(e)) * spread;
                 }

@@ -55,12 +55,15 @@ pub fn strains(corners: [[f64; 2]; 3], sub: usize, u: &[[f64; 2]; 6]) -> [[f64; 
     })
 }
 
-/// A bound on the sum of the absolute values of all products that [`strains`] adds up, at any midpoint: shape function
-/// gradients there are at most four times those of the barycentric coordinates.
-pub fn spread(corners: [[f64; 2]; 3], sub: usize, u: &[[f64; 2]; 6]) -> f64 {
-    let steepest = gradients(sub_corners(corners, sub)).iter().map(|g| g[0].abs() + g[1].abs()).fold(0.0, f64::max);
-    let off: f64 = u[1..].iter().map(|v| (v[0] - u[0][0]).abs() + (v[1] - u[0][1]).abs()).sum();
-    4.0 * steepest * off
+/// The sums of the absolute values of all products that [`strains`] adds up, at the three midpoints.
+pub fn spreads(corners: [[f64; 2]; 3], sub: usize, u: &[[f64; 2]; 6]) -> [f64; 3] {
+    let g = gradients(sub_corners(corners, sub));
+    [0, 1, 2].map(|at| {
+        let term = |(d, v): (&[f64; 2], &[f64; 2])| {
+            (d[0].abs() + d[1].abs()) * ((v[0] - u[0][0]).abs() + (v[1] - u[0][1]).abs())
+        };
+        shape_gradients(&g, at).iter().zip(u).skip(1).map(term).sum()
+    })
 }
 
 #[cfg(test)]
