@@ -96,7 +96,11 @@ impl Bracket {
 
     /// √(gap / 𝒮(λ_h)) for an upper bound `upper`.
     pub fn relative_error(&self, upper: f64) -> f64 {
-        ((upper - self.lower()).max(0.0) / self.complementary.strain).sqrt()
+        match (upper - self.lower()).max(0.0) {
+            // Without loads there is no energy to be relative to, and no error.
+            0.0 => 0.0,
+            gap => (gap / self.complementary.strain).sqrt(),
+        }
     }
 }
 

@@ -242,6 +242,10 @@ fn hash(path: &Path) -> Result<String, CampaignError> {
 pub(super) fn words(end: &End) -> &str {
     match end {
         End::Solved => "solved",
-        End::NoEquilibrium(text) | End::Refused(text) | End::NotConverged(text) | End::NotApplicable(text) => text,
+        End::NoEquilibrium(text)
+        | End::Refused(text)
+        | End::NotConverged(text)
+        | End::NotApplicable(text)
+        | End::Crashed(text) => text,
     }
 }

@@ -14,7 +14,8 @@ pub fn judge(repeats: &[Measured], reference: Option<&Reference>) -> Result<Plot
             End::NoEquilibrium(reason)
             | End::Refused(reason)
             | End::NotConverged(reason)
-            | End::NotApplicable(reason) => return Err(reason.clone()),
+            | End::NotApplicable(reason)
+            | End::Crashed(reason) => return Err(reason.clone()),
         }
     }
     let all = |value: fn(&Measured) -> f64| Spread::of(&repeats.iter().map(value).collect::<Vec<_>>());

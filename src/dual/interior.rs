@@ -162,8 +162,11 @@ impl ConicProgram {
         // Stresses are of the size of the loads, or of the prescribed displacements where there are none. A wide gap
         // makes q large at ends that never close and says nothing about the stresses.
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let size = [largest(&b), largest(&q)].into_iter().find(|&s| s > 0.0).unwrap_or(1.0);
-        q.iter_mut().chain(&mut b).for_each(|v| *v /= size);
+        let size = [largest(&b), largest(&q)].into_iter().find(|&s| s > 0.0).unwrap_or(0.0);
+        // Without any data the size stays zero, and makes the solution exactly that.
+        if size > 0.0 {
+            q.iter_mut().chain(&mut b).for_each(|v| *v /= size);
+        }
 
         let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
         for column in &mut entries {

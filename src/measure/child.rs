@@ -67,6 +67,9 @@ pub fn run(program: &Path, arguments: &[OsString], limits: Limits<'_>) -> std::i
     {
         return Ok(Ended::Told(results));
     }
+    if status.success() {
+        return Ok(Ended::Crashed("it printed results that are not numbers".to_string()));
+    }
     let complaint = String::from_utf8_lossy(&received(&err)).trim().to_string();
     Ok(Ended::Crashed(match complaint.is_empty() {
         true => status.to_string(),

@@ -96,11 +96,11 @@ fn failure(error: PrimalError) -> End {
         // The package gives one line for everything it noticed itself; anything else is a crash of the interpreter.
         PrimalError::Failed { ref log, .. } => {
             match log.lines().rev().find_map(|l| l.strip_prefix("hypercircle-reference: ")) {
-                Some(line) if line.contains("converge") || line.contains("iteration") => {
+                Some(line) if line.contains("converge") || line.contains("stopped with reason") => {
                     End::NotConverged(line.to_string())
                 }
                 Some(line) => End::Refused(line.to_string()),
-                None => End::Refused(text),
+                None => End::Crashed(log.lines().last().unwrap_or(&text).to_string()),
             }
         }
         _ => End::Refused(text),

@@ -31,6 +31,8 @@ pub enum End {
     NotConverged(String),
     /// The method has nothing to do with the question.
     NotApplicable(String),
+    /// A program that the method runs died.
+    Crashed(String),
 }
 
 /// Wall-clock seconds of one run.

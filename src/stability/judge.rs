@@ -51,6 +51,7 @@ pub fn judge(method: Method, ended: &Ended, claim: &Claim<'_>) -> Step {
     match (end, answer) {
         (End::Solved, Some(answer)) => solved(method, answer, claim),
         (End::Solved, None) => without(Outcome::Crash, "solved, but without numbers"),
+        (End::Crashed(why), _) => without(Outcome::Crash, why),
         (End::NotApplicable(why), _) => without(Outcome::NotApplicable, why),
         (End::NoEquilibrium(why), _) if !claim.known.solvable => without(Outcome::Correct, why),
         (End::NoEquilibrium(why), _) => without(Outcome::Wrong, &format!("denies an equilibrium that exists: {why}")),

@@ -8,6 +8,9 @@ use crate::problem::Problem;
 /// a triangle of size h, ½∫ a(λ − τ):(λ − τ) is of order h⁴ · h².
 const DECAY: i32 = 3;
 
+/// Terms whose relative difference is smaller count as equal.
+const EQUAL: f64 = 1e-7;
+
 /// One non-negative number per triangle; together they are the gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indicators {
@@ -45,6 +48,13 @@ impl Indicators {
         let mut count = 0;
         while count < order.len() && (sum < wanted || count == 0) {
             sum += self.terms[order[count]];
+            count += 1;
+        }
+        // Halves of one triangle have equal predictions: which of them is marked must not hang on round-off.
+        while count > 0
+            && count < order.len()
+            && self.terms[order[count]] >= (1.0 - EQUAL) * self.terms[order[count - 1]]
+        {
             count += 1;
         }
         order.truncate(count);

@@ -34,6 +34,8 @@ fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 
 /// Sweeps over all ends; ends that share no vertex are settled by the first.
 const MOST_SWEEPS: usize = 200;
+/// How far inside a bound a jump is moved, relative to the size of the displacement.
+const MARGIN: f64 = 1e-11;
 
 /// Moves vertex values so that no vertex jump exceeds the gap.
 ///
@@ -61,9 +63,13 @@ pub fn draw(ends: &[End], holds: &[Hold], vertex: &mut [[f64; 2]]) {
     for _ in 0..MOST_SWEEPS {
         let mut moved = false;
         for end in ends {
-            let off = excess(end, vertex);
+            let mut off = excess(end, vertex);
             if off == 0.0 {
                 continue;
+            }
+            // A little beyond the bound: where a vertex lies on sides of different directions the sweeps only approach it.
+            if off > 0.0 {
+                off += MARGIN * size.min((end.high - end.low) / MARGIN);
             }
             let own = holds[end.first].project(end.normal);
             let other = end.second.map_or([0.0; 2], |v| holds[v].project(end.normal));

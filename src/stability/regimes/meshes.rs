@@ -79,7 +79,7 @@ fn corner(size: f64) -> Result<Problem, String> {
 }
 
 fn slit(shear: f64) -> Result<Problem, String> {
-    let mut model = Model::new().body("plate", 1.0, 0.3).clamp("bottom");
+    let mut model = Model::new().body("lower", 1.0, 0.3).body("upper", 1.0, 0.3).clamp("bottom");
     model.scene.tractions.push(crate::scene::Traction {
         on: "top".into(),
         load: crate::scene::Load::Affine { value: [shear, -1.0], gradient: [[0.0; 2]; 2] },
@@ -87,12 +87,12 @@ fn slit(shear: f64) -> Result<Problem, String> {
     model.contact("slit_lower", "slit_upper", crate::scene::Gap::Constant(0.0)).polygons(
         vec![
             polygon(
-                "plate",
+                "lower",
                 &[[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.0, 0.5]],
                 &["bottom", "", "", "slit_lower", ""],
             ),
             polygon(
-                "plate",
+                "upper",
                 &[[0.0, 0.5], [0.5, 0.5], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]],
                 &["slit_upper", "", "", "top", ""],
             ),
@@ -154,7 +154,7 @@ pub(super) const REGIMES: &[Regime] = &[
         title: "Inner vertices moved at random",
         parameter: "largest shift over the mesh size",
         reported: "firedrake #4971",
-        values: &[0.0, 0.1, 0.2, 0.3, 0.4, 0.45],
+        values: &[0.0, 0.05, 0.1, 0.15, 0.2, 0.24],
         reduced: &[0, 4],
         build: distorted,
         known: |_| lift_known(),
@@ -222,11 +222,11 @@ pub(super) const REGIMES: &[Regime] = &[
     },
     Regime {
         id: "refinement",
-        title: "From two triangles a body to many",
+        title: "From many triangles a body to two",
         parameter: "squares per side of a block",
         reported: "README of Kratos' Hertz example",
-        values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0],
-        reduced: &[0, 2, 4],
+        values: &[8.0, 16.0, 32.0, 64.0, 4.0, 2.0, 1.0],
+        reduced: &[0, 1, 4, 6],
         build: |n| Lift::new(n as usize).model().problem(),
         known: |_| lift_known(),
         ..PLAIN
@@ -237,8 +237,8 @@ pub(super) const REGIMES: &[Regime] = &[
         parameter: "squares per side of a block",
         reported: "MOOSE #17279, #6488; README of Kratos' Hertz example",
         truth: CLOSED,
-        values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0],
-        reduced: &[0, 3],
+        values: &[8.0, 16.0, 32.0, 4.0, 2.0, 1.0],
+        reduced: &[0, 1, 5],
         build: |n| unequal_row(n).model().problem(),
         known: |n| unequal_row(n).known(),
         ..PLAIN
@@ -259,8 +259,8 @@ pub(super) const REGIMES: &[Regime] = &[
         id: "corner",
         title: "Re-entrant corner on a rigid plane",
         parameter: "mesh size",
-        values: &[1.0, 0.5, 0.25, 0.125, 0.0625],
-        reduced: &[0, 2],
+        values: &[0.25, 0.125, 0.0625, 0.5, 1.0],
+        reduced: &[0, 1, 4],
         build: corner,
         known: |_| Known::forces(vec![[0.0, 1.0]], 1.0),
         ..PLAIN
