@@ -289,7 +289,8 @@ fn inside_the_border_every_scene_is_solved() {
     for case in cases() {
         for excess in [-1e-3, -0.1] {
             let goal = Goal { max_triangles: Some(1000), ..Goal::new(1e6) };
-            let adapted = adapt(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default(), &goal, |_| ());
+            let adapted =
+                adapt(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default(), &goal, |_| ());
             let certified = adapted.unwrap_or_else(|e| panic!("{} by {excess}: {e}", case.name)).certified;
             let residual = certified.dual.equilibrium.residual();
             assert!(residual < 1e-9, "{} by {excess}: {residual:.1e}", case.name);

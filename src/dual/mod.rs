@@ -15,6 +15,8 @@ mod method;
 pub mod modes;
 pub mod paper;
 pub mod qp;
+mod reduced;
+mod refinement;
 mod system;
 mod unknowns;
 pub mod yardstick;

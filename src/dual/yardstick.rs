@@ -7,8 +7,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
 
-use super::condensed::make_definite;
 use super::hybrid::{Motion, held_unknowns};
+use super::reduced::make_definite;
 use super::system::System;
 use super::{DualError, Options};
 use crate::problem::Problem;
