@@ -95,13 +95,13 @@ fn stretched_triangles() {
     }
 }
 
-/// A cantilever with a free end in contact: here it is the slender body that is badly conditioned, by the square of its
-/// slenderness, and only conjugate directions bring the residual down.
+/// A cantilever whose free end is in contact. Here the body is badly conditioned and not its triangles: the round-off of
+/// a traction acts on the long sides, the load on the short ones.
 #[test]
 fn slender_cantilever() {
-    for stretch in [1e2, 1e3] {
-        let rod = blocks([(1.0, 0.3); 2], [12, 12], |_| [1.0, 0.0]).map(|p| [p[0], p[1] / stretch]).build();
-        equilibrated(&format!("slender by {stretch:e}"), &rod);
+    for slenderness in [1e2, 3e2] {
+        let rod = blocks([(1.0, 0.3); 2], [12, 12], |_| [1.0, 0.0]).map(|p| [p[0], p[1] / slenderness]).build();
+        equilibrated(&format!("slender by {slenderness:e}"), &rod);
     }
 }
 

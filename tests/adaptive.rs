@@ -33,7 +33,8 @@ fn blocks(nu: f64, load: &str) -> Toml {
 const LIFT_OFF: &str = "value = [4.0, 0.0]\ngradient = [[0.0, -7.0], [0.0, 0.0]]";
 
 fn run(problem: Problem, tolerance: f64) -> Adapted {
-    let adapted = adapt(problem, &Condensed, &Options::default(), &Goal::new(tolerance), |_| ()).expect("solves");
+    let adapted =
+        adapt(problem, &Condensed::default(), &Options::default(), &Goal::new(tolerance), |_| ()).expect("solves");
     for row in &adapted.history {
         println!("{:6} {:7} {:.3e} {:?}", row.triangles, row.unknowns, row.relative_error_bound, row.rate);
     }
@@ -78,7 +79,7 @@ fn uniform_refinement_is_slower() {
     let adaptive = run(problem(&blocks(0.3, LIFT_OFF)), 3e-3);
     let uniform = problem(&blocks(0.3, LIFT_OFF)).refine_uniform(5).expect("refines");
     assert!(uniform.mesh.triangles.len() > triangles(&adaptive));
-    let uniform = certify(uniform, &Condensed, &Options::default()).expect("solves");
+    let uniform = certify(uniform, &Condensed::default(), &Options::default()).expect("solves");
     let bound = uniform.bracket.relative_error(uniform.bracket.free.as_ref().expect("an upper bound").upper());
     assert!(bound > 3e-3, "{bound}");
 }
@@ -101,7 +102,7 @@ fn wholly_closed_contact_and_no_contact_take_one_step() {
     let adapted = run(closed.clone(), 1e-2);
     assert_eq!(adapted.certified.dual.iterations, 1);
     assert!(adapted.certified.dual.closed.iter().all(|c| *c));
-    assert_eq!(certify(closed, &Condensed, &Options::default()).expect("solves").dual.iterations, 1);
+    assert_eq!(certify(closed, &Condensed::default(), &Options::default()).expect("solves").dual.iterations, 1);
     let alone = Toml::default()
         .polygon("plate", &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["", "load", "", "wall"])
         .clamp("wall")
@@ -114,14 +115,14 @@ fn wholly_closed_contact_and_no_contact_take_one_step() {
 fn a_limit_is_said_with_the_bound_reached() {
     let scene = problem(&blocks(0.3, LIFT_OFF));
     let goal = Goal { max_triangles: Some(300), ..Goal::new(1e-3) };
-    let adapted = adapt(scene.clone(), &Condensed, &Options::default(), &goal, |_| ()).expect("solves");
+    let adapted = adapt(scene.clone(), &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
     assert!(triangles(&adapted) <= 300 && triangles(&adapted) > 100);
     let row = adapted.history.last().expect("one mesh");
     let said = adapted.stopped.expect("stopped");
     assert!(said.contains("more than 300 triangles"), "{said}");
     assert!(said.contains(&format!("{:.3} %", 100.0 * row.relative_error_bound)), "{said}");
     let goal = Goal { max_seconds: Some(1e-9), ..Goal::new(1e-3) };
-    let adapted = adapt(scene, &Condensed, &Options::default(), &goal, |_| ()).expect("solves");
+    let adapted = adapt(scene, &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
     assert_eq!(adapted.history.len(), 1);
     assert!(adapted.stopped.expect("stopped").contains("seconds"));
 }
@@ -131,7 +132,7 @@ fn a_limit_is_said_with_the_bound_reached() {
 fn the_first_guess_of_the_contact_state_does_not_change_the_answer() {
     let coarse = run(problem(&blocks(0.3, LIFT_OFF)), 5e-2).certified;
     let fine = run(problem(&blocks(0.3, LIFT_OFF)), 1e-2).certified.problem;
-    let cold = certify(fine.clone(), &Condensed, &Options::default()).expect("solves");
+    let cold = certify(fine.clone(), &Condensed::default(), &Options::default()).expect("solves");
     let from_coarse = closed_ends(&coarse.problem, &coarse.dual.closed, &fine);
     assert_eq!(from_coarse.len(), cold.dual.closed.len());
     let wrong = from_coarse.iter().zip(&cold.dual.closed).filter(|(a, b)| a != b).count();
@@ -140,7 +141,7 @@ fn the_first_guess_of_the_contact_state_does_not_change_the_answer() {
     let open = vec![false; from_coarse.len()];
     for guess in [from_coarse, opposite, open] {
         let warm = Options { closed: Some(guess), ..Options::default() };
-        let warm = certify(fine.clone(), &Condensed, &warm).expect("solves");
+        let warm = certify(fine.clone(), &Condensed::default(), &warm).expect("solves");
         assert_eq!(warm.dual.closed, cold.dual.closed);
         assert_eq!(warm.bracket.complementary, cold.bracket.complementary);
     }

@@ -90,7 +90,7 @@ fn the_bound_is_never_below_the_error_and_seldom_far_above() {
         let scene = Scene::parse(&text, "random.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let problem = Problem::load(scene).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let run = |problem: Problem, tolerance: f64| {
-            adapt(problem, &Condensed, &Options::default(), &Goal::new(tolerance), |_| ())
+            adapt(problem, &Condensed::default(), &Options::default(), &Goal::new(tolerance), |_| ())
         };
         let coarse = match run(problem.clone(), coarse_bound) {
             Ok(adapted) => adapted.certified,

@@ -119,7 +119,7 @@ fn upper(problem: &Problem, v: &hypercircle::element::Displacement) -> Dd {
 }
 
 fn solve(problem: &Problem) -> DualSolution {
-    dual::solve(&Condensed, problem, &[], &Options::default()).expect("solves")
+    dual::solve(&Condensed::default(), problem, &[], &Options::default()).expect("solves")
 }
 
 #[test]

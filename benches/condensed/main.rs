@@ -11,7 +11,6 @@ mod job;
 mod machine;
 mod table;
 
-#[allow(dead_code)]
 #[path = "../../tests/support/mod.rs"]
 mod support;
 

@@ -16,6 +16,9 @@ const ROUND_OFF: f64 = 2e-14;
 /// … or when they have not become smaller for this many steps.
 const PATIENCE: usize = 4;
 
+/// From a residual to a correction of the unknowns.
+pub type Correction<'a> = dyn Fn(&[f64]) -> Result<Vec<f64>, DualError> + 'a;
+
 /// What is refined, and with what.
 pub struct Refinement<'a> {
     /// The scene.
@@ -25,7 +28,7 @@ pub struct Refinement<'a> {
     /// Unknowns that stay as they are.
     pub fixed: &'a [bool],
     /// Approximate solution of Kd = r with the fixed unknowns at zero.
-    pub solve: &'a dyn Fn(&[f64]) -> Result<Vec<f64>, DualError>,
+    pub solve: &'a Correction<'a>,
     /// Limit of steps.
     pub most_steps: usize,
 }

@@ -141,7 +141,6 @@ const MOST_IN_PATCH: usize = 300;
 
 /// Lowers the energy of the admissible field with the values `vertex` and `middle`.
 pub fn relax(problem: &Problem, holds: &[Hold], vertex: &mut [[f64; 2]], middle: &mut [[f64; 2]]) {
-    let mesh = &problem.mesh;
     let elements = condensed(problem);
     let freedoms = Freedoms::new(problem, holds);
     let stars = Stars::new(problem);
