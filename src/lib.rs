@@ -17,7 +17,8 @@
 //! comes from the dual solution itself, from FEniCSx, or from the user.
 //!
 //! Data travel in the order of the modules: [`scene`] → [`mesh`] → [`problem`] → [`statics`] → [`element`] → [`dual`] →
-//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`study`], with [`cli`] as a thin door.
+//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`study`] → [`measure`] → [`chart`] and [`stability`], with [`cli`] as a
+//! thin door.
 //!
 //! ```
 //! use std::path::Path;
