@@ -106,13 +106,6 @@ fn the_bound_is_never_below_the_error_and_seldom_far_above() {
         let [least, most] = [fine.bracket.lower(), upper(&fine)].map(|exact| exact - coarse.bracket.lower());
         assert!(least <= gap, "the bound {gap:e} misses the error, which is at least {least:e}\n{text}");
         assert!(fine.bracket.lower() <= upper(&coarse) && coarse.bracket.lower() <= upper(&fine), "{text}");
-        if (gap / (0.5 * (least.max(0.0) + most))).sqrt() > 2.5 {
-            println!(
-                "{text}\n{} {} {gap} {least} {most} {reached}",
-                coarse.problem.mesh.triangles.len(),
-                fine.problem.mesh.triangles.len()
-            );
-        }
         found.push((gap / (0.5 * (least.max(0.0) + most))).sqrt());
     }
     found.sort_by(f64::total_cmp);
