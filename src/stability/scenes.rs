@@ -118,6 +118,17 @@ impl Model {
         self
     }
 
+    /// Lets bodies share the vertices that have equal places and pass `test`.
+    pub fn bonded(mut self, test: impl Fn([f64; 2]) -> bool) -> Self {
+        let points = &self.raw.points;
+        let twin: Vec<usize> = (0..points.len())
+            .map(|v| if test(points[v]) { points.iter().position(|p| *p == points[v]).unwrap_or(v) } else { v })
+            .collect();
+        self.raw.triangles.iter_mut().for_each(|(corners, _)| *corners = corners.map(|v| twin[v]));
+        self.raw.segments.iter_mut().for_each(|(ends, _)| *ends = ends.map(|v| twin[v]));
+        self
+    }
+
     /// The same mesh with vertices, triangles, corners and segments in random order; seed 0 changes nothing.
     pub fn shuffled(mut self, seed: u64) -> Self {
         if seed == 0 {

@@ -78,27 +78,24 @@ fn corner(size: f64) -> Result<Problem, String> {
     )
 }
 
+/// A square, cut from its left side to the middle.
 fn slit(shear: f64) -> Result<Problem, String> {
-    let mut model = Model::new().body("lower", 1.0, 0.3).body("upper", 1.0, 0.3).clamp("bottom");
+    let (xs, left) = (steps(0.0, 1.0, 8), |m: [f64; 2]| m[0] < 0.5);
+    let mut model = Model::new()
+        .block("lower", [1.0, 0.3], &xs, &steps(0.0, 0.5, 4))
+        .block("upper", [1.0, 0.3], &xs, &steps(0.5, 1.0, 4))
+        .bonded(|p| p[1] == 0.5 && p[0] >= 0.5)
+        .renamed("lower_top", "slit_lower", left)
+        .renamed("upper_bottom", "slit_upper", left)
+        .clamp("lower_bottom")
+        .contact("slit_lower", "slit_upper", crate::scene::Gap::Constant(0.0));
     model.scene.tractions.push(crate::scene::Traction {
-        on: "top".into(),
+        on: "upper_top".into(),
         load: crate::scene::Load::Affine { value: [shear, -1.0], gradient: [[0.0; 2]; 2] },
     });
-    model.contact("slit_lower", "slit_upper", crate::scene::Gap::Constant(0.0)).polygons(
-        vec![
-            polygon(
-                "lower",
-                &[[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.5, 0.5], [0.0, 0.5]],
-                &["bottom", "", "", "slit_lower", ""],
-            ),
-            polygon(
-                "upper",
-                &[[0.0, 0.5], [0.5, 0.5], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]],
-                &["slit_upper", "", "", "top", ""],
-            ),
-        ],
-        0.125,
-    )
+    // Names that bonded edges no longer need would only be remarked on.
+    model.raw.segments.retain(|(_, name)| name != "lower_top" && name != "upper_bottom");
+    model.problem()
 }
 
 fn curved(bend: f64) -> Result<Problem, String> {
