@@ -74,7 +74,9 @@ fn committed_rates_keep_what_the_theorems_promise() {
         let of = studies.iter().filter(|s| s.quantity == quantity && !s.solution.contains("root"));
         assert_eq!(of.clone().count(), 4);
         for study in of {
-            assert!(study.rate > 4.0 - RESOLUTION, "{study:?}");
+            // The free bound is better than its rate on the coarsest meshes: the finest three show the rate.
+            let finest: [Measured; 3] = *study.meshes.last_chunk().expect("three meshes");
+            assert!(fitted(&finest) > 4.0 - RESOLUTION, "{study:?}");
         }
     }
 }

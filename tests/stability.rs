@@ -151,7 +151,8 @@ fn the_own_methods_hold_where_they_promise_to() {
     let text = std::fs::read_to_string(folder.path().join("stability.json")).expect("written");
     let matrix: hypercircle::stability::Matrix = serde_json::from_str(&text).expect("readable");
     assert_eq!(matrix.rows.len(), promised.len());
-    let beyond = [("stiffness-exact", "1e12"), ("slivers-exact", "1e6")];
+    // Slivers under lift-off lose the sharpness of the bound, not the bound, between 1e4 and 1e5.
+    let beyond = [("stiffness-exact", "1e12"), ("slivers", "1e5"), ("slivers-exact", "1e6")];
     for row in &matrix.rows {
         for cell in &row.cells {
             for (value, step) in row.values.iter().zip(&cell.steps) {

@@ -2,12 +2,15 @@
 
 use crate::run::{Report, carries, close, sound, turns, with_reference};
 
-/// The bracket has closed on `energy`, and P2 has found it too.
+/// The bracket has closed on `energy` but for what it was widened by, and P2 has found it too.
 #[track_caller]
 fn closed_on(report: &Report, energy: f64) {
-    for bound in ["lower", "upper", "free_upper"] {
-        close(report.number(&format!("/energy/{bound}")), energy, 1e-12);
-    }
+    let [lower, upper, free, widening] =
+        ["lower", "upper", "free_upper", "widening"].map(|key| report.number(&format!("/energy/{key}")));
+    assert!(lower <= energy && energy <= upper, "{lower} {energy} {upper}");
+    assert!(widening < 1e-11 * energy.abs(), "{widening}");
+    close(lower + widening, energy, 1e-12 + widening / energy.abs());
+    close(free, energy, 1e-12 + 2.0 * widening / energy.abs());
     if with_reference() {
         close(report.number("/primal/1/energy"), energy, 1e-11);
         assert!(report.number("/stress/relative_energy_norm_difference") < 1e-6);
