@@ -127,6 +127,28 @@ fn a_limit_is_said_with_the_bound_reached() {
     assert!(adapted.stopped.expect("stopped").contains("seconds"));
 }
 
+/// The corner of a block that slides down a slanted wall runs into a clamped corner, where the displacement all but jumps:
+/// refinement goes down to edges whose direction is known to few digits, and what they hold must stay one direction.
+#[test]
+fn a_slanted_roller_stays_one_as_far_as_numbers_resolve_its_edges() {
+    let scene = Toml::default()
+        .polygon("base", &[[0.0, 0.0], [1.1, 0.0], [0.7, 1.1], [-0.07, 0.97]], ["foot", "", "head", "west"])
+        .polygon("top", &[[-0.07, 0.97], [0.7, 1.1], [0.2, 2.3]], ["sole", "load", "wall"])
+        .material("base", 0.1, 0.2)
+        .clamp("foot")
+        .clamp("west")
+        .roller("wall")
+        .traction("load", [0.1, -0.9])
+        .table("[[contacts]]\nbetween = [\"head\", \"sole\"]\ngap = 0.005");
+    let goal = Goal { max_triangles: Some(40_000), ..Goal::new(0.05) };
+    let adapted = adapt(problem(&scene), &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
+    let smallest = |p: &Problem| (0..p.mesh.edges.len()).map(|e| p.mesh.edge_frame(e).0).fold(1.0, f64::min);
+    assert!(smallest(&adapted.certified.problem) < 1e-8);
+    for pair in adapted.history.windows(2).filter(|pair| pair[0].triangles > 200) {
+        assert!(pair[1].upper < pair[0].upper && pair[1].lower > pair[0].lower, "{pair:?}");
+    }
+}
+
 /// Whatever the first guess of the contact state: same state, same bits.
 #[test]
 fn the_first_guess_of_the_contact_state_does_not_change_the_answer() {

@@ -79,7 +79,7 @@ fn upper(certified: &Certified) -> f64 {
 }
 
 #[test]
-fn the_bound_is_never_below_the_error_and_seldom_far_above() {
+fn the_bound_is_never_below_the_error_and_never_three_times_as_large() {
     let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(40, |n| n.parse().expect("a number of scenes"));
     let mut random = Random::new(1981);
     let (mut found, mut infeasible) = (Vec::new(), 0);
@@ -118,5 +118,5 @@ fn the_bound_is_never_below_the_error_and_seldom_far_above() {
         at(0.9),
         at(1.0)
     );
-    assert!(at(0.0) >= 1.0 && at(0.9) <= 3.0, "from {} to {}", at(0.0), at(0.9));
+    assert!(at(0.0) >= 1.0 && at(1.0) <= 3.0, "from {} to {}", at(0.0), at(1.0));
 }

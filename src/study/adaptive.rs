@@ -28,8 +28,12 @@ const AIM: f64 = 0.95;
 /// How far growth and prediction may be off before a round is made smaller.
 const SLACK: f64 = 0.1;
 
-/// Largest factor by which a prediction that fell short corrects the next one.
-const MOST_CORRECTION: f64 = 4.0;
+/// Least power of the prediction by which the gap is taken to fall: that of a point which holds a body where it would
+/// slide, the strongest singularity there is, is about a third.
+const LEAST_POWER: f64 = 0.25;
+
+/// Least growth: a mesh with hardly more triangles than the last one costs as much and tells little more.
+const WORTH_A_SOLVE: f64 = 1.1;
 
 /// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
 const MOST_AT_ENDS: usize = 60;
@@ -81,12 +85,19 @@ pub fn adapt(
     let mut refinement = RefinementEdges::longest(&problem.mesh);
     let mut options = options.clone();
     let mut history: Vec<HistoryRow> = Vec::new();
-    let mut forecast = Forecast { gap: f64::NAN, correction: 1.0 };
+    let mut forecast = Forecast { from: f64::NAN, to: f64::NAN, power: 1.0 };
+    let mut before: Option<(Certified, HistoryRow)> = None;
     loop {
         let began = Instant::now();
-        let statics;
-        (problem, refinement, statics) = expressible(problem, refinement)?;
-        let certified = solve_balanced(problem, statics, method, &options)?;
+        let certified = match solved(problem, &mut refinement, method, &options) {
+            Ok(certified) => certified,
+            // What was reached is worth more than the reason why there is no more.
+            Err(StudyError::Dual(reason)) if let Some((certified, row)) = before.take() => {
+                let reason = format!("the next mesh could not be solved ({reason})");
+                return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal)), certified, history });
+            }
+            Err(error) => return Err(error),
+        };
         let seconds = [start.elapsed().as_secs_f64(), began.elapsed().as_secs_f64()];
         let row = row(&certified, seconds, history.last());
         on_step(&row);
@@ -96,25 +107,30 @@ pub fn adapt(
         }
         forecast.learn(&certified);
         let spent = start.elapsed().as_secs_f64();
-        let limit = match (&certified.bracket.free, goal.max_seconds) {
-            (Err(reason), _) => Some(format!("no upper bound could be built ({reason})")),
-            (_, Some(most)) if spent >= most => Some(format!("{most} seconds have passed")),
-            _ => None,
+        let finer = match goal.max_seconds {
+            Some(most) if spent >= most => Err(format!("{most} seconds have passed")),
+            _ => refined(&certified, &refinement, goal, row.relative_error_bound, &mut forecast)?,
         };
-        let finer = match limit {
-            Some(_) => None,
-            None => refined(&certified, &refinement, goal, row.relative_error_bound, &mut forecast)?,
-        };
-        let Some((next, edges)) = finer else {
-            let reason = limit.unwrap_or_else(|| match goal.max_triangles {
-                Some(most) => format!("the next mesh would have more than {most} triangles"),
-                None => "the triangles are as small as numbers can resolve".to_string(),
-            });
-            return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal)), certified, history });
+        let (next, edges) = match finer {
+            Ok(finer) => finer,
+            Err(reason) => return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal)), certified, history }),
         };
         options.closed = Some(closed_ends(&certified.problem, &certified.dual.closed, &next));
+        before = Some((certified, row));
         (problem, refinement) = (next, edges);
     }
+}
+
+/// Solves `problem`, on a mesh bisected at the ends of contact where the load asks for it.
+fn solved(
+    problem: Problem,
+    refinement: &mut RefinementEdges,
+    method: &dyn DualMethod,
+    options: &Options,
+) -> Result<Certified, StudyError> {
+    let (problem, edges, statics) = expressible(problem, refinement.clone())?;
+    *refinement = edges;
+    solve_balanced(problem, statics, method, options)
 }
 
 fn row(certified: &Certified, [seconds, step_seconds]: [f64; 2], before: Option<&HistoryRow>) -> HistoryRow {
@@ -203,37 +219,45 @@ fn contact_ends(problem: &Problem) -> Vec<usize> {
     marked
 }
 
-/// The gap predicted for the next mesh, and how the last prediction turned out.
+/// How the gap falls against how a smooth solution's would: as this power of it.
 struct Forecast {
-    gap: f64,
-    correction: f64,
+    /// The gap of the last mesh, and the one predicted for the next.
+    from: f64,
+    to: f64,
+    power: f64,
 }
 
 impl Forecast {
-    /// Singularities make the gap fall more slowly than predicted, and by about as much from one mesh to the next.
+    /// Singularities make the gap fall more slowly than predicted, and by about the same power from mesh to mesh.
     fn learn(&mut self, certified: &Certified) {
-        if let Ok(free) = &certified.bracket.free
-            && self.gap > 0.0
-        {
-            self.correction = (free.local.total / self.gap).clamp(1.0, MOST_CORRECTION);
+        if let Ok(free) = &certified.bracket.free {
+            let power = (self.from / free.local.total).ln() / (self.from / self.to).ln();
+            if power.is_finite() {
+                self.power = power.clamp(LEAST_POWER, 1.0);
+            }
         }
     }
 }
 
 /// The next mesh: rounds of Dörfler marking with predicted indicators, until the mesh has grown enough or the predicted
-/// bound meets the tolerance. `None` where not even one round fits below the limit.
+/// bound meets the tolerance; or the reason why there is none.
 fn refined(
     certified: &Certified,
     refinement: &RefinementEdges,
     goal: &Goal,
     bound: f64,
     forecast: &mut Forecast,
-) -> Result<Option<(Problem, RefinementEdges)>, StudyError> {
-    let Ok(free) = &certified.bracket.free else { return Ok(None) };
+) -> Result<Result<(Problem, RefinementEdges), String>, StudyError> {
+    let free = match &certified.bracket.free {
+        Ok(free) => free,
+        Err(reason) => return Ok(Err(format!("no upper bound could be built ({reason})"))),
+    };
     let mut indicators = Indicators::new(&certified.problem, free);
     // The part of the gap that may stay: the bound is its root.
-    let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2) / forecast.correction;
-    let grown = GROWTH * certified.problem.mesh.triangles.len() as f64;
+    let enough = indicators.total() * (AIM * goal.tolerance / bound).powf(2.0 / forecast.power);
+    forecast.from = indicators.total();
+    let now = certified.problem.mesh.triangles.len() as f64;
+    let (worth, grown) = (WORTH_A_SOLVE * now, GROWTH * now);
     let mut finer: Option<(Problem, RefinementEdges)> = None;
     loop {
         let (problem, edges) = finer.as_ref().map_or((&certified.problem, refinement), |(p, e)| (p, e));
@@ -244,23 +268,28 @@ fn refined(
             let predicted = indicators.inherited(&problem.mesh, &mesh.mesh, &parent);
             let count = mesh.mesh.triangles.len();
             let too_many = goal.max_triangles.is_some_and(|most| count > most);
-            let too_far = count as f64 > (1.0 + SLACK) * grown || predicted.total() < (1.0 - SLACK) * enough;
+            let count = count as f64;
+            let enough_already = predicted.total() < (1.0 - SLACK) * enough && count > (1.0 + SLACK) * worth;
+            let too_far = count > (1.0 + SLACK) * grown || enough_already;
             bulk *= 0.5;
             if (too_many || too_far) && bulk > goal.bulk / 20.0 {
                 continue;
             }
-            if too_many || !resolvable(&mesh) {
-                return Ok(finer);
-            }
-            break ((mesh, edges), predicted);
+            let reason = match goal.max_triangles {
+                Some(most) if too_many => format!("the next mesh would have more than {most} triangles"),
+                _ if resolvable(&mesh) => break ((mesh, edges), predicted),
+                _ => "the triangles are as small as numbers can resolve".to_string(),
+            };
+            let large_enough = |(p, _): &(Problem, _)| !too_many || p.mesh.triangles.len() as f64 >= worth;
+            return Ok(finer.filter(large_enough).ok_or(reason));
         };
-        let count = next.0.mesh.triangles.len();
+        let count = next.0.mesh.triangles.len() as f64;
         indicators = predicted;
-        forecast.gap = indicators.total();
-        finer = Some(next);
-        if count as f64 >= (1.0 - SLACK) * grown || indicators.total() <= enough {
-            return Ok(finer);
+        forecast.to = indicators.total();
+        if count >= (1.0 - SLACK) * grown || (count >= worth && indicators.total() <= enough) {
+            return Ok(Ok(next));
         }
+        finer = Some(next);
     }
 }
 

@@ -152,6 +152,44 @@ fn mean_excess(dual: &DualSolution, pair: &ContactPair) -> f64 {
     jump / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
 }
 
+/// One Bernstein coefficient of v_n' + v_n'' − g, a linear function of the values at nodes: vertices, then edges.
+#[derive(Debug, Clone)]
+pub struct Row {
+    terms: Vec<(usize, [f64; 2])>,
+    gap: f64,
+}
+
+impl Row {
+    /// Node and factor of its value.
+    pub fn terms(&self) -> &[(usize, [f64; 2])] {
+        &self.terms
+    }
+
+    /// The coefficient for the given values: admissible where it is not positive.
+    pub fn excess(&self, values: &[[f64; 2]]) -> f64 {
+        self.terms.iter().map(|(node, factor)| dot(values[*node], *factor)).sum::<f64>() - self.gap
+    }
+}
+
+/// The three coefficients of every pair, in the order of the pairs.
+pub fn rows(problem: &Problem) -> Vec<Row> {
+    let edges = problem.mesh.points.len();
+    let mut rows = Vec::new();
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let jump = |nodes: [Option<usize>; 2], factor: f64| {
+            let term = |node: Option<usize>, sign: f64| node.map(|k| (k, pair.normal.map(|n| sign * factor * n)));
+            [term(nodes[0], 1.0), term(nodes[1], -1.0)].into_iter().flatten()
+        };
+        let end = |k: usize, factor: f64| jump([Some(pair.first[k]), pair.second.map(|s| s[k])], factor);
+        let centre = jump(pair.edges.map(|e| e.map(|e| edges + e)), 2.0);
+        let [ga, gb] = pair.gap;
+        rows.push(Row { terms: end(0, 1.0).collect(), gap: ga });
+        rows.push(Row { terms: centre.chain(end(0, -0.5)).chain(end(1, -0.5)).collect(), gap: 0.5 * (ga + gb) });
+        rows.push(Row { terms: end(1, 1.0).collect(), gap: gb });
+    }
+    rows
+}
+
 /// b1 of v_n' + v_n'' − g on a pair, and the two vertex coefficients.
 fn bernstein(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 3] {
     let n = pair.normal;

@@ -1,9 +1,12 @@
-//! What the supports leave free at each vertex.
+//! What the supports leave free at each vertex and edge midpoint.
+
+use std::collections::HashMap;
 
 use super::NoUpperBound;
+use super::sets::Sets;
 use crate::problem::{Condition, Problem};
 
-/// The support of one vertex.
+/// The support of one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Hold {
     /// Not held.
@@ -46,7 +49,6 @@ impl Hold {
 
     /// Adds a condition u · normal = value; `None` where it contradicts what holds already.
     fn with_line(self, normal: [f64; 2], value: f64, size: f64) -> Option<Hold> {
-        const PARALLEL: f64 = 1e-10;
         match self {
             Hold::Free => Some(Hold::Line { normal, value }),
             Hold::Line { normal: n, value: w } => {
@@ -71,11 +73,23 @@ impl Hold {
     }
 }
 
-/// The hold of every vertex.
+/// Normals whose cross product is smaller are parallel.
+const PARALLEL: f64 = 1e-10;
+
+/// The holds of all nodes.
+#[derive(Debug, Clone)]
+pub struct Holds {
+    /// Of every vertex.
+    pub vertices: Vec<Hold>,
+    /// Of every edge midpoint.
+    pub middles: Vec<Hold>,
+}
+
+/// The hold of every node.
 ///
 /// # Errors
 /// [`NoUpperBound::SupportsDisagree`].
-pub fn holds(problem: &Problem) -> Result<Vec<Hold>, NoUpperBound> {
+pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
     let mesh = &problem.mesh;
     // Prescribed displacements are compared with each other, on the scale of the largest.
     let size = problem
@@ -83,18 +97,58 @@ pub fn holds(problem: &Problem) -> Result<Vec<Hold>, NoUpperBound> {
         .iter()
         .filter_map(|c| if let Condition::Clamped(u) = c { Some(u[0].abs().max(u[1].abs())) } else { None })
         .fold(0.0, f64::max);
-    let mut holds = vec![Hold::Free; mesh.points.len()];
+    let normals = roller_normals(problem);
+    let mut holds =
+        Holds { vertices: vec![Hold::Free; mesh.points.len()], middles: vec![Hold::Free; mesh.edges.len()] };
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let (_, normal) = mesh.edge_frame(e);
+        let own = match (condition, normals.get(&e)) {
+            (Condition::Clamped(u0), _) => Hold::Fixed(*u0),
+            (Condition::Roller, Some(normal)) => Hold::Line { normal: *normal, value: 0.0 },
+            _ => continue,
+        };
+        holds.middles[e] = own;
         for v in mesh.edges[e].vertices {
-            let next = match condition {
-                Condition::Clamped(u0) => holds[v].with_point(*u0, size),
-                Condition::Roller => holds[v].with_line(normal, 0.0, size),
-                _ => continue,
+            let next = match own {
+                Hold::Fixed(u0) => holds.vertices[v].with_point(u0, size),
+                Hold::Line { normal, value } => holds.vertices[v].with_line(normal, value, size),
+                Hold::Free => continue,
             };
             let [x, y] = mesh.points[v];
-            holds[v] = next.ok_or(NoUpperBound::SupportsDisagree { x, y })?;
+            holds.vertices[v] = next.ok_or(NoUpperBound::SupportsDisagree { x, y })?;
         }
     }
     Ok(holds)
+}
+
+/// The outward unit normal of every roller edge: that of the whole straight side which the edge is a part of.
+///
+/// The ends of an edge are rounded, and the direction of one that is short beside its coordinates is known to few digits.
+/// Two such directions at a vertex would hold it in both, where the side lets it slide.
+fn roller_normals(problem: &Problem) -> HashMap<usize, [f64; 2]> {
+    let mesh = &problem.mesh;
+    let rollers: Vec<usize> = (0..mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller).collect();
+    let mut at = HashMap::<usize, Vec<usize>>::new();
+    for (i, &e) in rollers.iter().enumerate() {
+        for v in mesh.edges[e].vertices {
+            at.entry(v).or_default().push(i);
+        }
+    }
+    let mut sides = Sets::new(rollers.len());
+    for (&v, meeting) in &at {
+        let &[i, j] = meeting.as_slice() else { continue };
+        let [(l, n), (k, m)] = [i, j].map(|i| mesh.edge_frame(rollers[i]));
+        let [x, y] = mesh.points[v];
+        let rounding = 8.0 * f64::EPSILON * x.abs().max(y.abs()) / l.min(k);
+        if (n[0] * m[1] - n[1] * m[0]).abs() <= PARALLEL + rounding {
+            sides.unite(i, j, usize::MAX);
+        }
+    }
+    let mut sum = vec![[0.0; 2]; rollers.len()];
+    for (i, &e) in rollers.iter().enumerate() {
+        let (length, normal) = mesh.edge_frame(e);
+        let side = &mut sum[sides.root(i)];
+        *side = [side[0] + length * normal[0], side[1] + length * normal[1]];
+    }
+    let unit = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
+    rollers.iter().enumerate().map(|(i, &e)| (e, unit(sum[sides.root(i)]))).collect()
 }

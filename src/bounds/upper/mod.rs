@@ -9,15 +9,18 @@
 
 mod contact;
 mod fit;
+mod groups;
 mod holds;
 mod interior;
+mod patch;
 mod relax;
+mod sets;
 mod stiffness;
 
 use self::holds::{Hold, holds};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 
 /// Why no admissible displacement could be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -53,30 +56,23 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let mut vertex = fit::vertex_values(problem, dual);
-    for (value, hold) in vertex.iter_mut().zip(&holds) {
+    for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
     }
-    contact::draw(&contact::ends_near(problem, dual), &holds, &mut vertex);
-    contact::restrict_vertices(problem, &holds, &mut vertex)?;
+    contact::draw(&contact::ends_near(problem, dual), &holds.vertices, &mut vertex);
+    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     let mut middle: Vec<[f64; 2]> = (0..mesh.edges.len())
         .map(|e| {
-            if let Condition::Clamped(u0) = problem.conditions[e] {
-                return u0;
-            }
-            let (length, normal) = mesh.edge_frame(e);
+            let (length, _) = mesh.edge_frame(e);
             let [a, b] = mesh.edges[e].vertices.map(|v| vertex[v]);
             let [ma, mb] = dual.moments[e];
             // Simpson: l/6 (u_a + 4 u_mid + u_b) = m_a + m_b.
-            let u = [0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c]));
-            match problem.conditions[e] {
-                Condition::Roller => Hold::Line { normal, value: 0.0 }.impose(u),
-                _ => u,
-            }
+            holds.middles[e].impose([0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c])))
         })
         .collect();
     contact::restrict_middles(problem, &vertex, &mut middle);
     relax::relax(problem, &holds, &mut vertex, &mut middle);
-    contact::restrict_vertices(problem, &holds, &mut vertex)?;
+    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok(interior::fill(problem, &vertex, &middle))
 }
@@ -117,17 +113,10 @@ pub fn repaired(
         violation.support = violation.support.max((held[0] - value[0]).hypot(held[1] - value[1]) / size);
         *value = held;
     };
-    for (value, hold) in vertex.iter_mut().zip(&holds) {
+    for (value, hold) in vertex.iter_mut().zip(&holds.vertices).chain(middle.iter_mut().zip(&holds.middles)) {
         impose(*hold, value);
     }
-    for (e, value) in middle.iter_mut().enumerate() {
-        match problem.conditions[e] {
-            Condition::Clamped(u0) => impose(Hold::Fixed(u0), value),
-            Condition::Roller => impose(Hold::Line { normal: mesh.edge_frame(e).1, value: 0.0 }, value),
-            _ => {}
-        }
-    }
-    contact::restrict_vertices(problem, &holds, &mut vertex)?;
+    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok((Displacement::from_p2(mesh, &vertex, &middle), violation))
 }

@@ -1,0 +1,96 @@
+//! Which vertices move together in a step of the relaxation, and the triangles around them.
+//!
+//! A vertex and the ones it faces across Γ_K share a contact pressure and belong together. So do the vertices that a flat
+//! triangle ties to each other: moved alone, each would strain it by its whole displacement over its small height.
+
+use super::sets::Sets;
+use crate::problem::Problem;
+
+/// Triangles whose height is below this part of their longest side are flat.
+const FLAT: f64 = 0.15;
+
+/// Flat triangles add no more vertices to a group than this: patches grow with the square of it.
+const MOST_VERTICES: usize = 12;
+
+/// One patch: the vertices that move, and every triangle at one of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// Vertices.
+    pub vertices: Vec<usize>,
+    /// Triangles, each once.
+    pub triangles: Vec<usize>,
+}
+
+/// Divides the vertices into groups, ordered by place so that the numbering of the mesh has no part in what follows.
+pub fn groups(problem: &Problem) -> Vec<Group> {
+    let mesh = &problem.mesh;
+    let mut sets = Sets::new(mesh.points.len());
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for (v, w) in pair.second.iter().flat_map(|second| pair.first.iter().zip(second)) {
+            sets.unite(*v, *w, usize::MAX);
+        }
+    }
+    for (v, w) in tied(problem) {
+        sets.unite(v, w, MOST_VERTICES);
+    }
+    let mut number = vec![usize::MAX; mesh.points.len()];
+    let mut groups: Vec<Group> = Vec::new();
+    for v in by_place(problem) {
+        let root = sets.root(v);
+        if number[root] == usize::MAX {
+            number[root] = groups.len();
+            groups.push(Group { vertices: Vec::new(), triangles: Vec::new() });
+        }
+        groups[number[root]].vertices.push(v);
+    }
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        for &v in corners {
+            let triangles = &mut groups[number[sets.root(v)]].triangles;
+            if triangles.last() != Some(&t) {
+                triangles.push(t);
+            }
+        }
+    }
+    groups
+}
+
+/// Pairs of vertices that flat triangles tie together, the closest first.
+fn tied(problem: &Problem) -> Vec<(usize, usize)> {
+    let mesh = &problem.mesh;
+    let mut found: Vec<(f64, [f64; 2], (usize, usize))> = Vec::new();
+    for (t, corners) in mesh.triangles.iter().enumerate() {
+        let sides = mesh.triangle_edges[t].map(|e| mesh.edge_frame(e).0);
+        let longest = sides.iter().copied().fold(0.0, f64::max);
+        let shortest = sides.iter().copied().fold(f64::INFINITY, f64::min);
+        let height = 2.0 * mesh.area(t) / longest;
+        if height > FLAT * longest {
+            continue;
+        }
+        // A needle ties the ends of its short side; a cap, whose angles are all near 0° or 180°, ties all three.
+        let cap = height < FLAT * shortest;
+        for (side, length) in sides.into_iter().enumerate() {
+            if cap || length == shortest {
+                let (v, w) = (corners[(side + 1) % 3], corners[(side + 2) % 3]);
+                let [a, b] = [mesh.points[v], mesh.points[w]];
+                found.push((length, [a[0] + b[0], a[1] + b[1]], (v, w)));
+            }
+        }
+    }
+    found.sort_by(|(l, p, _), (m, q, _)| l.total_cmp(m).then(p[0].total_cmp(&q[0])).then(p[1].total_cmp(&q[1])));
+    found.into_iter().map(|(_, _, ends)| ends).collect()
+}
+
+/// All vertices by their place; where several share a place, by their body.
+fn by_place(problem: &Problem) -> Vec<usize> {
+    let mesh = &problem.mesh;
+    let mut body = vec![0; mesh.points.len()];
+    for (corners, b) in mesh.triangles.iter().zip(&mesh.body) {
+        corners.iter().for_each(|&v| body[v] = *b);
+    }
+    let mut order: Vec<usize> = (0..mesh.points.len()).collect();
+    order.sort_by(|&v, &w| {
+        let ([a, b], [c, d]) = (mesh.points[v], mesh.points[w]);
+        a.total_cmp(&c).then(b.total_cmp(&d)).then(body[v].cmp(&body[w]))
+    });
+    order
+}
