@@ -85,7 +85,7 @@ impl Bracket {
         };
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = admissible(problem, dual).map(|v| UpperBound::new(problem, dual, v));
+        let free = admissible(problem, dual, complementary.lower()).map(|v| UpperBound::new(problem, dual, v));
         Bracket { complementary, lower_widening: rounding + remainder, free }
     }
 

@@ -12,6 +12,8 @@ mod fit;
 mod groups;
 mod holds;
 mod interior;
+mod model;
+mod momentum;
 mod patch;
 mod relax;
 mod sets;
@@ -48,11 +50,11 @@ pub enum NoUpperBound {
     },
 }
 
-/// Builds the displacement.
+/// Builds the displacement; `floor`, a lower bound of its energy, says when relaxing it further is not worth the time.
 ///
 /// # Errors
 /// [`NoUpperBound`] where supports contradict each other or the contact.
-pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement, NoUpperBound> {
+pub fn admissible(problem: &Problem, dual: &DualSolution, floor: f64) -> Result<Displacement, NoUpperBound> {
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let mut vertex = fit::vertex_values(problem, dual);
@@ -71,7 +73,7 @@ pub fn admissible(problem: &Problem, dual: &DualSolution) -> Result<Displacement
         })
         .collect();
     contact::restrict_middles(problem, &vertex, &mut middle);
-    relax::relax(problem, &holds, &mut vertex, &mut middle);
+    relax::relax(problem, &holds, floor / problem.scene.thickness, &mut vertex, &mut middle);
     contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok(interior::fill(problem, &vertex, &middle))

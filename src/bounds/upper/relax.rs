@@ -6,23 +6,25 @@
 //! to hold fields without change of volume, so that this works as ν → ½ as well. Every step stays admissible and lowers
 //! the energy.
 
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector};
 
-use super::contact::{Row, rows};
 use super::groups::{Group, groups};
-use super::holds::{Hold, Holds};
+use super::holds::Holds;
+use super::model::Model;
+use super::momentum::Momentum;
 use super::patch::minimum;
-use super::stiffness::{BOUNDARY, Condensed, condensed};
 use crate::problem::Problem;
 
 /// Sweeps over all patches. The first takes most of what there is to gain, at ν = 0.3 all of it; the third is worth
 /// less than its time even at ν = 0.4999.
 const SWEEPS: usize = 2;
 
-/// More sweeps follow, up to this many, while one gains more than this part of the energy: slivers couple their vertices
-/// so strongly that the local fit leaves errors far above the energy itself, which go down by a factor a sweep.
-const MOST_SWEEPS: usize = 60;
-const WORTH_A_SWEEP: f64 = 1e-3;
+/// More sweeps follow, up to this many, while one gains more than this part of the gap: slivers couple their vertices so
+/// strongly that the local fit leaves errors far above the energy itself. While the gap exceeds the energy, the bound is
+/// of no use, and sweeps that gain little lead to others that gain much.
+const MOST_SWEEPS: usize = 500;
+const WORTH_A_SWEEP: f64 = 0.01;
+const WORTH_WHILE_USELESS: f64 = 1e-5;
 
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
@@ -30,100 +32,37 @@ const MOST_IN_PATCH: usize = 300;
 /// How far round-off may move a jump above its gap, relative to the size of the displacement.
 const SLACK: f64 = 1e-14;
 
-/// Lowers the energy of the admissible field with the values `vertex` and `middle`.
-pub fn relax(problem: &Problem, holds: &Holds, vertex: &mut [[f64; 2]], middle: &mut [[f64; 2]]) {
-    let model = Model {
-        problem,
-        elements: condensed(problem),
-        free: directions(holds),
-        rows: rows(problem),
-        touching: touching(problem),
-    };
+/// Lowers the energy of the admissible field with the values `vertex` and `middle`; `floor` is a lower bound of it, per
+/// unit thickness.
+pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2]], middle: &mut [[f64; 2]]) {
+    let model = Model::new(problem, holds);
     let groups = groups(problem);
     let mut patch = Patch { local: vec![usize::MAX; model.free.len()], ..Patch::default() };
     let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle.iter()).copied().collect();
     let slack = SLACK * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut momentum = Momentum::default();
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
-        if sweep >= SWEEPS && gained <= WORTH_A_SWEEP * model.energy(&values).abs() {
-            break;
+        if sweep >= SWEEPS {
+            let gap = (model.energy(&values) - floor).max(0.0);
+            let worth = if gap > floor.abs() { WORTH_WHILE_USELESS } else { WORTH_A_SWEEP };
+            if gained <= worth * gap {
+                break;
+            }
         }
+        let before = (sweep >= SWEEPS).then(|| values.clone());
         gained = 0.0;
         for k in 0..groups.len() {
             // Back and forth: what one direction pushes ahead of it the other brings back.
             let group = &groups[if sweep % 2 == 0 { k } else { groups.len() - 1 - k }];
             gained += patch.relax(&model, group, slack, &mut values);
         }
+        if let Some(before) = before {
+            gained += momentum.push(&model, &before, slack, &mut values);
+        }
     }
     vertex.copy_from_slice(&values[..vertex.len()]);
     middle.copy_from_slice(&values[vertex.len()..]);
-}
-
-/// The directions in which each node may move: vertices, then edges.
-fn directions(holds: &Holds) -> Vec<Directions> {
-    let of = |hold: &Hold| match hold {
-        Hold::Free => Directions { count: 2, unit: [[1.0, 0.0], [0.0, 1.0]] },
-        Hold::Line { normal: [x, y], .. } => Directions { count: 1, unit: [[-y, *x]; 2] },
-        Hold::Fixed(_) => Directions { count: 0, unit: [[0.0; 2]; 2] },
-    };
-    holds.vertices.iter().chain(&holds.middles).map(of).collect()
-}
-
-/// Up to two unit vectors.
-#[derive(Debug, Clone, Copy)]
-struct Directions {
-    count: usize,
-    unit: [[f64; 2]; 2],
-}
-
-/// The rows of contact at each vertex: three for each pair that ends there.
-fn touching(problem: &Problem) -> Vec<Vec<usize>> {
-    let mut touching = vec![Vec::new(); problem.mesh.points.len()];
-    for (k, pair) in problem.interfaces.iter().flat_map(|i| &i.pairs).enumerate() {
-        for &v in pair.first.iter().chain(pair.second.iter().flatten()) {
-            touching[v].extend([3 * k, 3 * k + 1, 3 * k + 2]);
-        }
-    }
-    touching
-}
-
-/// What does not change while patches move.
-struct Model<'a> {
-    problem: &'a Problem,
-    elements: Vec<Option<Condensed>>,
-    free: Vec<Directions>,
-    rows: Vec<Row>,
-    touching: Vec<Vec<usize>>,
-}
-
-impl Model<'_> {
-    /// 𝓛 of the values per unit thickness, without the triangles that have no unique minimum inside.
-    fn energy(&self, values: &[[f64; 2]]) -> f64 {
-        let of = |(t, element): (usize, &Condensed)| {
-            let nodes = self.nodes(t);
-            let base = values[nodes[0]];
-            let u = SVector::<f64, BOUNDARY>::from_fn(|i, _| values[nodes[i / 2]][i % 2]);
-            let bent = SVector::<f64, BOUNDARY>::from_fn(|i, _| u[i] - base[i % 2]);
-            0.5 * bent.dot(&(element.matrix * bent)) - element.load.dot(&u)
-        };
-        self.elements.iter().enumerate().filter_map(|(t, e)| Some(of((t, e.as_ref()?)))).sum()
-    }
-
-    /// The six nodes on the boundary of triangle `t`: corners, then edges.
-    fn nodes(&self, t: usize) -> [usize; 6] {
-        let mesh = &self.problem.mesh;
-        let ([a, b, c], [p, q, r]) = (mesh.triangles[t], mesh.triangle_edges[t]);
-        let first = mesh.points.len();
-        [a, b, c, first + p, first + q, first + r]
-    }
-
-    /// Whether a node moves with the vertices of a group.
-    fn moves(&self, node: usize, group: &Group) -> bool {
-        match node.checked_sub(self.problem.mesh.points.len()) {
-            None => group.vertices.contains(&node),
-            Some(e) => self.problem.mesh.edges[e].vertices.iter().any(|v| group.vertices.contains(v)),
-        }
-    }
 }
 
 /// The unknowns of the patch at hand.
@@ -197,10 +136,7 @@ impl Patch {
         for &t in &group.triangles {
             let Some(element) = &model.elements[t] else { continue };
             let nodes = model.nodes(t);
-            // About the first corner: translations carry no energy and should cost no digits.
-            let base = values[nodes[0]];
-            let u = SVector::<f64, BOUNDARY>::from_fn(|i, _| values[nodes[i / 2]][i % 2] - base[i % 2]);
-            let residual = element.load - element.matrix * u;
+            let residual = element.load - element.matrix * model.bent(t, values);
             for a in 0..6 {
                 for (i, p) in self.terms(model, nodes[a]) {
                     load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
