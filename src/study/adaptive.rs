@@ -23,7 +23,7 @@ use crate::statics::{Equilibrium, Statics};
 const GROWTH: f64 = 2.4;
 
 /// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
-const AIM: f64 = 0.95;
+const AIM: f64 = 0.9;
 
 /// How far growth and prediction may be off before a round is made smaller.
 const SLACK: f64 = 0.1;

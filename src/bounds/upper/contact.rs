@@ -35,7 +35,10 @@ fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 /// Sweeps over all ends; ends that share no vertex are settled by the first.
 const MOST_SWEEPS: usize = 200;
 /// How far inside a bound a jump is moved, relative to the size of the displacement.
-const MARGIN: f64 = 1e-11;
+const MARGIN: f64 = 1e-14;
+/// Jumps beyond a bound by less than this, relative to the size of the displacement, are at the bound: the widening of
+/// the upper bound covers rounding of this size.
+pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Moves vertex values so that no vertex jump exceeds the gap.
 ///
@@ -64,7 +67,7 @@ pub fn draw(ends: &[End], holds: &[Hold], vertex: &mut [[f64; 2]]) {
         let mut moved = false;
         for end in ends {
             let mut off = excess(end, vertex);
-            if off == 0.0 {
+            if off.abs() <= ROUNDING * size {
                 continue;
             }
             // A little beyond the bound: where a vertex lies on sides of different directions the sweeps only approach it.
@@ -208,10 +211,11 @@ pub fn penetration(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) 
 
 /// Draws midpoints back where supports at the vertices or rounding left b1 above zero.
 pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f64; 2]]) {
+    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         let [Some(own), other] = pair.edges else { continue };
         let b1 = bernstein(pair, vertex, middle)[1];
-        if b1 <= 0.0 {
+        if b1 <= ROUNDING * size {
             continue;
         }
         // b1 changes by twice the jump at the midpoint.

@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::contact::ROUNDING;
 use super::groups::{Group, groups};
 use super::holds::Holds;
 use super::model::Model;
@@ -29,9 +30,6 @@ const WORTH_WHILE_USELESS: f64 = 1e-5;
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
-/// How far round-off may move a jump above its gap, relative to the size of the displacement.
-const SLACK: f64 = 1e-14;
-
 /// Lowers the energy of the admissible field with the values `vertex` and `middle`; `floor` is a lower bound of it, per
 /// unit thickness.
 pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2]], middle: &mut [[f64; 2]]) {
@@ -39,7 +37,7 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2
     let groups = groups(problem);
     let mut patch = Patch { local: vec![usize::MAX; model.free.len()], ..Patch::default() };
     let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle.iter()).copied().collect();
-    let slack = SLACK * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut momentum = Momentum::default();
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
