@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::DualError;
 use super::dissection::nested_dissection;
 use super::factor::Breakdown;
+use super::rows::{SideEnd, rows, side_ends};
 use super::system::System;
 use super::unknowns::EdgeMoments;
 use crate::element::StressField;
@@ -107,13 +108,8 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
     let mut out = vec![0.0; n * mesh.triangles.len()];
     out.par_chunks_exact_mut(n).enumerate().with_min_len(256).for_each(|(t, s)| {
         let mut m = [0.0; 12];
-        for side in 0..3 {
-            let e = mesh.triangle_edges[t][side];
-            let flipped = mesh.edges[e].triangles[0] != Some(t);
-            for node in 0..2 {
-                let end = if flipped { 1 - node } else { node };
-                m[4 * side + 2 * node..][..2].copy_from_slice(&moments[e][end]);
-            }
+        for SideEnd { at, edge, end } in side_ends(mesh, t) {
+            m[at..at + 2].copy_from_slice(&moments[edge][end]);
         }
         system.modes.of(t).parameters_from_moments(&m, s);
     });
@@ -141,18 +137,11 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
         .collect();
     let mut r = system.external.clone();
     for (t, values) in tractions.iter().enumerate() {
-        for side in 0..3 {
-            let e = mesh.triangle_edges[t][side];
-            let flipped = mesh.edges[e].triangles[0] != Some(t);
-            let (_, normal) = mesh.edge_frame(e);
-            for node in 0..2 {
-                let end = if flipped { 1 - node } else { node };
-                let (tx, ty) = (values[4 * side + 2 * node], values[4 * side + 2 * node + 1]);
-                for component in system.unknowns.components(e, end, normal) {
-                    let value = component.direction[0] * tx + component.direction[1] * ty;
-                    for &(dof, c) in component.terms() {
-                        r[dof] -= c * value;
-                    }
+        for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
+            for component in components {
+                let value = component.direction[0] * values[at] + component.direction[1] * values[at + 1];
+                for &(dof, c) in component.terms() {
+                    r[dof] -= c * value;
                 }
             }
         }

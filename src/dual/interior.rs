@@ -15,6 +15,7 @@ use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
 use super::hybrid::{Motion, parameters, residual, stresses};
+use super::rows::{SideEnd, rows};
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases};
 use crate::problem::Problem;
@@ -127,21 +128,15 @@ impl ConicProgram {
         let mut entries: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
         for t in 0..mesh.triangles.len() {
             let modes = system.modes.of(t);
-            for side in 0..3 {
-                let e = mesh.triangle_edges[t][side];
-                let flipped = mesh.edges[e].triangles[0] != Some(t);
-                let (_, normal) = mesh.edge_frame(e);
-                for node in 0..2 {
-                    let end = if flipped { 1 - node } else { node };
-                    let row = 4 * side + 2 * node;
-                    let (tx, ty) = (&modes.traction()[row * n..][..n], &modes.traction()[(row + 1) * n..][..n]);
-                    for component in system.unknowns.components(e, end, normal) {
-                        let [dx, dy] = component.direction;
-                        for &(dof, c) in component.terms() {
-                            for k in 0..n {
-                                entries[n * t + k].push((dof, c * (dx * tx[k] + dy * ty[k])));
-                            }
-                        }
+            for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
+                let (tx, ty) = (&modes.traction()[at * n..][..n], &modes.traction()[(at + 1) * n..][..n]);
+                for component in components {
+                    let [dx, dy] = component.direction;
+                    for &(dof, c) in component.terms() {
+                        entries[n * t..n * (t + 1)]
+                            .iter_mut()
+                            .enumerate()
+                            .for_each(|(k, column)| column.push((dof, c * (dx * tx[k] + dy * ty[k]))));
                     }
                 }
             }

@@ -17,6 +17,7 @@ pub mod paper;
 pub mod qp;
 mod reduced;
 mod refinement;
+mod rows;
 mod system;
 mod unknowns;
 pub mod yardstick;

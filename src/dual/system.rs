@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::Options;
 use super::modes::ModeTable;
+use super::rows::{SideEnd, rows};
 use super::unknowns::Unknowns;
 use crate::problem::{Condition, Problem};
 
@@ -160,25 +161,18 @@ fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) ->
     let mut local = Local { rows: [[0.0; 9]; 12], terms: [[(0, 0.0); 2]; 12], len: [0; 12] };
     let mut load = [0.0; 12];
     let mut fixed = [0.0; 9];
-    for side in 0..3 {
-        let e = mesh.triangle_edges[t][side];
-        let flipped = mesh.edges[e].triangles[0] != Some(t);
-        let (_, normal) = mesh.edge_frame(e);
-        for node in 0..2 {
-            let end = if flipped { 1 - node } else { node };
-            let row = 4 * side + 2 * node;
-            for (c, component) in unknowns.components(e, end, normal).into_iter().enumerate() {
-                let [dx, dy] = component.direction;
-                let (tx, ty) = (&traction[row * 9..][..9], &traction[(row + 1) * 9..][..9]);
-                let target = &mut local.rows[row + c];
-                for k in 0..9 {
-                    target[k] = dx * tx[k] + dy * ty[k];
-                    fixed[k] += component.fixed * target[k];
-                }
-                local.terms[row + c] = component.terms;
-                local.len[row + c] = component.len;
-                load[row + c] = -(dx * particular[row] + dy * particular[row + 1]);
+    for (SideEnd { at, .. }, components) in rows(mesh, unknowns, t) {
+        let (tx, ty) = (&traction[at * 9..][..9], &traction[(at + 1) * 9..][..9]);
+        for (c, component) in components.into_iter().enumerate() {
+            let [dx, dy] = component.direction;
+            let target = &mut local.rows[at + c];
+            for k in 0..9 {
+                target[k] = dx * tx[k] + dy * ty[k];
+                fixed[k] += component.fixed * target[k];
             }
+            local.terms[at + c] = component.terms;
+            local.len[at + c] = component.len;
+            load[at + c] = -(dx * particular[at] + dy * particular[at + 1]);
         }
     }
     if fixed != [0.0; 9] {
