@@ -3,7 +3,7 @@
 
 mod support;
 
-use hypercircle::dual::{Condensed, Options};
+use hypercircle::dual::{Condensed, DualError, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics::{Equilibrium, check};
@@ -282,22 +282,33 @@ fn inside_the_border_an_equilibrium_is_found() {
     }
 }
 
-/// A thousandth inside, bodies stand on the last thousandth of their base: the mesh is refined there until it can
-/// express that, and the stress is in equilibrium to round-off.
+/// Inside by ever less, bodies stand on ever less of their base, down to the last millionth: the mesh is refined there until
+/// it can express that. What comes out is in equilibrium and bracketed; where digits run out, that is said.
 #[test]
 fn inside_the_border_every_scene_is_solved() {
+    let mut refused = 0;
     for case in cases() {
-        for excess in [-1e-3, -0.1] {
+        for excess in [-1e-6, -1e-5, -1e-4, -1e-3, -0.1] {
             let goal = Goal { max_triangles: Some(1000), ..Goal::new(1e6) };
             let adapted =
                 adapt(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default(), &goal, |_| ());
-            let certified = adapted.unwrap_or_else(|e| panic!("{} by {excess}: {e}", case.name)).certified;
+            let certified = match adapted {
+                Ok(adapted) => adapted.certified,
+                Err(StudyError::Dual(DualError::NotConverged { residual, wanted, .. })) if excess >= -1e-5 => {
+                    assert!(residual > wanted, "{} by {excess}", case.name);
+                    refused += 1;
+                    continue;
+                }
+                Err(e) => panic!("{} by {excess}: {e}", case.name),
+            };
             let residual = certified.dual.equilibrium.residual();
-            assert!(residual < 1e-9, "{} by {excess}: {residual:.1e}", case.name);
+            let allowed = if excess <= -1e-4 { 1e-10 } else { 1e-9 };
+            assert!(residual < allowed, "{} by {excess}: {residual:.1e}", case.name);
             let upper = certified.bracket.free.as_ref().expect("an upper bound").upper();
             assert!(certified.bracket.lower() <= upper, "{} by {excess}", case.name);
         }
     }
+    assert!(refused <= 4, "{refused} scenes were refused");
 }
 
 /// A block pressed on a frictionless plane may slide: the stress is unique and the scene is solved.

@@ -4,13 +4,16 @@
 //! definite even where a body is held by contact alone; the trailing block of the factor then gives the Schur complement
 //! S on Γ_K, S = L_JJ L_JJᵀ − shift, and a small dense problem the contact state. One back-substitution gives all other
 //! moments. What rounding has cost is won back by refining on the stresses: the traction jumps of λ_h are taken as a
-//! load, solved with the same factor, and the stress of that small correction is added.
+//! load, solved with the same factor, and the stress of that small correction is added. The contact state is held against
+//! the refined stresses, and mended where it does not fit them.
 
 use std::time::Instant;
 
 use super::hybrid::{Motion, stresses};
 use super::reduced::{Contact, Reduced};
-use super::refinement::{Refined, Refinement};
+use super::refinement::Refined;
+use super::rigid::unsupported;
+use super::settling::Settling;
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases};
 use crate::problem::Problem;
@@ -19,7 +22,7 @@ use crate::problem::Problem;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condensed {
     /// Limit of refinements on the stresses. It ends earlier where round-off is reached; none leaves the stresses as the
-    /// first solve gives them.
+    /// first solve gives them, accurate or not.
     pub most_refinements: usize,
     /// Longest contact, in jumps (two for each pair), whose Schur complement is formed as a dense matrix. Longer ones are
     /// solved iteratively, with the factor as it is stored.
@@ -28,7 +31,7 @@ pub struct Condensed {
 
 impl Default for Condensed {
     fn default() -> Self {
-        Condensed { most_refinements: 20, longest_dense: 6000 }
+        Condensed { most_refinements: 200, longest_dense: 6000 }
     }
 }
 
@@ -48,33 +51,30 @@ impl DualMethod for Condensed {
         seconds.factor = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let contact = Contact::new(&reduced, self.longest_dense);
+        let contact = Contact::new(&reduced, self.longest_dense, || unsupported(problem));
         let (y, c) = reduced.condense(&system.rhs);
         let warm = options.closed.as_deref().filter(|closed| closed.len() == system.jump_bound.len());
-        let state = contact.solve(&c, &system.jump_bound, warm)?;
-        let notes = contact.notes(state.steps, self.longest_dense);
+        let mut state = contact.solve(&c, &system.jump_bound, warm)?;
         seconds.contact = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
         let x = reduced.expand(y, &state.jumps);
         let traction = contact.gradient(&c, &state.jumps);
         reduced.check(&system, &x, &traction)?;
-        let no_move = vec![0.0; state.closed.len()];
-        let correction = |r: &[f64]| {
-            let (y, c) = reduced.condense(r);
-            let jumps = contact.with_closed(&c, &no_move, &state.closed).ok_or(DualError::ContactUndetermined)?;
-            Ok(reduced.expand(y, &jumps))
-        };
-        let refinement = Refinement {
+        let settling = Settling {
             problem,
             system: &system,
-            fixed: &reduced.fixed(&state.closed),
-            solve: &correction,
+            reduced: &reduced,
+            contact: &contact,
             most_steps: self.most_refinements,
         };
-        let Refined { x, s } = refinement.run(x)?;
-        let stress = stresses(problem, &system, &s);
-        let moments = system.unknowns.moments(problem, &x);
+        let now = Refined::new(problem, &system, x);
+        let now = settling.run(now, &mut state)?;
+        let stress = stresses(problem, &system, &now.s);
+        let moments = system.unknowns.moments(problem, &now.x);
+        if self.most_refinements > 0 {
+            settling.accept(&now, &stress, &moments, &state, self.accuracy())?;
+        }
         seconds.recover = start.elapsed().as_secs_f64();
         Ok(Found {
             stress,
@@ -83,7 +83,7 @@ impl DualMethod for Condensed {
             unknowns: system.unknowns.count,
             iterations: state.steps,
             seconds,
-            notes,
+            notes: contact.notes(state.steps, self.longest_dense),
         })
     }
 }

@@ -3,18 +3,21 @@
 use crate::element::StressField;
 use crate::problem::{Condition, Problem};
 
-/// How well a stress field balances the loads. All figures are relative to the applied load.
+/// How well a stress field balances the loads.
+///
+/// Remainders of traction are relative to the applied load, or to the largest stress in the triangles at the edge where that is
+/// larger: a body that rests on a millionth of its side has a million times its load there, and its rounding errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
     /// Largest jump of traction across an interior edge or a closed pair, and largest shear on rollers and contacts.
     pub jump: f64,
     /// Largest difference between traction and applied traction.
     pub applied: f64,
-    /// Largest resultant of boundary tractions and body force on any body.
+    /// Largest resultant of boundary tractions and body force on any body, relative to the sum of their sizes.
     pub resultant: f64,
     /// Largest tension on a contact.
     pub tension: f64,
-    /// The traction that jumps, applied tractions and tension are relative to.
+    /// The size of the applied load, as a traction.
     pub scale: f64,
     /// ∫ |what is left of equilibrium · displacement|: by how much the lower bound can be off, per unit thickness.
     pub work: f64,
@@ -30,7 +33,12 @@ impl Equilibrium {
     pub fn measure(problem: &Problem, stress: &StressField, moments: &[[[f64; 2]; 2]]) -> Self {
         let mesh = &problem.mesh;
         let bodies = problem.scene.bodies.len();
-        let scale = load_scale(problem, stress);
+        let scale = load_scale(problem, || stress.clone());
+        let stressed: Vec<f64> = (0..stress.len()).map(|t| largest(stress.block(t).as_flattened())).collect();
+        let relative = |left: f64, e: usize| {
+            let near = mesh.edges[e].triangles.iter().flatten().fold(scale, |m, &t| m.max(stressed[t]));
+            if near > 0.0 { left / near } else { left }
+        };
         let (mut jump, mut applied) = (0.0_f64, 0.0_f64);
         let mut force = vec![[0.0; 2]; bodies];
         let mut gross = vec![0.0; bodies];
@@ -51,8 +59,8 @@ impl Equilibrium {
                     Condition::Roller | Condition::Contact { .. } => along(own[end]),
                 };
                 match problem.conditions[e] {
-                    Condition::Traction(_) => applied = applied.max(norm(left)),
-                    _ => jump = jump.max(norm(left)),
+                    Condition::Traction(_) => applied = applied.max(relative(norm(left), e)),
+                    _ => jump = jump.max(relative(norm(left), e)),
                 }
                 work += norm(left) * norm(moments[e][end]);
             }
@@ -84,11 +92,11 @@ impl Equilibrium {
                     let tb = edge_traction(problem, stress, b, 0);
                     let other = at(b, second[end]);
                     let left = norm([ta[own][0] + tb[other][0], ta[own][1] + tb[other][1]]);
-                    jump = jump.max(left);
+                    jump = jump.max(relative(left, a));
                     work += left * norm(moments[b][other]);
                     opening = [opening[0] - moments[b][other][0], opening[1] - moments[b][other][1]];
                 }
-                tension = tension.max(normal);
+                tension = tension.max(relative(normal, a));
                 let g = 0.5 * pair.length * pair.gap[end];
                 work += normal.max(0.0) * (norm(opening) + g);
             }
@@ -107,15 +115,7 @@ impl Equilibrium {
         let resultant = (0..bodies)
             .map(|b| if gross[b] > 0.0 { norm(force[b]) / f64::max(gross[b], least) } else { 0.0 })
             .fold(0.0, f64::max);
-        let relative = |x: f64| if scale > 0.0 { x / scale } else { x };
-        Equilibrium {
-            jump: relative(jump),
-            applied: relative(applied),
-            resultant,
-            tension: relative(tension),
-            scale,
-            work,
-        }
+        Equilibrium { jump, applied, resultant, tension, scale, work }
     }
 }
 
@@ -137,8 +137,8 @@ pub fn edge_traction(problem: &Problem, stress: &StressField, e: usize, side: us
 }
 
 /// The largest applied traction: P on Γ_τ, or what a body force adds up to across its body; where nothing is applied
-/// (prescribed displacements alone), the largest stress.
-fn load_scale(problem: &Problem, stress: &StressField) -> f64 {
+/// (prescribed displacements alone), the largest of the stresses that `stress` gives.
+pub fn load_scale(problem: &Problem, stress: impl FnOnce() -> StressField) -> f64 {
     let mut scale = 0.0_f64;
     for condition in &problem.conditions {
         if let Condition::Traction(p) = condition {
@@ -159,13 +159,14 @@ fn load_scale(problem: &Problem, stress: &StressField) -> f64 {
         }
     }
     if scale == 0.0 {
-        for t in 0..stress.len() {
-            for value in stress.block(t).as_flattened() {
-                scale = scale.max(value.abs());
-            }
-        }
+        let stress = stress();
+        scale = (0..stress.len()).fold(0.0, |m, t| m.max(largest(stress.block(t).as_flattened())));
     }
     scale
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 fn norm(v: [f64; 2]) -> f64 {

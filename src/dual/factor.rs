@@ -63,23 +63,10 @@ impl SymbolicFactor {
         .map_err(|e| Breakdown::TooLarge(e.to_string()))?;
         Ok(SymbolicFactor { inner: Some(inner), forward, leading })
     }
-}
 
-/// Numeric factorisation P A Pᵀ = L Lᵀ.
-#[derive(Debug)]
-pub struct Factor {
-    symbolic: SymbolicFactor,
-    values: Vec<f64>,
-    par: Par,
-}
-
-impl Factor {
-    /// Factorises the matrix whose lower triangle is given.
-    ///
-    /// # Errors
-    /// [`Breakdown`].
-    pub fn new(symbolic: SymbolicFactor, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Self, Breakdown> {
-        let Some(inner) = &symbolic.inner else { return Ok(Factor { symbolic, values: Vec::new(), par }) };
+    /// Values of the factor.
+    fn factorise(&self, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Vec<f64>, Breakdown> {
+        let Some(inner) = &self.inner else { return Ok(Vec::new()) };
         let mut values = vec![0.0; inner.len_val()];
         let params = Spec::default();
         let mut memory = MemBuffer::try_new(inner.factorize_numeric_llt_scratch::<f64>(par, params))
@@ -95,9 +82,77 @@ impl Factor {
                 params,
             )
             .map_err(|LltError::NonPositivePivot { index }| {
-                Breakdown::NotPositive(symbolic.forward.get(index).copied().unwrap_or(0))
+                Breakdown::NotPositive(self.forward.get(index).copied().unwrap_or(0))
             })?;
-        Ok(Factor { symbolic, values, par })
+        Ok(values)
+    }
+}
+
+/// The power of two s that brings s² · `value` nearest to one; one where there is none.
+pub fn power_of_two_near(value: f64) -> f64 {
+    let s = (-0.5 * value.log2()).round().exp2();
+    if s.is_normal() { s } else { 1.0 }
+}
+
+/// What is added to the diagonal, relative to each entry, where rounding leaves nothing of a pivot: as much as rounding
+/// takes at first …
+const LEAST_RAISED: f64 = 1e-15;
+/// … and ten times more until all pivots are positive, up to this.
+const MOST_RAISED: f64 = 1e-9;
+
+/// Numeric factorisation P A Pᵀ = L Lᵀ.
+#[derive(Debug)]
+pub struct Factor {
+    symbolic: SymbolicFactor,
+    values: Vec<f64>,
+    par: Par,
+    /// The unknown at which the plain factorisation broke down, where that made it raise the diagonal.
+    broken: Option<usize>,
+}
+
+impl Factor {
+    /// Factorises the matrix whose lower triangle is given.
+    ///
+    /// # Errors
+    /// [`Breakdown`].
+    pub fn new(symbolic: SymbolicFactor, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Self, Breakdown> {
+        let values = symbolic.factorise(matrix, par)?;
+        Ok(Factor { symbolic, values, par, broken: None })
+    }
+
+    /// As [`Factor::new`], but where rounding leaves nothing of a pivot, raises the diagonal: the factor is then one of a
+    /// matrix nearby, and solves with it have to be refined.
+    ///
+    /// # Errors
+    /// [`Breakdown`] where no small raise helps.
+    pub fn of_semidefinite(
+        symbolic: SymbolicFactor,
+        matrix: SparseColMatRef<'_, usize, f64>,
+        par: Par,
+    ) -> Result<Self, Breakdown> {
+        let broken = match symbolic.factorise(matrix, par) {
+            Ok(values) => return Ok(Factor { symbolic, values, par, broken: None }),
+            Err(Breakdown::NotPositive(unknown)) => unknown,
+            Err(breakdown) => return Err(breakdown),
+        };
+        let mut raised = matrix.val().to_vec();
+        let mut part = LEAST_RAISED;
+        while part <= MOST_RAISED {
+            for &diagonal in &matrix.col_ptr()[..matrix.ncols()] {
+                raised[diagonal] = matrix.val()[diagonal] * (1.0 + part);
+            }
+            match symbolic.factorise(SparseColMatRef::new(matrix.symbolic(), &raised), par) {
+                Ok(values) => return Ok(Factor { symbolic, values, par, broken: Some(broken) }),
+                Err(Breakdown::NotPositive(_)) => part *= 10.0,
+                Err(breakdown) => return Err(breakdown),
+            }
+        }
+        Err(Breakdown::NotPositive(broken))
+    }
+
+    /// The unknown at which rounding left no pivot, where the diagonal was raised.
+    pub fn broken(&self) -> Option<usize> {
+        self.broken
     }
 
     /// Gives the symbolic part back, for another matrix of the same structure.

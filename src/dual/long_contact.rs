@@ -7,7 +7,7 @@
 
 use super::DualError;
 use super::factor::Factor;
-use super::qp::{ContactState, next_state};
+use super::qp::{ContactState, GRAZING, next_state};
 
 /// S as an operator, scaled to a diagonal of ones.
 pub struct LongContact<'a> {
@@ -87,7 +87,9 @@ impl<'a> LongContact<'a> {
         loop {
             steps += 1;
             let jumps = self.with_closed(c, bound, &closed);
-            let next = next_state(&difference(&self.apply(&jumps), c), &jumps, bound, c, &closed);
+            let tension = difference(&self.apply(&jumps), c);
+            let slack = vec![GRAZING * largest(c).max(largest(&tension)); c.len()];
+            let next = next_state(&tension, &jumps, bound, &slack, &closed);
             let settled = next == closed;
             if settled || steps == most {
                 return (ContactState { jumps, closed, steps }, settled);
@@ -224,6 +226,10 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn largest(a: &[f64]) -> f64 {
+    a.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 fn norm(a: &[f64]) -> f64 {

@@ -4,6 +4,10 @@
 //! state they have been in, or meet an open set that leaves a body without hold, a primal active-set method in the
 //! manner of Lawson and Hanson finishes: it changes one end at a time, the energy falls with every step, and no state
 //! can come twice.
+//!
+//! What round-off is depends on the size of the terms of S j − c, not on that of their sum: a body that rests on a point
+//! turns and shifts by much, and its contact forces are small differences. Ends are compared with each other, so S is
+//! best given in units in which its diagonal is about one: what it gives are then forces and not tractions.
 
 use std::collections::HashSet;
 
@@ -24,8 +28,9 @@ pub struct ContactState {
 }
 
 /// Steps of block pivoting before the careful method takes over.
-const BLOCK_STEPS: usize = 40;
-/// Tension and penetration below this fraction of the largest are round-off: an end that grazes keeps its state.
+const BLOCK_STEPS: usize = 200;
+/// Tension and penetration below this fraction of the largest force and jump are round-off: an end that grazes keeps its
+/// state.
 pub const GRAZING: f64 = 1e-13;
 /// What is added to the diagonal of S, relative to each entry, where the open part has free motions.
 const REGULAR: f64 = 1e-13;
@@ -39,8 +44,9 @@ pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> 
     let mut closed = start.map_or_else(|| vec![true; c.len()], <[bool]>::to_vec);
     let mut seen = HashSet::new();
     while seen.len() < BLOCK_STEPS && seen.insert(closed.clone()) {
-        let Some(jumps) = with_closed(s, c, bound, &closed) else { break };
-        let next = next_state(&gradient(s, c, &jumps), &jumps, bound, c, &closed);
+        let Some(jumps) = with_closed_or_springs(s, c, bound, &closed) else { break };
+        let slack = slack(s, c, &jumps, &closed);
+        let next = next_state(&gradient(s, c, &jumps), &jumps, bound, &slack, &closed);
         if next == closed {
             return Ok(ContactState { jumps, closed, steps: seen.len() });
         }
@@ -51,12 +57,24 @@ pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> 
     Ok(ContactState { steps: seen.len() + state.steps, ..state })
 }
 
-/// The primal–dual step: closed ends under tension open, open ends that penetrate close.
-pub fn next_state(tension: &[f64], jumps: &[f64], bound: &[f64], c: &[f64], closed: &[bool]) -> Vec<bool> {
-    let slack = GRAZING * largest(c).max(largest(tension));
+/// The primal–dual step: closed ends under more tension than their `slack` open, open ends that penetrate close.
+pub fn next_state(tension: &[f64], jumps: &[f64], bound: &[f64], slack: &[f64], closed: &[bool]) -> Vec<bool> {
     let depth = GRAZING * largest(jumps).max(largest(bound));
-    let end = |i: usize| if closed[i] { tension[i] <= slack } else { jumps[i] > bound[i] + depth };
-    (0..c.len()).map(end).collect()
+    let end = |i: usize| if closed[i] { tension[i] <= slack[i] } else { jumps[i] > bound[i] + depth };
+    (0..tension.len()).map(end).collect()
+}
+
+/// Tension that is round-off, end by end: of the terms Σ |S_ik j_k| + |c_i| at the end itself, and of those at the open
+/// ends, whose balance the closed ones make good.
+fn slack(s: &Mat<f64>, c: &[f64], jumps: &[f64], closed: &[bool]) -> Vec<f64> {
+    let mut terms: Vec<f64> = c.iter().map(|c| c.abs()).collect();
+    for (k, jump) in jumps.iter().enumerate().filter(|(_, jump)| **jump != 0.0) {
+        for (sum, entry) in terms.iter_mut().zip(s.col(k).iter()) {
+            *sum += (entry * jump).abs();
+        }
+    }
+    let open = terms.iter().zip(closed).filter(|(_, closed)| !**closed).fold(0.0_f64, |m, (t, _)| m.max(*t));
+    terms.into_iter().map(|own| GRAZING * own.max(open)).collect()
 }
 
 fn largest(values: &[f64]) -> f64 {
@@ -104,35 +122,41 @@ fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: 
     jumps.iter().all(|j| j.is_finite()).then_some(jumps)
 }
 
+/// Steps after which tension is judged more leniently, by a factor of ten each time …
+const LENIENT_AFTER: usize = 40;
+/// … up to this fraction.
+const MOST_LENIENT: f64 = 1e-6;
+
 /// Opens the end under the largest tension, one at a time, and closes again what would penetrate. `near` gives jumps
 /// to start from, feasible or not.
 pub fn one_by_one(s: &Mat<f64>, c: &[f64], bound: &[f64], near: Option<&[f64]>) -> Result<ContactState, DualError> {
     let m = c.len();
     let mut jumps = near.map_or_else(|| bound.to_vec(), |j| j.iter().zip(bound).map(|(j, g)| j.min(*g)).collect());
     let mut closed: Vec<bool> = jumps.iter().zip(bound).map(|(j, g)| j == g).collect();
-    let scale = largest(c).max(largest(&gradient(s, c, bound)));
-    let most_steps = 10 * m + 100;
+    let most_steps = 20 * m + 400;
     let mut barred = vec![false; m];
     // The start is settled before the first end opens.
     let mut opening = None;
-    let mut wanted = 0.0;
+    let mut residual = 0.0;
     for steps in 1..=most_steps {
+        let lenient = 10.0_f64.powi((steps / (2 * m + LENIENT_AFTER)) as i32).min(MOST_LENIENT / GRAZING);
         settle(s, c, bound, &mut jumps, &mut closed, opening, &mut barred)?;
         let tension = gradient(s, c, &jumps);
+        let slack = slack(s, c, &jumps, &closed);
         let candidate = (0..m)
-            .filter(|&i| closed[i] && !barred[i] && tension[i] > GRAZING * scale)
+            .filter(|&i| closed[i] && !barred[i] && tension[i] > lenient * slack[i])
             .max_by(|&a, &b| tension[a].total_cmp(&tension[b]));
         let Some(next) = candidate else {
             return Ok(ContactState { jumps, closed, steps });
         };
-        wanted = tension[next];
+        residual = GRAZING * tension[next] / slack[next];
         closed[next] = false;
         opening = Some(next);
     }
     Err(DualError::NotConverged {
         method: "active set",
         iterations: most_steps,
-        residual: wanted / scale,
+        residual,
         wanted: GRAZING,
         advice: "the contact state keeps changing within round-off; use another method".to_string(),
     })

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use super::factor::{Factor, SymbolicFactor};
+use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
 use super::hybrid::{Motion, explain, held_unknowns, ordering};
 use super::long_contact::LongContact;
 use super::qp::{self, ContactState};
@@ -12,6 +12,9 @@ use crate::problem::Problem;
 
 /// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
 const BROKEN: f64 = 1e-9;
+
+/// What is left of a vector beside others, relative to its length, that is round-off.
+const DEPENDENT: f64 = 1e-10;
 
 fn largest(r: &[f64]) -> f64 {
     r.iter().fold(0.0, |m, v| m.max(v.abs()))
@@ -38,9 +41,14 @@ impl Reduced {
         let held = held_unknowns(problem, system, motions);
         let shift = make_definite(system, &held);
         let factor = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(problem, system))
-            .and_then(|symbolic| Factor::new(symbolic, system.matrix.as_ref(), options.par()))
+            .and_then(|symbolic| Factor::of_semidefinite(symbolic, system.matrix.as_ref(), options.par()))
             .map_err(|breakdown| explain(problem, system, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
+    }
+
+    /// What the factorisation broke down at, where replaced pivots helped it on.
+    pub fn breakdown(&self, problem: &Problem, system: &System) -> Option<DualError> {
+        Some(explain(problem, system, Breakdown::NotPositive(self.factor.broken()?)))
     }
 
     /// L⁻¹b, and the load c = b_J − K_J1 K_11⁻¹ b_1 on the jumps.
@@ -75,7 +83,8 @@ impl Reduced {
 
     /// Kx − b vanishes before the jumps and is `traction` on them, or the factor is not that of the matrix.
     pub fn check(&self, system: &System, x: &[f64], traction: &[f64]) -> Result<(), DualError> {
-        if system.unknowns.count == 0 {
+        // A factor with replaced pivots is one of a matrix nearby; refinement shows whether that was near enough.
+        if system.unknowns.count == 0 || self.factor.broken().is_some() {
             return Ok(());
         }
         let mut left = system.multiply(x);
@@ -104,13 +113,26 @@ impl Reduced {
 /// The problem on Γ_K, by the length of the contact.
 pub enum Contact<'a> {
     /// S as a dense matrix.
-    Dense(Mat<f64>),
+    Dense(Dense),
     /// S as an operator, and the number of jumps.
     Long(LongContact<'a>, usize),
 }
 
+/// S in units that make its diagonal about one.
+pub struct Dense {
+    /// As elimination gives it: where it solves for tractions, it keeps to those of the factor to the last digit.
+    matrix: Mat<f64>,
+    /// Cleared of what rounding has left of the motions that it does not resist, where there are any: the one to tell
+    /// how much a contact resists them.
+    cleared: Option<Mat<f64>>,
+    /// The units: powers of two u, so that jumps are u times the numbers that the matrix takes, and the numbers it gives
+    /// u times tractions.
+    unit: Vec<f64>,
+}
+
 impl<'a> Contact<'a> {
-    pub fn new(reduced: &'a Reduced, longest_dense: usize) -> Self {
+    /// `unresisted` are jumps, of motions that no support resists, to which S gives no traction.
+    pub fn new(reduced: &'a Reduced, longest_dense: usize, unresisted: impl FnOnce() -> Vec<Vec<f64>>) -> Self {
         let m = reduced.factor.trailing_len();
         if m > longest_dense {
             return Contact::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
@@ -120,12 +142,33 @@ impl<'a> Contact<'a> {
         for i in 0..m {
             matrix[(i, i)] -= reduced.shift[i];
         }
-        Contact::Dense(matrix)
+        let unit: Vec<f64> = (0..m).map(|i| power_of_two_near(matrix[(i, i)].abs())).collect();
+        for k in 0..m {
+            for i in 0..m {
+                matrix[(i, k)] *= unit[i] * unit[k];
+            }
+        }
+        let basis = orthonormal(unresisted().iter().map(|z| over(z, &unit)));
+        let mut cleared = (!basis.is_empty()).then(|| matrix.clone());
+        if let Some(s) = &mut cleared {
+            basis.iter().for_each(|q| give_no_traction(s, q));
+        }
+        Contact::Dense(Dense { matrix, cleared, unit })
     }
 
     pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
         match self {
-            Contact::Dense(s) => qp::solve(s, c, bound, warm),
+            Contact::Dense(Dense { matrix, cleared, unit }) => {
+                let (c, bound) = (times(c, unit), over(bound, unit));
+                let mut state = qp::solve(cleared.as_ref().unwrap_or(matrix), &c, &bound, warm)?;
+                if cleared.is_some()
+                    && let Some(jumps) = qp::with_closed_or_springs(matrix, &c, &bound, &state.closed)
+                {
+                    state.jumps = jumps;
+                }
+                state.jumps.iter_mut().zip(unit).for_each(|(j, u)| *j *= u);
+                Ok(state)
+            }
             Contact::Long(s, _) => s.solve(c, bound, warm),
         }
     }
@@ -133,27 +176,83 @@ impl<'a> Contact<'a> {
     /// S j − c.
     pub fn gradient(&self, c: &[f64], jumps: &[f64]) -> Vec<f64> {
         match self {
-            Contact::Dense(s) => qp::gradient(s, c, jumps),
+            Contact::Dense(Dense { matrix: s, unit, .. }) => {
+                over(&qp::gradient(s, &times(c, unit), &over(jumps, unit)), unit)
+            }
             Contact::Long(s, _) => s.apply(jumps).iter().zip(c).map(|(s, c)| s - c).collect(),
         }
     }
 
     pub fn with_closed(&self, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
         match self {
-            Contact::Dense(s) => qp::with_closed_or_springs(s, c, bound, closed),
+            Contact::Dense(Dense { matrix: s, unit, .. }) => {
+                let jumps = qp::with_closed_or_springs(s, &times(c, unit), &over(bound, unit), closed)?;
+                Some(times(&jumps, unit))
+            }
             Contact::Long(s, _) => Some(s.with_closed(c, bound, closed)),
+        }
+    }
+
+    /// Penetration that is `part` of the largest jump or gap, end by end.
+    pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
+        match self {
+            Contact::Dense(Dense { unit, .. }) => {
+                let depth = part * largest(&over(jumps, unit)).max(largest(&over(bound, unit)));
+                unit.iter().map(|u| u * depth).collect()
+            }
+            Contact::Long(..) => vec![part * largest(jumps).max(largest(bound)); jumps.len()],
         }
     }
 
     pub fn notes(&self, steps: usize, longest_dense: usize) -> Vec<String> {
         match self {
-            Contact::Dense(_) => Vec::new(),
+            Contact::Dense(..) => Vec::new(),
             Contact::Long(_, m) => vec![format!(
                 "the contact has {m} ends, more than the {longest_dense} that are solved with a dense matrix: its state \
                  was found iteratively (MPRGP, {steps} steps)"
             )],
         }
     }
+}
+
+/// An orthonormal basis of what `vectors` span, those that vanish left out.
+fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for mut v in vectors {
+        let length = dot(&v, &v).sqrt();
+        // Twice is enough.
+        for q in basis.iter().chain(&basis) {
+            let part = dot(q, &v);
+            v.iter_mut().zip(q).for_each(|(v, q)| *v -= part * q);
+        }
+        let left = dot(&v, &v).sqrt();
+        if left > DEPENDENT * length {
+            v.iter_mut().for_each(|v| *v /= left);
+            basis.push(v);
+        }
+    }
+    basis
+}
+
+/// (I − q qᵀ) S (I − q qᵀ) in place of S.
+fn give_no_traction(s: &mut Mat<f64>, q: &[f64]) {
+    let zero = vec![0.0; q.len()];
+    let v = qp::gradient(s, &zero, q);
+    let both: f64 = v.iter().zip(q).map(|(v, q)| v * q).sum();
+    for k in 0..q.len() {
+        for i in 0..q.len() {
+            s[(i, k)] -= q[i] * v[k] + v[i] * q[k] - both * q[i] * q[k];
+        }
+    }
+}
+
+fn times(a: &[f64], unit: &[f64]) -> Vec<f64> {
+    a.iter().zip(unit).map(|(a, u)| a * u).collect()
+}
+
+fn over(a: &[f64], unit: &[f64]) -> Vec<f64> {
+    a.iter().zip(unit).map(|(a, u)| a / u).collect()
 }
 
 /// Takes held unknowns out of K and shifts the diagonal of every jump by itself; returns the shifts.

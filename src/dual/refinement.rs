@@ -13,8 +13,11 @@ use crate::problem::Problem;
 
 /// Refinement ends when the traction jumps are this small against the loads …
 const ROUND_OFF: f64 = 2e-14;
-/// … or when they have not become smaller for this many steps.
+/// … or when they are as small as they must be at least, and have not become smaller for some steps …
+const ENOUGH: f64 = 1e-11;
 const PATIENCE: usize = 4;
+/// … or for this many steps: where the factor is a poor one, residuals rise and fall on their way.
+const MOST_PATIENCE: usize = 25;
 
 /// From a residual to a correction of the unknowns.
 pub type Correction<'a> = dyn Fn(&[f64]) -> Result<Vec<f64>, DualError> + 'a;
@@ -33,74 +36,84 @@ pub struct Refinement<'a> {
     pub most_steps: usize,
 }
 
-/// Moments with the mode parameters of their stresses.
+/// Moments, the mode parameters of their stresses, and what these leave of the loads.
 #[derive(Debug, Clone)]
 pub struct Refined {
     /// Unknowns of the hybrid form.
     pub x: Vec<f64>,
     /// Mode parameters, triangle by triangle.
     pub s: Vec<f64>,
+    /// Residual of every unknown: on free ones a jump of traction, on closed jumps minus the normal traction.
+    pub r: Vec<f64>,
+}
+
+impl Refined {
+    /// The stresses of the unknowns `x`.
+    pub fn new(problem: &Problem, system: &System, x: Vec<f64>) -> Self {
+        let s = parameters(problem, system, &x, true);
+        let r = residual(problem, system, &s);
+        Refined { x, s, r }
+    }
+
+    /// Adds `step` times the correction `d`, with its stresses `ds`.
+    pub fn add(&mut self, problem: &Problem, system: &System, step: f64, d: &[f64], ds: &[f64]) {
+        axpy(&mut self.x, step, d);
+        axpy(&mut self.s, step, ds);
+        self.r = residual(problem, system, &self.s);
+    }
 }
 
 impl Refinement<'_> {
-    /// Refines `x`.
+    /// Refines `now`.
     ///
     /// # Errors
     /// Those of `solve`.
-    pub fn run(&self, x: Vec<f64>) -> Result<Refined, DualError> {
-        let s = parameters(self.problem, self.system, &x, true);
-        let mut now = Refined { x, s };
-        let mut r = self.residual(&now.s);
+    pub fn run(&self, mut now: Refined) -> Result<Refined, DualError> {
         let load = match largest(&self.system.external) {
             0.0 => largest(&self.system.rhs),
             load => load,
         };
-        let mut least = largest(&r);
+        let mut least = self.free(&now.r);
         // The best so far, where the present one is not.
         let mut best: Option<Refined> = None;
         let mut previous: Option<(Vec<f64>, Vec<f64>, f64)> = None;
         let mut stale = 0;
         for _ in 0..self.most_steps {
-            if least <= ROUND_OFF * load || stale == PATIENCE {
+            let patience = if least <= ENOUGH * load { PATIENCE } else { MOST_PATIENCE };
+            if least <= ROUND_OFF * load || stale >= patience {
                 break;
             }
-            let mut d = (self.solve)(&r)?;
-            let product = dot(&d, &r);
+            // Fixed unknowns do not move: d is zero there, and so is their part of every product with r.
+            let mut d = (self.solve)(&now.r)?;
+            let product = dot(&d, &now.r);
             if let Some((last, r_last, product_last)) = &previous {
                 let beta = (product - dot(&d, r_last)) / product_last;
                 d.iter_mut().zip(last).for_each(|(d, last)| *d += beta * last);
             }
             let ds = parameters(self.problem, self.system, &d, false);
-            let step = dot(&d, &r) / dot(&ds, &ds);
+            let step = dot(&d, &now.r) / dot(&ds, &ds);
             if !step.is_finite() {
                 break;
             }
             if best.is_none() {
                 best = Some(now.clone());
             }
-            axpy(&mut now.x, step, &d);
-            axpy(&mut now.s, step, &ds);
-            let next = self.residual(&now.s);
-            let size = largest(&next);
+            let r = now.r.clone();
+            now.add(self.problem, self.system, step, &d, &ds);
+            let size = self.free(&now.r);
             if size < least {
                 (least, stale, best) = (size, 0, None);
             } else {
                 stale += 1;
             }
-            previous = Some((d, std::mem::replace(&mut r, next), product));
+            previous = Some((d, r, product));
         }
         Ok(best.unwrap_or(now))
     }
 
-    /// What the stresses leave of equilibrium where the unknowns are free.
-    fn residual(&self, s: &[f64]) -> Vec<f64> {
-        let mut r = residual(self.problem, self.system, s);
-        for (value, fixed) in r.iter_mut().zip(self.fixed) {
-            if *fixed {
-                *value = 0.0;
-            }
-        }
-        r
+    /// The largest residual where the unknowns are free.
+    fn free(&self, r: &[f64]) -> f64 {
+        r.iter().zip(self.fixed).filter(|(_, fixed)| !**fixed).fold(0.0, |m, (r, _)| m.max(r.abs()))
     }
 }
 

@@ -1,0 +1,96 @@
+//! Motions of whole pieces that no support resists, as jumps on Γ_K.
+//!
+//! S gives no traction to them: not a small one, none. Elimination leaves round-off in its place, which decides nothing
+//! as long as contact holds a piece firmly, and everything where it rests on a millionth of its side.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::problem::{Condition, Problem};
+use crate::statics::Components;
+
+/// Squares of displacements at the supports, relative to the largest, that are zero.
+const UNRESISTED: f64 = 1e-15;
+
+/// The jumps, two for each pair, of a basis of the motions that supports leave to the pieces when contact does not
+/// hold them.
+pub fn unsupported(problem: &Problem) -> Vec<Vec<f64>> {
+    let mesh = &problem.mesh;
+    let mut clamped = vec![false; problem.scene.bodies.len()];
+    for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
+        if let (Condition::Clamped(_), Some(t)) = (condition, edge.triangles[0]) {
+            clamped[mesh.body[t]] = true;
+        }
+    }
+    if problem.interfaces.is_empty() || clamped.iter().all(|c| *c) {
+        return Vec::new();
+    }
+    let pieces = Components::new(problem);
+    let free: Vec<Vec<Vector3<f64>>> = left_by_supports(problem, &pieces);
+    let mut all = Vec::new();
+    for (piece, motions) in free.iter().enumerate() {
+        all.extend(motions.iter().map(|motion| jumps(problem, &pieces, piece, motion)));
+    }
+    all
+}
+
+/// Displacement of a point in the motion (a, b, ω · size) of a piece.
+fn at(pieces: &Components, piece: usize, motion: &Vector3<f64>, point: [f64; 2]) -> [f64; 2] {
+    let ([x, y], size) = (pieces.centre[piece], pieces.size[piece]);
+    [motion[0] - motion[2] * ((point[1] - y) / size), motion[1] + motion[2] * ((point[0] - x) / size)]
+}
+
+/// Of each piece, a basis of the motions that move no support.
+fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f64>>> {
+    let mesh = &problem.mesh;
+    let mut moved = vec![Matrix3::zeros(); pieces.count()];
+    let mut clamped = vec![false; pieces.count()];
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        let Some(t) = mesh.edges[e].triangles[0] else { continue };
+        let piece = pieces.of_triangle[t];
+        match condition {
+            Condition::Clamped(_) => clamped[piece] = true,
+            Condition::Roller => {
+                let (_, n) = mesh.edge_frame(e);
+                for v in mesh.edges[e].vertices {
+                    let row = Vector3::from_fn(|i, _| {
+                        let u = at(pieces, piece, &Vector3::ith(i, 1.0), mesh.points[v]);
+                        u[0] * n[0] + u[1] * n[1]
+                    });
+                    moved[piece] += row * row.transpose();
+                }
+            }
+            _ => {}
+        }
+    }
+    let basis = |(moved, clamped): (Matrix3<f64>, bool)| {
+        let eigen = moved.symmetric_eigen();
+        let none = |i: &usize| !clamped && eigen.eigenvalues[*i] <= UNRESISTED * moved.trace();
+        (0..3).filter(none).map(|i| eigen.eigenvectors.column(i).into_owned()).collect()
+    };
+    moved.into_iter().zip(clamped).map(basis).collect()
+}
+
+/// The jump moments of a motion of one piece.
+fn jumps(problem: &Problem, pieces: &Components, piece: usize, motion: &Vector3<f64>) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    pairs
+        .flat_map(|pair| {
+            let mut jump = [0.0; 2];
+            for (edge, sign) in pair.edges.into_iter().zip([1.0, -1.0]) {
+                let t = edge.and_then(|e| mesh.edges[e].triangles[0]);
+                if t.is_none_or(|t| pieces.of_triangle[t] != piece) {
+                    continue;
+                }
+                // Vertices of both sides have equal coordinates.
+                let across = pair.first.map(|v| {
+                    let u = at(pieces, piece, motion, mesh.points[v]);
+                    sign * (u[0] * pair.normal[0] + u[1] * pair.normal[1])
+                });
+                jump[0] += pair.length * (2.0 * across[0] + across[1]) / 6.0;
+                jump[1] += pair.length * (across[0] + 2.0 * across[1]) / 6.0;
+            }
+            jump
+        })
+        .collect()
+}

@@ -1,0 +1,147 @@
+//! Refinement and contact state in turn.
+//!
+//! S is what elimination leaves of K, and where a body rests on a small part of its contact most digits of the softest
+//! motion are gone: the state that S gives may be one that the refined stresses do not bear out. Their normal tractions
+//! and jumps tell, and the same S with the remainder for a load gives the change of state: an error of S in the hundredth
+//! part costs a step, and no accuracy.
+
+use super::DualError;
+use super::equilibrium::{Equilibrium, load_scale};
+use super::hybrid::{parameters, stresses};
+use super::qp::ContactState;
+use super::reduced::{Contact, Reduced};
+use super::refinement::{Refined, Refinement};
+use super::system::System;
+use crate::element::StressField;
+use crate::problem::Problem;
+
+/// Changes of the contact state at most.
+const MOST_CHANGES: usize = 12;
+/// Tension relative to the load, or to the traction at the other end of its edge, and penetration relative to the
+/// largest jump, that are round-off.
+const GRAZING: f64 = 1e-12;
+
+/// The same, where the changes have come to an end: more is no contact state.
+const UNSETTLED: f64 = 1e-8;
+
+/// What is settled, and with what.
+pub struct Settling<'a> {
+    /// The scene.
+    pub problem: &'a Problem,
+    /// Its assembled form.
+    pub system: &'a System,
+    /// Its factor.
+    pub reduced: &'a Reduced,
+    /// The problem on Γ_K.
+    pub contact: &'a Contact<'a>,
+    /// Limit of refinements for one state.
+    pub most_steps: usize,
+}
+
+impl Settling<'_> {
+    /// Refines `now` until stresses and contact state agree.
+    ///
+    /// # Errors
+    /// [`DualError::ContactUndetermined`], [`DualError::NotConverged`], or what the contact problem returns.
+    pub fn run(&self, mut now: Refined, state: &mut ContactState) -> Result<Refined, DualError> {
+        now = self.refined(now, &state.closed)?;
+        for _ in 0..MOST_CHANGES {
+            let next = self.next(&now, &state.closed, GRAZING);
+            if next == state.closed || self.most_steps == 0 {
+                return Ok(now);
+            }
+            let jumps = &now.x[self.system.unknowns.first_jump..];
+            let room: Vec<f64> = self.system.jump_bound.iter().zip(jumps).map(|(g, j)| g - j).collect();
+            let (y, c) = self.reduced.condense(&now.r);
+            let change = self.contact.solve(&c, &room, Some(&next))?;
+            let d = self.reduced.expand(y, &change.jumps);
+            let ds = parameters(self.problem, self.system, &d, false);
+            now.add(self.problem, self.system, 1.0, &d, &ds);
+            state.steps += change.steps;
+            state.closed = change.closed;
+            now = self.refined(now, &state.closed)?;
+        }
+        if self.next(&now, &state.closed, UNSETTLED) == state.closed {
+            return Ok(now);
+        }
+        Err(DualError::NotConverged {
+            method: "contact state",
+            iterations: state.steps,
+            residual: f64::NAN,
+            wanted: UNSETTLED,
+            advice: "contact ends keep opening and closing; refine the mesh at the ends of the contact".to_string(),
+        })
+    }
+
+    /// Refuses stresses that leave more of the loads than `allowed`, relative as in [`Equilibrium`].
+    ///
+    /// # Errors
+    /// [`DualError::Factorisation`] where rounding had left nothing of a pivot, otherwise [`DualError::NotConverged`].
+    pub fn accept(
+        &self,
+        now: &Refined,
+        stress: &StressField,
+        moments: &[[[f64; 2]; 2]],
+        state: &ContactState,
+        allowed: f64,
+    ) -> Result<(), DualError> {
+        let fixed = self.reduced.fixed(&state.closed);
+        let first = self.system.unknowns.first_jump;
+        let left = now.r.iter().zip(&fixed).enumerate().fold(0.0_f64, |m, (i, (r, fixed))| match (fixed, i >= first) {
+            (false, _) => m.max(r.abs()),
+            (true, true) => m.max(-r),
+            (true, false) => m,
+        });
+        // The measure itself takes longer; where the remainders are very small against the load, it can only agree. A
+        // sum notices what a maximum passes over: values that are not numbers.
+        let numbers = now.r.iter().sum::<f64>().is_finite();
+        if numbers && left <= 0.1 * allowed * load_scale(self.problem, || stress.clone()) {
+            return Ok(());
+        }
+        let residual = Equilibrium::measure(self.problem, stress, moments).residual();
+        if numbers && residual <= allowed {
+            return Ok(());
+        }
+        Err(self.reduced.breakdown(self.problem, self.system).unwrap_or(DualError::NotConverged {
+            method: "refinement of the stresses",
+            iterations: state.steps,
+            residual,
+            wanted: allowed,
+            advice: "triangles are too flat, or a body rests on too small a part of its contact, for the digits that \
+                     numbers have; refine the mesh there"
+                .to_string(),
+        }))
+    }
+
+    /// The least energy with the present contact state.
+    fn refined(&self, now: Refined, closed: &[bool]) -> Result<Refined, DualError> {
+        let no_move = vec![0.0; closed.len()];
+        let correction = |r: &[f64]| {
+            let (y, c) = self.reduced.condense(r);
+            let jumps = self.contact.with_closed(&c, &no_move, closed).ok_or(DualError::ContactUndetermined)?;
+            Ok(self.reduced.expand(y, &jumps))
+        };
+        let refinement = Refinement {
+            problem: self.problem,
+            system: self.system,
+            fixed: &self.reduced.fixed(closed),
+            solve: &correction,
+            most_steps: self.most_steps,
+        };
+        refinement.run(now)
+    }
+
+    /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
+    fn next(&self, now: &Refined, closed: &[bool], grazing: f64) -> Vec<bool> {
+        let first = self.system.unknowns.first_jump;
+        let load = load_scale(self.problem, || stresses(self.problem, self.system, &now.s));
+        // Pairs have two ends, numbered one after the other.
+        let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
+        let depth = self.contact.allowed(&now.x[first..], &self.system.jump_bound, grazing);
+        let end = |i: usize| match closed[i] {
+            true => traction(i) <= grazing * load.max(-traction(i ^ 1)),
+            false => now.x[first + i] > self.system.jump_bound[i] + depth[i],
+        };
+        (0..closed.len()).map(end).collect()
+    }
+}
