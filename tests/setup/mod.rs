@@ -2,6 +2,8 @@
 
 #![allow(dead_code)]
 
+pub mod blocks;
+
 use std::collections::HashMap;
 
 use hypercircle::mesh::{Edge, Triangulation};
