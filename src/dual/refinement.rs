@@ -11,7 +11,7 @@ use super::hybrid::{parameters, residual};
 use super::system::System;
 use crate::problem::Problem;
 
-/// Refinement ends when the traction jumps are this small against the loads …
+/// Refinement ends when traction jumps and their resultants are this small against the loads …
 const ROUND_OFF: f64 = 2e-14;
 /// … or when they are as small as they must be at least, and have not become smaller for some steps …
 const ENOUGH: f64 = 1e-11;
@@ -73,14 +73,15 @@ impl Refinement<'_> {
             0.0 => largest(&self.system.rhs),
             load => load,
         };
-        let mut least = self.free(&now.r);
+        let size = |r: &[f64]| self.stray(r, load);
+        let mut least = size(&now.r);
         // The best so far, where the present one is not.
         let mut best: Option<Refined> = None;
         let mut previous: Option<(Vec<f64>, Vec<f64>, f64)> = None;
         let mut stale = 0;
         for _ in 0..self.most_steps {
-            let patience = if least <= ENOUGH * load { PATIENCE } else { MOST_PATIENCE };
-            if least <= ROUND_OFF * load || stale >= patience {
+            let patience = if least <= ENOUGH { PATIENCE } else { MOST_PATIENCE };
+            if least <= ROUND_OFF || stale >= patience {
                 break;
             }
             // Fixed unknowns do not move: d is zero there, and so is their part of every product with r.
@@ -100,7 +101,7 @@ impl Refinement<'_> {
             }
             let r = now.r.clone();
             now.add(self.problem, self.system, step, &d, &ds);
-            let size = self.free(&now.r);
+            let size = size(&now.r);
             if size < least {
                 (least, stale, best) = (size, 0, None);
             } else {
@@ -111,9 +112,33 @@ impl Refinement<'_> {
         Ok(best.unwrap_or(now))
     }
 
-    /// The largest residual where the unknowns are free.
-    fn free(&self, r: &[f64]) -> f64 {
-        r.iter().zip(self.fixed).filter(|(_, fixed)| !**fixed).fold(0.0, |m, (r, _)| m.max(r.abs()))
+    /// The largest residual where the unknowns are free, relative to the largest load, or the largest resultant of the
+    /// residuals on a body, relative to the sum of the loads, if that is more: on slender bodies it is.
+    fn stray(&self, r: &[f64], load: f64) -> f64 {
+        let Refinement { problem, system, fixed, .. } = *self;
+        let mut force = vec![[0.0; 2]; problem.scene.bodies.len()];
+        let (mut largest, mut gross) = (0.0_f64, 0.0);
+        for (e, edge) in problem.mesh.edges.iter().enumerate() {
+            let Some(t) = edge.triangles[0] else { continue };
+            let (length, normal) = problem.mesh.edge_frame(e);
+            let force = &mut force[problem.mesh.body[t]];
+            for component in [0, 1].into_iter().flat_map(|end| system.unknowns.components(e, end, normal)) {
+                // A jump belongs to both sides, which balance it between them.
+                let &[(unknown, _)] = component.terms() else { continue };
+                gross += 0.5 * length * system.external[unknown].abs();
+                if !fixed[unknown] {
+                    largest = largest.max(r[unknown].abs());
+                    force[0] += 0.5 * length * r[unknown] * component.direction[0];
+                    force[1] += 0.5 * length * r[unknown] * component.direction[1];
+                }
+            }
+        }
+        let first = system.unknowns.first_jump;
+        let open = r[first..].iter().zip(&fixed[first..]).filter(|(_, fixed)| !**fixed);
+        largest = open.fold(largest, |m, (r, _)| m.max(r.abs()));
+        let resultant = force.iter().fold(0.0_f64, |m, f| m.max(f[0].hypot(f[1])));
+        let over = |a: f64, b: f64| if a > 0.0 { a / b.max(f64::MIN_POSITIVE) } else { 0.0 };
+        over(largest, load).max(if gross > 0.0 { over(resultant, gross) } else { 0.0 })
     }
 }
 
