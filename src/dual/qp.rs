@@ -122,7 +122,8 @@ fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: 
     jumps.iter().all(|j| j.is_finite()).then_some(jumps)
 }
 
-/// Steps after which tension is judged more leniently, by a factor of ten each time …
+/// Steps, beside two for each end, after which tension is judged more leniently, by a factor of ten each time: a state that
+/// is nearly right can be held against the refined stresses …
 const LENIENT_AFTER: usize = 40;
 /// … up to this fraction.
 const MOST_LENIENT: f64 = 1e-6;
