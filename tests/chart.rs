@@ -76,6 +76,21 @@ fn errors_fall_bounds_hold_and_phases_add_up() {
     for name in ["chart.html", "chart.csv", "figures/chart-two_blocks-error-whole.svg"] {
         assert!(folder.path().join(name).is_file(), "{name}");
     }
+    let text = std::fs::read_to_string(folder.path().join("chart.md")).expect("readable");
+    // Every table has as many cells in each line as in its head, and a line for each run.
+    let tables: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+    let cells = |line: &str| line.split(" | ").count();
+    assert_eq!(tables.iter().filter(|line| cells(line) == 10).count(), 1 + runs.len(), "{text}");
+    assert_eq!(tables.iter().filter(|line| cells(line) == 3).count(), 1 + 5, "{text}");
+    // The command stands under each figure, and every figure is there.
+    let lines: Vec<&str> = text.lines().collect();
+    let figures: Vec<usize> = (0..lines.len()).filter(|&i| lines[i].starts_with("![")).collect();
+    assert_eq!(figures.len(), 4);
+    for i in figures {
+        assert!(lines[i + 2].starts_with("`hypercircle chart ") && lines[i + 2].contains("--method adaptive"));
+        let file = lines[i].split(['(', ')']).nth(1).expect("a link");
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
     let page = std::fs::read_to_string(folder.path().join("chart.html")).expect("readable");
     assert!(!page.contains("<script") && !page.contains("src=\"http") && page.contains("<svg"));
 }

@@ -18,7 +18,7 @@ use crate::scene::Scene;
 pub struct Plan {
     /// The methods.
     pub methods: Vec<Method>,
-    /// Uniform refinements 0 … levels − 1; the adaptive method divides its tolerance by two from one to the next.
+    /// Uniform refinements 0 … levels − 1; the adaptive method divides its tolerance by four from one to the next.
     pub levels: usize,
     /// Runs of each kind.
     pub repeats: usize,
@@ -77,6 +77,8 @@ pub struct Campaign<'a> {
     pub program: &'a Path,
     /// Where results go.
     pub folder: &'a Path,
+    /// The command that makes the chart again, for its readers.
+    pub command: String,
     /// Told what is being run.
     pub progress: &'a dyn Fn(String),
 }
@@ -95,6 +97,7 @@ impl Campaign<'_> {
             repeats: self.plan.repeats,
             budget: self.plan.budget,
             threads: self.plan.threads,
+            command: self.command.clone(),
             scenes: Vec::new(),
         };
         for scene in scenes {
@@ -230,7 +233,7 @@ impl Campaign<'_> {
 
 /// Tolerance of a run at `level`.
 fn tolerance(method: Method, level: usize) -> Option<f64> {
-    (method == Method::Adaptive).then(|| FIRST_TOLERANCE * 0.5_f64.powi(level as i32))
+    (method == Method::Adaptive).then(|| FIRST_TOLERANCE * 0.25_f64.powi(level as i32))
 }
 
 fn hash(path: &Path) -> Result<String, CampaignError> {

@@ -3,6 +3,9 @@
 use super::data::{Plot, Run, SceneChart};
 use crate::measure::Method;
 
+/// Relative errors that tables of fastest choices name.
+pub(super) const WANTED: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
+
 /// A run that is good enough.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice<'a> {
@@ -15,16 +18,21 @@ pub struct Choice<'a> {
 }
 
 /// The run that takes the least whole time with an error of at most `wanted`: by the guaranteed error, or by the true
-/// one, which only the reference bracket knows.
+/// one, which only the reference bracket knows, and not better than to its own width.
 pub fn fastest(scene: &SceneChart, wanted: f64, guaranteed: bool) -> Option<Choice<'_>> {
     let error = |plot: &Plot| if guaranteed { plot.guaranteed } else { plot.true_error };
+    // Errors are roots of energies: the exact one is at most √(measured² + resolution²).
+    let unsure = match &scene.reference {
+        Ok(reference) if !guaranteed => reference.resolution(),
+        _ => 0.0,
+    };
     scene
         .runs
         .iter()
         .filter_map(|run| {
             let plot = run.plot.as_ref()?;
             let error = error(plot)?;
-            (error <= wanted).then_some(Choice { run, plot, error })
+            (error.hypot(unsure) <= wanted).then_some(Choice { run, plot, error })
         })
         .min_by(|a, b| a.plot.whole.median.total_cmp(&b.plot.whole.median))
 }

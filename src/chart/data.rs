@@ -17,6 +17,9 @@ pub struct Chart {
     pub budget: f64,
     /// Threads of the runs.
     pub threads: usize,
+    /// The command that makes it again.
+    #[serde(default)]
+    pub command: String,
     /// The scenes, in the order they were given.
     pub scenes: Vec<SceneChart>,
 }

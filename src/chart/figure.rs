@@ -1,7 +1,7 @@
 //! Error against cost, log–log.
 
 use super::choice::{pareto, slope};
-use super::data::{Plot, SceneChart, Status};
+use super::data::{Plot, Reference, SceneChart, Status};
 use crate::measure::Method;
 use crate::plot::{PlotError, Scale, Series, Sheet, draw};
 use crate::report::number::significant;
@@ -18,7 +18,21 @@ pub enum Axis {
 }
 
 impl Axis {
-    fn words(self) -> (&'static str, &'static str) {
+    /// All of them, in the order of a page.
+    pub const ALL: [Axis; 3] = [Axis::Whole, Axis::Solve, Axis::Unknowns];
+
+    /// Name of the file of the figure.
+    pub(super) fn file(self, scene: &SceneChart) -> String {
+        let name = match self {
+            Axis::Whole => "whole",
+            Axis::Solve => "solve",
+            Axis::Unknowns => "unknowns",
+        };
+        format!("chart-{}-error-{name}.svg", scene.name)
+    }
+
+    /// Heading, and what the axis is.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
         match self {
             Axis::Whole => ("Error against seconds, whole process", "seconds from start of the process to the answer"),
             Axis::Solve => {
@@ -46,22 +60,25 @@ impl Axis {
 }
 
 /// True error (full markers) and guaranteed error (hollow) of every method, with slopes and the Pareto front of the
-/// true errors.
+/// true errors. A true error that the reference bracket does not tell from zero is drawn at the largest it can be, on the
+/// line of the bracket, and has no part in the slope.
 ///
 /// # Errors
 /// What the drawing library reported.
 pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError> {
     let mut series = Vec::new();
     let mut notes = Vec::new();
+    let least = scene.reference.as_ref().map_or(0.0, Reference::resolution);
     for method in Method::ALL {
         for (secondary, name) in [(false, "true"), (true, "guaranteed")] {
-            let error = |plot: &Plot| if secondary { plot.guaranteed } else { plot.true_error };
+            let error = |plot: &Plot| if secondary { plot.guaranteed } else { plot.true_error.map(|e| e.max(least)) };
             let points = scene.points(method, |p| axis.cost(p), error);
             if points.is_empty() {
                 continue;
             }
             // Two points have a slope, but not one that says anything.
-            let fitted = slope(&points).filter(|_| points.len() > 2);
+            let known: Vec<[f64; 2]> = points.iter().copied().filter(|p| secondary || p[1] > least).collect();
+            let fitted = slope(&known).filter(|_| known.len() > 2);
             let fitted = fitted.map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
             let spread = scene.done(method).filter(|(_, p)| error(p).is_some_and(|e| e > 0.0));
             series.push(Series {

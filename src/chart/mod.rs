@@ -1,7 +1,7 @@
 //! Accuracy against time: every method on every refinement of a scene, measured in processes of their own.
 //!
 //! [`Campaign`] makes the runs and saves `chart.json` after each of them; [`write()`] turns the data into `chart.csv`,
-//! `chart.html` and figures. The true error of a run is that of its energy, √(|E − E_run| / 𝒮), against a much tighter
+//! `chart.md`, `chart.html` and figures. The true error of a run is that of its energy, √(|E − E_run| / 𝒮), against a much tighter
 //! bracket of the same scene; without contact it is the relative energy-norm error.
 
 mod campaign;
@@ -10,6 +10,7 @@ mod csv;
 mod data;
 mod figure;
 mod judge;
+mod markdown;
 mod page;
 mod phases;
 mod reference;
@@ -21,6 +22,7 @@ pub use csv::csv;
 pub use data::{Chart, Cold, Plot, Reference, Run, SceneChart, Spread, Status};
 pub use figure::{Axis, error_figure};
 pub use judge::judge;
+pub use markdown::markdown;
 pub(crate) use page::CSS;
 pub use page::page;
 pub use phases::phase_figure;

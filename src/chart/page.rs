@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::choice::fastest;
+use super::choice::{WANTED, fastest};
 use super::data::{Chart, Run, SceneChart, Spread, Status};
 use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
 
@@ -31,7 +31,7 @@ pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {
                     "hypercircle " (machine.version) @if !machine.optimised { " (a build without optimisation)" } ", "
                     (machine.processor.as_deref().unwrap_or("unknown processor")) ", " (chart.threads) " of "
                     (machine.processors) " processors in use. Medians of " (chart.repeats) " runs, each in a process of its own; "
-                    "a run is ended after " (seconds(chart.budget)) "."
+                    "a run is ended after " (seconds(chart.budget)) ". Made by " code { (chart.command) } "."
                 }
                 @for scene in &chart.scenes { (one(scene, figures)) }
                 (reading())
@@ -79,7 +79,7 @@ fn choices(scene: &SceneChart) -> Markup {
         div.scroll { table {
             thead { tr { th.n { "wanted" } th { "fastest with a guarantee" } th { "fastest by true error" } } }
             tbody {
-                @for wanted in [0.1, 0.05, 0.02, 0.01, 0.005] {
+                @for wanted in WANTED {
                     tr {
                         td.n { (percent(wanted)) }
                         @for guaranteed in [true, false] {

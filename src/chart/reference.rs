@@ -4,7 +4,7 @@ use super::data::Reference;
 use crate::measure::{Ended, Measured, Method};
 
 /// Guaranteed relative error that the reference of a chart is refined to …
-pub const REFERENCE_ADAPTIVE: f64 = 2e-3;
+pub const REFERENCE_ADAPTIVE: f64 = 5e-4;
 /// … and the refinements of the scene's own mesh on which FEniCSx may lower the upper bound further.
 pub const REFERENCE_PRIMAL: usize = 1;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::data::{Chart, SCHEMA_VERSION};
 use super::figure::{Axis, error_figure};
-use super::{csv, page, phases};
+use super::{csv, markdown, page, phases};
 
 /// Why the files of a chart could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -84,17 +84,15 @@ pub fn read(folder: &Path) -> Result<Option<Chart>, StoreError> {
     Ok(Some(chart))
 }
 
-/// Writes all files: `chart.json`, `chart.csv`, `chart.html`, and four figures a scene in `figures/`.
+/// Writes all files: `chart.json`, `chart.csv`, `chart.md`, `chart.html`, and four figures a scene in `figures/`.
 ///
 /// # Errors
 /// [`StoreError`].
 pub fn write(chart: &Chart, folder: &Path) -> Result<(), StoreError> {
     let mut figures = Vec::new();
     for scene in &chart.scenes {
-        for (name, axis) in
-            [("error-whole", Axis::Whole), ("error-solve", Axis::Solve), ("error-unknowns", Axis::Unknowns)]
-        {
-            let name = format!("chart-{}-{name}.svg", scene.name);
+        for axis in Axis::ALL {
+            let name = axis.file(scene);
             let svg = error_figure(scene, axis)
                 .map_err(|reason| StoreError::Figure { name: name.clone(), reason: reason.to_string() })?;
             figures.push((name, svg));
@@ -106,6 +104,7 @@ pub fn write(chart: &Chart, folder: &Path) -> Result<(), StoreError> {
     }
     save(chart, folder)?;
     put(folder, "chart.csv", csv::csv(chart).as_bytes())?;
+    put(folder, "chart.md", markdown::markdown(chart).as_bytes())?;
     put(folder, "chart.html", page::page(chart, &figures).as_bytes())?;
     for (name, svg) in &figures {
         put(folder, &format!("figures/{name}"), svg.as_bytes())?;

@@ -11,6 +11,10 @@ use crate::chart::{self, Campaign, CampaignError, Chart, Plan, Status, fastest};
 use crate::measure::Method;
 use crate::scene::Scene;
 
+const REFINE: u32 = 3;
+const REPEATS: u32 = 3;
+const THREADS: u32 = 1;
+
 /// Options of `chart`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -27,10 +31,10 @@ pub struct Args {
     #[arg(long)]
     pub resume: bool,
     /// Uniform refinements from 0 to N
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u32).range(0..=8))]
+    #[arg(long, value_name = "N", default_value_t = REFINE, value_parser = value_parser!(u32).range(0..=8))]
     pub refine: u32,
     /// Runs of each kind; the median counts
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = value_parser!(u32).range(1..=99))]
+    #[arg(long, value_name = "N", default_value_t = REPEATS, value_parser = value_parser!(u32).range(1..=99))]
     pub repeats: u32,
     /// Only these methods; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known)]
@@ -39,7 +43,7 @@ pub struct Args {
     #[arg(long)]
     pub reduced: bool,
     /// Threads to use
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", default_value_t = THREADS, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,
     /// Where results go.
     #[command(flatten)]
@@ -71,6 +75,26 @@ impl Args {
         }
         plan
     }
+
+    /// The command that makes the same runs.
+    fn command(&self) -> String {
+        let mut words: Vec<String> = vec!["hypercircle chart".to_string()];
+        words.extend(self.scenes.iter().map(|path| quoted(&path.display().to_string())));
+        words.extend(self.reduced.then(|| "--reduced".to_string()));
+        words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        for (name, value, usual) in
+            [("refine", self.refine, REFINE), ("repeats", self.repeats, REPEATS), ("threads", self.threads, THREADS)]
+        {
+            words.extend((value != usual).then(|| format!("--{name} {value}")));
+        }
+        words.extend(self.budget.map(|s| format!("--budget {s}")));
+        words.join(" ")
+    }
+}
+
+/// A name as a shell wants it.
+pub(super) fn quoted(name: &str) -> String {
+    if name.contains(' ') { format!("'{name}'") } else { name.to_string() }
 }
 
 /// Runs every method on every scene.
@@ -94,7 +118,13 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let program = this_program()?;
     let progress = Progress::new(args.run.quiet);
     let plan = args.plan();
-    let campaign = Campaign { plan: &plan, program: &program, folder: &folder, progress: &|what| progress.phase(what) };
+    let campaign = Campaign {
+        plan: &plan,
+        program: &program,
+        folder: &folder,
+        command: args.command(),
+        progress: &|what| progress.phase(what),
+    };
     let chart = campaign.run(&scenes, kept).map_err(failed)?;
     chart::write(&chart, &folder).map_err(|e| failed(e.into()))?;
     drop(progress);
