@@ -50,6 +50,19 @@ fn stack() {
 }
 
 #[test]
+fn seal() {
+    let report = sound("seal");
+    // A pressure of 0.2 on 0.75.
+    carries(&report, 0, [0.0, -0.15]);
+    if with_reference() {
+        // Linear displacements lock: they miss more of the exact energy than the bracket leaves open.
+        let [lower, upper] = ["lower", "upper"].map(|key| report.number(&format!("/energy/{key}")));
+        let [p1, p2] = [0, 1].map(|i| report.number(&format!("/primal/{i}/energy")));
+        assert!(p1 - upper > 10.0 * (upper - lower) && p2 - lower < 2.0 * (upper - lower), "{lower} {upper} {p1} {p2}");
+    }
+}
+
+#[test]
 fn gravity() {
     let report = sound("gravity");
     carries(&report, 0, [0.0, 2.0]);
