@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use hypercircle::measure::{Answer, End, Ended, Measured, Method, Seconds};
-use hypercircle::stability::{Claim, Known, Outcome, Truth, judge};
+use hypercircle::measure::{Answer, End, Ended, Machine, Measured, Method, Seconds};
+use hypercircle::stability::{Cell, Claim, Known, Matrix, Outcome, Row, Step, Truth, judge};
 
 /// An answer that is right: the exact energy −1 inside, the force exact.
 fn good() -> Answer {
@@ -36,7 +36,11 @@ fn known() -> Known {
 fn outcome_of(method: Method, known: &Known, ended: &Ended) -> (Outcome, String) {
     let truth = Some(Truth { lower: -1.0, upper: -1.0, strain: 1.0 });
     let first = good();
-    let step = judge(method, ended, &Claim { known, truth, first: Some(&first), flat: Some(3.0) });
+    let step = judge(
+        method,
+        ended,
+        &Claim { known, truth, first: Some(&first), first_error: first.relative_error_bound, flat: Some(3.0) },
+    );
     (step.outcome, step.why)
 }
 
@@ -119,51 +123,110 @@ fn a_scaled_answer_must_be_the_same_to_round_off() {
         Answer { lower: Some(-4.004), upper: Some(-3.996), strain: Some(4.0), resultants: vec![[-1.0, 0.0]], ..good() };
     let of = |answer: Answer| {
         let ended = told(Method::Condensed, End::Solved, Some(answer));
-        judge(Method::Condensed, &ended, &Claim { known: &scaled, truth, first: Some(&first), flat: None }).outcome
+        judge(
+            Method::Condensed,
+            &ended,
+            &Claim { known: &scaled, truth, first: Some(&first), first_error: None, flat: None },
+        )
+        .outcome
     };
     assert_eq!(of(answer.clone()), Outcome::Correct);
     assert_eq!(of(Answer { lower: Some(-4.004 * (1.0 + 1e-11)), ..answer }), Outcome::Inaccurate);
 }
 
-/// The parameter of the hardest value that must still be correct, for the methods that the guarantee rests on.
+/// A matrix of one row, whose first two of three values are promised.
+fn promising(method: Method, outcomes: [Outcome; 3]) -> Matrix {
+    let step = |outcome| Step { outcome, why: String::new(), error: None, bound: None, answer: None };
+    let worst = outcomes.into_iter().max().expect("three");
+    let cell = Cell { method, worst, steps: outcomes.map(step).to_vec() };
+    let text = || "row".to_string();
+    let row = Row {
+        id: text(),
+        title: text(),
+        parameter: text(),
+        values: ["1", "10", "100"].map(str::to_string).to_vec(),
+        promised: 2,
+        truth: text(),
+        reported: text(),
+        cells: vec![cell],
+    };
+    Matrix { schema_version: 1, machine: Machine::here(), reduced: true, command: String::new(), rows: vec![row] }
+}
+
 #[test]
-fn the_own_methods_hold_where_they_promise_to() {
+fn what_is_not_correct_where_it_is_promised_is_found() {
+    use Outcome::{Correct, Crash, Inaccurate, NoConvergence, Refused, Wrong};
+    let missed = |method, outcomes| promising(method, outcomes).shortfalls().iter().map(|s| s.2).collect::<Vec<_>>();
+    assert_eq!(missed(Method::Condensed, [Correct, Correct, Inaccurate]), [0; 0]);
+    assert_eq!(missed(Method::Condensed, [Correct, Inaccurate, Correct]), [1]);
+    assert_eq!(missed(Method::Adaptive, [Refused, NoConvergence, Correct]), [0, 1]);
+    assert_eq!(missed(Method::Clarabel, [Refused, Refused, Refused]), [0; 0]);
+    let defects = |method, worst| promising(method, [Correct, Correct, worst]).defects().len();
+    assert_eq!([Wrong, Crash, Inaccurate].map(|worst| defects(Method::Uzawa, worst)), [1, 1, 0]);
+    assert_eq!(defects(Method::FenicsP1, Wrong), 0);
+}
+
+#[test]
+fn a_displacement_that_penetrates_is_inaccurate() {
+    let through = Answer { lower: None, relative_error_bound: None, violation: Some(1e-3), ..good() };
+    let ended = told(Method::FenicsP2, End::Solved, Some(through));
+    assert_eq!(outcome_of(Method::FenicsP2, &known(), &ended).0, Outcome::Inaccurate);
+}
+
+#[test]
+fn an_error_that_grows_along_the_sweep_is_inaccurate_with_and_without_a_bound() {
+    // √0.01 = 0.1 is more than three times the first error, 0.02.
+    let growing = |method: Method, answer: Answer| {
+        let (known, truth) = (known(), Some(Truth { lower: -1.0, upper: -1.0, strain: 1.0 }));
+        let claim = Claim { known: &known, truth, first: None, first_error: Some(0.02), flat: Some(3.0) };
+        judge(method, &told(method, End::Solved, Some(answer)), &claim).outcome
+    };
+    let stress = Answer { lower: Some(-1.005), upper: Some(-0.995), relative_error_bound: Some(0.1), ..good() };
+    assert_eq!(growing(Method::Condensed, stress), Outcome::Inaccurate);
+    let locked = Answer { lower: None, upper: Some(-0.99), relative_error_bound: None, ..good() };
+    assert_eq!(growing(Method::FenicsP1, locked.clone()), Outcome::Inaccurate);
+    assert_eq!(growing(Method::FenicsP1, Answer { upper: Some(-0.999), ..locked }), Outcome::Correct);
+}
+
+/// The files of a sweep, and that a second one makes only the runs that are missing. `ci/figures reduced` sweeps all
+/// regimes.
+#[test]
+fn a_sweep_leaves_its_files_and_is_resumed() {
     let folder = tempfile::tempdir().expect("a folder");
-    let promised = [
-        "poisson",
-        "poisson-exact",
-        "stiffness",
-        "stiffness-exact",
-        "slivers",
-        "slivers-exact",
-        "scale-length",
-        "scale-force",
-    ];
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
-    command
-        .args(["stability", "--reduced", "--method", "condensed", "--method", "adaptive", "--out"])
-        .arg(folder.path());
-    for id in promised {
-        command.args(["--regime", id]);
-    }
-    let output = command.output().expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let text = std::fs::read_to_string(folder.path().join("stability.json")).expect("written");
-    let matrix: hypercircle::stability::Matrix = serde_json::from_str(&text).expect("readable");
-    assert_eq!(matrix.rows.len(), promised.len());
-    // Slivers under lift-off lose the sharpness of the bound, not the bound, between 1e4 and 1e5.
-    let beyond = [("stiffness-exact", "1e12"), ("slivers", "1e5"), ("slivers-exact", "1e6")];
-    for row in &matrix.rows {
-        for cell in &row.cells {
-            for (value, step) in row.values.iter().zip(&cell.steps) {
-                if !beyond.contains(&(row.id.as_str(), value.as_str())) {
-                    let place = format!("{} in {} at {value}", cell.method.name(), row.id);
-                    assert_eq!(step.outcome, Outcome::Correct, "{place}: {}", step.why);
-                }
-            }
-        }
-    }
-    for name in ["stability.html", "stability.md", "figures/stability-poisson.svg"] {
+    let sweep = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
+        command.args([
+            "stability",
+            "--reduced",
+            "--quiet",
+            "--method",
+            "condensed",
+            "--regime",
+            "numbering",
+            "--regime",
+        ]);
+        let output = command.args(["poisson-exact", "--out"]).arg(folder.path()).args(more).output();
+        let output = output.expect("the program starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("written");
+        let matrix: Matrix = serde_json::from_str(&read("stability.json")).expect("readable");
+        (matrix, read("runs.jsonl"))
+    };
+    let (matrix, runs) = sweep(&[]);
+    assert_eq!(matrix.rows.len(), 2);
+    assert!(matrix.rows.iter().all(|r| r.promised == r.values.len() && r.cells[0].worst == Outcome::Correct));
+    for name in ["stability.html", "stability.md", "figures/stability-numbering.svg"] {
         assert!(folder.path().join(name).is_file(), "{name}");
     }
+    // The last run is forgotten, and an answer that no run can give shows that the first was kept.
+    let mut lines: Vec<String> = runs.lines().map(str::to_string).collect();
+    let removed = lines.pop().expect("a run");
+    let place = lines.iter().position(|line| line.contains("\"iterations\":")).expect("an answer");
+    lines[place] = lines[place].replace("\"iterations\":", "\"iterations\":77");
+    std::fs::write(folder.path().join("runs.jsonl"), lines.join("\n") + "\n").expect("writable");
+    let (_, again) = sweep(&["--resume"]);
+    assert_eq!(again.lines().count(), runs.lines().count());
+    assert!(again.contains("\"iterations\":77"));
+    let name = |line: &str| line.split('"').nth(3).map(str::to_string);
+    assert_eq!(again.lines().last().and_then(name), name(&removed));
 }

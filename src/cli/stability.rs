@@ -2,12 +2,12 @@
 
 use clap::value_parser;
 
-use super::chart::{known as known_method, this_program};
+use super::chart::{known as known_method, quoted, this_program};
 use super::options::{RunOptions, positive};
 use super::progress::Progress;
 use super::{CliError, Exit};
 use crate::measure::Method;
-use crate::stability::{self, REGIMES, Regime, Sweep, markdown, sweep};
+use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
 
 /// Seconds that one run may take.
 const BUDGET: f64 = 60.0;
@@ -28,6 +28,9 @@ pub struct Args {
     /// End a run after SECONDS
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub budget: Option<f64>,
+    /// Keep the runs that an interrupted sweep of this build has saved
+    #[arg(long)]
+    pub resume: bool,
     /// Runs at a time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
@@ -36,12 +39,25 @@ pub struct Args {
     pub run: RunOptions,
 }
 
+impl Args {
+    /// The command that makes the same runs.
+    fn command(&self) -> String {
+        let mut words: Vec<String> = vec!["hypercircle stability".to_string()];
+        words.extend(self.reduced.then(|| "--reduced".to_string()));
+        words.extend(self.regime.iter().map(|r| format!("--regime {}", r.id)));
+        words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.budget.map(|s| format!("--budget {s}")));
+        words.join(" ")
+    }
+}
+
 fn known(id: &str) -> Result<&'static Regime, String> {
     let names: Vec<&str> = REGIMES.iter().copied().flatten().map(|r| r.id).collect();
     stability::regime(id).ok_or_else(|| format!("there is no regime {id}; choose from {}", names.join(", ")))
 }
 
-/// Runs every method in every regime.
+/// Runs every method in every regime. Exit code 1 says that a method of this program is wrong without saying so, crashed,
+/// or is not correct where it is promised to be.
 ///
 /// # Errors
 /// No answer can be given.
@@ -51,6 +67,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let progress = Progress::new(args.run.quiet);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let all = || REGIMES.iter().copied().flatten().collect();
+    let failed = |text: String| CliError::stopped(Exit::Failed, text, "");
+    let journal = Journal::open(&folder, &program, args.resume)
+        .map_err(|(path, error)| failed(format!("{}: {error}", path.display())))?;
     let what = Sweep {
         regimes: if args.regime.is_empty() { all() } else { args.regime.clone() },
         methods: Method::ALL.into_iter().filter(|m| args.method.is_empty() || args.method.contains(m)).collect(),
@@ -58,22 +77,33 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         workers: args.threads.map_or(processors, |n| n as usize),
         budget: args.budget.unwrap_or(if args.reduced { BUDGET_REDUCED } else { BUDGET }),
         program: &program,
+        command: args.command(),
+        journal: &journal,
         progress: &|what| progress.phase(what),
     };
-    let failed = |text: String| CliError::stopped(Exit::Failed, text, "");
     let matrix = sweep(&what).map_err(|e| failed(e.to_string()))?;
     stability::write(&matrix, &folder).map_err(|e| failed(e.to_string()))?;
     drop(progress);
-    let defects = matrix.defects();
     if !args.run.quiet {
         println!("{}", markdown(&matrix));
         println!("stability: {}", folder.join("stability.html").display());
     }
-    for (row, cell) in &defects {
-        if let Some(i) = cell.worst_at() {
-            let (method, why) = (cell.method.name(), &cell.steps[i].why);
-            eprintln!("{} in {} at {}: {}: {why}", method, row.id, row.values[i], cell.worst.words());
-        }
+    let complaints = complaints(&matrix);
+    complaints.iter().for_each(|line| eprintln!("{line}"));
+    Ok(if complaints.is_empty() { Exit::Agree } else { Exit::Disagree })
+}
+
+/// One line for each step of the program's own methods that is wrong, crashed, or not correct where it is promised to be.
+fn complaints(matrix: &Matrix) -> Vec<String> {
+    let line = |row: &stability::Row, cell: &stability::Cell, i: usize| {
+        let (value, step) = (row.values.get(i)?, cell.steps.get(i)?);
+        Some(format!("{} in {} at {value}: {}: {}", cell.method.name(), row.id, step.outcome.words(), step.why))
+    };
+    let mut lines: Vec<String> =
+        matrix.defects().into_iter().filter_map(|(row, cell)| line(row, cell, cell.worst_at()?)).collect();
+    for (row, cell, i) in matrix.shortfalls() {
+        let text = line(row, cell, i).unwrap_or_else(|| format!("{} in {}: no run", cell.method.name(), row.id));
+        lines.push(format!("{text} (promised to be correct)"));
     }
-    Ok(if defects.is_empty() { Exit::Agree } else { Exit::Disagree })
+    lines
 }

@@ -7,6 +7,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::clock::Clock;
 use super::record::Measured;
 
@@ -20,7 +22,8 @@ pub struct Limits<'a> {
 }
 
 /// How a process ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ended {
     /// It printed its results.
     Told(Vec<Measured>),

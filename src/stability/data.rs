@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::measure::{Answer, Machine, Method};
 
+/// The methods that promise a range in which they are correct.
+pub const PROMISING: [Method; 2] = [Method::Condensed, Method::Adaptive];
+
 /// Everything in `stability.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Matrix {
@@ -13,6 +16,9 @@ pub struct Matrix {
     pub machine: Machine,
     /// Whether only a part of the values was swept.
     pub reduced: bool,
+    /// The command that makes it again.
+    #[serde(default)]
+    pub command: String,
     /// The regimes.
     pub rows: Vec<Row>,
 }
@@ -28,6 +34,9 @@ pub struct Row {
     pub parameter: String,
     /// The values as a reader sees them, in the order of the sweep.
     pub values: Vec<String>,
+    /// So many of the first values have to be correct for the methods of [`PROMISING`].
+    #[serde(default)]
+    pub promised: usize,
     /// How the truth is known.
     pub truth: String,
     /// Where such a failure was reported.
@@ -130,6 +139,19 @@ impl Matrix {
         for row in &self.rows {
             let bad = |c: &&Cell| c.method.has_bracket() && matches!(c.worst, Outcome::Wrong | Outcome::Crash);
             found.extend(row.cells.iter().filter(bad).map(|c| (row, c)));
+        }
+        found
+    }
+
+    /// Steps that are not correct although they are promised to be: none, if all is well.
+    pub fn shortfalls(&self) -> Vec<(&Row, &Cell, usize)> {
+        let mut found = Vec::new();
+        for row in &self.rows {
+            for cell in row.cells.iter().filter(|c| PROMISING.contains(&c.method)) {
+                let missed =
+                    (0..row.promised).filter(|&i| cell.steps.get(i).is_none_or(|s| s.outcome != Outcome::Correct));
+                found.extend(missed.map(|i| (row, cell, i)));
+            }
         }
         found
     }

@@ -3,6 +3,7 @@
 use super::data::{Outcome, Step};
 use super::known::Known;
 use super::truth::Truth;
+use crate::compare::ADMISSIBLE;
 use crate::measure::{Answer, End, Ended, Measured, Method};
 
 /// Round-off in the comparison itself, relative to the energy.
@@ -32,6 +33,8 @@ pub struct Claim<'a> {
     pub truth: Option<Truth>,
     /// The method's answer to the first problem of the regime.
     pub first: Option<&'a Answer>,
+    /// Its error there: guaranteed where it guarantees one, true elsewhere.
+    pub first_error: Option<f64>,
     /// The error may be at most this many times that at the first value.
     pub flat: Option<f64>,
 }
@@ -77,6 +80,7 @@ fn solved(method: Method, answer: &Answer, claim: &Claim<'_>) -> Step {
         numbers(method, answer),
         bounds(answer, claim),
         resultants(method, answer, claim),
+        admissible(answer),
         accuracy(method, answer, error, claim),
         sameness(method, answer, claim),
         oscillation(answer, claim),
@@ -149,6 +153,12 @@ fn resultants(method: Method, answer: &Answer, claim: &Claim<'_>) -> Complaint {
     Some((if said { Outcome::Inaccurate } else { Outcome::Wrong }, why))
 }
 
+/// A displacement penetrates nowhere, and stays on its supports.
+fn admissible(answer: &Answer) -> Complaint {
+    let by = answer.violation.filter(|v| v.is_nan() || *v > ADMISSIBLE)?;
+    Some((Outcome::Inaccurate, format!("the displacement penetrates or leaves its supports by {by:.1e} of its size")))
+}
+
 fn accuracy(method: Method, answer: &Answer, error: Option<f64>, claim: &Claim<'_>) -> Complaint {
     let own = if method.has_bracket() { answer.relative_error_bound } else { error };
     let own = own.filter(|e| e.is_finite())?;
@@ -159,7 +169,7 @@ fn accuracy(method: Method, answer: &Answer, error: Option<f64>, claim: &Claim<'
     if own > INACCURATE {
         return Some((Outcome::Inaccurate, format!("the {kind} error is {:.0} %", 100.0 * own)));
     }
-    let (flat, first) = (claim.flat?, claim.first?.relative_error_bound?);
+    let (flat, first) = (claim.flat?, claim.first_error?);
     // Errors of round-off size may grow by any factor.
     (own > flat * first.max(1e-4)).then(|| {
         (Outcome::Inaccurate, format!("the {kind} error has grown from {:.2} % to {:.2} %", 100.0 * first, 100.0 * own))

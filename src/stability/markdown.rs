@@ -4,9 +4,14 @@ use std::fmt::Write;
 
 use super::data::{Cell, Matrix, Outcome, Row};
 
-/// Table, legend, and what stands behind every cell that is not correct.
+/// Table, legend, what stands behind every cell that is not correct, and how each truth is known.
 pub fn markdown(matrix: &Matrix) -> String {
-    let mut text = String::new();
+    let mut text = format!(
+        "hypercircle {}{}. Made by `{}`.\n\n",
+        matrix.machine.version,
+        if matrix.reduced { ", reduced sweeps" } else { "" },
+        matrix.command
+    );
     let methods: Vec<&str> =
         matrix.rows.first().map(|r| r.cells.iter().map(|c| c.method.name()).collect()).unwrap_or_default();
     let _ = writeln!(text, "| regime | swept | {} |", methods.join(" | "));
@@ -41,15 +46,32 @@ pub fn markdown(matrix: &Matrix) -> String {
             continue;
         }
         let _ = writeln!(text, "- **{}**", escaped(&row.title));
-        for cell in bad {
-            if let Some(i) = cell.worst_at() {
-                let why = cell.steps[i].why.lines().next().unwrap_or_default();
-                let line = format!("{} at {}: {}", cell.method.name(), row.values[i], cell.worst.words());
-                let _ = writeln!(text, "  - {}: {}", escaped(&line), escaped(&shortened(why)));
-            }
+        for (methods, what) in together(row, &bad) {
+            let _ = writeln!(text, "  - {}{}", methods.join(", "), escaped(&what));
         }
     }
+    let _ = writeln!(text, "\n| regime | how the truth is known | such failures were reported in |\n|---|---|---|");
+    for row in &matrix.rows {
+        let _ = writeln!(text, "| {} | {} | {} |", escaped(&row.title), escaped(&row.truth), escaped(&row.reported));
+    }
     text
+}
+
+/// Methods that fail at the same value in the same words share a line.
+fn together(row: &Row, cells: &[&Cell]) -> Vec<(Vec<&'static str>, String)> {
+    let mut lines: Vec<(Vec<&'static str>, String)> = Vec::new();
+    for cell in cells {
+        let Some((value, step)) = cell.worst_at().and_then(|i| Some((row.values.get(i)?, cell.steps.get(i)?))) else {
+            continue;
+        };
+        let why = step.why.lines().next().unwrap_or_default();
+        let what = format!(" at {value}: {}: {}", cell.worst.words(), shortened(why));
+        match lines.iter_mut().find(|(_, w)| *w == what) {
+            Some((methods, _)) => methods.push(cell.method.name()),
+            None => lines.push((vec![cell.method.name()], what)),
+        }
+    }
+    lines
 }
 
 fn cell(row: &Row, cell: &Cell) -> String {

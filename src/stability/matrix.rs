@@ -1,6 +1,6 @@
 //! Runs every method on every value of every regime, several processes at a time.
 
-use std::collections::HashMap;
+use std::collections::HashSet;
 use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Mutex;
@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::data::{Cell, Matrix, Outcome, Row};
+use super::journal::{Journal, Name};
 use super::judge::{Claim, judge};
 use super::regimes::Regime;
 use super::truth::Truth;
@@ -27,6 +28,10 @@ pub struct Sweep<'a> {
     pub budget: f64,
     /// This program.
     pub program: &'a Path,
+    /// The command that makes the matrix again, for its readers.
+    pub command: String,
+    /// Where runs are kept.
+    pub journal: &'a Journal,
     /// Told what is being run.
     pub progress: &'a (dyn Fn(String) + Sync),
 }
@@ -34,9 +39,9 @@ pub struct Sweep<'a> {
 /// Why there is no matrix.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
-    /// The program could not start itself.
-    #[error("a run could not be started: {0}")]
-    Start(#[from] std::io::Error),
+    /// The program could not start itself, or the journal not be written.
+    #[error("a run could not be started or kept: {0}")]
+    Run(#[from] std::io::Error),
 }
 
 /// The layout that this program writes.
@@ -49,39 +54,56 @@ const TOLERANCE: f64 = 0.02;
 const MOST_TRIANGLES: usize = 12_000;
 
 /// What a process runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Task {
     One(Method),
     Primal,
     Finer,
 }
 
-type Key = (usize, usize, Task);
+/// A process: its arguments after the problem, and the name under which its results are kept.
+struct Job {
+    regime: usize,
+    step: usize,
+    task: Task,
+    options: Vec<OsString>,
+    name: Name,
+}
 
 /// Makes the matrix.
 ///
 /// # Errors
 /// [`SweepError`]; runs that fail are no errors but results.
 pub fn sweep(what: &Sweep<'_>) -> Result<Matrix, SweepError> {
-    let tasks = tasks(what);
+    let jobs = jobs(what);
+    let mut seen = HashSet::new();
+    let todo: Vec<&Job> = jobs.iter().filter(|j| what.journal.get(&j.name).is_none() && seen.insert(&j.name)).collect();
     let next = AtomicUsize::new(0);
-    let done: Mutex<HashMap<Key, std::io::Result<Ended>>> = Mutex::new(HashMap::new());
+    let failed: Mutex<Option<std::io::Error>> = Mutex::new(None);
     std::thread::scope(|scope| {
         for _ in 0..what.workers.max(1) {
             scope.spawn(|| {
-                while let Some(&key) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let result = once(what, key);
-                    done.lock().unwrap_or_else(std::sync::PoisonError::into_inner).insert(key, result);
+                while let Some(job) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let kept = once(what, job).and_then(|ended| what.journal.put(job.name.clone(), ended));
+                    if let Err(error) = kept {
+                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
+                        next.store(todo.len(), Ordering::Relaxed);
+                    }
                 }
             });
         }
     });
-    let mut ended: HashMap<Key, Ended> = HashMap::new();
-    for (key, result) in done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
-        ended.insert(key, result?);
+    if let Some(error) = failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+        return Err(error.into());
     }
-    let rows = (0..what.regimes.len()).map(|r| row(what, r, &ended)).collect();
-    Ok(Matrix { schema_version: SCHEMA_VERSION, machine: Machine::here(), reduced: what.reduced, rows })
+    let rows = (0..what.regimes.len()).map(|r| row(what, r, &jobs)).collect();
+    Ok(Matrix {
+        schema_version: SCHEMA_VERSION,
+        machine: Machine::here(),
+        reduced: what.reduced,
+        command: what.command.clone(),
+        rows,
+    })
 }
 
 /// Numbers of the values to sweep.
@@ -89,36 +111,59 @@ fn steps(what: &Sweep<'_>, regime: &Regime) -> Vec<usize> {
     if what.reduced { regime.reduced.to_vec() } else { (0..regime.values.len()).collect() }
 }
 
-fn tasks(what: &Sweep<'_>) -> Vec<Key> {
-    let mut tasks = Vec::new();
-    let primal = what.methods.iter().any(|m| m.is_primal());
+/// All processes, those of one problem together; problems that several regimes share have the same names.
+fn jobs(what: &Sweep<'_>) -> Vec<Job> {
+    let mut jobs = Vec::new();
     for (r, regime) in what.regimes.iter().enumerate() {
-        for step in steps(what, regime) {
-            tasks.push((r, step, Task::Finer));
-            if primal && !regime.is_step_length {
-                tasks.push((r, step, Task::Primal));
+        for (i, step) in steps(what, regime).into_iter().enumerate() {
+            let problem = fingerprint(regime, step);
+            for task in tasks(what, regime, step, i == 0) {
+                let options = options(what, regime, step, task);
+                let words: Vec<_> = options.iter().map(|o| o.to_string_lossy()).collect();
+                let name = what.journal.name(&problem, &words.join(" "));
+                jobs.push(Job { regime: r, step, task, options, name });
             }
-            let single = what.methods.iter().filter(|m| !m.is_primal());
-            tasks.extend(single.map(|&m| (r, step, Task::One(m))));
         }
     }
+    jobs
+}
+
+/// Every number of the problem. One that cannot be made is like no other.
+fn fingerprint(regime: &Regime, step: usize) -> String {
+    let value = regime.values[step];
+    // What dies here will die in a process of its own, and be judged there.
+    match std::panic::catch_unwind(|| regime.problem(value)) {
+        Ok(Ok(problem)) => format!("{:?} {problem:?}", regime.step_length(value)),
+        _ => format!("{} {step}", regime.id),
+    }
+}
+
+fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Task> {
+    let known = (regime.known)(regime.values[step]);
+    let mut tasks = Vec::new();
+    // The truth of a scaled problem is that of the first one, scaled.
+    if known.energy.is_none() && known.solvable && (known.scale.is_none() || first) {
+        tasks.push(Task::Finer);
+    }
+    if regime.is_step_length {
+        tasks.extend(what.methods.contains(&Method::Uzawa).then_some(Task::One(Method::Uzawa)));
+        return tasks;
+    }
+    if what.methods.iter().any(|m| m.is_primal()) {
+        tasks.push(Task::Primal);
+    }
+    tasks.extend(what.methods.iter().filter(|m| !m.is_primal()).map(|&m| Task::One(m)));
     tasks
 }
 
-fn once(what: &Sweep<'_>, (r, step, task): Key) -> std::io::Result<Ended> {
-    let regime = what.regimes[r];
-    let known = (regime.known)(regime.values[step]);
-    if task == Task::Finer && (known.energy.is_some() || !known.solvable) {
-        return Ok(Ended::Told(Vec::new()));
-    }
-    (what.progress)(format!("{}: {}", regime.id, regime.label(step)));
-    let mut arguments: Vec<OsString> = vec!["regime".into(), regime.id.into(), step.to_string().into()];
+fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<OsString> {
+    let mut arguments: Vec<OsString> = Vec::new();
     let mut option = |name: &str, value: String| arguments.extend([name.into(), value.into()]);
     let methods = match task {
         Task::One(method) => vec![method],
         Task::Primal => vec![Method::FenicsP1, Method::FenicsP2],
         Task::Finer => {
-            option("--refine", if regime.values.len() > 4 && heavy(regime, step) { 1 } else { FINER }.to_string());
+            option("--refine", if heavy(regime, step) { 1 } else { FINER }.to_string());
             vec![Method::Condensed]
         }
     };
@@ -130,6 +175,14 @@ fn once(what: &Sweep<'_>, (r, step, task): Key) -> std::io::Result<Ended> {
         option("--max-triangles", MOST_TRIANGLES.to_string());
     }
     option("--seconds", what.budget.to_string());
+    arguments
+}
+
+fn once(what: &Sweep<'_>, job: &Job) -> std::io::Result<Ended> {
+    let regime = what.regimes[job.regime];
+    (what.progress)(format!("{}: {}", regime.id, regime.label(job.step)));
+    let mut arguments: Vec<OsString> = vec!["regime".into(), regime.id.into(), job.step.to_string().into()];
+    arguments.extend(job.options.iter().cloned());
     let limits = Limits { budget: Duration::from_secs_f64(what.budget), cache: None };
     measure::run(what.program, &arguments, limits)
 }
@@ -139,22 +192,23 @@ fn heavy(regime: &Regime, step: usize) -> bool {
     regime.id == "refinement" && regime.values[step] > 16.0
 }
 
-fn row(what: &Sweep<'_>, r: usize, ended: &HashMap<Key, Ended>) -> Row {
+fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
     let regime = what.regimes[r];
     let steps = steps(what, regime);
-    let missing = Ended::Crashed("it was not run".to_string());
-    let inapplicable = Ended::Told(Vec::new());
-    let of = |step: usize, task: Task| ended.get(&(r, step, task)).unwrap_or(&missing);
+    let of = |step: usize, task: Task| {
+        let job = jobs.iter().find(|j| (j.regime, j.step, j.task) == (r, step, task))?;
+        what.journal.get(&job.name)
+    };
     let truths: Vec<Option<Truth>> = steps
         .iter()
         .map(|&step| {
             // The displacement model's energy is an upper bound that owes nothing to the stress methods.
             let known = (regime.known)(regime.values[step]);
-            let primal = ended.get(&(r, step, Task::Primal)).cloned();
-            let runs: Vec<Ended> = std::iter::once(of(step, Task::Finer).clone()).chain(primal).collect();
+            let runs: Vec<Ended> = [Task::Finer, Task::Primal].into_iter().filter_map(|t| of(step, t)).collect();
             Truth::new(&known, &runs)
         })
         .collect();
+    let missing = Ended::Crashed("it was not run".to_string());
     let cells = what
         .methods
         .iter()
@@ -164,11 +218,12 @@ fn row(what: &Sweep<'_>, r: usize, ended: &HashMap<Key, Ended>) -> Row {
                 return Cell { method, worst: Outcome::NotApplicable, steps: Vec::new() };
             }
             let first: Option<Answer> = match of(steps[0], task) {
-                Ended::Told(results) => {
+                Some(Ended::Told(results)) => {
                     results.iter().find(|m| m.method == method.name()).and_then(|m| m.answer.clone())
                 }
                 _ => None,
             };
+            let mut first_error = None;
             let judged: Vec<_> = steps
                 .iter()
                 .enumerate()
@@ -178,8 +233,12 @@ fn row(what: &Sweep<'_>, r: usize, ended: &HashMap<Key, Ended>) -> Row {
                         Some([energy, _]) => truths[0].map(|t| t.scaled(energy)),
                         None => truths[i],
                     };
-                    let claim = Claim { known: &known, truth, first: first.as_ref(), flat: regime.flat };
-                    judge(method, ended.get(&(r, step, task)).unwrap_or(&inapplicable), &claim)
+                    let claim = Claim { known: &known, truth, first: first.as_ref(), first_error, flat: regime.flat };
+                    let judged = judge(method, of(step, task).as_ref().unwrap_or(&missing), &claim);
+                    if i == 0 {
+                        first_error = judged.bound.or(judged.error);
+                    }
+                    judged
                 })
                 .collect();
             let worst = judged.iter().map(|s| s.outcome).max().unwrap_or(Outcome::NotApplicable);
@@ -191,6 +250,7 @@ fn row(what: &Sweep<'_>, r: usize, ended: &HashMap<Key, Ended>) -> Row {
         title: regime.title.to_string(),
         parameter: regime.parameter.to_string(),
         values: steps.iter().map(|&s| regime.label(s)).collect(),
+        promised: steps.iter().filter(|&&s| s < regime.promised).count(),
         truth: regime.truth.to_string(),
         reported: regime.reported.to_string(),
         cells,

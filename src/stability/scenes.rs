@@ -63,6 +63,19 @@ impl Model {
         self
     }
 
+    /// Cuts every cell along the same diagonal: on such a mesh linear displacements have the fewest ways to keep the area
+    /// of every triangle.
+    pub fn one_way(mut self) -> Self {
+        for pair in self.raw.triangles.chunks_exact_mut(2) {
+            let [(first, _), (second, _)] = pair else { continue };
+            if first[0] != second[0] {
+                let ([a, b, d], c) = (*first, second[1]);
+                (*first, *second) = ([a, b, c], [a, c, d]);
+            }
+        }
+        self
+    }
+
     /// u = 0 on `on`.
     pub fn clamp(mut self, on: &str) -> Self {
         self.scene.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });

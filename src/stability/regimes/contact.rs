@@ -6,7 +6,7 @@ use super::super::strips::Strips;
 use super::material::lift_known;
 use super::{CLOSED, PLAIN, Regime};
 use crate::problem::Problem;
-use crate::scene::Gap;
+use crate::scene::{Contact, ContactSides, Gap};
 
 /// Resultant ε of the load: contact is lost at ε = 0.
 fn almost_lost(epsilon: f64) -> Result<Problem, String> {
@@ -55,6 +55,31 @@ fn long_row(k: f64) -> Strips {
 
 fn grazing(t: f64) -> Strips {
     Strips { load: [1.0, -t], ..Strips::new(4) }
+}
+
+/// A gap that is zero at every other vertex of the contact and `height` between them.
+fn waves(height: f64) -> Result<Problem, String> {
+    let at = |i: usize| [i as f64 / 8.0, if i.is_multiple_of(2) { 0.0 } else { height }];
+    Lift { gap: Gap::Table((0..=8).map(at).collect()), ..Lift::new(8) }.model().problem()
+}
+
+/// A unit bar without lateral strain, held at its left end and pulled to the right by its weight 1. Without an obstacle
+/// its right end would move by ½; the obstacle stands `closing` short of that.
+fn hair(closing: f64) -> Result<Problem, String> {
+    let lines = steps(0.0, 1.0, 4);
+    let mut model = Model::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
+    model.scene.bodies[0].body_force = [1.0, 0.0];
+    let sides = ContactSides::Rigid("bar_right".into());
+    model.scene.contacts.push(Contact { sides, gap: Gap::Constant(0.5 - closing) });
+    model.problem()
+}
+
+/// σ = 1 − x − p with the pressure p, and E = −1/6 + ½p². Statics alone does not give p.
+fn hair_known(closing: f64) -> Known {
+    let p = closing.max(0.0);
+    let energy = -1.0 / 6.0 + 0.5 * p * p;
+    let strain = 0.5 * (1.0 / 3.0 - p + p * p);
+    Known { energy: Some([energy, strain]), ..Known::forces(vec![[f64::NAN, 0.0]], 1.0) }
 }
 
 /// Contacts that meet supports and each other.
@@ -177,6 +202,29 @@ pub(super) const REGIMES: &[Regime] = &[
         values: &[0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0, 1e3],
         reduced: &[0, 1, 4],
         build: |gap| Lift { gap: Gap::Constant(gap), ..Lift::new(8) }.model().problem(),
+        known: |_| lift_known(),
+        ..PLAIN
+    },
+    Regime {
+        id: "hair",
+        title: "A gap that just closes, or just stays open",
+        parameter: "closing beyond the gap; below 0 it stays open",
+        reported: "MOOSE #10950",
+        truth: CLOSED,
+        values: &[0.1, 1e-3, 1e-6, 1e-9, 1e-12, 0.0, -1e-12, -1e-9, -1e-6, -1e-3, -0.1],
+        reduced: &[0, 4, 6],
+        build: hair,
+        known: hair_known,
+        ..PLAIN
+    },
+    Regime {
+        id: "between-nodes",
+        title: "Two bodies that may not penetrate at nodes nor between them",
+        parameter: "height of the waves of the gap, one every two edges",
+        reported: "MOOSE #14454, #30098",
+        values: &[0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0],
+        reduced: &[0, 3],
+        build: waves,
         known: |_| lift_known(),
         ..PLAIN
     },

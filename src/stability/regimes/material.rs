@@ -15,8 +15,8 @@ pub(super) fn lift_known() -> Known {
     Known::forces(vec![[-0.5, 0.0]], 4.0)
 }
 
-fn lift(nu: f64, ratio: f64) -> Result<Problem, String> {
-    Lift { materials: [[1.0, nu], [ratio, nu]], ..Lift::new(8) }.model().problem()
+fn lift(nu: f64, ratio: f64) -> Model {
+    Lift { materials: [[1.0, nu], [ratio, nu]], ..Lift::new(8) }.model()
 }
 
 fn row(nu: f64, ratio: f64) -> Strips {
@@ -54,7 +54,8 @@ pub(super) const REGIMES: &[Regime] = &[
         reported: "MOOSE #9505, #21842",
         values: POISSON,
         reduced: &[0, 4, 7],
-        build: |nu| lift(nu, 1.0),
+        promised: POISSON.len(),
+        build: |nu| lift(nu, 1.0).one_way().problem(),
         known: |_| lift_known(),
         flat: Some(3.0),
         ..PLAIN
@@ -67,7 +68,8 @@ pub(super) const REGIMES: &[Regime] = &[
         truth: CLOSED,
         values: POISSON,
         reduced: &[0, 7],
-        build: |nu| row(nu, 1.0).model().problem(),
+        promised: POISSON.len(),
+        build: |nu| row(nu, 1.0).model().one_way().problem(),
         known: |nu| row(nu, 1.0).known(),
         ..PLAIN
     },
@@ -78,7 +80,8 @@ pub(super) const REGIMES: &[Regime] = &[
         reported: "MOOSE #17279",
         values: RATIO,
         reduced: &[0, 5],
-        build: |ratio| lift(0.3, ratio),
+        promised: 6,
+        build: |ratio| lift(0.3, ratio).problem(),
         known: |_| lift_known(),
         flat: Some(3.0),
         ..PLAIN
@@ -91,6 +94,7 @@ pub(super) const REGIMES: &[Regime] = &[
         truth: CLOSED,
         values: RATIO,
         reduced: &[0, 5, 6],
+        promised: 6,
         build: |ratio| row(0.3, ratio).model().problem(),
         known: |ratio| row(0.3, ratio).known(),
         ..PLAIN

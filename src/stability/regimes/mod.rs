@@ -29,6 +29,8 @@ pub struct Regime {
     pub reduced: &'static [usize],
     /// Makes the problem.
     pub build: fn(f64) -> Result<Problem, String>,
+    /// So many of the first values are promised to be correct, see [`super::PROMISING`].
+    pub promised: usize,
     /// What is known about its answer.
     pub known: fn(f64) -> Known,
     /// The guaranteed error may be at most this many times that at the first value.
@@ -47,6 +49,7 @@ const PLAIN: Regime = Regime {
     values: &[],
     labels: &[],
     reduced: &[],
+    promised: 0,
     build: |_| Err(String::new()),
     known: |_| Known::none(),
     flat: None,

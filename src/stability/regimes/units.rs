@@ -50,6 +50,7 @@ pub(super) const REGIMES: &[Regime] = &[
         truth: SCALED,
         values: POWERS,
         reduced: &[0, 5, 6],
+        promised: POWERS.len(),
         build: |k| scaled(ten(k), 1.0, 1.0),
         known: |k| known(ten(k), 1.0, 1.0),
         ..PLAIN
@@ -62,6 +63,7 @@ pub(super) const REGIMES: &[Regime] = &[
         truth: SCALED,
         values: POWERS,
         reduced: &[0, 5, 6],
+        promised: POWERS.len(),
         build: |k| scaled(1.0, ten(k), ten(k)),
         known: |k| known(1.0, ten(k), ten(k)),
         ..PLAIN
@@ -74,6 +76,7 @@ pub(super) const REGIMES: &[Regime] = &[
         truth: SCALED,
         values: POWERS,
         reduced: &[0, 6],
+        promised: POWERS.len(),
         build: |k| scaled(ten(k), ten(k), ten(k)),
         known: |k| known(ten(k), ten(k), ten(k)),
         ..PLAIN
@@ -87,6 +90,7 @@ pub(super) const REGIMES: &[Regime] = &[
         values: &[0.0, 1.0, 2.0, 3.0, 4.0],
         labels: &["N m", "N mm", "kN mm", "µN µm", "N cm"],
         reduced: &[0, 3],
+        promised: UNITS.len(),
         build: |step| {
             let [length, modulus, load] = unit(step);
             scaled(length, modulus, load)
