@@ -21,11 +21,13 @@ use crate::problem::Problem;
 const SWEEPS: usize = 2;
 
 /// More sweeps follow, up to this many, while one gains more than this part of the gap: slivers couple their vertices so
-/// strongly that the local fit leaves errors far above the energy itself. While the gap exceeds the energy, the bound is
-/// of no use, and sweeps that gain little lead to others that gain much.
+/// strongly that the local fit leaves errors far above the energy itself.
 const MOST_SWEEPS: usize = 500;
-const WORTH_A_SWEEP: f64 = 0.01;
-const WORTH_WHILE_USELESS: f64 = 1e-5;
+const WORTH_A_SWEEP: f64 = 3e-3;
+
+/// A gap above this part of the energy makes a poor bound, and smaller gains are worth a sweep in proportion: sweeps that
+/// gain little lead to others that gain much.
+const GOOD: f64 = 0.01;
 
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
@@ -43,8 +45,8 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2
     for sweep in 0..MOST_SWEEPS {
         if sweep >= SWEEPS {
             let gap = (model.energy(&values) - floor).max(0.0);
-            let worth = if gap > floor.abs() { WORTH_WHILE_USELESS } else { WORTH_A_SWEEP };
-            if gained <= worth * gap {
+            let worth = WORTH_A_SWEEP * (GOOD * floor.abs() / gap).min(1.0);
+            if gap == 0.0 || gained <= worth * gap {
                 break;
             }
         }
