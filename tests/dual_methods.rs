@@ -81,7 +81,7 @@ fn every_method_carries_the_free_upper_bound() {
     let upper = |method: &dyn DualMethod| {
         let dual = run(method, &problem, &[]);
         let lower = complementary(&problem, &dual.stress).lower();
-        let v = admissible(&problem, &dual, lower).expect("an admissible displacement");
+        let v = admissible(&problem, &dual, lower, None).expect("an admissible displacement");
         potential(&problem, &v).total()
     };
     let condensed = upper(&Condensed::default());

@@ -20,7 +20,7 @@ fn bracket(blocks: &Blocks, method: &dyn DualMethod) -> (f64, f64, f64, usize, f
     let problem = blocks.problem();
     let dual = dual::solve(method, &problem, &[], &Options::default()).expect("solves");
     let c = complementary(&problem, &dual.stress);
-    let v = admissible(&problem, &dual, c.lower()).expect("admissible");
+    let v = admissible(&problem, &dual, c.lower(), None).expect("admissible");
     let upper = potential(&problem, &v).total();
     let local = local_gap(&problem, &dual.stress, &v).total;
     assert!(

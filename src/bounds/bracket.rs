@@ -18,7 +18,7 @@
 //! [`Equilibrium`]: crate::dual::Equilibrium
 
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
-use super::upper::{NoUpperBound, admissible};
+use super::upper::{NoUpperBound, NodalValues, admissible};
 use crate::dual::DualSolution;
 use crate::element::{Displacement, StressField};
 use crate::problem::Problem;
@@ -73,6 +73,11 @@ impl UpperBound {
 impl Bracket {
     /// Computes both sides.
     pub fn new(problem: &Problem, dual: &DualSolution) -> Self {
+        Self::from_start(problem, dual, None)
+    }
+
+    /// Computes both sides; the upper one may begin from `start`.
+    pub fn from_start(problem: &Problem, dual: &DualSolution, start: Option<NodalValues>) -> Self {
         let complementary = complementary(problem, &dual.stress);
         let size = |t: usize| {
             let edges = problem.mesh.triangle_edges[t];
@@ -85,7 +90,7 @@ impl Bracket {
         };
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = admissible(problem, dual, complementary.lower()).map(|v| UpperBound::new(problem, dual, v));
+        let free = admissible(problem, dual, complementary.lower(), start).map(|v| UpperBound::new(problem, dual, v));
         Bracket { complementary, lower_widening: rounding + remainder, free }
     }
 

@@ -11,4 +11,4 @@ pub use bracket::{Bracket, UpperBound};
 pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 pub use mid::mid_field;
 pub use sum::Sum;
-pub use upper::{NoUpperBound, Violation, admissible, repaired};
+pub use upper::{NoUpperBound, NodalValues, Violation, admissible, repaired};

@@ -152,6 +152,23 @@ impl Displacement {
         let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
         [u[j], u[k], u[6], u[7 + k], u[7 + j], u[3 + sub]]
     }
+
+    /// The value at the point of triangle `t` with barycentric coordinates `l`.
+    pub fn at(&self, t: usize, l: [f64; 3]) -> [f64; 2] {
+        // The subtriangle opposite the corner that is farthest away.
+        let sub = (0..3).fold(0, |least, i| if l[i] < l[least] { i } else { least });
+        let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
+        let m = [l[j] - l[sub], l[k] - l[sub], 3.0 * l[sub]];
+        let u = self.sub(t, sub);
+        let mut value = [0.0; 2];
+        for i in 0..3 {
+            let (corner, middle) = (m[i] * (2.0 * m[i] - 1.0), 4.0 * m[(i + 1) % 3] * m[(i + 2) % 3]);
+            for c in 0..2 {
+                value[c] += corner * u[i][c] + middle * u[3 + i][c];
+            }
+        }
+        value
+    }
 }
 
 fn mean2(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use super::certified::{Certified, StudyError, balance, solve_balanced};
 use super::indicators::Indicators;
-use super::warm_start::closed_ends;
+use super::warm_start::{carried, closed_ends};
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::dual::{DualMethod, Options};
 use crate::mesh::bisect::RefinementEdges;
@@ -75,22 +75,22 @@ pub struct Adapted {
 /// # Errors
 /// [`StudyError`]; a limit that is reached is no error, see [`Adapted::stopped`].
 pub fn adapt(
-    mut problem: Problem,
+    problem: Problem,
     method: &dyn DualMethod,
     options: &Options,
     goal: &Goal,
     mut on_step: impl FnMut(&HistoryRow),
 ) -> Result<Adapted, StudyError> {
     let start = Instant::now();
-    let mut refinement = RefinementEdges::longest(&problem.mesh);
-    let mut options = options.clone();
+    let refinement = RefinementEdges::longest(&problem.mesh);
+    let mut stage = Stage::new(problem, refinement);
     let mut history: Vec<HistoryRow> = Vec::new();
     let mut forecast = Forecast { from: f64::NAN, to: f64::NAN, power: 1.0 };
     let mut before: Option<(Certified, HistoryRow)> = None;
     loop {
         let began = Instant::now();
-        let certified = match solved(problem, &mut refinement, method, &options) {
-            Ok(certified) => certified,
+        let (certified, refinement) = match stage.solved(method, options, before.as_ref().map(|(c, _)| c)) {
+            Ok(solved) => solved,
             // What was reached is worth more than the reason why there is no more.
             Err(StudyError::Dual(reason)) if let Some((certified, row)) = before.take() => {
                 let reason = format!("the next mesh could not be solved ({reason})");
@@ -109,28 +109,67 @@ pub fn adapt(
         let spent = start.elapsed().as_secs_f64();
         let finer = match goal.max_seconds {
             Some(most) if spent >= most => Err(format!("{most} seconds have passed")),
-            _ => refined(&certified, &refinement, goal, row.relative_error_bound, &mut forecast)?,
+            _ => refined(&certified, refinement, goal, row.relative_error_bound, &mut forecast)?,
         };
-        let (next, edges) = match finer {
+        stage = match finer {
             Ok(finer) => finer,
             Err(reason) => return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal)), certified, history }),
         };
-        options.closed = Some(closed_ends(&certified.problem, &certified.dual.closed, &next));
         before = Some((certified, row));
-        (problem, refinement) = (next, edges);
     }
 }
 
-/// Solves `problem`, on a mesh bisected at the ends of contact where the load asks for it.
-fn solved(
+/// A mesh to solve on.
+struct Stage {
     problem: Problem,
-    refinement: &mut RefinementEdges,
-    method: &dyn DualMethod,
-    options: &Options,
-) -> Result<Certified, StudyError> {
-    let (problem, edges, statics) = expressible(problem, refinement.clone())?;
-    *refinement = edges;
-    solve_balanced(problem, statics, method, options)
+    refinement: RefinementEdges,
+    /// For each triangle, the one of the mesh solved last that it lies in.
+    parent: Vec<usize>,
+}
+
+impl Stage {
+    fn new(problem: Problem, refinement: RefinementEdges) -> Self {
+        Stage { parent: (0..problem.mesh.triangles.len()).collect(), problem, refinement }
+    }
+
+    /// With the marked triangles bisected, and the triangle of this stage that each one lies in.
+    fn bisect(&self, marked: &[usize]) -> Result<(Stage, Vec<usize>), StudyError> {
+        let (problem, refinement, within) = self.problem.bisect(&self.refinement, marked)?;
+        let parent = within.iter().map(|&t| self.parent[t]).collect();
+        Ok((Stage { problem, refinement, parent }, within))
+    }
+
+    /// Solves, on a mesh bisected at the ends of contact where the load asks for it, from what was found `before`.
+    fn solved(
+        self,
+        method: &dyn DualMethod,
+        options: &Options,
+        before: Option<&Certified>,
+    ) -> Result<(Certified, RefinementEdges), StudyError> {
+        let (stage, statics) = self.expressible()?;
+        let mut options = options.clone();
+        let mut start = None;
+        if let Some(Certified { problem, dual, bracket, .. }) = before {
+            options.closed = Some(closed_ends(problem, &dual.closed, &stage.problem));
+            let free = bracket.free.as_ref().ok();
+            start = free.map(|free| carried(problem, &free.displacement, &stage.problem, &stage.parent));
+        }
+        let certified = solve_balanced(stage.problem, statics, method, &options, start)?;
+        Ok((certified, stage.refinement))
+    }
+
+    /// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
+    fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
+        for _ in 0..MOST_AT_ENDS {
+            let statics = balance(&self.problem)?;
+            if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
+                return Ok((self, statics));
+            }
+            self = self.bisect(&contact_ends(&self.problem))?.0;
+        }
+        let statics = balance(&self.problem)?;
+        Ok((self, statics))
+    }
 }
 
 fn row(certified: &Certified, [seconds, step_seconds]: [f64; 2], before: Option<&HistoryRow>) -> HistoryRow {
@@ -177,23 +216,6 @@ pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance
         ),
         None => Check::not_made(NAME, allowed, Basis::Chosen, "There is no upper bound to hold the tolerance against."),
     }
-}
-
-/// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
-fn expressible(
-    mut problem: Problem,
-    mut refinement: RefinementEdges,
-) -> Result<(Problem, RefinementEdges, Statics), StudyError> {
-    for _ in 0..MOST_AT_ENDS {
-        let statics = balance(&problem)?;
-        if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
-            return Ok((problem, refinement, statics));
-        }
-        let (next, edges, _) = problem.bisect(&refinement, &contact_ends(&problem))?;
-        (problem, refinement) = (next, edges);
-    }
-    let statics = balance(&problem)?;
-    Ok((problem, refinement, statics))
 }
 
 /// The triangles at the first and last edge of every straight stretch of contact.
@@ -243,11 +265,11 @@ impl Forecast {
 /// bound meets the tolerance; or the reason why there is none.
 fn refined(
     certified: &Certified,
-    refinement: &RefinementEdges,
+    refinement: RefinementEdges,
     goal: &Goal,
     bound: f64,
     forecast: &mut Forecast,
-) -> Result<Result<(Problem, RefinementEdges), String>, StudyError> {
+) -> Result<Result<Stage, String>, StudyError> {
     let free = match &certified.bracket.free {
         Ok(free) => free,
         Err(reason) => return Ok(Err(format!("no upper bound could be built ({reason})"))),
@@ -258,15 +280,14 @@ fn refined(
     forecast.from = indicators.total();
     let now = certified.problem.mesh.triangles.len() as f64;
     let (worth, grown) = (WORTH_A_SOLVE * now, GROWTH * now);
-    let mut finer: Option<(Problem, RefinementEdges)> = None;
+    let mut stage = Stage::new(certified.problem.clone(), refinement);
     loop {
-        let (problem, edges) = finer.as_ref().map_or((&certified.problem, refinement), |(p, e)| (p, e));
         let mut bulk = goal.bulk;
         // The last round is tried with smaller parts, down to a sixteenth, while it would overshoot.
         let (next, predicted) = loop {
-            let (mesh, edges, parent) = problem.bisect(edges, &indicators.marked(bulk))?;
-            let predicted = indicators.inherited(&problem.mesh, &mesh.mesh, &parent);
-            let count = mesh.mesh.triangles.len();
+            let (next, within) = stage.bisect(&indicators.marked(bulk))?;
+            let predicted = indicators.inherited(&stage.problem.mesh, &next.problem.mesh, &within);
+            let count = next.problem.mesh.triangles.len();
             let too_many = goal.max_triangles.is_some_and(|most| count > most);
             let count = count as f64;
             let enough_already = predicted.total() < (1.0 - SLACK) * enough && count > (1.0 + SLACK) * worth;
@@ -277,19 +298,20 @@ fn refined(
             }
             let reason = match goal.max_triangles {
                 Some(most) if too_many => format!("the next mesh would have more than {most} triangles"),
-                _ if resolvable(&mesh) => break ((mesh, edges), predicted),
+                _ if resolvable(&next.problem) => break (next, predicted),
                 _ => "the triangles are as small as numbers can resolve".to_string(),
             };
-            let large_enough = |(p, _): &(Problem, _)| !too_many || p.mesh.triangles.len() as f64 >= worth;
-            return Ok(finer.filter(large_enough).ok_or(reason));
+            let reached = stage.problem.mesh.triangles.len() as f64;
+            let useful = if too_many { reached >= worth } else { reached > now };
+            return Ok(if useful { Ok(stage) } else { Err(reason) });
         };
-        let count = next.0.mesh.triangles.len() as f64;
+        let count = next.problem.mesh.triangles.len() as f64;
         indicators = predicted;
         forecast.to = indicators.total();
+        stage = next;
         if count >= (1.0 - SLACK) * grown || (count >= worth && indicators.total() <= enough) {
-            return Ok(Ok(next));
+            return Ok(Ok(stage));
         }
-        finer = Some(next);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::bounds::Bracket;
+use crate::bounds::{Bracket, NodalValues};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options};
 use crate::problem::{Problem, ProblemError};
 use crate::statics::{self, Equilibrium, Statics, StaticsError};
@@ -61,7 +61,7 @@ pub enum StudyError {
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
     let statics = balance(&problem)?;
-    solve_balanced(problem, statics, method, options)
+    solve_balanced(problem, statics, method, options, None)
 }
 
 /// The statics of a problem that has an equilibrium, on this mesh or a finer one.
@@ -81,7 +81,7 @@ pub(super) fn balance(problem: &Problem) -> Result<Statics, StudyError> {
     }
 }
 
-/// Solves a problem with an equilibrium and brackets its energy.
+/// Solves a problem with an equilibrium and brackets its energy; the upper bound may begin from `start`.
 ///
 /// # Errors
 /// [`StudyError::BeyondMesh`], [`StudyError::Dual`].
@@ -90,14 +90,15 @@ pub(super) fn solve_balanced(
     statics: Statics,
     method: &dyn DualMethod,
     options: &Options,
+    start: Option<NodalValues>,
 ) -> Result<Certified, StudyError> {
-    let start = Instant::now();
+    let began = Instant::now();
     if let Equilibrium::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
         return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
     }
     let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
     let mut dual = dual::solve(method, &problem, &motions, options)?;
-    let bracket = Bracket::new(&problem, &dual);
-    dual.seconds.total = start.elapsed().as_secs_f64();
+    let bracket = Bracket::from_start(&problem, &dual, start);
+    dual.seconds.total = began.elapsed().as_secs_f64();
     Ok(Certified { problem, statics, dual, bracket })
 }

@@ -1,5 +1,7 @@
-//! The contact state of one mesh as a first guess on the next.
+//! Contact state and displacement of one mesh as a first guess on the next.
 
+use crate::bounds::NodalValues;
+use crate::element::Displacement;
 use crate::problem::Problem;
 
 /// First guess of the closed contact ends of `fine`, from the state `closed` of `coarse` at the same arc length: two
@@ -34,4 +36,48 @@ pub fn closed_ends(coarse: &Problem, closed: &[bool], fine: &Problem) -> Vec<boo
         }
     }
     guess
+}
+
+/// Values of the displacement `v` of `coarse` at the nodes of `fine`, whose triangle t lies in triangle `parent[t]`.
+///
+/// A part of an admissible quadratic jump is admissible, so that the interpolant is as admissible as `v`.
+pub fn carried(coarse: &Problem, v: &Displacement, fine: &Problem, parent: &[usize]) -> NodalValues {
+    let mesh = &fine.mesh;
+    let mut values =
+        NodalValues { vertex: vec![[0.0; 2]; mesh.points.len()], middle: vec![[0.0; 2]; mesh.edges.len()] };
+    for (t, &old) in parent.iter().enumerate() {
+        let corners = coarse.mesh.corners(old);
+        let at = |p: [f64; 2]| v.at(old, barycentric(corners, p));
+        for side in 0..3 {
+            let [a, b] = [1, 2].map(|i| mesh.triangles[t][(side + i) % 3]);
+            let [p, q] = [a, b].map(|v| mesh.points[v]);
+            values.vertex[a] = at(p);
+            values.middle[mesh.triangle_edges[t][side]] = at([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
+        }
+    }
+    values
+}
+
+/// Barycentric coordinates of `p`; they add up to one.
+fn barycentric([a, b, c]: [[f64; 2]; 3], p: [f64; 2]) -> [f64; 3] {
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let from = |q: [f64; 2]| [q[0] - a[0], q[1] - a[1]];
+    let whole = cross(from(b), from(c));
+    let (second, third) = (cross(from(p), from(c)) / whole, cross(from(b), from(p)) / whole);
+    [1.0 - second - third, second, third]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn barycentric_coordinates_give_the_point_back() {
+        let corners = [[0.3, 0.1], [2.0, -0.4], [1.1, 1.7]];
+        let p = [1.2, 0.5];
+        let l = barycentric(corners, p);
+        let back = [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum::<f64>());
+        assert!((back[0] - p[0]).abs() < 1e-15 && (back[1] - p[1]).abs() < 1e-15);
+        assert!((l.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+    }
 }

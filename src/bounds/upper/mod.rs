@@ -19,7 +19,7 @@ mod relax;
 mod sets;
 mod stiffness;
 
-use self::holds::{Hold, holds};
+use self::holds::{Hold, Holds, holds};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -50,11 +50,26 @@ pub enum NoUpperBound {
     },
 }
 
-/// Builds the displacement; `floor`, a lower bound of its energy, says when relaxing it further is not worth the time.
+/// Values at the vertices and edge midpoints of a mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodalValues {
+    /// At the vertices.
+    pub vertex: Vec<[f64; 2]>,
+    /// At the midpoints.
+    pub middle: Vec<[f64; 2]>,
+}
+
+/// Builds the displacement; `floor`, a lower bound of its energy, says when relaxing it further is not worth the time,
+/// and `start` gives another displacement to begin from where its energy is lower than that of the local fit.
 ///
 /// # Errors
 /// [`NoUpperBound`] where supports contradict each other or the contact.
-pub fn admissible(problem: &Problem, dual: &DualSolution, floor: f64) -> Result<Displacement, NoUpperBound> {
+pub fn admissible(
+    problem: &Problem,
+    dual: &DualSolution,
+    floor: f64,
+    start: Option<NodalValues>,
+) -> Result<Displacement, NoUpperBound> {
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let mut vertex = fit::vertex_values(problem, dual);
@@ -73,10 +88,26 @@ pub fn admissible(problem: &Problem, dual: &DualSolution, floor: f64) -> Result<
         })
         .collect();
     contact::restrict_middles(problem, &vertex, &mut middle);
-    relax::relax(problem, &holds, floor / problem.scene.thickness, &mut vertex, &mut middle);
+    let mut candidates = vec![NodalValues { vertex, middle }];
+    if let Some(start) = start {
+        candidates.push(restricted(problem, &holds, start)?);
+    }
+    let NodalValues { mut vertex, mut middle } =
+        relax::relax(problem, &holds, floor / problem.scene.thickness, candidates);
     contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
     Ok(interior::fill(problem, &vertex, &middle))
+}
+
+/// The nearest values that supports and contact allow.
+fn restricted(problem: &Problem, holds: &Holds, start: NodalValues) -> Result<NodalValues, NoUpperBound> {
+    let NodalValues { mut vertex, mut middle } = start;
+    for (value, hold) in vertex.iter_mut().zip(&holds.vertices).chain(middle.iter_mut().zip(&holds.middles)) {
+        *value = hold.impose(*value);
+    }
+    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
+    contact::restrict_middles(problem, &vertex, &mut middle);
+    Ok(NodalValues { vertex, middle })
 }
 
 /// By how much a displacement misses admissibility, relative to its size.

@@ -8,6 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::NodalValues;
 use super::contact::ROUNDING;
 use super::groups::{Group, groups};
 use super::holds::Holds;
@@ -32,13 +33,19 @@ const GOOD: f64 = 0.01;
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
-/// Lowers the energy of the admissible field with the values `vertex` and `middle`; `floor` is a lower bound of it, per
-/// unit thickness.
-pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2]], middle: &mut [[f64; 2]]) {
+/// Lowers the energy of the best of several admissible fields; `floor` is a lower bound of it, per unit thickness.
+pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<NodalValues>) -> NodalValues {
     let model = Model::new(problem, holds);
     let groups = groups(problem);
     let mut patch = Patch { local: vec![usize::MAX; model.free.len()], ..Patch::default() };
-    let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle.iter()).copied().collect();
+    let all = |nodal: NodalValues| -> Vec<[f64; 2]> { nodal.vertex.into_iter().chain(nodal.middle).collect() };
+    let mut fields = candidates.into_iter().map(all);
+    let mut values = fields.next().unwrap_or_default();
+    for field in fields {
+        if model.energy(&field) < model.energy(&values) {
+            values = field;
+        }
+    }
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut momentum = Momentum::default();
     let mut gained = f64::INFINITY;
@@ -61,8 +68,8 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, vertex: &mut [[f64; 2
             gained += momentum.push(&model, &before, slack, &mut values);
         }
     }
-    vertex.copy_from_slice(&values[..vertex.len()]);
-    middle.copy_from_slice(&values[vertex.len()..]);
+    let middle = values.split_off(problem.mesh.points.len().min(values.len()));
+    NodalValues { vertex: values, middle }
 }
 
 /// The unknowns of the patch at hand.

@@ -118,7 +118,7 @@ pub fn contact_errors(solution: &Solution, n: usize, family: Family) -> (f64, [f
         distance += w * solution.energy_density(body[t], [l[0] - tau[0], l[1] - tau[1], l[2] - tau[2]]);
     });
     let lower = complementary(&problem, &found.stress).lower();
-    let upper = potential(&problem, &admissible(&problem, &found, lower).expect("an upper bound")).total();
+    let upper = potential(&problem, &admissible(&problem, &found, lower, None).expect("an upper bound")).total();
     let errors = [
         l2,
         interpolated,
