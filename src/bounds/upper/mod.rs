@@ -3,7 +3,7 @@
 //! The edge moments of the dual solve say how every edge moves on average, its stresses how every triangle strains.
 //! From these: vertex values by a local fit ([`fit`]); edge midpoints such that ∫_e u ds is the dual one, so that every
 //! triangle changes its volume as the dual solution says and nothing locks; vertex jumps on Γ_K restricted so that the
-//! quadratic jump stays admissible between its nodes too ([`contact`]); two sweeps of relaxation, patch by patch
+//! quadratic jump stays admissible between its nodes too ([`contact`]); relaxation, patch by patch
 //! ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles ([`interior`]). Quadratics on that split can follow an incompressible field
 //! (Arnold & Qin 1992), which keeps the bound uniform as ν → ½.
 
