@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
-use super::session::{DualRun, Session, remarks};
+use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::{Comparison, compare};
 use crate::problem::Note;
-use crate::study::{Fields, Findings, ForeignField, assemble};
+use crate::study::ForeignField;
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
 /// jump is a combination of six rounded values with weights that add up to six.
@@ -51,7 +51,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let field = ForeignField::read(&args.displacement, args.field.as_deref()).map_err(refused)?;
     let reading = start.elapsed().as_secs_f64();
     let limits = Limits { max_triangles: None, max_seconds: None };
-    let DualRun { certified, history, stopped } = session.solve(&args.solve, &limits, &folder)?;
+    let run = session.solve(&args.solve, &limits, &folder)?;
+    let certified = &run.certified;
     let candidate = field.candidate(&certified.problem, reading).map_err(refused)?;
 
     session.progress.phase("comparing");
@@ -59,26 +60,15 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let allow = args.judge.allowances().after(rounding);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
-    let baseline = args.judge.against_baseline(&certified, &comparison, &allow)?;
+    let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
-    let mut notes = remarks(stopped);
-    notes.extend(repairs(&comparison));
-    let fields = Fields::new(&certified, &comparison);
-    let dossier = assemble(
-        Findings {
-            command: session.command,
-            certified: &certified,
-            comparison: &comparison,
-            history,
-            notes,
-            threads: session.threads(),
-            seconds: vec![("reading the displacement", reading), ("whole run", session.start.elapsed().as_secs_f64())],
-            components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
-            failure: None,
-        },
-        &fields,
-    );
-    session.close(&dossier, &folder)
+    let particulars = Particulars {
+        notes: repairs(&comparison),
+        seconds: vec![("reading the displacement", reading)],
+        components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
+        failure: None,
+    };
+    session.conclude(run, &comparison, particulars, &folder)
 }
 
 /// A field lives on its own mesh, so there is nothing to refine.

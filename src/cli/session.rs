@@ -6,11 +6,12 @@ use std::time::Instant;
 use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit};
+use crate::compare::Comparison;
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Uzawa};
 use crate::problem::{Note, Problem};
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Scene};
-use crate::study::{self, Adapted, Certified, Goal, StudyError};
+use crate::study::{self, Adapted, Certified, Fields, Findings, Goal, StudyError, assemble};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -36,6 +37,19 @@ pub struct DualRun {
     pub stopped: Option<String>,
 }
 
+/// What a command tells beside the dual run and its comparison.
+#[derive(Default)]
+pub struct Particulars {
+    /// Remarks of its own.
+    pub notes: Vec<Note>,
+    /// Its phases.
+    pub seconds: Vec<(&'static str, f64)>,
+    /// What else took part, with versions.
+    pub components: Vec<(String, String)>,
+    /// Why the displacement model gave no answer.
+    pub failure: Option<String>,
+}
+
 impl Session {
     /// Reads the scene.
     ///
@@ -48,11 +62,6 @@ impl Session {
         // A second command in one process keeps the pool of the first.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         Ok(Session { scene, progress: Progress::new(quiet), start, command, quiet, threads })
-    }
-
-    /// Threads in use.
-    pub fn threads(&self) -> usize {
-        self.threads
     }
 
     /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`.
@@ -133,11 +142,40 @@ impl Session {
         }
     }
 
-    /// Writes the files and says the verdict.
+    /// Assembles the dossier of a run with its comparison, writes the files and says the verdict.
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
+    pub fn conclude(
+        &self,
+        run: DualRun,
+        comparison: &Comparison,
+        particulars: Particulars,
+        folder: &Path,
+    ) -> Result<Exit, CliError> {
+        let DualRun { certified, history, stopped } = run;
+        let Particulars { notes, mut seconds, components, failure } = particulars;
+        seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
+        let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
+        let fields = Fields::new(&certified, comparison);
+        let dossier = assemble(
+            Findings {
+                command: self.command,
+                certified: &certified,
+                comparison,
+                history,
+                notes: stopped.into_iter().chain(notes).collect(),
+                threads: self.threads,
+                seconds,
+                components,
+                failure,
+            },
+            &fields,
+        );
+        self.close(&dossier, folder)
+    }
+
+    fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         if !self.quiet {
@@ -165,9 +203,4 @@ pub fn method(name: Method) -> Box<dyn DualMethod> {
         Method::Clarabel => Box::new(Clarabel::default()),
         Method::Uzawa => Box::new(Uzawa::default()),
     }
-}
-
-/// Remarks of the run for the report.
-pub fn remarks(stopped: Option<String>) -> Vec<Note> {
-    stopped.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect()
 }

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::options::{Limits, RunOptions, SolveOptions};
-use super::session::{DualRun, Session, remarks};
+use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, compare};
-use crate::study::{Fields, Findings, assemble, tolerance_check};
+use crate::study::tolerance_check;
 
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
@@ -32,25 +32,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("solve", &args.scene, &args.solve, args.run.quiet)?;
     let folder = args.run.folder(&session.scene);
-    let DualRun { certified, history, stopped } = session.solve(&args.solve, &args.limits, &folder)?;
-    let allow = Allowances::default();
+    let run = session.solve(&args.solve, &args.limits, &folder)?;
+    let (certified, allow) = (&run.certified, Allowances::default());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
-    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(&certified, &comparison, wanted, &allow));
+    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    let fields = Fields::new(&certified, &comparison);
-    let dossier = assemble(
-        Findings {
-            command: session.command,
-            certified: &certified,
-            comparison: &comparison,
-            history,
-            notes: remarks(stopped),
-            threads: session.threads(),
-            seconds: vec![("whole run", session.start.elapsed().as_secs_f64())],
-            components: Vec::new(),
-            failure: None,
-        },
-        &fields,
-    );
-    session.close(&dossier, &folder)
+    session.conclude(run, &comparison, Particulars::default(), &folder)
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
-use super::session::{DualRun, Session, remarks};
+use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};
-use crate::study::{Fields, Findings, assemble, candidates, pins, tolerance_check};
+use crate::study::{candidates, pins, tolerance_check};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -55,7 +55,8 @@ pub enum Planted {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("verify", &args.scene, &args.solve, args.run.quiet)?;
     let folder = args.run.folder(&session.scene);
-    let DualRun { certified, history, stopped } = session.solve(&args.solve, &args.limits, &folder)?;
+    let run = session.solve(&args.solve, &args.limits, &folder)?;
+    let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
 
     session.progress.phase("solving in displacements with FEniCSx");
@@ -85,31 +86,18 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         .unwrap_or_default();
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
-    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(&certified, &comparison, wanted, &allow));
+    let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
-    let baseline = args.judge.against_baseline(&certified, &comparison, &allow)?;
+    let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
-    let fields = Fields::new(&certified, &comparison);
-    let dossier = assemble(
-        Findings {
-            command: session.command,
-            certified: &certified,
-            comparison: &comparison,
-            history,
-            notes: remarks(stopped),
-            threads: session.threads(),
-            seconds: vec![
-                ("stresses", in_stresses),
-                ("displacements", in_displacements),
-                ("whole run", session.start.elapsed().as_secs_f64()),
-            ],
-            components,
-            failure: failure.as_ref().map(ToString::to_string),
-        },
-        &fields,
-    );
-    let exit = session.close(&dossier, &folder)?;
+    let particulars = Particulars {
+        seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
+        components,
+        failure: failure.as_ref().map(ToString::to_string),
+        ..Particulars::default()
+    };
+    let exit = session.conclude(run, &comparison, particulars, &folder)?;
     match failure {
         None => Ok(exit),
         Some(error) => {

@@ -63,13 +63,34 @@ impl Momentum {
 }
 
 /// The minimum of ½xᵀKx − fᵀx over both directions, or over the first alone where they are as good as parallel.
+///
+/// Each direction is measured by its own energy, so that products of very small numbers do not vanish.
 fn factors(k: &Matrix2<f64>, f: &Vector2<f64>) -> Vector2<f64> {
-    let determinant = k[(0, 0)] * k[(1, 1)] - k[(0, 1)] * k[(1, 0)];
-    if determinant > 1e-10 * k[(0, 0)] * k[(1, 1)] {
-        return Vector2::new(
-            (k[(1, 1)] * f[0] - k[(0, 1)] * f[1]) / determinant,
-            (k[(0, 0)] * f[1] - k[(1, 0)] * f[0]) / determinant,
-        );
+    const PARALLEL: f64 = 1e-10;
+    let unit = [0, 1].map(|i| if k[(i, i)] > 0.0 { 1.0 / k[(i, i)].sqrt() } else { 0.0 });
+    let cosine = k[(0, 1)] * unit[0] * unit[1];
+    let force = [f[0] * unit[0], f[1] * unit[1]];
+    let sine = 1.0 - cosine * cosine;
+    if unit[1] == 0.0 || sine < PARALLEL {
+        return Vector2::new(force[0] * unit[0], 0.0);
     }
-    if k[(0, 0)] > 0.0 { Vector2::new(f[0] / k[(0, 0)], 0.0) } else { Vector2::zeros() }
+    let best = [force[0] - cosine * force[1], force[1] - cosine * force[0]];
+    Vector2::new(best[0] / sine * unit[0], best[1] / sine * unit[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_balance_the_forces_at_any_size() {
+        for size in [1.0, 1e-200, 1e200] {
+            let k = size * Matrix2::new(2.0, 0.3, 0.3, 0.5);
+            let f = size * Vector2::new(1.0, -2.0);
+            assert!((k * factors(&k, &f) - f).amax() < 1e-14 * size);
+        }
+        let parallel = factors(&Matrix2::new(1.0, 2.0, 2.0, 4.0), &Vector2::new(3.0, 6.0));
+        assert_eq!(parallel, Vector2::new(3.0, 0.0));
+        assert_eq!(factors(&Matrix2::zeros(), &Vector2::zeros()), Vector2::zeros());
+    }
 }
