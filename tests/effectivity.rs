@@ -4,14 +4,14 @@
 //! and the bound claims d ≤ gap. The effectivity is √(gap/d). 𝓛(u) is enclosed by a far finer mesh, hence d as well:
 //! the guarantee holds when the gap is at least the smallest d that the enclosure allows.
 //!
-//! Forty scenes; set `HYPERCIRCLE_SCENES` for another number.
+//! Forty scenes; set `HYPERCIRCLE_SCENES` for another number. The same is asked of every case on its own mesh.
 
 mod support;
 
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Certified, Goal, StudyError, adapt};
+use hypercircle::study::{Certified, Goal, StudyError, adapt, certify};
 use support::random::Random;
 use support::toml::Toml;
 
@@ -119,4 +119,37 @@ fn the_bound_is_never_below_the_error_and_never_three_times_as_large() {
         at(1.0)
     );
     assert!(at(0.0) >= 1.0 && at(1.0) <= 3.0, "from {} to {}", at(0.0), at(1.0));
+}
+
+/// Below this guaranteed relative error a case is exact but for rounding, and there is no error to compare with.
+const EXACT: f64 = 1e-4;
+
+#[test]
+fn every_case_bounds_its_error_between_once_and_three_times() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let mut compared = 0;
+    for entry in std::fs::read_dir(folder).expect("cases") {
+        let path = entry.expect("readable").path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let name = path.display();
+        let problem = Problem::load(Scene::read(&path).expect("valid")).expect("valid");
+        let (method, options) = (Condensed::default(), Options::default());
+        let coarse = certify(problem.clone(), &method, &options).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let gap = upper(&coarse) - coarse.bracket.lower();
+        let reached = coarse.bracket.relative_error(upper(&coarse));
+        if reached < EXACT {
+            continue;
+        }
+        let fine = adapt(problem, &method, &options, &Goal::new(0.15 * reached), |_| ())
+            .unwrap_or_else(|e| panic!("{name}: {e}"))
+            .certified;
+        let [least, most] = [fine.bracket.lower(), upper(&fine)].map(|exact| exact - coarse.bracket.lower());
+        println!("{name}: from {:.2} to {:.2}", (gap / most).sqrt(), (gap / least).sqrt());
+        assert!(least > 0.0 && least <= gap, "{name}: the bound {gap:e} misses the error, which is at least {least:e}");
+        assert!((gap / least).sqrt() <= 3.0, "{name}: {}", (gap / least).sqrt());
+        compared += 1;
+    }
+    assert!(compared >= 6, "{compared} cases with an error");
 }

@@ -241,7 +241,7 @@ fn contact_ends(problem: &Problem) -> Vec<usize> {
     marked
 }
 
-/// How the gap falls against how a smooth solution's would: as this power of it.
+/// How the gap falls: against how a smooth solution's would, as a power of it.
 struct Forecast {
     /// The gap of the last mesh, and the one predicted for the next.
     from: f64,
@@ -253,9 +253,9 @@ impl Forecast {
     /// Singularities make the gap fall more slowly than predicted, and by about the same power from mesh to mesh.
     fn learn(&mut self, certified: &Certified) {
         if let Ok(free) = &certified.bracket.free {
-            let power = (self.from / free.local.total).ln() / (self.from / self.to).ln();
-            if power.is_finite() {
-                self.power = power.clamp(LEAST_POWER, 1.0);
+            let ratio = (self.from / free.local.total).ln() / (self.from / self.to).ln();
+            if ratio.is_finite() {
+                self.power = (ratio * self.power).clamp(LEAST_POWER, 1.0);
             }
         }
     }
@@ -276,7 +276,7 @@ fn refined(
     };
     let mut indicators = Indicators::new(&certified.problem, free);
     // The part of the gap that may stay: the bound is its root.
-    let enough = indicators.total() * (AIM * goal.tolerance / bound).powf(2.0 / forecast.power);
+    let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2);
     forecast.from = indicators.total();
     let now = certified.problem.mesh.triangles.len() as f64;
     let (worth, grown) = (WORTH_A_SOLVE * now, GROWTH * now);
@@ -286,7 +286,7 @@ fn refined(
         // The last round is tried with smaller parts, down to a sixteenth, while it would overshoot.
         let (next, predicted) = loop {
             let (next, within) = stage.bisect(&indicators.marked(bulk))?;
-            let predicted = indicators.inherited(&stage.problem.mesh, &next.problem.mesh, &within);
+            let predicted = indicators.inherited(&stage.problem.mesh, &next.problem.mesh, &within, forecast.power);
             let count = next.problem.mesh.triangles.len();
             let too_many = goal.max_triangles.is_some_and(|most| count > most);
             let count = count as f64;

@@ -6,7 +6,7 @@ use crate::problem::Problem;
 
 /// A term of the gap falls like this power of the triangle's area where the solution is smooth: with stresses linear on
 /// a triangle of size h, ½∫ a(λ − τ):(λ − τ) is of order h⁴ · h².
-const DECAY: i32 = 3;
+const DECAY: f64 = 3.0;
 
 /// Terms whose relative difference is smaller count as equal.
 const EQUAL: f64 = 1e-7;
@@ -61,11 +61,12 @@ impl Indicators {
         order
     }
 
-    /// Predicts the terms on a finer mesh, each from the triangle it came from, as for a smooth solution.
-    pub fn inherited(&self, coarse: &Triangulation, fine: &Triangulation, parent: &[usize]) -> Indicators {
+    /// Predicts the terms on a finer mesh, each from the triangle it came from: with `power` one as for a smooth solution,
+    /// with less as where singularities rule.
+    pub fn inherited(&self, coarse: &Triangulation, fine: &Triangulation, parent: &[usize], power: f64) -> Indicators {
         let part = |(t, &p): (usize, &usize)| match fine.area(t) / coarse.area(p) {
             whole if whole > 0.9 => self.terms[p],
-            part => self.terms[p] * part.powi(DECAY),
+            part => self.terms[p] * part.powf(DECAY * power),
         };
         Indicators { terms: parent.iter().enumerate().map(part).collect() }
     }
