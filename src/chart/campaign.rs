@@ -4,8 +4,6 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use sha2::{Digest, Sha256};
-
 use super::data::{Chart, Cold, Run, SCHEMA_VERSION, SceneChart, Status};
 use super::judge::judge;
 use super::reference::{self, REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};
@@ -238,7 +236,7 @@ fn tolerance(method: Method, level: usize) -> Option<f64> {
 
 fn hash(path: &Path) -> Result<String, CampaignError> {
     let bytes = std::fs::read(path).map_err(|source| CampaignError::Scene { path: path.to_path_buf(), source })?;
-    Ok(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect())
+    Ok(crate::study::hash(&bytes))
 }
 
 /// The reason in an end.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::measure::Ended;
+use crate::study::{hash, hex};
 
 /// Name of a run: the same problem, method, options and program have the same one.
 pub(super) type Name = String;
@@ -49,7 +50,7 @@ impl Journal {
         }
         // Runs of another build are other runs.
         let build = std::fs::read(program).map_err(|e| (program.to_path_buf(), e))?;
-        Ok(Journal { file: Some(Mutex::new(file)), runs: Mutex::new(runs), program: hex(&Sha256::digest(build)) })
+        Ok(Journal { file: Some(Mutex::new(file)), runs: Mutex::new(runs), program: hash(&build) })
     }
 
     /// A journal without a file.
@@ -59,12 +60,12 @@ impl Journal {
 
     /// The name of the run that solves `problem` with `options`.
     pub(super) fn name(&self, problem: &str, options: &str) -> Name {
-        let mut hash = Sha256::new();
+        let mut hasher = Sha256::new();
         for part in [&self.program, problem, options] {
-            hash.update(part.len().to_le_bytes());
-            hash.update(part);
+            hasher.update(part.len().to_le_bytes());
+            hasher.update(part);
         }
-        hex(&hash.finalize())
+        hex(&hasher.finalize())
     }
 
     fn runs(&self) -> MutexGuard<'_, HashMap<Name, Ended>> {
@@ -90,10 +91,6 @@ impl Journal {
         self.runs().insert(line.run, line.ended);
         Ok(())
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -18,4 +18,5 @@ pub use field::{FieldError, ForeignField};
 pub use indicators::Indicators;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
+pub(crate) use provenance::{hash, hex};
 pub use warm_start::closed_ends;

@@ -54,11 +54,13 @@ fn mesh_hash(problem: &Problem) -> String {
     hex(&hasher.finalize())
 }
 
-fn hash(bytes: &[u8]) -> String {
+/// SHA-256 of `bytes`, in hexadecimal digits.
+pub fn hash(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// `bytes` in hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 

@@ -19,7 +19,7 @@ mod relax;
 mod sets;
 mod stiffness;
 
-use self::holds::{Hold, Holds, holds};
+use self::holds::{Holds, holds};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -90,7 +90,7 @@ pub fn admissible(
     contact::restrict_middles(problem, &vertex, &mut middle);
     let mut candidates = vec![NodalValues { vertex, middle }];
     if let Some(start) = start {
-        candidates.push(restricted(problem, &holds, start)?);
+        candidates.push(restricted(problem, &holds, start)?.0);
     }
     let NodalValues { mut vertex, mut middle } =
         relax::relax(problem, &holds, floor / problem.scene.thickness, candidates);
@@ -99,15 +99,18 @@ pub fn admissible(
     Ok(interior::fill(problem, &vertex, &middle))
 }
 
-/// The nearest values that supports and contact allow.
-fn restricted(problem: &Problem, holds: &Holds, start: NodalValues) -> Result<NodalValues, NoUpperBound> {
+/// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
+fn restricted(problem: &Problem, holds: &Holds, start: NodalValues) -> Result<(NodalValues, f64), NoUpperBound> {
     let NodalValues { mut vertex, mut middle } = start;
+    let mut farthest = 0.0_f64;
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices).chain(middle.iter_mut().zip(&holds.middles)) {
-        *value = hold.impose(*value);
+        let held = hold.impose(*value);
+        farthest = farthest.max((held[0] - value[0]).hypot(held[1] - value[1]));
+        *value = held;
     }
     contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
     contact::restrict_middles(problem, &vertex, &mut middle);
-    Ok(NodalValues { vertex, middle })
+    Ok((NodalValues { vertex, middle }, farthest))
 }
 
 /// By how much a displacement misses admissibility, relative to its size.
@@ -136,20 +139,11 @@ pub fn repaired(
     vertex: &[[f64; 2]],
     middle: &[[f64; 2]],
 ) -> Result<(Displacement, Violation), NoUpperBound> {
-    let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let (mut vertex, mut middle) = (vertex.to_vec(), middle.to_vec());
-    let mut violation = Violation { support: 0.0, penetration: contact::penetration(problem, &vertex, &middle) / size };
-    let mut impose = |hold: Hold, value: &mut [f64; 2]| {
-        let held = hold.impose(*value);
-        violation.support = violation.support.max((held[0] - value[0]).hypot(held[1] - value[1]) / size);
-        *value = held;
-    };
-    for (value, hold) in vertex.iter_mut().zip(&holds.vertices).chain(middle.iter_mut().zip(&holds.middles)) {
-        impose(*hold, value);
-    }
-    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
-    contact::restrict_middles(problem, &vertex, &mut middle);
-    Ok((Displacement::from_p2(mesh, &vertex, &middle), violation))
+    let penetration = contact::penetration(problem, vertex, middle) / size;
+    let start = NodalValues { vertex: vertex.to_vec(), middle: middle.to_vec() };
+    let (NodalValues { vertex, middle }, farthest) = restricted(problem, &holds, start)?;
+    let violation = Violation { support: farthest / size, penetration };
+    Ok((Displacement::from_p2(&problem.mesh, &vertex, &middle), violation))
 }

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
+use super::provenance::hash;
 use crate::compare::Candidate;
 use crate::mesh::meshio;
 use crate::problem::Problem;
@@ -79,7 +79,7 @@ impl ForeignField {
             return Err(fault("this is not a regular file".into(), "write the field into a file"));
         }
         let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
-        let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        let sha256 = hash(&bytes);
         let text = meshio::run(SCRIPT, file, INSTEAD).map_err(|f| fault(f.what, &f.remedy))?;
         let content: Content =
             serde_json::from_slice(&text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
