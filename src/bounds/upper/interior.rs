@@ -1,9 +1,9 @@
 //! The inside of each triangle: four nodes that minimise the local energy with the boundary values fixed.
 
-use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
-use crate::bounds::strain::{gradients, shape_gradients, sub_area, sub_corners};
+use super::cholesky;
+use super::split::{BOUNDARY, INSIDE, Split};
 use crate::dual::modes::materials;
 use crate::element::{Compliance, Displacement};
 use crate::problem::Problem;
@@ -23,12 +23,6 @@ pub fn fill(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Disp
         })
         .collect();
     Displacement { values }
-}
-
-/// Nodes of the six that each subtriangle has, as indices into the ten of the triangle.
-fn nodes(sub: usize) -> [usize; 6] {
-    let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
-    [j, k, 6, 7 + k, 7 + j, 3 + sub]
 }
 
 /// Ten nodal values from the six on the boundary.
@@ -65,62 +59,18 @@ fn inside(
         values[7 + i] = plain(l, &values);
     }
     // Newton's step from there: exact, the energy being quadratic.
-    let mut stiffness = SMatrix::<f64, 8, 8>::zeros();
-    let mut load = SVector::<f64, 8>::zeros();
-    let area = sub_area(corners);
-    let weight = area / 3.0;
-    for sub in 0..3 {
-        let g = gradients(sub_corners(corners, sub));
-        let index = nodes(sub);
-        for at in 0..3 {
-            let shape = shape_gradients(&g, at);
-            let mut e = [0.0; 3];
-            for (d, &node) in shape.iter().zip(&index) {
-                e[0] += d[0] * values[node][0];
-                e[1] += d[1] * values[node][1];
-                e[2] += 0.5 * (d[1] * values[node][0] + d[0] * values[node][1]);
-            }
-            let stress = material.stress(e);
-            for (a, &node) in index.iter().enumerate() {
-                let Some(i) = node.checked_sub(6) else { continue };
-                load[2 * i] -= weight * (stress[0] * shape[a][0] + stress[2] * shape[a][1]);
-                load[2 * i + 1] -= weight * (stress[2] * shape[a][0] + stress[1] * shape[a][1]);
-                let columns = [[shape[a][0], 0.0, 0.5 * shape[a][1]], [0.0, shape[a][1], 0.5 * shape[a][0]]];
-                for (b, &other) in index.iter().enumerate() {
-                    let Some(j) = other.checked_sub(6).filter(|&j| j <= i) else { continue };
-                    let rows = [[shape[b][0], 0.0, 0.5 * shape[b][1]], [0.0, shape[b][1], 0.5 * shape[b][0]]];
-                    for (c, column) in columns.iter().enumerate() {
-                        for (d, row) in rows.iter().enumerate() {
-                            stiffness[(2 * i + c, 2 * j + d)] += weight * material.strain_product(*column, *row);
-                        }
-                    }
-                }
-            }
-        }
-        // ∫F·v: the midpoint rule, on the midpoints that lie inside.
-        for (a, &node) in index.iter().enumerate() {
-            if let Some(i) = node.checked_sub(6).filter(|_| a >= 3) {
-                load[2 * i] += weight * force[0];
-                load[2 * i + 1] += weight * force[1];
-            }
-        }
+    let split = Split::new(corners, material, force);
+    let mut load = [0.0; INSIDE];
+    for (i, value) in load.iter_mut().enumerate() {
+        let forces = split.matrix[BOUNDARY + i].iter().zip(values.as_flattened()).map(|(k, u)| k * u);
+        *value = split.load[BOUNDARY + i] - forces.sum::<f64>();
     }
-    if let Some(factor) = nalgebra::Cholesky::new(symmetric(stiffness)) {
-        let step = factor.solve(&load);
-        for i in 0..4 {
-            values[6 + i][0] += step[2 * i];
-            values[6 + i][1] += step[2 * i + 1];
+    let mut stiffness = split.inside();
+    if cholesky::factorise(&mut stiffness, INSIDE, 0.0) {
+        cholesky::solve(&stiffness, &mut load);
+        for (value, step) in values.as_flattened_mut()[BOUNDARY..].iter_mut().zip(load) {
+            *value += step;
         }
     }
     values.map(|v| [v[0] + base[0], v[1] + base[1]])
-}
-
-/// Completes the upper triangle from the lower.
-fn symmetric(mut m: SMatrix<f64, 8, 8>) -> SMatrix<f64, 8, 8> {
-    for i in 0..8 {
-        for j in i + 1..8 {
-            m[(i, j)] = m[(j, i)];
-        }
-    }
-    m
 }

@@ -7,6 +7,7 @@
 //! ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles ([`interior`]). Quadratics on that split can follow an incompressible field
 //! (Arnold & Qin 1992), which keeps the bound uniform as ν → ½.
 
+mod cholesky;
 mod contact;
 mod fit;
 mod groups;
@@ -17,6 +18,7 @@ mod momentum;
 mod patch;
 mod relax;
 mod sets;
+mod split;
 mod stiffness;
 
 use self::holds::{Holds, holds};

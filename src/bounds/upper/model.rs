@@ -2,12 +2,11 @@
 //!
 //! Nodes are the vertices, then the edge midpoints.
 
-use nalgebra::SVector;
-
 use super::contact::{Row, rows};
 use super::groups::Group;
 use super::holds::{Hold, Holds};
-use super::stiffness::{BOUNDARY, Condensed, condensed};
+use super::split::BOUNDARY;
+use super::stiffness::{Condensed, condensed};
 use crate::problem::Problem;
 
 /// What does not change while patches move.
@@ -42,17 +41,17 @@ impl<'a> Model<'a> {
             let u = self.bent(t, values);
             let nodes = self.nodes(t);
             let work: f64 = (0..BOUNDARY).map(|i| element.load[i] * values[nodes[i / 2]][i % 2]).sum();
-            0.5 * u.dot(&(element.matrix * u)) - work
+            0.5 * dot(&u, &element.times(&u)) - work
         };
         self.elements.iter().enumerate().filter_map(|(t, e)| Some(of((t, e.as_ref()?)))).sum()
     }
 
     /// Values on the boundary of triangle `t` about its first corner: translations carry no energy and should cost no
     /// digits.
-    pub fn bent(&self, t: usize, values: &[[f64; 2]]) -> SVector<f64, BOUNDARY> {
+    pub fn bent(&self, t: usize, values: &[[f64; 2]]) -> [f64; BOUNDARY] {
         let nodes = self.nodes(t);
         let base = values[nodes[0]];
-        SVector::from_fn(|i, _| values[nodes[i / 2]][i % 2] - base[i % 2])
+        std::array::from_fn(|i| values[nodes[i / 2]][i % 2] - base[i % 2])
     }
 
     /// The six nodes on the boundary of triangle `t`: corners, then edges.
@@ -70,6 +69,11 @@ impl<'a> Model<'a> {
             Some(e) => self.problem.mesh.edges[e].vertices.iter().any(|v| group.vertices.contains(v)),
         }
     }
+}
+
+/// uᵀv.
+pub fn dot(u: &[f64; BOUNDARY], v: &[f64; BOUNDARY]) -> f64 {
+    u.iter().zip(v).map(|(u, v)| u * v).sum()
 }
 
 /// The directions in which each node may move: vertices, then edges.

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::model::Model;
+use super::model::{Model, dot};
 
 /// The last step.
 #[derive(Debug, Default)]
@@ -25,15 +25,15 @@ impl Momentum {
         let mut force = Vector2::zeros();
         for (t, element) in model.elements.iter().enumerate() {
             let Some(element) = element else { continue };
-            let residual = element.load - element.matrix * model.bent(t, values);
+            let residual = element.residual(&model.bent(t, values));
             let nodes = model.nodes(t);
             let moves = [&sweep, &self.step];
             let bent = moves.map(|m| model.bent(t, m));
-            let answer = bent.map(|m| element.matrix * m);
+            let answer = bent.map(|m| element.times(&m));
             for i in 0..2 {
                 force[i] += (0..residual.len()).map(|k| residual[k] * moves[i][nodes[k / 2]][k % 2]).sum::<f64>();
                 for j in 0..2 {
-                    stiffness[(i, j)] += bent[i].dot(&answer[j]);
+                    stiffness[(i, j)] += dot(&bent[i], &answer[j]);
                 }
             }
         }

@@ -2,6 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::cholesky;
+
 /// Pivots below this part of their diagonal entry are round-off: the patch can move as a whole.
 const PIVOT: f64 = 1e-15;
 /// Violations below this part of the largest are round-off.
@@ -16,24 +18,38 @@ pub struct Step {
     pub gain: f64,
 }
 
-/// The minimum over x, with rows B and s ≥ 0 (so that x = 0 is allowed); Bx exceeds s by `slack` at most. `None` where
-/// there is nothing to gain or no unique minimum.
-pub fn minimum(k: DMatrix<f64>, f: &DVector<f64>, b: &DMatrix<f64>, s: &DVector<f64>, slack: f64) -> Option<Step> {
-    let diagonal = k.diagonal();
-    let factor = Cholesky::new(k)?;
-    let sound = factor.l_dirty().diagonal().iter().zip(diagonal.iter()).all(|(l, d)| l * l > PIVOT * d);
-    if !sound {
-        return None;
+/// Factorises the packed K of a patch; `false` where the patch can move as a whole.
+pub fn factorise(k: &mut [f64], n: usize) -> bool {
+    cholesky::factorise(k, n, PIVOT)
+}
+
+/// The minimum over x of ½xᵀKx − fᵀx, with the factor of K. `None` where there is nothing to gain.
+pub fn free_minimum(k: &[f64], f: &[f64]) -> Option<Step> {
+    let f = DVector::from_column_slice(f);
+    let mut x = f.clone();
+    cholesky::solve(k, x.as_mut_slice());
+    let gain = 0.5 * f.dot(&x);
+    (gain > 0.0 && gain.is_finite()).then_some(Step { x, gain })
+}
+
+/// The same with rows B and s ≥ 0 (so that x = 0 is allowed); Bx exceeds s by `slack` at most.
+pub fn minimum(k: &[f64], f: &[f64], b: &DMatrix<f64>, s: &DVector<f64>, slack: f64) -> Option<Step> {
+    let free = free_minimum(k, f)?;
+    let over = b * &free.x - s;
+    if over.iter().all(|v| *v <= slack) {
+        return Some(free);
     }
-    let mut x = factor.solve(f);
+    let f = DVector::from_column_slice(f);
+    // K⁻¹Bᵀ
+    let mut moves = b.transpose();
+    for mut column in moves.column_iter_mut() {
+        cholesky::solve(k, column.as_mut_slice());
+    }
+    let pressure = pressures(&(b * &moves), &over);
     // Kx, with the forces that hold the inequalities.
-    let mut force = f.clone();
-    let over = b * &x - s;
-    if over.iter().any(|v| *v > slack) {
-        let pressure = pressures(&factor, b, &over);
-        force -= b.tr_mul(&pressure);
-        x = factor.solve(&force);
-    }
+    let force = &f - b.tr_mul(&pressure);
+    let mut x = force.clone();
+    cholesky::solve(k, x.as_mut_slice());
     // Round-off may leave a row above its bound: the energy falls all the way from 0 to x.
     let mut part = 1.0_f64;
     for (value, room) in (b * &x).iter().zip(s.iter()) {
@@ -47,15 +63,14 @@ pub fn minimum(k: DMatrix<f64>, f: &DVector<f64>, b: &DMatrix<f64>, s: &DVector<
 
 /// Multipliers μ ≥ 0 of the inequalities: the minimum of ½μᵀWμ − rᵀμ with W = B K⁻¹ Bᵀ, by Lawson and Hanson's active
 /// sets. Rows that depend on others already in force are left out.
-fn pressures(factor: &Cholesky<f64, Dyn>, b: &DMatrix<f64>, r: &DVector<f64>) -> DVector<f64> {
+fn pressures(w: &DMatrix<f64>, r: &DVector<f64>) -> DVector<f64> {
     let m = r.len();
-    let w = b * factor.solve(&b.transpose());
     let scale = w.diagonal().map(|d| if d > 0.0 { 1.0 / d.sqrt() } else { 0.0 });
     let settled = SETTLED * r.component_mul(&scale).amax();
     let mut mu = DVector::zeros(m);
     let (mut active, mut barred) = (Vec::<usize>::new(), vec![false; m]);
     for _ in 0..3 * m + 10 {
-        let left = (r - &w * &mu).component_mul(&scale);
+        let left = (r - w * &mu).component_mul(&scale);
         let worst = (0..m)
             .filter(|i| !barred[*i] && !active.contains(i) && left[*i] > settled)
             .max_by(|a, c| left[*a].total_cmp(&left[*c]));
@@ -100,6 +115,13 @@ fn pressures(factor: &Cholesky<f64, Dyn>, b: &DMatrix<f64>, r: &DVector<f64>) ->
 mod tests {
     use super::*;
 
+    /// The minimum with K as a matrix.
+    fn minimum_of(k: &DMatrix<f64>, f: &DVector<f64>, b: &DMatrix<f64>, s: &DVector<f64>) -> Option<Step> {
+        let n = k.nrows();
+        let mut packed: Vec<f64> = (0..n).flat_map(|j| (j..n).map(move |i| k[(i, j)])).collect();
+        factorise(&mut packed, n).then(|| minimum(&packed, f.as_slice(), b, s, 1e-15))?
+    }
+
     /// Optimality (Karush, Kuhn and Tucker), checked on the step itself.
     fn is_minimum(k: &DMatrix<f64>, f: &DVector<f64>, b: &DMatrix<f64>, s: &DVector<f64>, x: &DVector<f64>) {
         let room = s - b * x;
@@ -124,7 +146,7 @@ mod tests {
         let s = DVector::from_row_slice(&[0.1, 0.0, 0.3]);
         for f in [[1.0, 0.2, -2.0], [-1.0, -1.0, -1.0], [3.0, 3.0, 3.0], [0.0, 2.0, -3.0]] {
             let f = DVector::from_row_slice(&f);
-            let step = minimum(k.clone(), &f, &b, &s, 1e-15).expect("a minimum");
+            let step = minimum_of(&k, &f, &b, &s).expect("a minimum");
             is_minimum(&k, &f, &b, &s, &step.x);
             assert!((step.gain - (f.dot(&step.x) - 0.5 * step.x.dot(&(&k * &step.x)))).abs() < 1e-13);
         }
@@ -134,7 +156,7 @@ mod tests {
     fn rows_may_be_given_twice() {
         let k = DMatrix::identity(2, 2);
         let b = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 1.0, 0.0]);
-        let step = minimum(k, &DVector::from_row_slice(&[2.0, 1.0]), &b, &DVector::from_row_slice(&[0.5, 0.5]), 1e-15);
+        let step = minimum_of(&k, &DVector::from_row_slice(&[2.0, 1.0]), &b, &DVector::from_row_slice(&[0.5, 0.5]));
         let x = step.expect("a minimum").x;
         assert!((x[0] - 0.5).abs() < 1e-14 && (x[1] - 1.0).abs() < 1e-14, "{x}");
     }
@@ -143,6 +165,6 @@ mod tests {
     fn what_can_move_as_a_whole_has_no_minimum() {
         let k = DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 1.0]);
         let none = DMatrix::zeros(0, 2);
-        assert_eq!(minimum(k, &DVector::from_row_slice(&[1.0, -1.0]), &none, &DVector::zeros(0), 1e-15), None);
+        assert_eq!(minimum_of(&k, &DVector::from_row_slice(&[1.0, -1.0]), &none, &DVector::zeros(0)), None);
     }
 }

@@ -9,12 +9,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::NodalValues;
+use super::cholesky::{column, packed};
 use super::contact::ROUNDING;
 use super::groups::{Group, groups};
 use super::holds::Holds;
 use super::model::Model;
 use super::momentum::Momentum;
-use super::patch::minimum;
+use super::patch::{Step, factorise, free_minimum, minimum};
 use crate::problem::Problem;
 
 /// Sweeps over all patches. The first takes most of what there is to gain, at ν = 0.3 all of it; the third is worth
@@ -28,15 +29,23 @@ const WORTH_A_SWEEP: f64 = 3e-3;
 
 /// A gap above this part of the energy makes a poor bound, and smaller gains are worth a sweep in proportion: sweeps that
 /// gain little lead to others that gain much.
-const GOOD: f64 = 0.01;
+const GOOD: f64 = 1e-3;
 
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
+
+/// Factors of patches with more unknowns than this are computed anew in every sweep: kept, they would take too much
+/// memory.
+const MOST_KEPT: usize = 32;
+
+/// The factor of the stiffness of a patch, from the first sweep on.
+type Kept = Option<Box<[f64]>>;
 
 /// Lowers the energy of the best of several admissible fields; `floor` is a lower bound of it, per unit thickness.
 pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<NodalValues>) -> NodalValues {
     let model = Model::new(problem, holds);
     let groups = groups(problem);
+    let mut kept: Vec<Kept> = vec![None; groups.len()];
     let mut patch = Patch { local: vec![usize::MAX; model.free.len()], ..Patch::default() };
     let all = |nodal: NodalValues| -> Vec<[f64; 2]> { nodal.vertex.into_iter().chain(nodal.middle).collect() };
     let mut fields = candidates.into_iter().map(all);
@@ -61,8 +70,9 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<Nodal
         gained = 0.0;
         for k in 0..groups.len() {
             // Back and forth: what one direction pushes ahead of it the other brings back.
-            let group = &groups[if sweep % 2 == 0 { k } else { groups.len() - 1 - k }];
-            gained += patch.relax(&model, group, slack, &mut values);
+            let k = if sweep % 2 == 0 { k } else { groups.len() - 1 - k };
+            let (group, kept) = (&groups[k], &mut kept[k]);
+            gained += patch.relax(&model, group, kept, slack, &mut values);
         }
         if let Some(before) = before {
             gained += momentum.push(&model, &before, slack, &mut values);
@@ -72,7 +82,7 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<Nodal
     NodalValues { vertex: values, middle }
 }
 
-/// The unknowns of the patch at hand.
+/// The patch at hand, in memory that serves one after the other.
 #[derive(Default)]
 struct Patch {
     /// First unknown of each node, `usize::MAX` outside.
@@ -81,29 +91,62 @@ struct Patch {
     unknowns: Vec<(usize, [f64; 2])>,
     /// Rows of contact with an unknown in them.
     rows: Vec<usize>,
+    /// Lower triangle of the stiffness, column by column.
+    matrix: Vec<f64>,
+    /// Residual forces.
+    load: Vec<f64>,
 }
 
 impl Patch {
     /// Moves the patch of `group` to the minimum of the energy, and gives the energy gained.
-    fn relax(&mut self, model: &Model<'_>, group: &Group, slack: f64, values: &mut [[f64; 2]]) -> f64 {
+    fn relax(&mut self, model: &Model<'_>, group: &Group, kept: &mut Kept, slack: f64, values: &mut [[f64; 2]]) -> f64 {
         self.number(model, group);
-        let n = self.unknowns.len();
         let mut gained = 0.0;
-        if n > 0 && n <= MOST_IN_PATCH {
-            let (matrix, load) = self.system(model, group, values);
-            let (b, room) = self.inequalities(model, values);
-            if let Some(step) = minimum(matrix, &load, &b, &room, slack) {
-                for ((node, direction), x) in self.unknowns.iter().zip(step.x.iter()) {
-                    values[*node][0] += x * direction[0];
-                    values[*node][1] += x * direction[1];
-                }
-                gained = step.gain;
+        if let Some(step) = self.step(model, group, kept, slack, values) {
+            for ((node, direction), x) in self.unknowns.iter().zip(step.x.iter()) {
+                values[*node][0] += x * direction[0];
+                values[*node][1] += x * direction[1];
             }
+            gained = step.gain;
         }
         for (node, _) in &self.unknowns {
             self.local[*node] = usize::MAX;
         }
         gained
+    }
+
+    /// The step to the minimum.
+    fn step(
+        &mut self,
+        model: &Model<'_>,
+        group: &Group,
+        kept: &mut Kept,
+        slack: f64,
+        values: &[[f64; 2]],
+    ) -> Option<Step> {
+        let n = self.unknowns.len();
+        if n == 0 || n > MOST_IN_PATCH {
+            return None;
+        }
+        self.forces(model, group, values);
+        let factor = match kept {
+            Some(factor) => &factor[..],
+            None => {
+                self.assemble(model, group);
+                if !factorise(&mut self.matrix, n) {
+                    return None;
+                }
+                if n <= MOST_KEPT {
+                    *kept = Some(self.matrix.as_slice().into());
+                }
+                &self.matrix
+            }
+        };
+        if self.rows.is_empty() {
+            return free_minimum(factor, &self.load);
+        }
+        let (b, room) = self.inequalities(model, values);
+        minimum(factor, &self.load, &b, &room, slack)
     }
 
     /// Numbers the unknowns. A patch with a triangle that has no unique minimum inside has none.
@@ -130,34 +173,48 @@ impl Patch {
     }
 
     /// The unknowns of a node and their directions.
-    fn terms(&self, model: &Model<'_>, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> {
+    fn terms(&self, model: &Model<'_>, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> + use<> {
         let (first, free) = (self.local[node], model.free[node]);
         let count = if first == usize::MAX { 0 } else { free.count };
         (0..count).map(move |i| (first + i, free.unit[i]))
     }
 
-    /// Stiffness and residual forces.
-    fn system(&self, model: &Model<'_>, group: &Group, values: &[[f64; 2]]) -> (DMatrix<f64>, DVector<f64>) {
+    /// Residual forces.
+    fn forces(&mut self, model: &Model<'_>, group: &Group, values: &[[f64; 2]]) {
+        self.load.clear();
+        self.load.resize(self.unknowns.len(), 0.0);
+        for &t in &group.triangles {
+            let Some(element) = &model.elements[t] else { continue };
+            let residual = element.residual(&model.bent(t, values));
+            for (a, node) in model.nodes(t).into_iter().enumerate() {
+                for (i, p) in self.terms(model, node) {
+                    self.load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
+                }
+            }
+        }
+    }
+
+    /// Stiffness.
+    fn assemble(&mut self, model: &Model<'_>, group: &Group) {
         let n = self.unknowns.len();
-        let (mut matrix, mut load) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        self.matrix.clear();
+        self.matrix.resize(packed(n), 0.0);
         for &t in &group.triangles {
             let Some(element) = &model.elements[t] else { continue };
             let nodes = model.nodes(t);
-            let residual = element.load - element.matrix * model.bent(t, values);
             for a in 0..6 {
+                let (first, second) = (&element.matrix[2 * a], &element.matrix[2 * a + 1]);
                 for (i, p) in self.terms(model, nodes[a]) {
-                    load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
+                    let start = column(n, i);
                     for (b, &other) in nodes.iter().enumerate() {
-                        let k = |c: usize, d: usize| element.matrix[(2 * a + c, 2 * b + d)];
-                        let row = [p[0] * k(0, 0) + p[1] * k(1, 0), p[0] * k(0, 1) + p[1] * k(1, 1)];
-                        for (j, q) in self.terms(model, other) {
-                            matrix[(i, j)] += row[0] * q[0] + row[1] * q[1];
+                        let row = [0, 1].map(|d| p[0] * first[2 * b + d] + p[1] * second[2 * b + d]);
+                        for (j, q) in self.terms(model, other).filter(|(j, _)| *j >= i) {
+                            self.matrix[start + j - i] += row[0] * q[0] + row[1] * q[1];
                         }
                     }
                 }
             }
         }
-        (matrix, load)
     }
 
     /// What jumps may still grow by: B and s of Bx ≤ s.

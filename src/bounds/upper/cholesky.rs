@@ -1,0 +1,116 @@
+//! Cholesky factors of the small matrices of patches and triangles, in memory that is given.
+//!
+//! Every vertex has one, and factorisations for any size and shape of matrix take ten times as long. Only the lower
+//! triangle is stored: column by column, each from its diagonal down.
+
+/// Numbers in the lower triangle of an n × n matrix.
+pub const fn packed(n: usize) -> usize {
+    n * (n + 1) / 2
+}
+
+/// Where column `j` begins.
+pub const fn column(n: usize, j: usize) -> usize {
+    j * (2 * n + 1 - j) / 2
+}
+
+/// Turns `a` (n × n) into its factor L; `false` where a pivot is not above the part `least` of its diagonal entry.
+pub fn factorise(a: &mut [f64], n: usize, least: f64) -> bool {
+    for j in 0..n {
+        let (left, right) = a.split_at_mut(column(n, j));
+        let own = &mut right[..n - j];
+        let entry = own[0];
+        let mut left = &*left;
+        for k in 0..j {
+            let (done, rest) = left.split_at(n - k);
+            let done = &done[j - k..];
+            let factor = done[0];
+            own.iter_mut().zip(done).for_each(|(value, l)| *value -= factor * l);
+            left = rest;
+        }
+        let pivot = own[0];
+        // False for what is not a number, too.
+        if !(pivot > least * entry && pivot.is_finite()) {
+            return false;
+        }
+        let root = pivot.sqrt();
+        own[0] = root;
+        own[1..].iter_mut().for_each(|value| *value /= root);
+    }
+    true
+}
+
+/// x = A⁻¹ x with the factor `l` of A.
+pub fn solve(l: &[f64], x: &mut [f64]) {
+    let n = x.len();
+    let mut rest = l;
+    for j in 0..n {
+        let (own, next) = rest.split_at(n - j);
+        let value = x[j] / own[0];
+        x[j] = value;
+        x[j + 1..].iter_mut().zip(&own[1..]).for_each(|(x, l)| *x -= value * l);
+        rest = next;
+    }
+    for j in (0..n).rev() {
+        let own = &l[column(n, j)..][..n - j];
+        let sum: f64 = own[1..].iter().zip(&x[j + 1..]).map(|(l, x)| l * x).sum();
+        x[j] = (x[j] - sum) / own[0];
+    }
+}
+
+/// X = L⁻¹ X, row by row.
+pub fn forward<const C: usize>(l: &[f64], x: &mut [[f64; C]]) {
+    let n = x.len();
+    for j in 0..n {
+        let own = &l[column(n, j)..][..n - j];
+        let (done, left) = x.split_at_mut(j + 1);
+        let row = &mut done[j];
+        row.iter_mut().for_each(|v| *v /= own[0]);
+        for (target, l) in left.iter_mut().zip(&own[1..]) {
+            target.iter_mut().zip(row.iter()).for_each(|(t, v)| *t -= l * v);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: [f64; packed(3)] = [4.0, 1.0, 0.5, 3.0, -0.2, 2.0];
+    const FULL: [[f64; 3]; 3] = [[4.0, 1.0, 0.5], [1.0, 3.0, -0.2], [0.5, -0.2, 2.0]];
+
+    #[test]
+    fn solves_what_it_factorised() {
+        let mut a = A;
+        assert!(factorise(&mut a, 3, 1e-15));
+        let mut x = [1.0, -2.0, 3.0];
+        solve(&a, &mut x);
+        for (row, b) in FULL.iter().zip([1.0, -2.0, 3.0]) {
+            let sum: f64 = row.iter().zip(&x).map(|(a, x)| a * x).sum();
+            assert!((sum - b).abs() < 1e-15 * 10.0);
+        }
+    }
+
+    #[test]
+    fn half_a_solve_twice_is_the_quadratic_form_of_the_inverse() {
+        let mut a = A;
+        assert!(factorise(&mut a, 3, 1e-15));
+        let mut y = [[1.0, 0.0], [-2.0, 1.0], [3.0, 0.0]];
+        let mut x = y.map(|row| row[0]);
+        let b = x;
+        forward(&a, &mut y);
+        solve(&a, &mut x);
+        let square: f64 = y.iter().map(|row| row[0] * row[0]).sum();
+        let form: f64 = b.iter().zip(&x).map(|(b, x)| b * x).sum();
+        assert!((square - form).abs() < 1e-14);
+        let mixed: f64 = y.iter().map(|row| row[0] * row[1]).sum();
+        assert!((mixed - x[1]).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_definite_has_no_factor() {
+        assert!(!factorise(&mut [1.0, -1.0, 1.0], 2, 1e-15));
+        assert!(!factorise(&mut [f64::NAN], 1, 1e-15));
+        assert!(!factorise(&mut [f64::INFINITY], 1, 1e-15));
+        assert!(factorise(&mut [], 0, 1e-15));
+    }
+}
