@@ -41,10 +41,6 @@ fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {
     }
 }
 
-fn rows(values: &[f64], columns: usize) -> Vec<Vec<f64>> {
-    values.chunks_exact(columns).map(<[f64]>::to_vec).collect()
-}
-
 /// Modes of the block element on a counter-clockwise triangle: `traction` 12 × 9, `stress` 9 × 3 × 9 (node, component,
 /// mode), `particular_traction` 12, `particular_stress` 9 × 3, `particular_energy`.
 ///
@@ -68,12 +64,18 @@ fn element<'py>(
     let material = Compliance::new(kinematics_named(kinematics)?, young, poisson);
     let modes = Block.modes(corners, &material, body_force);
     let count = modes.parameters();
-    let stress: Vec<Vec<Vec<f64>>> = modes.stress().chunks_exact(3 * count).map(|node| rows(node, count)).collect();
+    let fields = Block.mode_stresses(corners, &modes);
+    let value = |node: usize, c: usize| (0..count).map(|k| fields[k][node][c]).collect::<Vec<f64>>();
+    let stress: Vec<Vec<Vec<f64>>> = (0..9).map(|node| (0..3).map(|c| value(node, c)).collect()).collect();
+    let row = |i: usize| modes.tractions().map(|mode| mode[i]).collect::<Vec<f64>>();
+    let traction: Vec<Vec<f64>> = (0..Block.tractions()).map(row).collect();
+    let mut particular = vec![[0.0; 3]; 9];
+    Block.stresses(corners, body_force, &modes, &vec![0.0; count], 1.0, &mut particular);
     let out = PyDict::new(py);
-    out.set_item("traction", rows(modes.traction(), count))?;
+    out.set_item("traction", traction)?;
     out.set_item("stress", stress)?;
     out.set_item("particular_traction", modes.particular_traction().to_vec())?;
-    out.set_item("particular_stress", rows(modes.particular_stress(), 3))?;
+    out.set_item("particular_stress", particular.iter().map(|v| v.to_vec()).collect::<Vec<_>>())?;
     out.set_item("particular_energy", modes.particular_energy())?;
     Ok(out)
 }

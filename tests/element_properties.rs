@@ -36,20 +36,19 @@ fn area(p: [[f64; 2]; 3]) -> f64 {
     0.5 * ((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]))
 }
 
-fn mode_field(element: &dyn EquilibriumElement, modes: &Modes<'_>, k: usize) -> StressField {
+fn field_of(element: &dyn EquilibriumElement, values: &[[f64; 3]]) -> StressField {
     let mut field = StressField::zeros(element.degree(), 1);
-    let n = modes.parameters();
-    for (node, value) in field.block_mut(0).iter_mut().enumerate() {
-        for (c, v) in value.iter_mut().enumerate() {
-            *v = modes.stress()[(node * 3 + c) * n + k];
-        }
-    }
+    field.block_mut(0).copy_from_slice(values);
     field
 }
 
-fn particular_field(element: &dyn EquilibriumElement, modes: &Modes<'_>) -> StressField {
+fn mode_fields(element: &dyn EquilibriumElement, p: [[f64; 2]; 3], modes: &Modes<'_>) -> Vec<StressField> {
+    element.mode_stresses(p, modes).iter().map(|values| field_of(element, values)).collect()
+}
+
+fn particular_field(element: &dyn EquilibriumElement, p: [[f64; 2]; 3], f: [f64; 2], modes: &Modes<'_>) -> StressField {
     let mut field = StressField::zeros(element.degree(), 1);
-    field.block_mut(0).as_flattened_mut().copy_from_slice(modes.particular_stress());
+    element.stresses(p, f, modes, &vec![0.0; element.parameters()], 1.0, field.block_mut(0));
     field
 }
 
@@ -109,8 +108,8 @@ proptest! {
         for element in ELEMENTS {
             let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
             let n = element.parameters();
-            let fields: Vec<_> = (0..n).map(|k| mode_field(element, &modes, k)).collect();
-            let particular = particular_field(element, &modes);
+            let fields = mode_fields(element, p, &modes);
+            let particular = particular_field(element, p, f, &modes);
             let inner = |l: &StressField, m: &StressField| {
                 (0..3).map(|s| radon().iter().map(|&(b, w)| w * area(sub_corners(p, s))
                     * product(kin, e, nu, l.at(0, s, b), m.at(0, s, b))).sum::<f64>()).sum::<f64>()
@@ -131,8 +130,7 @@ proptest! {
     fn modes_are_self_equilibrated(p in triangle(), (kin, e, nu) in material(), f in prop::array::uniform2(-1.0..1.0_f64)) {
         for element in ELEMENTS {
             let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
-            for k in 0..element.parameters() {
-                let field = mode_field(element, &modes, k);
+            for field in mode_fields(element, p, &modes) {
                 let largest = field.block(0).iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
                 for sub in 0..3 {
                     let d = divergence(&field, p, sub);
@@ -151,7 +149,7 @@ proptest! {
                     }
                 }
             }
-            let particular = particular_field(element, &modes);
+            let particular = particular_field(element, p, f, &modes);
             for sub in 0..3 {
                 let d = divergence(&particular, p, sub);
                 prop_assert!((d[0] + f[0]).abs() < 1e-7 && (d[1] + f[1]).abs() < 1e-7, "div {d:?} for {f:?}");
@@ -164,8 +162,8 @@ proptest! {
         for element in ELEMENTS {
             let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
             let (n, degree) = (element.parameters(), element.degree());
-            let mut fields: Vec<_> = (0..n).map(|k| mode_field(element, &modes, k)).collect();
-            fields.push(particular_field(element, &modes));
+            let mut fields = mode_fields(element, p, &modes);
+            fields.push(particular_field(element, p, f, &modes));
             for (k, field) in fields.iter().enumerate() {
                 let largest = field.block(0).iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
                 for sub in 0..3 {
@@ -173,7 +171,7 @@ proptest! {
                         let t = traction_at(field, p, sub, node as f64 / degree as f64);
                         for (c, &value) in t.iter().enumerate() {
                             let row = 2 * (sub * (degree + 1) + node) + c;
-                            let stored = if k < n { modes.traction()[row * n + k] } else { modes.particular_traction()[row] };
+                            let stored = if k < n { modes.traction()[k * element.tractions() + row] } else { modes.particular_traction()[row] };
                             prop_assert!((value - stored).abs() <= 1e-10 * largest);
                         }
                     }
@@ -188,7 +186,7 @@ proptest! {
         for element in ELEMENTS {
             let modes = element.modes(p, &Compliance::new(kin, e, nu), [0.0; 2]);
             let (n, rows) = (element.parameters(), element.tractions());
-            let t = nalgebra::DMatrix::from_row_slice(rows, n, modes.traction());
+            let t = nalgebra::DMatrix::from_column_slice(rows, n, modes.traction());
             let lengths: Vec<f64> = (0..3).map(|s| {
                 let (a, b) = (p[(s + 1) % 3], p[(s + 2) % 3]);
                 (b[0] - a[0]).hypot(b[1] - a[1])

@@ -58,7 +58,7 @@ fn orthonormal_modes_keep_what_inner_segments_lose() {
     for nu in [0.3, 0.4999, 0.499999] {
         let material = Compliance::new(Kinematics::PlaneStrain, 1.0, nu);
         let modes = Block.modes(corners, &material, [0.0; 2]);
-        let t = DMatrix::from_row_slice(12, 9, modes.traction());
+        let t = DMatrix::from_column_slice(12, 9, modes.traction());
         let other = by_inner_segments(corners, &material);
         let apart = (&t * t.transpose() - &other).amax() / other.amax();
         assert!(apart < 1e-9, "the two are the same matrix");

@@ -5,7 +5,7 @@ use std::time::Instant;
 use faer::sparse::SparseColMat;
 
 use super::factor::{Factor, SymbolicFactor};
-use super::hybrid::{Motion, explain, held_unknowns, ordering, parameters, residual, stresses};
+use super::hybrid::{Motion, explain, held_unknowns, ordering, parameters, residual};
 use super::system::{System, isolate};
 use super::{DualError, DualMethod, Found, Options, Phases};
 use crate::problem::Problem;
@@ -77,7 +77,7 @@ impl DualMethod for ActiveSet {
             seconds.contact += start.elapsed().as_secs_f64();
             if next == closed {
                 let start = Instant::now();
-                let stress = stresses(problem, &system, &s);
+                let stress = system.modes.stresses(problem, &s);
                 let moments = system.unknowns.moments(problem, &x);
                 seconds.recover = start.elapsed().as_secs_f64();
                 return Ok(Found {

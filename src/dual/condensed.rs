@@ -9,7 +9,7 @@
 
 use std::time::Instant;
 
-use super::hybrid::{Motion, stresses};
+use super::hybrid::Motion;
 use super::reduced::{Contact, Reduced};
 use super::refinement::Refined;
 use super::rigid::unsupported;
@@ -70,7 +70,7 @@ impl DualMethod for Condensed {
         };
         let now = Refined::new(problem, &system, x);
         let now = settling.run(now, &mut state)?;
-        let stress = stresses(problem, &system, &now.s);
+        let stress = system.modes.stresses(problem, &now.s);
         let moments = system.unknowns.moments(problem, &now.x);
         if self.most_refinements > 0 {
             settling.accept(&now, &stress, &moments, &state, self.accuracy())?;

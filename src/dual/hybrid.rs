@@ -5,10 +5,9 @@ use rayon::prelude::*;
 use super::DualError;
 use super::dissection::nested_dissection;
 use super::factor::Breakdown;
-use super::rows::{SideEnd, rows, side_ends};
+use super::rows::{FreeEdge, SideEnd, free_edges, rows, side_ends};
 use super::system::System;
 use super::unknowns::EdgeMoments;
-use crate::element::StressField;
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.
@@ -126,17 +125,19 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
-            let modes = system.modes.of(t);
             let mut values = [0.0; 12];
-            values.copy_from_slice(modes.particular_traction());
-            for (value, row) in values.iter_mut().zip(modes.traction().chunks_exact(n)) {
-                *value += row.iter().zip(&s[t * n..(t + 1) * n]).map(|(a, b)| a * b).sum::<f64>();
-            }
+            system.modes.of(t).tractions_from_parameters(&s[t * n..(t + 1) * n], 1.0, &mut values);
             values
         })
         .collect();
     let mut r = system.external.clone();
     for (t, values) in tractions.iter().enumerate() {
+        if let Some(edges) = free_edges(mesh, &system.unknowns, t) {
+            for (unknown, at) in edges.iter().flat_map(FreeEdge::unknowns) {
+                r[unknown] -= values[at];
+            }
+            continue;
+        }
         for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
             for component in components {
                 let value = component.direction[0] * values[at] + component.direction[1] * values[at + 1];
@@ -147,19 +148,4 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
         }
     }
     r
-}
-
-/// The stress field with mode parameters `s`.
-pub fn stresses(problem: &Problem, system: &System, s: &[f64]) -> StressField {
-    let mut field = StressField::zeros(system.modes.degree(), problem.mesh.triangles.len());
-    let n = system.modes.of(0).parameters();
-    let stride = field.stride();
-    field
-        .values_mut()
-        .par_chunks_exact_mut(stride)
-        .zip(s.par_chunks_exact(n))
-        .enumerate()
-        .with_min_len(256)
-        .for_each(|(t, (block, s))| system.modes.of(t).stress_from_parameters(s, 1.0, block));
-    field
 }

@@ -14,7 +14,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
-use super::hybrid::{Motion, parameters, residual, stresses};
+use super::hybrid::{Motion, parameters, residual};
 use super::rows::{SideEnd, rows};
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases};
@@ -83,7 +83,7 @@ impl DualMethod for Clarabel {
         let mut x: Vec<f64> = solution.z.iter().zip(&program.row_scale).map(|(z, d)| -z * d * program.size).collect();
         x[first_jump..].iter_mut().zip(&system.jump_bound).for_each(|(j, bound)| *j += bound);
         let closed = solution.s[first_jump..].iter().zip(&solution.z[first_jump..]).map(|(s, z)| s >= z).collect();
-        let stress = stresses(problem, &system, &s);
+        let stress = system.modes.stresses(problem, &s);
         let moments = system.unknowns.moments(problem, &x);
         seconds.recover = start.elapsed().as_secs_f64();
         Ok(Found { stress, moments, closed, unknowns: n, iterations, seconds, notes: Vec::new() })
@@ -129,14 +129,12 @@ impl ConicProgram {
         for t in 0..mesh.triangles.len() {
             let modes = system.modes.of(t);
             for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
-                let (tx, ty) = (&modes.traction()[at * n..][..n], &modes.traction()[(at + 1) * n..][..n]);
                 for component in components {
                     let [dx, dy] = component.direction;
                     for &(dof, c) in component.terms() {
-                        entries[n * t..n * (t + 1)]
-                            .iter_mut()
-                            .enumerate()
-                            .for_each(|(k, column)| column.push((dof, c * (dx * tx[k] + dy * ty[k]))));
+                        for (column, mode) in entries[n * t..n * (t + 1)].iter_mut().zip(modes.tractions()) {
+                            column.push((dof, c * (dx * mode[at] + dy * mode[at + 1])));
+                        }
                     }
                 }
             }

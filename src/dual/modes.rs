@@ -4,15 +4,17 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use crate::element::{Compliance, EquilibriumElement, Layout, Modes};
+use crate::element::{Compliance, EquilibriumElement, Layout, Modes, StressField};
 use crate::problem::Problem;
 
 /// The modes of every triangle.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct ModeTable {
+    element: &'static dyn EquilibriumElement,
     layout: Layout,
-    degree: usize,
     class: Vec<u32>,
+    /// The first triangle of each class.
+    representatives: Vec<usize>,
     data: Vec<f64>,
     materials: Vec<Compliance>,
 }
@@ -21,9 +23,15 @@ pub struct ModeTable {
 /// of the coordinates does, well below what equilibrium could notice.
 const CONGRUENT: f64 = 1.0 / (1_u64 << 42) as f64;
 
+impl std::fmt::Debug for ModeTable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ModeTable").field("element", &self.element.name()).field("classes", &self.classes()).finish()
+    }
+}
+
 impl ModeTable {
     /// Computes the modes of `element` on every triangle of `problem`.
-    pub fn new(problem: &Problem, element: &dyn EquilibriumElement) -> Self {
+    pub fn new(problem: &Problem, element: &'static dyn EquilibriumElement) -> Self {
         let materials = materials(problem);
         let mesh = &problem.mesh;
         let mut seen: HashMap<[i64; 6], u32> = HashMap::new();
@@ -44,7 +52,7 @@ impl ModeTable {
             let force = problem.scene.bodies[body].body_force;
             element.compute(mesh.corners(t), &materials[body], force, layout.split(out));
         });
-        ModeTable { layout, degree: element.degree(), class, data, materials }
+        ModeTable { element, layout, class, representatives, data, materials }
     }
 
     /// Modes of triangle `t`.
@@ -55,12 +63,22 @@ impl ModeTable {
 
     /// Number of triangles that are not congruent to an earlier one.
     pub fn classes(&self) -> usize {
-        self.data.len() / self.layout.len()
+        self.representatives.len()
     }
 
-    /// Polynomial degree of the stresses.
-    pub fn degree(&self) -> usize {
-        self.degree
+    /// The stress field λ̄ + Σ S_k τ_k with mode parameters `s`, triangle by triangle.
+    pub fn stresses(&self, problem: &Problem, s: &[f64]) -> StressField {
+        let mesh = &problem.mesh;
+        let mut field = StressField::zeros(self.element.degree(), mesh.triangles.len());
+        let (n, stride) = (self.element.parameters(), field.stride());
+        let blocks = field.values_mut().par_chunks_exact_mut(stride).zip(s.par_chunks_exact(n));
+        blocks.enumerate().with_min_len(256).for_each(|(t, (block, s))| {
+            // What was kept belongs to the triangle that it was computed on.
+            let corners = mesh.corners(self.representatives[self.class[t] as usize]);
+            let force = problem.scene.bodies[mesh.body[t]].body_force;
+            self.element.stresses(corners, force, &self.of(t), s, 1.0, block);
+        });
+        field
     }
 
     /// Compliance of each body.

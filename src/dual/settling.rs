@@ -7,7 +7,7 @@
 
 use super::DualError;
 use super::equilibrium::{Equilibrium, load_scale};
-use super::hybrid::{parameters, stresses};
+use super::hybrid::parameters;
 use super::qp::ContactState;
 use super::reduced::{Contact, Reduced};
 use super::refinement::{Refined, Refinement};
@@ -134,7 +134,7 @@ impl Settling<'_> {
     /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
     fn next(&self, now: &Refined, closed: &[bool], grazing: f64) -> Vec<bool> {
         let first = self.system.unknowns.first_jump;
-        let load = load_scale(self.problem, || stresses(self.problem, self.system, &now.s));
+        let load = load_scale(self.problem, || self.system.modes.stresses(self.problem, &now.s));
         // Pairs have two ends, numbered one after the other.
         let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
         let depth = self.contact.allowed(&now.x[first..], &self.system.jump_bound, grazing);

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use super::Options;
 use super::modes::ModeTable;
-use super::rows::{SideEnd, rows};
-use super::unknowns::Unknowns;
+use super::rows::{FreeEdge, SideEnd, free_edges, rows};
+use super::unknowns::{Component, Unknowns};
 use crate::problem::{Condition, Problem};
 
 /// The assembled problem.
@@ -32,11 +32,10 @@ pub struct System {
     pub jump_bound: Vec<f64>,
 }
 
-/// Moments of a triangle in terms of unknowns, for the twelve traction values.
+/// Stiffness and load of a triangle, in the components of its side ends (see [`rows`]).
 struct Local {
-    rows: [[f64; 9]; 12],
-    terms: [[(usize, f64); 2]; 12],
-    len: [usize; 12],
+    stiffness: [[f64; 12]; 12],
+    load: [f64; 12],
 }
 
 impl System {
@@ -52,34 +51,18 @@ impl System {
         let mut rhs = vec![0.0; unknowns.count];
         // Element contributions are computed in parallel in chunks and added in order: the sum does not depend on
         // the number of threads.
-        const CHUNK: usize = 4096;
+        const CHUNK: usize = 1024;
         let count = mesh.triangles.len();
         for start in (0..count).step_by(CHUNK) {
-            let locals: Vec<(Local, [f64; 12])> = (start..(start + CHUNK).min(count))
+            let locals: Vec<Local> = (start..(start + CHUNK).min(count))
                 .into_par_iter()
                 .with_min_len(64)
                 .map(|t| local(problem, &unknowns, &modes, t))
                 .collect();
-            for (local, load) in &locals {
-                for (a, value) in load.iter().enumerate() {
-                    for &(dof, coefficient) in &local.terms[a][..local.len[a]] {
-                        rhs[dof] += coefficient * value;
-                    }
-                    for b in 0..=a {
-                        if local.len[a] == 0 || local.len[b] == 0 {
-                            continue;
-                        }
-                        let k: f64 = (0..9).map(|i| local.rows[a][i] * local.rows[b][i]).sum();
-                        for &(i, ci) in &local.terms[a][..local.len[a]] {
-                            for &(j, cj) in &local.terms[b][..local.len[b]] {
-                                // (a, b) stands for (b, a) too: twice on the diagonal, once below it.
-                                let twice = if i == j && a != b { 2.0 } else { 1.0 };
-                                if a != b || i >= j {
-                                    values[pattern.position(i.max(j), i.min(j))] += twice * ci * cj * k;
-                                }
-                            }
-                        }
-                    }
+            for (local, t) in locals.iter().zip(start..) {
+                match free_edges(mesh, &unknowns, t) {
+                    Some(edges) => pattern.add_blocks(&edges, local, &mut values, &mut rhs),
+                    None => pattern.add_terms(problem, &unknowns, t, local, &mut values, &mut rhs),
                 }
             }
         }
@@ -153,34 +136,35 @@ pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<
     y
 }
 
-/// Rows of T in the components of the numbering, and minus the load of the particular field and of given moments.
-fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) -> (Local, [f64; 12]) {
-    let mesh = &problem.mesh;
+/// T Tᵀ in the components of the numbering, and minus the load of the particular field and of given moments.
+fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) -> Local {
     let element = modes.of(t);
-    let (traction, particular) = (element.traction(), element.particular_traction());
-    let mut local = Local { rows: [[0.0; 9]; 12], terms: [[(0, 0.0); 2]; 12], len: [0; 12] };
-    let mut load = [0.0; 12];
-    let mut fixed = [0.0; 9];
-    for (SideEnd { at, .. }, components) in rows(mesh, unknowns, t) {
-        let (tx, ty) = (&traction[at * 9..][..9], &traction[(at + 1) * 9..][..9]);
-        for (c, component) in components.into_iter().enumerate() {
-            let [dx, dy] = component.direction;
-            let target = &mut local.rows[at + c];
-            for k in 0..9 {
-                target[k] = dx * tx[k] + dy * ty[k];
-                fixed[k] += component.fixed * target[k];
+    let mut modes = [[0.0; 12]; 9];
+    modes.as_flattened_mut().copy_from_slice(element.traction());
+    let mut local = Local { stiffness: [[0.0; 12]; 12], load: [0.0; 12] };
+    local.load.iter_mut().zip(element.particular_traction()).for_each(|(l, p)| *l = -p);
+    if free_edges(&problem.mesh, unknowns, t).is_none() {
+        let mut fixed = [0.0; 9];
+        for (SideEnd { at, .. }, components) in rows(&problem.mesh, unknowns, t) {
+            let turn = |[x, y]: [f64; 2]| components.map(|c| c.direction[0] * x + c.direction[1] * y);
+            for (mode, fixed) in modes.iter_mut().zip(&mut fixed) {
+                let turned = turn([mode[at], mode[at + 1]]);
+                mode[at..at + 2].copy_from_slice(&turned);
+                *fixed += components[0].fixed * turned[0] + components[1].fixed * turned[1];
             }
-            local.terms[at + c] = component.terms;
-            local.len[at + c] = component.len;
-            load[at + c] = -(dx * particular[at] + dy * particular[at + 1]);
+            let turned = turn([local.load[at], local.load[at + 1]]);
+            local.load[at..at + 2].copy_from_slice(&turned);
+        }
+        for (mode, fixed) in modes.iter().zip(fixed) {
+            local.load.iter_mut().zip(mode).for_each(|(l, t)| *l -= fixed * t);
         }
     }
-    if fixed != [0.0; 9] {
-        for (value, row) in load.iter_mut().zip(&local.rows) {
-            *value -= row.iter().zip(&fixed).map(|(r, f)| r * f).sum::<f64>();
+    for mode in &modes {
+        for (row, a) in local.stiffness.iter_mut().zip(mode) {
+            row.iter_mut().zip(mode).for_each(|(k, b)| *k += a * b);
         }
     }
-    (local, load)
+    local
 }
 
 /// Sparsity pattern of the lower triangle, block by block.
@@ -245,6 +229,59 @@ impl Pattern {
             }
         }
         Pattern { columns, rows, block_of, blocks, neighbours, neighbour_start }
+    }
+
+    /// Adds a triangle whose sides are all free, block by block.
+    fn add_blocks(&self, edges: &[FreeEdge; 3], local: &Local, values: &mut [f64], rhs: &mut [f64]) {
+        for (p, edge) in edges.iter().enumerate() {
+            for (i, (unknown, at)) in edge.unknowns().enumerate() {
+                rhs[unknown] += local.load[at];
+                for (value, row) in values[self.columns[unknown]..].iter_mut().zip(&edge.at[i..]) {
+                    *value += local.stiffness[at][*row];
+                }
+            }
+            for other in &edges[..p] {
+                let (low, high) = if edge.first < other.first { (edge, other) } else { (other, edge) };
+                // Blocks are whole: the first entry of each column tells where its others are.
+                let start = self.position(high.first, low.first);
+                for (column, at) in low.at.into_iter().enumerate() {
+                    let from = start - self.columns[low.first] + self.columns[low.first + column] - column;
+                    for (value, row) in values[from..from + 4].iter_mut().zip(high.at) {
+                        *value += local.stiffness[at][row];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds any triangle, term by term.
+    fn add_terms(
+        &self,
+        problem: &Problem,
+        unknowns: &Unknowns,
+        t: usize,
+        local: &Local,
+        values: &mut [f64],
+        rhs: &mut [f64],
+    ) {
+        let mut terms: [Component; 12] = [Component::default(); 12];
+        for (SideEnd { at, .. }, components) in rows(&problem.mesh, unknowns, t) {
+            terms[at..at + 2].copy_from_slice(&components);
+        }
+        for (a, own) in terms.iter().enumerate() {
+            for &(i, ci) in own.terms() {
+                rhs[i] += ci * local.load[a];
+                for (b, other) in terms.iter().enumerate().take(a + 1) {
+                    for &(j, cj) in other.terms() {
+                        // (a, b) stands for (b, a) too: twice on the diagonal, once below it.
+                        let twice = if i == j && a != b { 2.0 } else { 1.0 };
+                        if a != b || i >= j {
+                            values[self.position(i.max(j), i.min(j))] += twice * ci * cj * local.stiffness[a][b];
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// Where entry (i, j), i ≥ j, is stored.

@@ -40,7 +40,7 @@ pub enum EdgeMoments {
 }
 
 /// A moment component at one end of an edge, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Component {
     /// Unit vector.
     pub direction: [f64; 2],

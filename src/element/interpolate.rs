@@ -37,7 +37,7 @@ pub fn side_projection(a: [f64; 2], b: [f64; 2], traction: impl Fn([f64; 2]) -> 
 /// [`EquilibriumElement`], and what is left of them: the largest difference, which is round-off for tractions in
 /// equilibrium. `None` where the triangle is degenerate.
 pub fn parameters_from_tractions(modes: &Modes<'_>, tractions: &[f64]) -> Option<(Vec<f64>, f64)> {
-    let matrix = DMatrix::from_row_slice(tractions.len(), modes.parameters(), modes.traction());
+    let matrix = DMatrix::from_column_slice(tractions.len(), modes.parameters(), modes.traction());
     let given = DVector::from_column_slice(tractions);
     let qr = matrix.clone().qr();
     let s = qr.r().solve_upper_triangular(&(qr.q().transpose() * &given))?;
@@ -69,7 +69,7 @@ pub fn interpolant(mesh: &Triangulation, stress: impl Fn(usize, [f64; 2]) -> [f6
         }
         let modes = Block.modes(corners, &material, [0.0; 2]);
         if let Some((s, _)) = parameters_from_tractions(&modes, &tractions) {
-            modes.stress_from_parameters(&s, 0.0, field.block_mut(t));
+            Block.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
         }
     }
     field

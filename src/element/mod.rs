@@ -43,12 +43,29 @@ pub trait EquilibriumElement: Sync {
         6 * (self.degree() + 1)
     }
 
-    /// Computes basis, tractions and particular field on the counter-clockwise triangle with the given corners.
+    /// How many numbers of each triangle [`Self::stresses`] needs besides its corners.
+    fn kept(&self) -> usize;
+
+    /// Computes tractions, particular field and what is kept on the counter-clockwise triangle with the given corners.
     fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>);
+
+    /// Nodal stresses `particular` · λ̄ + Σ S_k τ_k, nodes as in [`StressField::block`], on the triangle that `modes` were
+    /// computed for.
+    ///
+    /// Stresses are asked for once and tractions many times: an element need not keep those of its modes.
+    fn stresses(
+        &self,
+        corners: [[f64; 2]; 3],
+        body_force: [f64; 2],
+        modes: &Modes<'_>,
+        s: &[f64],
+        particular: f64,
+        out: &mut [[f64; 3]],
+    );
 
     /// Sizes of what [`Self::compute`] writes.
     fn layout(&self) -> Layout {
-        Layout { parameters: self.parameters(), tractions: self.tractions(), nodes: 3 * lattice_len(self.degree()) }
+        Layout { parameters: self.parameters(), tractions: self.tractions(), kept: self.kept() }
     }
 
     /// [`Self::compute`] into memory of its own.
@@ -57,6 +74,19 @@ pub trait EquilibriumElement: Sync {
         let mut data = vec![0.0; layout.len()];
         self.compute(corners, material, body_force, layout.split(&mut data));
         Modes { layout, data: Cow::Owned(data) }
+    }
+
+    /// Nodal stresses of every mode.
+    fn mode_stresses(&self, corners: [[f64; 2]; 3], modes: &Modes<'_>) -> Vec<Vec<[f64; 3]>> {
+        let n = self.parameters();
+        let of = |k: usize| {
+            let mut unit = vec![0.0; n];
+            unit[k] = 1.0;
+            let mut out = vec![[0.0; 3]; 3 * lattice_len(self.degree())];
+            self.stresses(corners, [0.0; 2], modes, &unit, 0.0, &mut out);
+            out
+        };
+        (0..n).map(of).collect()
     }
 }
 
@@ -67,15 +97,15 @@ pub struct Layout {
     pub parameters: usize,
     /// Number of traction values.
     pub tractions: usize,
-    /// Number of stress nodes.
-    pub nodes: usize,
+    /// Number of values that the element keeps.
+    pub kept: usize,
 }
 
 impl Layout {
     /// Number of values in all.
     pub fn len(&self) -> usize {
-        let Layout { parameters, tractions, nodes } = *self;
-        parameters * (tractions + 3 * nodes) + tractions + 3 * nodes + 1
+        let Layout { parameters, tractions, kept } = *self;
+        parameters * tractions + tractions + kept + 1
     }
 
     /// Never empty.
@@ -86,10 +116,9 @@ impl Layout {
     /// Names the parts of a slice of [`Self::len`] values.
     pub fn split<'a>(&self, data: &'a mut [f64]) -> ModesMut<'a> {
         let (traction, rest) = data.split_at_mut(self.parameters * self.tractions);
-        let (stress, rest) = rest.split_at_mut(self.parameters * 3 * self.nodes);
         let (particular_traction, rest) = rest.split_at_mut(self.tractions);
-        let (particular_stress, rest) = rest.split_at_mut(3 * self.nodes);
-        ModesMut { traction, stress, particular_traction, particular_stress, particular_energy: &mut rest[0] }
+        let (kept, rest) = rest.split_at_mut(self.kept);
+        ModesMut { traction, particular_traction, kept, particular_energy: &mut rest[0] }
     }
 }
 
@@ -98,12 +127,10 @@ impl Layout {
 pub struct ModesMut<'a> {
     /// See [`Modes::traction`].
     pub traction: &'a mut [f64],
-    /// See [`Modes::stress`].
-    pub stress: &'a mut [f64],
     /// See [`Modes::particular_traction`].
     pub particular_traction: &'a mut [f64],
-    /// See [`Modes::particular_stress`].
-    pub particular_stress: &'a mut [f64],
+    /// See [`Modes::kept`].
+    pub kept: &'a mut [f64],
     /// See [`Modes::particular_energy`].
     pub particular_energy: &'a mut f64,
 }
@@ -126,28 +153,26 @@ impl<'a> Modes<'a> {
         self.layout.parameters
     }
 
-    /// Traction values of the modes, row by row: `traction()[i * parameters + k]` is value i of mode k.
+    /// Traction values of the modes, mode by mode: `traction()[k * tractions + i]` is value i of mode k.
     pub fn traction(&self) -> &[f64] {
         &self.data[..self.layout.parameters * self.layout.tractions]
     }
 
-    /// Nodal stresses of the modes: `stress()[(node * 3 + component) * parameters + k]`, nodes as in
-    /// [`StressField::block`].
-    pub fn stress(&self) -> &[f64] {
-        let start = self.layout.parameters * self.layout.tractions;
-        &self.data[start..start + self.layout.parameters * 3 * self.layout.nodes]
+    /// Traction values of every mode.
+    pub fn tractions(&self) -> impl Iterator<Item = &[f64]> {
+        self.traction().chunks_exact(self.layout.tractions)
     }
 
-    /// Traction values of the particular field λ̄.
+    /// Traction values of the particular field λ̄, which is energy-orthogonal to all modes.
     pub fn particular_traction(&self) -> &[f64] {
-        let end = self.layout.len() - 1 - 3 * self.layout.nodes;
-        &self.data[end - self.layout.tractions..end]
+        let start = self.layout.parameters * self.layout.tractions;
+        &self.data[start..start + self.layout.tractions]
     }
 
-    /// Nodal stresses (xx, yy, xy) of λ̄ node by node; it is energy-orthogonal to all modes.
-    pub fn particular_stress(&self) -> &[f64] {
+    /// What the element keeps to give stresses from parameters.
+    pub fn kept(&self) -> &[f64] {
         let end = self.layout.len() - 1;
-        &self.data[end - 3 * self.layout.nodes..end]
+        &self.data[end - self.layout.kept..end]
     }
 
     /// ∫ a λ̄:λ̄.
@@ -157,21 +182,16 @@ impl<'a> Modes<'a> {
 
     /// Mode parameters S = Tᵀm that minimise the complementary energy against boundary moments `m`.
     pub fn parameters_from_moments(&self, m: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        for (row, &value) in self.traction().chunks_exact(self.layout.parameters).zip(m) {
-            for (s, t) in out.iter_mut().zip(row) {
-                *s += t * value;
-            }
+        for (s, mode) in out.iter_mut().zip(self.tractions()) {
+            *s = mode.iter().zip(m).map(|(t, m)| t * m).sum();
         }
     }
 
-    /// Nodal stresses `particular` · λ̄ + Σ S_k τ_k.
-    pub fn stress_from_parameters(&self, s: &[f64], particular: f64, out: &mut [[f64; 3]]) {
-        let rows = self.stress().chunks_exact(self.layout.parameters);
-        let values = out.iter_mut().flatten();
-        for ((value, row), offset) in values.zip(rows).zip(self.particular_stress()) {
-            let sum: f64 = row.iter().zip(s).map(|(a, b)| a * b).sum();
-            *value = particular * offset + sum;
+    /// Traction values `particular` · T̄ + T S.
+    pub fn tractions_from_parameters(&self, s: &[f64], particular: f64, out: &mut [f64]) {
+        out.iter_mut().zip(self.particular_traction()).for_each(|(o, t)| *o = particular * t);
+        for (s, mode) in s.iter().zip(self.tractions()) {
+            out.iter_mut().zip(mode).for_each(|(o, t)| *o += s * t);
         }
     }
 }

@@ -45,8 +45,9 @@ pub fn equilibrium(p: [[f64; 2]; 3]) -> SMatrix<f64, 3, 12> {
 /// The 27 × 12 matrix that turns an equilibrated load into the stresses at the corners of the subtriangles.
 pub fn stress_of_load(p: [[f64; 2]; 3]) -> DMatrix<f64> {
     let modes = Block.modes(p, &Compliance::new(Kinematics::PlaneStress, 1.0, 0.0), [0.0; 2]);
-    let traction = DMatrix::from_row_slice(12, 9, modes.traction());
-    let stress = DMatrix::from_row_slice(27, 9, modes.stress());
+    let traction = DMatrix::from_column_slice(12, 9, modes.traction());
+    let fields = Block.mode_stresses(p, &modes);
+    let stress = DMatrix::from_fn(27, 9, |i, k| fields[k][i / 3][i % 3]);
     let inverse = traction.pseudo_inverse(0.0).expect("a singular value decomposition");
     stress * inverse
 }

@@ -1,0 +1,52 @@
+//! The coordinates in which the basis of a block is written.
+
+/// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
+///
+/// Along the longest side the modes of a stretched triangle keep apart by themselves (stress along it, across it, shear),
+/// which keeps their Gram matrix well conditioned.
+pub struct Frame {
+    centre: [f64; 2],
+    axis: [f64; 2],
+    /// √area.
+    pub scale: f64,
+}
+
+impl Frame {
+    /// The frame of a counter-clockwise triangle.
+    pub fn new(corners: [[f64; 2]; 3]) -> Self {
+        let sides = [0, 1, 2].map(|i: usize| {
+            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            [b[0] - a[0], b[1] - a[1]]
+        });
+        let length = |s: [f64; 2]| s[0].hypot(s[1]);
+        let longest = sides.into_iter().reduce(|l, s| if length(s) > length(l) { s } else { l }).unwrap_or(sides[0]);
+        let area = 0.5 * (sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]);
+        // Differences from a corner: no digits are lost far from the origin.
+        let from = corners[0];
+        let centre = [0, 1].map(|c| from[c] + ((corners[1][c] - from[c]) + (corners[2][c] - from[c])) / 3.0);
+        let l = length(longest);
+        Frame { centre, axis: [longest[0] / l, longest[1] / l], scale: area.sqrt() }
+    }
+
+    /// A point in it.
+    pub fn to_local(&self, p: [f64; 2]) -> [f64; 2] {
+        let (x, y) = ((p[0] - self.centre[0]) / self.scale, (p[1] - self.centre[1]) / self.scale);
+        let [c, s] = self.axis;
+        [c * x + s * y, c * y - s * x]
+    }
+
+    /// A vector of it in global components.
+    pub fn vector_to_global(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.axis;
+        [c * x - s * y, s * x + c * y]
+    }
+
+    /// A stress (xx, yy, xy) of it in global components.
+    pub fn tensor_to_global(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+        let [c, s] = self.axis;
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let (cos2, sin2) = ((c - s) * (c + s), 2.0 * c * s);
+        let (d, t) = (half * cos2 - xy * sin2, half * sin2 + xy * cos2);
+        [mean + d, mean - d, t]
+    }
+}

@@ -1,0 +1,136 @@
+//! The block element of Watwood and Hartz, Section 2.1 of the paper: linear stresses on the three subtriangles.
+//!
+//! N(K) has nine dimensions. Seven are the linear self-equilibrated fields on the whole triangle; the other two are
+//! second derivatives of piecewise cubic Airy functions that are C¹ across the segments 0a_k. With barycentric
+//! coordinates μ_k of the triangle and d_k = μ_{k+1} − μ_{k+2}, which vanishes on 0a_k, two cubics match to first order
+//! there exactly if they differ by d_k² ℓ_k with a linear ℓ_k; going round the centroid requires Σ d_k² ℓ_k = 0, and
+//! for ℓ_k that are combinations of the d_k this has two solutions.
+
+mod basis;
+mod frame;
+mod particular;
+
+use self::basis::Basis;
+use self::particular::Particular;
+use super::{Compliance, EquilibriumElement, Modes, ModesMut};
+
+/// The element of the paper: p = 1, nine parameters.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Block;
+
+/// Dimension of N(K).
+const N: usize = 9;
+/// Fields that are linear on the whole triangle; they come first.
+const COMMON: usize = 7;
+/// Entries of an upper triangle of order N.
+const UPPER: usize = N * (N + 1) / 2;
+
+impl EquilibriumElement for Block {
+    fn name(&self) -> &'static str {
+        "Watwood–Hartz block, p = 1"
+    }
+
+    fn degree(&self) -> usize {
+        1
+    }
+
+    fn parameters(&self) -> usize {
+        N
+    }
+
+    /// L⁻ᵀ, which turns modes into fields of the basis, and the overlaps of the particular field with the modes.
+    fn kept(&self) -> usize {
+        UPPER + N
+    }
+
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
+        let basis = Basis::new(corners);
+        let scale = basis.frame.scale;
+        let flexibility = basis.flexibility(material).map(|row| row.map(|f| f * (scale * scale / material.young)));
+        let inverse = inverse_factor(&flexibility);
+        for (column, k) in inverse.iter().zip(0..) {
+            out.kept[upper(k)..][..=k].copy_from_slice(&column[..=k]);
+        }
+        let raw = basis.tractions();
+        for (traction, column) in out.traction.chunks_exact_mut(12).zip(&inverse) {
+            combine(column.iter().zip(&raw).map(|(c, raw)| (*c, raw.as_slice())), traction);
+        }
+        out.kept[UPPER..].fill(0.0);
+        out.particular_traction.fill(0.0);
+        *out.particular_energy = 0.0;
+        if body_force == [0.0; 2] {
+            return;
+        }
+        let particular = Particular { corners, force: body_force };
+        let overlaps = particular.overlaps(&basis, &inverse, material);
+        out.kept[UPPER..].copy_from_slice(&overlaps);
+        out.particular_traction.copy_from_slice(&particular.traction());
+        for (mode, overlap) in out.traction.chunks_exact(12).zip(overlaps) {
+            out.particular_traction.iter_mut().zip(mode).for_each(|(p, t)| *p -= overlap * t);
+        }
+        let own = particular.orthogonal(&basis, &inverse, &overlaps);
+        *out.particular_energy = particular.energy(&own, &own, material);
+    }
+
+    fn stresses(
+        &self,
+        corners: [[f64; 2]; 3],
+        body_force: [f64; 2],
+        modes: &Modes<'_>,
+        s: &[f64],
+        particular: f64,
+        out: &mut [[f64; 3]],
+    ) {
+        let (inverse, overlaps) = modes.kept().split_at(UPPER);
+        let mut coefficients = [0.0; N];
+        for (k, (s, overlap)) in s.iter().zip(overlaps).enumerate() {
+            let part = s - particular * overlap;
+            coefficients.iter_mut().zip(&inverse[upper(k)..][..=k]).for_each(|(c, l)| *c += part * l);
+        }
+        let field = Basis::new(corners).field(&coefficients);
+        let balance = Particular { corners, force: body_force.map(|f| particular * f) };
+        for ((out, own), with) in out.iter_mut().zip(field).zip(balance.stress()) {
+            *out = [own[0] + with[0], own[1] + with[1], own[2] + with[2]];
+        }
+    }
+}
+
+/// Where column `k` of a packed upper triangle begins.
+const fn upper(k: usize) -> usize {
+    k * (k + 1) / 2
+}
+
+/// Σ c · v.
+fn combine<'a>(parts: impl Iterator<Item = (f64, &'a [f64])>, out: &mut [f64]) {
+    out.fill(0.0);
+    for (c, values) in parts {
+        out.iter_mut().zip(values).for_each(|(o, v)| *o += c * v);
+    }
+}
+
+/// L⁻ᵀ of F = L Lᵀ, column by column: turns the basis into energy-orthonormal modes, the pressure first.
+fn inverse_factor(f: &[[f64; N]; N]) -> [[f64; N]; N] {
+    // Columns of L, what is below the diagonal of F being read.
+    let mut factor = [[0.0; N]; N];
+    for j in 0..N {
+        let mut own = f[j];
+        for done in &factor[..j] {
+            let part = done[j];
+            own[j..].iter_mut().zip(&done[j..]).for_each(|(o, l)| *o -= part * l);
+        }
+        // Positive for every triangle that is one; the floor only keeps NaN out of a degenerate block.
+        let pivot = own[j].max(f64::MIN_POSITIVE).sqrt();
+        own[j] = pivot;
+        own[j + 1..].iter_mut().for_each(|o| *o /= pivot);
+        factor[j] = own;
+    }
+    let mut inverse = [[0.0; N]; N];
+    for (k, column) in inverse.iter_mut().enumerate() {
+        for i in (0..=k).rev() {
+            let unit = if i == k { 1.0 } else { 0.0 };
+            let sum: f64 = (i + 1..=k).map(|j| factor[i][j] * column[j]).sum();
+            column[i] = (unit - sum) / factor[i][i];
+        }
+    }
+    inverse
+}
