@@ -34,9 +34,9 @@ const GOOD: f64 = 1e-3;
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
-/// Factors of patches with more unknowns than this are computed anew in every sweep: kept, they would take too much
-/// memory.
-const MOST_KEPT: usize = 32;
+/// Numbers of kept factors for each vertex at most: where patches are larger on average, some factors are computed anew
+/// in every sweep.
+const KEPT_BY_VERTEX: usize = 512;
 
 /// The factor of the stiffness of a patch, from the first sweep on.
 type Kept = Option<Box<[f64]>>;
@@ -46,7 +46,11 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<Nodal
     let model = Model::new(problem, holds);
     let groups = groups(problem);
     let mut kept: Vec<Kept> = vec![None; groups.len()];
-    let mut patch = Patch { local: vec![usize::MAX; model.free.len()], ..Patch::default() };
+    let mut patch = Patch {
+        local: vec![usize::MAX; model.free.len()],
+        room: KEPT_BY_VERTEX * problem.mesh.points.len(),
+        ..Patch::default()
+    };
     let all = |nodal: NodalValues| -> Vec<[f64; 2]> { nodal.vertex.into_iter().chain(nodal.middle).collect() };
     let mut fields = candidates.into_iter().map(all);
     let mut values = fields.next().unwrap_or_default();
@@ -95,6 +99,8 @@ struct Patch {
     matrix: Vec<f64>,
     /// Residual forces.
     load: Vec<f64>,
+    /// How many numbers of factors may still be kept.
+    room: usize,
 }
 
 impl Patch {
@@ -136,7 +142,8 @@ impl Patch {
                 if !factorise(&mut self.matrix, n) {
                     return None;
                 }
-                if n <= MOST_KEPT {
+                if self.room >= packed(n) {
+                    self.room -= packed(n);
                     *kept = Some(self.matrix.as_slice().into());
                 }
                 &self.matrix
