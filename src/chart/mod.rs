@@ -23,7 +23,6 @@ pub use data::{Chart, Cold, Plot, Reference, Run, SceneChart, Spread, Status};
 pub use figure::{Axis, error_figure};
 pub use judge::judge;
 pub use markdown::markdown;
-pub(crate) use page::CSS;
 pub use page::page;
 pub use phases::phase_figure;
 pub use reference::{REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};

@@ -1,44 +1,27 @@
 //! `chart.html`: one page that stands alone.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::choice::{WANTED, fastest};
 use super::data::{Chart, Run, SceneChart, Spread, Status};
+use crate::report::document::{PLAIN, document};
 use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
-
-/// Light style; figures have white ground.
-pub(crate) const CSS: &str = "body{margin:0 auto;max-width:1120px;padding:24px;font:16px/1.5 system-ui,sans-serif;color:#1f2328;background:#fff}\
-h1{font-size:1.6rem}h2{margin-top:2.2em;border-bottom:1px solid #d1d9e0}table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-nums;margin:12px 0}\
-th,td{padding:4px 10px 4px 0;border-bottom:1px solid #d1d9e0;text-align:left;vertical-align:top}td.n,th.n{text-align:right;white-space:nowrap}\
-figure{margin:18px 0}figure svg{max-width:100%;height:auto}figcaption{color:#59636e;font-size:.92rem;max-width:80ch}p{max-width:80ch}.dim{color:#59636e}\
-.scroll{overflow-x:auto}.mark{font-weight:700}code{font:.9em ui-monospace,monospace}";
 
 /// The page; `figures` are named SVG texts, of which those of a scene are shown with it.
 pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {
     let machine = &chart.machine;
-    let page: Markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Accuracy against time" }
-                style { (PreEscaped(CSS)) }
-            }
-            body {
-                h1 { "Accuracy against time" }
-                p.dim {
-                    "hypercircle " (machine.version) @if !machine.optimised { " (a build without optimisation)" } ", "
-                    (machine.processor.as_deref().unwrap_or("unknown processor")) ", " (chart.threads) " of "
-                    (machine.processors) " processors in use. Medians of " (chart.repeats) " runs, each in a process of its own; "
-                    "a run is ended after " (seconds(chart.budget)) ". Made by " code { (chart.command) } "."
-                }
-                @for scene in &chart.scenes { (one(scene, figures)) }
-                (reading())
-            }
+    let body = html! {
+        h1 { "Accuracy against time" }
+        p.dim {
+            "hypercircle " (machine.version) @if !machine.optimised { " (a build without optimisation)" } ", "
+            (machine.processor.as_deref().unwrap_or("unknown processor")) ", " (chart.threads) " of "
+            (machine.processors) " processors in use. Medians of " (chart.repeats) " runs, each in a process of its own; "
+            "a run is ended after " (seconds(chart.budget)) ". Made by " code { (chart.command) } "."
         }
+        @for scene in &chart.scenes { (one(scene, figures)) }
+        (reading())
     };
-    page.into_string()
+    document("Accuracy against time", &[PLAIN], body)
 }
 
 fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {

@@ -61,13 +61,14 @@ impl Settling<'_> {
             state.closed = change.closed;
             now = self.refined(now, &state.closed)?;
         }
-        if self.next(&now, &state.closed, UNSETTLED) == state.closed {
+        let left = self.misses(&now, &state.closed).into_iter().fold(0.0, f64::max);
+        if left <= UNSETTLED {
             return Ok(now);
         }
         Err(DualError::NotConverged {
             method: "contact state",
             iterations: state.steps,
-            residual: f64::NAN,
+            residual: left,
             wanted: UNSETTLED,
             advice: "contact ends keep opening and closing; refine the mesh at the ends of the contact".to_string(),
         })
@@ -131,17 +132,26 @@ impl Settling<'_> {
         refinement.run(now)
     }
 
-    /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
-    fn next(&self, now: &Refined, closed: &[bool], grazing: f64) -> Vec<bool> {
+    /// By how much each end misses its state: tension of closed ends relative to the load, or to the pressure at the other
+    /// end of the edge, and penetration of open ends relative to the largest jump or gap.
+    fn misses(&self, now: &Refined, closed: &[bool]) -> Vec<f64> {
         let first = self.system.unknowns.first_jump;
         let load = load_scale(self.problem, || self.system.modes.stresses(self.problem, &now.s));
         // Pairs have two ends, numbered one after the other.
         let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
-        let depth = self.contact.allowed(&now.x[first..], &self.system.jump_bound, grazing);
-        let end = |i: usize| match closed[i] {
-            true => traction(i) <= grazing * load.max(-traction(i ^ 1)),
-            false => now.x[first + i] > self.system.jump_bound[i] + depth[i],
+        let whole = self.contact.allowed(&now.x[first..], &self.system.jump_bound, 1.0);
+        let end = |i: usize| {
+            let (over, of) = match closed[i] {
+                true => (traction(i), load.max(-traction(i ^ 1))),
+                false => (now.x[first + i] - self.system.jump_bound[i], whole[i]),
+            };
+            if over > 0.0 { over / of.max(f64::MIN_POSITIVE) } else { 0.0 }
         };
         (0..closed.len()).map(end).collect()
+    }
+
+    /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
+    fn next(&self, now: &Refined, closed: &[bool], grazing: f64) -> Vec<bool> {
+        closed.iter().zip(self.misses(now, closed)).map(|(closed, by)| *closed == (by <= grazing)).collect()
     }
 }

@@ -3,6 +3,7 @@
 //! [`write()`] makes the five files; each of them is also a function here, from data to text, that knows nothing of files.
 
 mod data;
+pub(crate) mod document;
 pub mod figure;
 mod html;
 mod json;

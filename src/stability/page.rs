@@ -1,10 +1,10 @@
 //! `stability.html`: one page that stands alone.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::data::{Cell, Matrix, Outcome, Row};
 use super::markdown::shortened;
-use crate::chart::CSS;
+use crate::report::document::{PLAIN, document};
 use crate::report::number::{clean, percent};
 
 const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{background:#e6f6ea}.inaccurate{background:#fff6db}.refused{background:#eef1f5}\
@@ -12,28 +12,17 @@ const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{ba
 
 /// The page; `figures` are the curves by name.
 pub fn page(matrix: &Matrix, figures: &[(String, String)]) -> String {
-    let page: Markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Stability matrix" }
-                style { (PreEscaped(CSS)) (PreEscaped(MORE_CSS)) }
-            }
-            body {
-                h1 { "Which method can be trusted where" }
-                p.dim {
-                    "hypercircle " (matrix.machine.version) @if matrix.reduced { ", reduced sweeps" }
-                    ". Every row is a family of scenes swept through one parameter; a cell shows the worst outcome, in brackets the last \
-                    value before the first that was not correct."
-                }
-                (table(matrix))
-                @for row in &matrix.rows { (details(row, figures)) }
-            }
+    let body = html! {
+        h1 { "Which method can be trusted where" }
+        p.dim {
+            "hypercircle " (matrix.machine.version) @if matrix.reduced { ", reduced sweeps" }
+            ". Every row is a family of scenes swept through one parameter; a cell shows the worst outcome, in brackets the last \
+            value before the first that was not correct."
         }
+        (table(matrix))
+        @for row in &matrix.rows { (details(row, figures)) }
     };
-    page.into_string()
+    document("Stability matrix", &[PLAIN, MORE_CSS], body)
 }
 
 fn class(outcome: Outcome) -> &'static str {

@@ -1,13 +1,14 @@
 //! Scenes that several tests share, built without the mesher of the library.
 #![allow(dead_code)]
 
+pub mod blocks;
 pub mod double_double;
 pub mod random;
 pub mod toml;
 
 use std::path::PathBuf;
 
-use hypercircle::mesh::{RawMesh, Triangulation};
+use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
 use hypercircle::scene::*;
 
@@ -41,32 +42,11 @@ impl Default for Blocks {
 
 impl Blocks {
     /// Left block [0,1]², right block [1,2]×[0,1] (times `size`): roller below the left block, traction on its left
-    /// side, the right block clamped at its right side, contact between. Squares are cut along alternating diagonals.
+    /// side, the right block clamped at its right side, contact between. Names as in [`blocks::grid`].
     pub fn problem(&self) -> Problem {
         let n = self.n;
         let h = 1.0 / n as f64;
-        let mut raw = RawMesh::default();
-        for (block, body) in ["left", "right"].into_iter().enumerate() {
-            let base = raw.points.len();
-            for j in 0..=n {
-                for i in 0..=n {
-                    raw.points.push([self.size * (block as f64 + i as f64 * h), self.size * j as f64 * h]);
-                }
-            }
-            let at = |i: usize, j: usize| base + j * (n + 1) + i;
-            for j in 0..n {
-                for i in 0..n {
-                    let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                    let cut = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
-                    raw.triangles.extend(cut.map(|t| (t, body.to_string())));
-                }
-            }
-            for k in 0..n {
-                raw.segments.push(([at(k, 0), at(k + 1, 0)], format!("{body}_bottom")));
-                raw.segments.push(([at(0, k), at(0, k + 1)], format!("{body}_west")));
-                raw.segments.push(([at(n, k), at(n, k + 1)], format!("{body}_east")));
-            }
-        }
+        let raw = blocks::grid(n, |block, i, j| [self.size * (block as f64 + i as f64 * h), self.size * j as f64 * h]);
         let scene = self.scene();
         let (mesh, notes) = Triangulation::new(raw, &scene).expect("a valid mesh");
         Problem::new(scene, mesh, notes).expect("a valid problem")
@@ -89,7 +69,7 @@ impl Blocks {
             bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],
             supports: vec![
                 Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0, 0.0] } },
-                Support { on: "left_bottom".to_string(), kind: SupportKind::Roller },
+                Support { on: "left_south".to_string(), kind: SupportKind::Roller },
             ],
             tractions: vec![Traction {
                 on: "left_west".to_string(),

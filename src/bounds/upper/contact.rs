@@ -170,43 +170,46 @@ impl Row {
 
     /// The coefficient for the given values: admissible where it is not positive.
     pub fn excess(&self, values: &[[f64; 2]]) -> f64 {
-        self.terms.iter().map(|(node, factor)| dot(values[*node], *factor)).sum::<f64>() - self.gap
+        self.excess_at(|node| values[node])
+    }
+
+    fn excess_at(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
+        self.terms.iter().map(|(node, factor)| dot(value(*node), *factor)).sum::<f64>() - self.gap
     }
 }
 
 /// The three coefficients of every pair, in the order of the pairs.
 pub fn rows(problem: &Problem) -> Vec<Row> {
-    let edges = problem.mesh.points.len();
-    let mut rows = Vec::new();
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
-        let jump = |nodes: [Option<usize>; 2], factor: f64| {
-            let term = |node: Option<usize>, sign: f64| node.map(|k| (k, pair.normal.map(|n| sign * factor * n)));
-            [term(nodes[0], 1.0), term(nodes[1], -1.0)].into_iter().flatten()
-        };
-        let end = |k: usize, factor: f64| jump([Some(pair.first[k]), pair.second.map(|s| s[k])], factor);
-        let centre = jump(pair.edges.map(|e| e.map(|e| edges + e)), 2.0);
-        let [ga, gb] = pair.gap;
-        rows.push(Row { terms: end(0, 1.0).collect(), gap: ga });
-        rows.push(Row { terms: centre.chain(end(0, -0.5)).chain(end(1, -0.5)).collect(), gap: 0.5 * (ga + gb) });
-        rows.push(Row { terms: end(1, 1.0).collect(), gap: gb });
-    }
-    rows
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    pairs.flat_map(|pair| bernstein(pair, problem.mesh.points.len())).collect()
 }
 
-/// b1 of v_n' + v_n'' − g on a pair, and the two vertex coefficients.
-fn bernstein(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 3] {
-    let n = pair.normal;
-    let at = |k: usize| dot(vertex[pair.first[k]], n) - pair.second.map_or(0.0, |s| dot(vertex[s[k]], n));
-    let (a, b) = (at(0), at(1));
-    let centre = pair.edges[0].map_or(0.0, |e| dot(middle[e], n)) - pair.edges[1].map_or(0.0, |e| dot(middle[e], n));
+/// The coefficients b0, b1, b2 of a pair, with the number of vertices.
+fn bernstein(pair: &ContactPair, vertices: usize) -> [Row; 3] {
+    let jump = |nodes: [Option<usize>; 2], factor: f64| {
+        let term = |node: Option<usize>, sign: f64| node.map(|k| (k, pair.normal.map(|n| sign * factor * n)));
+        [term(nodes[0], 1.0), term(nodes[1], -1.0)].into_iter().flatten()
+    };
+    let end = |k: usize, factor: f64| jump([Some(pair.first[k]), pair.second.map(|s| s[k])], factor);
+    let centre = jump(pair.edges.map(|e| e.map(|e| vertices + e)), 2.0);
     let [ga, gb] = pair.gap;
-    [a - ga, 2.0 * centre - 0.5 * (a + b) - 0.5 * (ga + gb), b - gb]
+    [
+        Row { terms: end(0, 1.0).collect(), gap: ga },
+        Row { terms: centre.chain(end(0, -0.5)).chain(end(1, -0.5)).collect(), gap: 0.5 * (ga + gb) },
+        Row { terms: end(1, 1.0).collect(), gap: gb },
+    ]
+}
+
+/// The values of the coefficients of a pair.
+fn coefficients(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 3] {
+    let value = |node: usize| if node < vertex.len() { vertex[node] } else { middle[node - vertex.len()] };
+    bernstein(pair, vertex.len()).map(|row| row.excess_at(value))
 }
 
 /// Deepest penetration of all pairs.
 pub fn penetration(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> f64 {
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
-    pairs.flat_map(|pair| bernstein(pair, vertex, middle)).fold(0.0, f64::max)
+    pairs.flat_map(|pair| coefficients(pair, vertex, middle)).fold(0.0, f64::max)
 }
 
 /// Draws midpoints back where supports at the vertices or rounding left b1 above zero.
@@ -214,7 +217,7 @@ pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         let [Some(own), other] = pair.edges else { continue };
-        let b1 = bernstein(pair, vertex, middle)[1];
+        let b1 = coefficients(pair, vertex, middle)[1];
         if b1 <= ROUNDING * size {
             continue;
         }

@@ -5,40 +5,30 @@ mod style;
 mod tables;
 mod verdict;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 
 use super::Dossier;
+use super::document::document;
 use super::number::{clean, grouped};
 
 /// The page: no script, nothing loaded.
 pub fn page(dossier: &Dossier) -> String {
     let report = &dossier.report;
-    let page: Markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (clean(&report.title)) " · " (super::words::headline(report)) }
-                style { (maud::PreEscaped(style::CSS)) }
-            }
-            body {
-                (verdict::first_screen(report))
-                main {
-                    (pictures::pictures(dossier))
-                    (tables::tables(report))
-                    (reading())
-                }
-                footer {
-                    "Made by hypercircle " (clean(&report.provenance.version)) " (" (clean(&report.command)) ") from "
-                    (grouped(dossier.problem.mesh.triangles.len())) " triangles. "
-                    code { "report.json" } " holds every number of this page, " code { "fields.vtu" } " the fields for ParaView."
-                }
-            }
+    let title = format!("{} · {}", clean(&report.title), super::words::headline(report));
+    let body = html! {
+        (verdict::first_screen(report))
+        main {
+            (pictures::pictures(dossier))
+            (tables::tables(report))
+            (reading())
+        }
+        footer {
+            "Made by hypercircle " (clean(&report.provenance.version)) " (" (clean(&report.command)) ") from "
+            (grouped(dossier.problem.mesh.triangles.len())) " triangles. "
+            code { "report.json" } " holds every number of this page, " code { "fields.vtu" } " the fields for ParaView."
         }
     };
-    page.into_string()
+    document(&title, &[style::CSS], body)
 }
 
 /// What the words mean.

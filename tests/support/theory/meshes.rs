@@ -3,6 +3,7 @@
 use hypercircle::mesh::RawMesh;
 
 use super::Numbers;
+use super::blocks::grid;
 
 /// How squares are turned into quadrilaterals before they are cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,34 +45,10 @@ impl Family {
     }
 }
 
-/// Two blocks of n × n quadrilaterals: `shape` places a point (s, t) of the unit square of block 0 or 1 in the plane.
-/// Block 0 is `left`, 1 is `right`; their sides are called `left_west`, `left_south`, …, and they meet along the east
-/// side of the left one. Quadrilaterals are cut along alternating diagonals.
+/// Two blocks of n × n quadrilaterals: `shape` places a point (s, t) of the unit square of block 0 or 1 in the plane;
+/// names as in [`grid`].
 pub fn blocks(n: usize, family: Family, shape: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> RawMesh {
-    let mut raw = RawMesh::default();
-    for (block, body) in ["left", "right"].into_iter().enumerate() {
-        let base = raw.points.len();
-        for j in 0..=n {
-            for i in 0..=n {
-                raw.points.push(shape(block, family.place(n, i, j)));
-            }
-        }
-        let at = |i: usize, j: usize| base + j * (n + 1) + i;
-        for j in 0..n {
-            for i in 0..n {
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                let cut = if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
-                raw.triangles.extend(cut.map(|t| (t, body.to_string())));
-            }
-        }
-        for k in 0..n {
-            raw.segments.push(([at(k, 0), at(k + 1, 0)], format!("{body}_south")));
-            raw.segments.push(([at(k, n), at(k + 1, n)], format!("{body}_north")));
-            raw.segments.push(([at(0, k), at(0, k + 1)], format!("{body}_west")));
-            raw.segments.push(([at(n, k), at(n, k + 1)], format!("{body}_east")));
-        }
-    }
-    raw
+    grid(n, |block, i, j| shape(block, family.place(n, i, j)))
 }
 
 /// The unit squares [−1, 0] × [0, 1] and [0, 1]².
