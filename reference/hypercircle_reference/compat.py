@@ -53,7 +53,10 @@ def owned_cells(mesh) -> int:
 def cell_input_vertices(mesh) -> np.ndarray:
     """Vertices of each owned cell (m, 3) in the numbering of the points given to :func:`create_mesh`."""
     original = np.asarray(mesh.geometry.input_global_indices)
-    return original[_table(mesh.geometry.dofmap, 3)[: owned_cells(mesh)]]
+    # Releases after 0.10 have one table for each type of cell, and warn of the single one.
+    tables = getattr(mesh.geometry, "dofmaps", None)
+    table = tables[0] if isinstance(tables, (list, tuple)) else mesh.geometry.dofmap
+    return original[_table(table, 3)[: owned_cells(mesh)]]
 
 
 def vector_space(mesh, degree: int):
