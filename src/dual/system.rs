@@ -34,6 +34,8 @@ pub struct System {
 
 /// Stiffness and load of a triangle, in the components of its side ends (see [`rows`]).
 struct Local {
+    /// Its sides, if all are free.
+    edges: Option<[FreeEdge; 3]>,
     stiffness: [[f64; 12]; 12],
     load: [f64; 12],
 }
@@ -60,8 +62,8 @@ impl System {
                 .map(|t| local(problem, &unknowns, &modes, t))
                 .collect();
             for (local, t) in locals.iter().zip(start..) {
-                match free_edges(mesh, &unknowns, t) {
-                    Some(edges) => pattern.add_blocks(&edges, local, &mut values, &mut rhs),
+                match &local.edges {
+                    Some(edges) => pattern.add_blocks(edges, local, &mut values, &mut rhs),
                     None => pattern.add_terms(problem, &unknowns, t, local, &mut values, &mut rhs),
                 }
             }
@@ -141,9 +143,10 @@ fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) ->
     let element = modes.of(t);
     let mut modes = [[0.0; 12]; 9];
     modes.as_flattened_mut().copy_from_slice(element.traction());
-    let mut local = Local { stiffness: [[0.0; 12]; 12], load: [0.0; 12] };
+    let edges = free_edges(&problem.mesh, unknowns, t);
+    let mut local = Local { edges, stiffness: [[0.0; 12]; 12], load: [0.0; 12] };
     local.load.iter_mut().zip(element.particular_traction()).for_each(|(l, p)| *l = -p);
-    if free_edges(&problem.mesh, unknowns, t).is_none() {
+    if local.edges.is_none() {
         let mut fixed = [0.0; 9];
         for (SideEnd { at, .. }, components) in rows(&problem.mesh, unknowns, t) {
             let turn = |[x, y]: [f64; 2]| components.map(|c| c.direction[0] * x + c.direction[1] * y);

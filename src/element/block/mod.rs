@@ -52,8 +52,11 @@ impl EquilibriumElement for Block {
             out.kept[upper(k)..][..=k].copy_from_slice(&column[..=k]);
         }
         let raw = basis.tractions();
-        for (traction, column) in out.traction.chunks_exact_mut(12).zip(&inverse) {
-            combine(column.iter().zip(&raw).map(|(c, raw)| (*c, raw.as_slice())), traction);
+        out.traction.fill(0.0);
+        for (k, (traction, column)) in out.traction.chunks_exact_mut(12).zip(&inverse).enumerate() {
+            for (c, raw) in column[..=k].iter().zip(&raw) {
+                traction.iter_mut().zip(raw).for_each(|(t, v)| *t += c * v);
+            }
         }
         out.kept[UPPER..].fill(0.0);
         out.particular_traction.fill(0.0);
@@ -68,7 +71,7 @@ impl EquilibriumElement for Block {
         for (mode, overlap) in out.traction.chunks_exact(12).zip(overlaps) {
             out.particular_traction.iter_mut().zip(mode).for_each(|(p, t)| *p -= overlap * t);
         }
-        let own = particular.orthogonal(&basis, &inverse, &overlaps);
+        let own = sum(basis.field(&coefficients(out.kept, &[0.0; N], 1.0)), particular.stress());
         *out.particular_energy = particular.energy(&own, &own, material);
     }
 
@@ -81,17 +84,9 @@ impl EquilibriumElement for Block {
         particular: f64,
         out: &mut [[f64; 3]],
     ) {
-        let (inverse, overlaps) = modes.kept().split_at(UPPER);
-        let mut coefficients = [0.0; N];
-        for (k, (s, overlap)) in s.iter().zip(overlaps).enumerate() {
-            let part = s - particular * overlap;
-            coefficients.iter_mut().zip(&inverse[upper(k)..][..=k]).for_each(|(c, l)| *c += part * l);
-        }
-        let field = Basis::new(corners).field(&coefficients);
+        let field = Basis::new(corners).field(&coefficients(modes.kept(), s, particular));
         let balance = Particular { corners, force: body_force.map(|f| particular * f) };
-        for ((out, own), with) in out.iter_mut().zip(field).zip(balance.stress()) {
-            *out = [own[0] + with[0], own[1] + with[1], own[2] + with[2]];
-        }
+        out.copy_from_slice(&sum(field, balance.stress()));
     }
 }
 
@@ -100,12 +95,21 @@ const fn upper(k: usize) -> usize {
     k * (k + 1) / 2
 }
 
-/// Σ c · v.
-fn combine<'a>(parts: impl Iterator<Item = (f64, &'a [f64])>, out: &mut [f64]) {
-    out.fill(0.0);
-    for (c, values) in parts {
-        out.iter_mut().zip(values).for_each(|(o, v)| *o += c * v);
+/// What the fields of the basis have in Σ S_k τ_k less the overlaps of `particular` times the particular field.
+fn coefficients(kept: &[f64], s: &[f64], particular: f64) -> [f64; N] {
+    let (inverse, overlaps) = kept.split_at(UPPER);
+    let mut out = [0.0; N];
+    for (k, (s, overlap)) in s.iter().zip(overlaps).enumerate() {
+        let part = s - particular * overlap;
+        out.iter_mut().zip(&inverse[upper(k)..][..=k]).for_each(|(c, l)| *c += part * l);
     }
+    out
+}
+
+/// Two fields added node by node.
+fn sum(mut a: [[f64; 3]; 9], b: [[f64; 3]; 9]) -> [[f64; 3]; 9] {
+    a.as_flattened_mut().iter_mut().zip(b.as_flattened()).for_each(|(a, b)| *a += b);
+    a
 }
 
 /// L⁻ᵀ of F = L Lᵀ, column by column: turns the basis into energy-orthonormal modes, the pressure first.

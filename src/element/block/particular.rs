@@ -75,17 +75,4 @@ impl Particular {
         let stress = self.stress();
         inverse.map(|column| self.energy(&stress, &basis.field(&column), material))
     }
-
-    /// The field without its parts along the modes.
-    pub fn orthogonal(&self, basis: &Basis, inverse: &[[f64; N]; N], overlaps: &[f64; N]) -> [[f64; 3]; 9] {
-        let mut coefficients = [0.0; N];
-        for (column, overlap) in inverse.iter().zip(overlaps) {
-            coefficients.iter_mut().zip(column).for_each(|(c, l)| *c -= overlap * l);
-        }
-        let mut out = self.stress();
-        for (out, own) in out.as_flattened_mut().iter_mut().zip(basis.field(&coefficients).as_flattened()) {
-            *out += own;
-        }
-        out
-    }
 }
