@@ -16,7 +16,8 @@
 //! here with the self-equilibrated block elements of Haslinger and Hlaváček (Apl. mat. 26, 1981); the displacement side
 //! comes from the dual solution itself, from FEniCSx, or from the user.
 //!
-//! Data travel in the order of the modules: [`scene`] → [`mesh`] → [`problem`] → [`statics`] → [`element`] → [`dual`] →
+//! Data travel in the order of the modules: [`process`] and [`budget`] → [`scene`] → [`mesh`] → [`problem`] → [`statics`] →
+//! [`element`] → [`dual`] →
 //! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`study`] → [`measure`] → [`chart`] and [`stability`], with [`cli`] as a
 //! thin door.
 //!
@@ -53,6 +54,7 @@
 //! ```
 
 pub mod bounds;
+pub mod budget;
 pub mod chart;
 pub mod cli;
 pub mod compare;
@@ -63,6 +65,7 @@ pub mod mesh;
 pub mod plot;
 pub mod primal;
 pub mod problem;
+pub mod process;
 #[cfg(feature = "python")]
 mod python;
 pub mod report;

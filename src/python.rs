@@ -165,7 +165,7 @@ fn problem<'py>(py: Python<'py>, scene: &str) -> PyResult<Bound<'py, PyDict>> {
         bodies.append(entry)?;
     }
     out.set_item("bodies", bodies)?;
-    out.set_item("points", mesh.points)?;
+    out.set_item("points", mesh.points.iter().map(|p| scene.as_written(*p)).collect::<Vec<_>>())?;
     out.set_item("triangles", mesh.triangles)?;
     out.set_item("body", mesh.body)?;
     out.set_item("edges", mesh.edges.iter().map(|e| e.vertices).collect::<Vec<_>>())?;

@@ -18,16 +18,17 @@ fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4
         name: "blocks".into(),
         title: "blocks".into(),
         path: "blocks.toml".into(),
+        origin: [0.0; 2],
         kinematics: Kinematics::PlaneStrain,
         thickness: 1.0,
         mesh: MeshSource::File(mesh),
         bodies: bodies.map(body).into(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }],
         tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
-        contacts: vec![Contact {
-            sides: ContactSides::Between([first.into(), second.into()]),
-            gap: Gap::Table(vec![[0.0, 0.0], [0.25, 0.0], [1.0, 0.1]]),
-        }],
+        contacts: vec![Contact::new(
+            ContactSides::Between([first.into(), second.into()]),
+            Gap::Table(vec![[0.0, 0.0], [0.25, 0.0], [1.0, 0.1]]),
+        )],
     }
 }
 

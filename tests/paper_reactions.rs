@@ -27,6 +27,7 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]
         name: "reactions".to_string(),
         title: "Reactions".to_string(),
         path: PathBuf::from("reactions.toml"),
+        origin: [0.0; 2],
         kinematics: Kinematics::PlaneStress,
         thickness: 1.0,
         mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
@@ -39,10 +40,10 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]
                 load: Load::Affine { value: *value, gradient: *gradient },
             })
             .collect(),
-        contacts: vec![Contact {
-            sides: ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
-            gap: Gap::Constant(0.0),
-        }],
+        contacts: vec![Contact::new(
+            ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
+            Gap::Constant(0.0),
+        )],
     }
 }
 

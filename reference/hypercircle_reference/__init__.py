@@ -2,7 +2,8 @@
 
 The package reads ``problem.json``, minimises the potential energy 𝓛 over continuous P1 or P2 displacements with
 FEniCSx and PETSc, and writes ``primal-P1.json`` or ``primal-P2.json``. Data travels
-``exchange → constraints → model → solve → exchange``; ``compat`` holds every call that depends on the DOLFINx release.
+``exchange → constraints → model → descent → solve → exchange``; ``compat`` holds every call that depends on the DOLFINx
+release.
 """
 
 from __future__ import annotations

@@ -109,5 +109,17 @@ def assemble_vector(compiled) -> PETSc.Vec:
     return vector
 
 
+def function(space):
+    """A function of the space; it keeps the space alive."""
+    return dolfinx.fem.Function(space)
+
+
+def evaluate(compiled, argument, values: PETSc.Vec) -> float:
+    """The value of a form of rank zero, summed over all ranks, with ``values`` for the function ``argument``."""
+    argument.x.array[: values.getLocalSize()] = values.array_r
+    argument.x.scatter_forward()
+    return float(argument.function_space.mesh.comm.allreduce(dolfinx.fem.assemble_scalar(compiled)))
+
+
 def _table(dofmap, width: int) -> np.ndarray:
     return np.asarray(getattr(dofmap, "array", dofmap)).reshape(-1, width)

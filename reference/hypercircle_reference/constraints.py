@@ -1,13 +1,17 @@
-"""The change of variables u = T w + u0 that makes the normal jump an unknown.
+"""The change of variables u = T w + u0 that makes the jump along the direction of contact an unknown.
 
 Nodes are numbered in the order of the exchange file: the vertices, then for P2 the midpoint of edge e as node
 (number of vertices) + e; degree of freedom 2·node + component. Clamped values, rollers and pins are eliminated. Every
-remaining unknown is either free or a jump v_n' + v_n'' with plain bounds, as PETSc's variational-inequality solvers
+remaining unknown is either free or a jump (v' − v'')·n̂ with plain bounds, as PETSc's variational-inequality solvers
 need it.
 
-On a P2 contact edge the jump is a quadratic with Bernstein coefficients b0 and b2 (its end values) and
+On a P2 contact edge with one direction n̂ the jump is a quadratic with Bernstein coefficients b0 and b2 (its end values) and
 b1 = 2 j_mid − ½ (b0 + b2). The jump unknowns are b0, b1, b2, so that bounding them by the Bernstein coefficients of
 the linear gap bounds the jump everywhere on the edge, not only at its nodes.
+
+Where n̂ turns from N0 to N1 along the edge, the jump of P2 is a cubic. With J0, J1, J2 the Bernstein coefficients of v' − v''
+its coefficients are c0 = J0·N0, c1 = (J0·N1 + 2 J1·N0)/3, c2 = (J2·N0 + 2 J1·N1)/3, c3 = J2·N1. The two in the middle are
+unknowns in place of the two components of J1. The jump of P1 is a quadratic there, bounded at the vertices.
 """
 
 from __future__ import annotations
@@ -22,13 +26,17 @@ from . import BadExchange
 from .exchange import Contact, Problem
 from .group import Conflict, eliminate
 
+AXIS = np.arange(2)
+"""Offsets of the two components of a node."""
+
 
 @dataclass(frozen=True)
 class JumpRow:
     """One inequality of the model: which unknown carries it, and what its multiplier R ≥ 0 acts on.
 
     The row is factor · w[column] ≤ …, binding from above for factor > 0 and from below otherwise. ``vertex`` is the
-    vertex of the first side, or −1 for the midpoint of pair ``pair``.
+    vertex of the first side, or −1 for coefficient ``inner`` between the ends of pair ``pair``. A translation d of the
+    first side changes the row by ``normal`` · d.
     """
 
     column: int
@@ -37,6 +45,7 @@ class JumpRow:
     normal: np.ndarray
     vertex: int
     pair: int
+    inner: int = 0
 
 
 @dataclass(frozen=True)
@@ -98,6 +107,8 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
     if degree == 2:
         _supported_midpoints(problem, builder, done)
         _contact_midpoints(problem, builder, done, nodal_contact)
+        if not nodal_contact:
+            _turning_midpoints(problem, builder, done)
     free = np.flatnonzero(~done)
     dofs = (2 * free[:, None] + np.arange(2)).reshape(-1)
     builder.add(dofs, builder.new_columns(np.full(len(dofs), np.inf)), 1.0)
@@ -105,7 +116,7 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
     T, offset = builder.matrix(2 * nodes), builder.offset
     if degree == 2 and not nodal_contact:
         # Midpoints of contact edges follow the vertex jumps: j_mid = ½ b1 + ¼ (b0 + b2).
-        follow = _quarter_of_vertex_jumps(problem, nodes)
+        follow = _quarter_of_vertex_jumps(problem, nodes) + _turning_vertex_jumps(problem, nodes)
         T = (T + follow @ T).tocsr()
         offset = offset + follow @ offset
     return Constraints(T, offset, np.concatenate(builder.lower), np.concatenate(builder.upper), builder.rows)
@@ -204,7 +215,7 @@ def _vertex_jumps(problem: Problem) -> list[tuple[tuple[int, int], np.ndarray, f
         for pair in range(len(contact.first)):
             for end in range(2):
                 ends = (int(contact.first[pair, end]), int(contact.second[pair, end]))
-                normal, gap = contact.normal[pair], float(contact.gap[pair, end])
+                normal, gap = contact.direction[pair, end], float(contact.gap[pair, end])
                 found.setdefault((index, *ends, *normal, gap), (ends, normal, gap, index))
     return list(found.values())
 
@@ -227,24 +238,76 @@ def _contact_midpoints(problem: Problem, builder: _Builder, done: np.ndarray, no
 
     Unknowns are α, the displacement of the stiffer side, and b1 (for nodal contact j_mid itself).
     """
-    axis = np.arange(2)
-    for index, contact in enumerate(problem.contacts):
-        normal = contact.normal
+    for index, whole in enumerate(problem.contacts):
+        pairs = np.arange(len(whole.first)) if nodal else np.flatnonzero(~whole.turns)
+        contact = whole.part(pairs)
+        normal = contact.direction.mean(axis=1) if nodal else contact.direction[:, 0]
+        if nodal:
+            normal = normal / np.linalg.norm(normal, axis=1)[:, None]
         follower, leader, sign = _sides(problem, contact)
-        moved = 2 * follower[:, None] + axis
+        moved = 2 * follower[:, None] + AXIS
         jump = builder.new_columns(contact.gap.mean(axis=1))
         builder.add(moved, jump[:, None], sign[:, None] * (normal if nodal else 0.5 * normal))
         builder.add(moved, builder.new_columns(np.full(len(normal), np.inf))[:, None], _tangent(normal))
         bodies = leader >= 0
         columns = builder.new_columns(np.full(2 * int(bodies.sum()), np.inf)).reshape(-1, 2)
-        builder.add(2 * leader[bodies][:, None] + axis, columns, 1.0)
+        builder.add(2 * leader[bodies][:, None] + AXIS, columns, 1.0)
         projection = normal[bodies][:, :, None] * normal[bodies][:, None, :]
         builder.add(moved[bodies][:, :, None], columns[:, None, :], projection)
         done[follower] = True
         done[leader[bodies]] = True
         builder.rows.extend(
-            JumpRow(int(column), 1.0, index, normal[pair], -1, pair) for pair, column in enumerate(jump)
+            JumpRow(int(column), 1.0, index, n, -1, int(pair)) for pair, n, column in zip(pairs, normal, jump)
         )
+
+
+def _turning_midpoints(problem: Problem, builder: _Builder, done: np.ndarray) -> None:
+    """Where n̂ turns, u' = u'' + J_mid with J_mid = ½ J1 + ¼ (J0 + J2): unknowns are c1, c2 and the displacement of the
+    stiffer side."""
+    for index, whole in enumerate(problem.contacts):
+        pairs = np.flatnonzero(whole.turns)
+        contact = whole.part(pairs)
+        follower, leader, sign = _sides(problem, contact)
+        moved = 2 * follower[:, None] + AXIS
+        bounds = np.stack([(2 * contact.gap[:, k] + contact.gap[:, 1 - k]) / 3 for k in range(2)], axis=1)
+        columns = builder.new_columns(bounds.reshape(-1)).reshape(-1, 2)
+        # J1 = M⁻¹ (3 c1 − J0·N1, 3 c2 − J2·N0)/2.
+        builder.add(moved[:, :, None], columns[:, None, :], 0.75 * sign[:, None, None] * _inverse(contact))
+        bodies = leader >= 0
+        along = builder.new_columns(np.full(2 * int(bodies.sum()), np.inf)).reshape(-1, 2)
+        builder.add(2 * leader[bodies][:, None] + AXIS, along, 1.0)
+        builder.add(moved[bodies], along, 1.0)
+        done[follower] = True
+        done[leader[bodies]] = True
+        for pair, two, (first, last) in zip(pairs, columns, contact.direction):
+            for inner, normal in enumerate(((2 * first + last) / 3, (first + 2 * last) / 3)):
+                builder.rows.append(JumpRow(int(two[inner]), 1.0, index, normal, -1, int(pair), inner))
+
+
+def _inverse(contact: Contact) -> np.ndarray:
+    """M⁻¹ of the rows N0, N1 of every pair (m, 2, 2)."""
+    return np.linalg.inv(contact.direction) if len(contact.first) else np.zeros((0, 2, 2))
+
+
+def _turning_vertex_jumps(problem: Problem, nodes: int) -> sparse.csr_matrix:
+    """Maps u to the part of ± J_mid at the midpoints that follow that comes from J0 and J2, where n̂ turns."""
+    entries = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
+    for whole in problem.contacts:
+        contact = whole.part(np.flatnonzero(whole.turns))
+        follower, _, direction = _sides(problem, contact)
+        rows = 2 * follower[:, None, None] + AXIS[None, :, None]
+        inverse = _inverse(contact)
+        for end in range(2):
+            other = contact.direction[:, 1 - end]
+            part = 0.25 * (np.eye(2) - inverse[:, :, end, None] * other[:, None, :])
+            for ends, sign in ((contact.first, 1.0), (contact.second, -1.0)):
+                there = ends[:, end] >= 0
+                columns = 2 * ends[there, end][:, None, None] + AXIS[None, None, :]
+                weights = sign * direction[there][:, None, None] * part[there]
+                i, j, v = np.broadcast_arrays(rows[there], columns, weights)
+                entries.append((i.reshape(-1), j.reshape(-1), v.reshape(-1)))
+    i, j, v = (np.concatenate(parts) for parts in zip(*entries))
+    return sparse.csr_matrix((v, (i, j)), shape=(2 * nodes, 2 * nodes))
 
 
 def _sides(problem: Problem, contact: Contact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -259,17 +322,18 @@ def _sides(problem: Problem, contact: Contact) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _quarter_of_vertex_jumps(problem: Problem, nodes: int) -> sparse.csr_matrix:
-    """Maps u to ± n ¼ (b0 + b2) at the midpoints that follow, and to zero elsewhere."""
-    axis = np.arange(2)
+    """Maps u to ± n ¼ (b0 + b2) at the midpoints that follow where n̂ is constant, and to zero elsewhere."""
     entries = [(np.zeros(0, int), np.zeros(0, int), np.zeros(0))]
-    for contact in problem.contacts:
+    for whole in problem.contacts:
+        contact = whole.part(np.flatnonzero(~whole.turns))
         follower, _, direction = _sides(problem, contact)
-        rows = 2 * follower[:, None, None] + axis[None, :, None]
-        weights = 0.25 * direction[:, None, None] * contact.normal[:, :, None] * contact.normal[:, None, :]
+        rows = 2 * follower[:, None, None] + AXIS[None, :, None]
+        normal = contact.direction[:, 0]
+        weights = 0.25 * direction[:, None, None] * normal[:, :, None] * normal[:, None, :]
         for ends, sign in ((contact.first, 1.0), (contact.second, -1.0)):
             for end in range(2):
                 there = ends[:, end] >= 0
-                columns = 2 * ends[there, end][:, None, None] + axis[None, None, :]
+                columns = 2 * ends[there, end][:, None, None] + AXIS[None, None, :]
                 i, j, v = np.broadcast_arrays(rows[there], columns, sign * weights[there])
                 entries.append((i.reshape(-1), j.reshape(-1), v.reshape(-1)))
     i, j, v = (np.concatenate(parts) for parts in zip(*entries))

@@ -31,8 +31,8 @@ class Contact:
     """Matched edges of one contact, as arrays over its pairs.
 
     ``edges`` (m, 2) and ``second`` (m, 2) hold −1 where the opposite side is a rigid obstacle. ``first`` (m, 2) are
-    the end vertices on the first side, ``normal`` (m, 2) its outward unit normal n', ``gap`` (m, 2) the gap g at the
-    two ends.
+    the end vertices on the first side, ``normal`` (m, 2) its outward unit normal n', ``direction`` (m, 2, 2) the direction
+    of contact n̂ at the two ends, linear between, ``gap`` (m, 2) the gap g at the two ends.
     """
 
     name: str
@@ -40,7 +40,18 @@ class Contact:
     first: np.ndarray
     second: np.ndarray
     normal: np.ndarray
+    direction: np.ndarray
     gap: np.ndarray
+
+    @property
+    def turns(self) -> np.ndarray:
+        """Where the direction of contact changes along the pair (m,)."""
+        return np.any(self.direction[:, 0] != self.direction[:, 1], axis=1)
+
+    def part(self, pairs: np.ndarray) -> "Contact":
+        """The contact on some of its pairs."""
+        arrays = (self.edges, self.first, self.second, self.normal, self.direction, self.gap)
+        return Contact(self.name, *(array[pairs] for array in arrays))
 
 
 @dataclass(frozen=True)
@@ -152,9 +163,12 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
         first=_index_column(filled, inside, "first", (2,), vertices),
         second=_index_column(filled, inside, "second", (2,), vertices, lowest=-1),
         normal=_column(filled, inside, "normal", (2,)),
+        direction=_column(filled, inside, "direction", (2, 2)),
         gap=_column(filled, inside, "gap", (2,)),
     )
     _check_unit(contact.normal, inside, "normal")
+    if np.any(np.abs(np.linalg.norm(contact.direction, axis=2) - 1.0) > 0.1):
+        raise BadExchange(f"{inside}: direction is not close to a unit vector")
     for side, ends in ((0, contact.first), (1, contact.second)):
         rows = np.flatnonzero(~rigid) if side else np.arange(len(pairs))
         present = contact.edges[rows, side]

@@ -37,13 +37,23 @@ class Numbering:
 
 @dataclass(frozen=True)
 class Model:
-    """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node."""
+    """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node.
+
+    ``displacement`` is a function of the space, and ``energy`` the compiled form of its strain energy. The space owns
+    the communicator of matrix and vector, and has to live as long as they and all that is duplicated from them.
+    """
 
     stiffness: object
     load: object
+    displacement: object
+    energy: object
     numbering: Numbering
     seconds_compile: float
     seconds_assemble: float
+
+    def strain_energy(self, u) -> float:
+        """½ ∫ c e(u):e(u), summed over the triangles. In uᵀK u, a rigid motion would take more digits: all of |u|²."""
+        return compat.evaluate(self.energy, self.displacement, u)
 
 
 class Mesh:
@@ -92,8 +102,14 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     owner = problem.body[mesh.triangles]
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
+    displacement = compat.function(space)
+
+    def work(u, v):
+        return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * ufl.dx
+
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-    bilinear = compat.form((lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * ufl.dx)
+    bilinear = compat.form(work(u, v))
+    energy = compat.form(0.5 * work(displacement, displacement))
     linear = compat.form(ufl.inner(force, v) * ufl.dx)
     compiled = perf_counter()
 
@@ -102,7 +118,7 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     load = compat.assemble_vector(linear)
     tractions = _traction_load(problem, degree).reshape(-1, 2)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
-    return Model(stiffness, load, numbering, compiled - start, perf_counter() - compiled)
+    return Model(stiffness, load, displacement, energy, numbering, compiled - start, perf_counter() - compiled)
 
 
 def _strain(v):

@@ -59,6 +59,7 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
         "ranks": comm.size,
         "energy": solution.energy,
         "strain_energy": solution.strain_energy,
+        "energy_rounding": solution.energy_rounding,
         "iterations": solution.iterations,
         "converged_reason": solution.reason,
         "unknowns": solution.unknowns,
@@ -76,7 +77,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
     order = [list(dict.fromkeys(contact.first.reshape(-1).tolist())) for contact in problem.contacts]
     place = [{v: i for i, v in enumerate(vertices)} for vertices in order]
     at_vertex = [np.zeros(len(vertices)) for vertices in order]
-    at_edge = [np.zeros(len(contact.first)) for contact in problem.contacts]
+    at_edge = [[[0.0] * (2 if turns else 1) for turns in contact.turns] for contact in problem.contacts]
     resultant = np.zeros((len(problem.contacts), 2))
     for row in constraints.rows:
         reaction = max(-solution.gradient[row.column] / row.factor, 0.0)
@@ -85,7 +86,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
         if row.vertex >= 0:
             at_vertex[row.contact][place[row.contact][row.vertex]] += reaction
         else:
-            at_edge[row.contact][row.pair] += reaction
+            at_edge[row.contact][row.pair][row.inner] += reaction
         resultant[row.contact] -= reaction * row.normal
     for index, contact in enumerate(problem.contacts):
         out.append(
@@ -93,7 +94,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
                 "name": contact.name,
                 "vertices": order[index],
                 "vertex_reaction": at_vertex[index].tolist(),
-                "edge_reaction": at_edge[index].tolist() if degree == 2 else None,
+                "edge_reaction": at_edge[index] if degree == 2 else None,
                 "resultant": resultant[index].tolist(),
             }
         )

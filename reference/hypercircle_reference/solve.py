@@ -1,9 +1,8 @@
-"""Minimise ½ wᵀA w − bᵀw over lower ≤ w ≤ upper with PETSc, where A = TᵀK T and b = Tᵀ(f − K u0).
+"""The reduced problem: minimise ½ wᵀA w − bᵀw over lower ≤ w ≤ upper, where A = TᵀK T and b = Tᵀ(f − K u0).
 
 Unknowns are scaled so that A has a unit diagonal: residuals of a stiff and a soft body, in any units, are then
-comparable. PETSc's reduced-space Newton method for variational inequalities (``vinewtonrsls``) starts from the displacement with
-every jump at its bound: a body that only contact holds has no solution with all jumps free. The outcome is checked
-here, not taken from PETSc's word.
+comparable. :mod:`descent` finds the minimum. The outcome is checked here by the conditions that prove a minimum, and
+with it comes an estimate of what rounding can have done to the energy.
 """
 
 from __future__ import annotations
@@ -13,15 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from . import ReferenceFailure, log
+from . import ReferenceFailure
 from .constraints import Constraints
+from .descent import EPSILON, Descent, Minimum, absolute
 from .model import Model
 
 RESIDUAL = 1e-8
-"""Largest admitted residual, relative to load and energy norm of the solution."""
-
-ENERGY = 1e-5
-"""Largest admitted effect of the residual on the energy, relative to the same."""
+"""Largest admitted residual beyond its own rounding, relative to load and energy norm of the solution."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +26,7 @@ class Solution:
     """Displacement u and gradient 𝓛'(u) in the numbering of the exchange file, equal on all ranks.
 
     ``gradient`` (columns of T) is Tᵀ(K u − f); where a bound is active it is minus the multiplier. Energies include
-    the thickness.
+    the thickness; ``energy_rounding`` estimates what rounding and residual can have cost ``energy``.
     """
 
     displacement: np.ndarray
@@ -37,6 +34,7 @@ class Solution:
     jumps: np.ndarray
     energy: float
     strain_energy: float
+    energy_rounding: float
     iterations: int
     reason: int
     unknowns: int
@@ -75,134 +73,61 @@ class Reduced:
         self.scale.array[:] = 1.0 / np.sqrt(diagonal.array_r)
         self.A.diagonalScale(self.scale, self.scale)
         self.b.pointwiseMult(self.b, self.scale)
-        self.lower, self.upper = self._vector(constraints.lower), self._vector(constraints.upper)
-        bounded = np.zeros(len(self.order), dtype=bool)
-        bounded[constraints.bounded] = True
-        local_bounded = bounded[self.order[self.begin : self.end]]
-        self.bounded = np.flatnonzero(local_bounded).astype(PETSc.IntType)
-        self.unbounded = np.flatnonzero(~local_bounded).astype(PETSc.IntType)
+        self.lower, self.upper = self._mine(constraints.lower), self._mine(constraints.upper)
 
-    def _vector(self, values: np.ndarray) -> PETSc.Vec:
-        vector = self.A.createVecRight()
-        scaled = values[self.order[self.begin : self.end]] / self.scale.array_r
-        vector.array[:] = np.clip(scaled, PETSc.NINFINITY, PETSc.INFINITY)
-        return vector
-
-    def residual(self, w: PETSc.Vec) -> PETSc.Vec:
-        """A w − b."""
-        out = self.A * w
-        out.axpy(-1.0, self.b)
-        return out
-
-    def clamped_start(self) -> PETSc.Vec:
-        """The minimiser with every jump held at its bound."""
-        w = self.A.createVecRight()
-        upper, lower = self.upper.array_r[self.bounded], self.lower.array_r[self.bounded]
-        w.array[self.bounded] = np.where(upper < PETSc.INFINITY, upper, lower)
-        right = self.residual(w)
-        right.scale(-1.0)
-        rows = PETSc.IS().createGeneral(self.unbounded + self.begin, comm=self.comm)
-        matrix = self.A.createSubMatrix(rows, rows)
-        free_right = right.getSubVector(rows)
-        step = free_right.duplicate()
-        ksp = PETSc.KSP().create(self.comm)
-        _direct(ksp)
-        ksp.setOperators(matrix)
-        ksp.solve(free_right, step)
-        if ksp.getConvergedReason() < 0 or not np.isfinite(step.norm()):
-            raise ReferenceFailure("the supports do not hold the bodies even with every contact closed")
-        w.array[self.unbounded] = step.array_r
-        right.restoreSubVector(rows, free_right)
-        ksp.destroy()
-        return w
+    def _mine(self, values: np.ndarray) -> np.ndarray:
+        """This rank's share of bounds, scaled like the unknowns."""
+        return values[self.order[self.begin : self.end]] / self.scale.array_r
 
     def minimise(self) -> Solution:
-        """Run the solver, check residual and feasibility, and gather the solution."""
-        w = self.clamped_start()
-        start = load = self._size(w)
-        iterations, reason = 0, 2
-        if len(self.constraints.bounded):
-            # A second run only polishes: the round-off to be expected is known once the size of w is.
-            for _ in range(2):
-                tolerance = max(1e-13 * load, np.finfo(float).eps * self._norm() * w.norm())
-                steps, reason = self._newton(w, tolerance, load)
-                iterations += steps
-                # A wide gap makes the start far larger than the solution, which is what counts.
-                load = max(self._size(w), 1e-5 * start)
-        else:
-            iterations = 1
-        gradient = self.residual(w)
-        self._check(w, gradient, load)
-        return self._gather(w, gradient, iterations, reason)
+        """Run the solver, check equilibrium and bounds, and gather the solution."""
+        found = Descent(self.A, self.b.array_r.copy(), self.lower, self.upper).minimise()
+        self._check(found)
+        return self._gather(found)
 
-    def _size(self, w: PETSc.Vec) -> float:
-        """What a residual is compared with: load and energy norm. Scaled forces are square roots of energies."""
-        unscaled = w.duplicate()
-        unscaled.pointwiseMult(w, self.scale)
-        u = self.T * unscaled
+    def _displacement(self, w: PETSc.Vec) -> PETSc.Vec:
+        """u = T w + u0 of the unscaled unknowns."""
+        u = self.T * w
         u.axpy(1.0, self.offset)
+        return u
+
+    def _size(self, w: np.ndarray) -> float:
+        """What a residual is compared with: load and energy norm. Scaled forces are square roots of energies."""
+        unscaled = self.scale.copy()
+        unscaled.array[:] *= w
+        u = self._displacement(unscaled)
         return self.b.norm() + np.sqrt(max(u.dot(self.model.stiffness * u), 0.0))
 
-    def _norm(self) -> float:
-        return self.A.norm(PETSc.NormType.INFINITY)
-
-    def _newton(self, w: PETSc.Vec, tolerance: float, load: float) -> tuple[int, int]:
-        options = PETSc.Options()
-        prefix = "hypercircle_"
-        # PETSc's own tolerance for "on the bound" is an absolute length, which no choice of units would survive; the
-        # projection puts w on the bound exactly.
-        options[prefix + "snes_vi_zero_tolerance"] = 0.0
-        options[prefix + "snes_linesearch_type"] = "basic"
-        snes = PETSc.SNES().create(self.comm)
-        snes.setOptionsPrefix(prefix)
-        snes.setType("vinewtonrsls")
-        snes.setFunction(lambda _, x, out: self.residual(x).copy(out), self.b.duplicate())
-        snes.setJacobian(lambda *_: None, self.A)
-        snes.setVariableBounds(self.lower, self.upper)
-        snes.setTolerances(rtol=0.0, atol=tolerance, stol=0.0, max_it=100)
-        snes.setConvergenceTest(_Stop(tolerance, 0.1 * RESIDUAL * load))
-        snes.setMonitor(lambda _, step, norm: log(self.comm, f"newton step {step}, residual {norm:.3e}"))
-        _direct(snes.getKSP())
-        snes.setFromOptions()
-        snes.solve(None, w)
-        steps, reason = snes.getIterationNumber(), snes.getConvergedReason()
-        snes.destroy()
-        if reason < 0:
-            raise ReferenceFailure(f"PETSc's variational-inequality solver stopped with reason {reason} after {steps} steps")
-        return steps, reason
-
-    def _check(self, w: PETSc.Vec, gradient: PETSc.Vec, load: float) -> None:
-        """Equilibrium, bounds, and the digits that round-off leaves: the residual's work bounds the error in 𝓛."""
-        x, g = w.array_r, gradient.array_r
-        lower, upper = self.lower.array_r, self.upper.array_r
-        wrong = g.copy()
-        wrong[(x >= upper) & (g <= 0.0)] = 0.0
-        wrong[(x <= lower) & (g >= 0.0)] = 0.0
-        residual = np.sqrt(self.comm.allreduce(float(wrong @ wrong)))
-        outside = self.comm.allreduce(int(np.sum((x > upper) | (x < lower))))
-        finite = np.isfinite(residual)
-        if not finite or residual > RESIDUAL * load or outside:
+    def _check(self, found: Minimum) -> None:
+        """Equilibrium and bounds. What rounding leaves of a row of the residual says nothing against the solution."""
+        x, g = found.w, found.gradient
+        wrong = np.where(((x >= self.upper) & (g <= 0.0)) | ((x <= self.lower) & (g >= 0.0)), 0.0, np.abs(g))
+        beyond = wrong - np.minimum(wrong, found.rounding)
+        residual = np.sqrt(self.comm.allreduce(float(beyond @ beyond)))
+        outside = self.comm.allreduce(int(np.sum((x > self.upper) | (x < self.lower))))
+        load = self._size(x)
+        if not residual <= RESIDUAL * load or outside:
             raise ReferenceFailure(
                 f"the solution fails its check: relative residual {residual / load if load else residual:.2e} "
                 f"(allowed {RESIDUAL:.0e}), {outside} jumps beyond their bounds"
             )
-        if residual * w.norm() > ENERGY * load * load:
+        if not found.left <= load * load:
             raise ReferenceFailure(
-                f"round-off may have changed the energy by {residual * w.norm() / (load * load):.1e} of itself (allowed "
-                f"{ENERGY:.0e}): a body moves rigidly by far more than it deforms, beyond what displacements can resolve"
+                f"round-off leaves nothing of the energy: the residual alone may have changed it by {found.left:.1e} "
+                f"where {load * load:.1e} is at stake; a body moves rigidly by far more than displacements can resolve"
             )
 
-    def _gather(self, w: PETSc.Vec, gradient: PETSc.Vec, iterations: int, reason: int) -> Solution:
-        closed = [w.array_r == bound.array_r for bound in (self.upper, self.lower)]
-        w.pointwiseMult(w, self.scale)
-        gradient.pointwiseDivide(gradient, self.scale)
+    def _gather(self, found: Minimum) -> Solution:
+        closed = [found.w == bound for bound in (self.upper, self.lower)]
+        w, gradient = self.scale.duplicate(), self.scale.duplicate()
+        w.array[:] = found.w * self.scale.array_r
+        gradient.array[:] = found.gradient / self.scale.array_r
         mine = self.order[self.begin : self.end]
         # Scaling there and back may miss the bound by a rounding error.
         for at, bound in zip(closed, (self.constraints.upper, self.constraints.lower)):
             w.array[at] = bound[mine[at]]
-        u = self.T * w
-        u.axpy(1.0, self.offset)
-        strain_energy = 0.5 * u.dot(self.model.stiffness * u)
+        u = self._displacement(w)
+        strain_energy, work = self.model.strain_energy(u), u.dot(self.model.load)
         displacement = np.zeros(len(self.constraints.offset))
         pieces = self.comm.allgather((self.dofs, u.array_r.copy(), w.array_r.copy(), gradient.array_r.copy()))
         for dofs, values, *_ in pieces:
@@ -214,38 +139,26 @@ class Reduced:
             displacement=displacement,
             gradient=derivative,
             jumps=jumps,
-            energy=strain_energy - u.dot(self.model.load),
+            energy=strain_energy - work,
             strain_energy=strain_energy,
-            iterations=iterations,
-            reason=reason,
+            energy_rounding=self._energy_rounding(u, strain_energy) + found.left,
+            iterations=found.steps,
+            reason=found.reason,
             unknowns=len(self.order),
         )
 
+    def _energy_rounding(self, u: PETSc.Vec, strain_energy: float) -> float:
+        """What a relative change of each displacement by some roundings, and the sums over all of them, do to 𝓛(u).
 
-class _Stop:
-    """Converged below ``tolerance``, or below ``enough`` when round-off keeps the residual from falling further."""
-
-    def __init__(self, tolerance: float, enough: float):
-        self.tolerance, self.enough, self.before = tolerance, enough, np.inf
-
-    def __call__(self, snes, step: int, norms) -> int:
-        residual = norms[2]
-        stuck = residual <= self.enough and residual > 0.5 * self.before
-        self.before = residual
-        if residual <= self.tolerance:
-            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_ABS
-        if stuck:
-            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
-        if not np.isfinite(residual):
-            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        return PETSc.SNES.ConvergedReason.CONVERGED_ITERATING
-
-
-def _direct(ksp: PETSc.KSP) -> None:
-    ksp.setType("preonly")
-    preconditioner = ksp.getPC()
-    preconditioner.setType("lu")
-    preconditioner.setFactorSolverType("mumps")
+        With |δu| ≤ ε |u|, ‖δu‖² ≤ ε² |u|ᵀ|K||u| in the energy norm, and 𝓛 changes by ‖u‖ ‖δu‖ + ½ ‖δu‖² + |f|ᵀ|δu|.
+        """
+        size, load = u.copy(), self.model.load.copy()
+        size.abs()
+        load.abs()
+        change = 4.0 * EPSILON * np.sqrt(max(size.dot(absolute(self.model.stiffness) * size), 0.0))
+        energy = max(strain_energy, 0.0)
+        sums = EPSILON * np.sqrt(len(self.constraints.offset)) * (energy + size.dot(load))
+        return np.sqrt(2.0 * energy) * change + 0.5 * change * change + 4.0 * sums
 
 
 def minimise(comm, model: Model, constraints: Constraints) -> Solution:

@@ -82,7 +82,7 @@ class Builder:
             opposite = None if second is None else [second[k], second[k + 1]]
             pairs.append({
                 "edges": [edge, None if second is None else self.edges_of(second)[k]],
-                "first": ends, "second": opposite, "normal": list(normal),
+                "first": ends, "second": opposite, "normal": list(normal), "direction": [list(normal), list(normal)],
                 "gap": [gap(*self.data["points"][v]) for v in ends],
             })  # fmt: skip
         self.data["contacts"].append({"name": name, "pairs": pairs})
@@ -112,4 +112,26 @@ def two_blocks(n, traction=lambda y: 4.0 - 7.0 * y, gap=0.0, angle=0.0, load=1.0
     b.roller(one["bottom"], vector(0.0, -1.0))
     b.load(one["left"], lambda x, y: vector(load * traction(back(x, y)[1]), 0.0))
     b.contact(one["right"], two["left"], vector(1.0, 0.0), lambda x, y: gap)
+    return b.data
+
+
+def arched_blocks(n, rise, softer=1.0, poisson=0.3):
+    """A block on another of ``softer`` modulus, facets of an arch between them; a pin, and a load from above."""
+    b = Builder()
+
+    def arch(s):
+        return 4.0 * rise * s * (1.0 - s)
+
+    upper, lower = b.body("upper", 1.0, 0.3), b.body("lower", softer, poisson)
+    below = b.block(lower, n, n, lambda s, t: (s, -1.0 + t * (1.0 + arch(s))))
+    above = b.block(upper, n, n, lambda s, t: (s, arch(s) + t * (1.5 - arch(s))))
+    b.clamp(below["bottom"])
+    b.load(above["top"], lambda x, y: (0.0, -0.05 * (0.3 + 2.0 * x)))
+    b.contact(below["top"], above["bottom"], (0.0, 1.0))
+    pairs = b.data["contacts"][0]["pairs"]
+    for pair in pairs:
+        (x0, y0), (x1, y1) = (b.data["points"][v] for v in pair["first"])
+        length = math.hypot(x1 - x0, y1 - y0)
+        pair["normal"] = [-(y1 - y0) / length, (x1 - x0) / length]
+    b.pin(above["top"][n // 2], (1.0, 0.0))
     return b.data

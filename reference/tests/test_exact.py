@@ -145,7 +145,7 @@ def test_resting_block_is_pinned_and_in_balance(solve, degree):
     moment = x @ contact["vertex_reaction"]
     if degree == 2:
         # b1 multiplies 2 s (1 − s), whose first moment is that of the middle of the edge.
-        moment += 0.5 * (x[1:] + x[:-1]) @ contact["edge_reaction"]
+        moment += 0.5 * (x[1:] + x[:-1]) @ np.ravel(contact["edge_reaction"])
     assert moment == pytest.approx(0.5 * (1.0 * 1.0 + (1.0 / 3.0 + 0.5 * 0.5)), rel=1e-9)
 
 
@@ -202,7 +202,7 @@ def test_stiff_block_carried_by_a_soft_one(solve):
     data["bodies"][0]["young"] = 1e6
     assert solve(data, 2)["contacts"][0]["resultant"] == pytest.approx([-0.5, 0.0], abs=0.5e-6)
     data["bodies"][0]["young"] = 1e12
-    with pytest.raises(ReferenceFailure, match="moves rigidly by far more than it deforms"):
+    with pytest.raises(ReferenceFailure, match="rounding hides it"):
         solve(data, 2)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import two_blocks
+from scenes import arched_blocks, two_blocks
 
 ROOT = Path(__file__).parent.parent
 
@@ -73,6 +73,19 @@ def test_two_ranks_give_the_same_numbers(tmp_path, mpirun):
         assert np.array(two["vertex_displacement"]) == pytest.approx(np.array(one["vertex_displacement"]), abs=1e-10)
         reactions = [np.array(found["contacts"][0]["vertex_reaction"]) for found in (one, two)]
         assert reactions[1] == pytest.approx(reactions[0], abs=1e-11)
+
+
+def test_two_ranks_settle_a_curved_contact(tmp_path, mpirun):
+    folders = [tmp_path / "one", tmp_path / "two"]
+    for folder, launcher in zip(folders, [(), mpirun]):
+        folder.mkdir()
+        done = call(folder, data=arched_blocks(8, 0.1), launcher=launcher)
+        assert done.returncode == 0, done.stderr
+    for degree in (1, 2):
+        one, two = (result(folder, degree) for folder in folders)
+        assert (two["ranks"], two["iterations"]) == (2, one["iterations"])
+        assert two["energy"] == pytest.approx(one["energy"], rel=1e-12)
+        assert 0.0 < two["energy_rounding"] < 1e-11 * abs(two["energy"])
 
 
 def test_failure_of_several_ranks_ends_all(tmp_path, mpirun):

@@ -21,7 +21,7 @@ use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap
 use super::upper::{NoUpperBound, NodalValues, admissible};
 use crate::dual::DualSolution;
 use crate::element::{Displacement, StressField};
-use crate::problem::Problem;
+use crate::problem::{Problem, Scales};
 
 /// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
 /// error of at most half a unit.
@@ -37,6 +37,8 @@ pub struct Bracket {
     pub complementary: Complementary,
     /// By how much rounding and what is left of equilibrium can have moved the lower bound.
     pub lower_widening: f64,
+    /// Energies up to this size are none: what rounding leaves of the data of the problem.
+    pub round_off: f64,
     /// The displacement built from the dual solve, where one could be built.
     pub free: Result<UpperBound, NoUpperBound>,
 }
@@ -91,7 +93,12 @@ impl Bracket {
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
         let free = admissible(problem, dual, complementary.lower(), start).map(|v| UpperBound::new(problem, dual, v));
-        Bracket { complementary, lower_widening: rounding + remainder, free }
+        Bracket {
+            complementary,
+            lower_widening: rounding + remainder,
+            round_off: Scales::new(problem).round_off.energy,
+            free,
+        }
     }
 
     /// −Π(λ_h), less what rounding and inexact equilibrium can have cost.
@@ -99,13 +106,17 @@ impl Bracket {
         self.complementary.lower() - self.lower_widening
     }
 
-    /// √(gap / 𝒮(λ_h)) for an upper bound `upper`.
+    /// Whether the gap to the upper bound `upper` is a relative energy-norm error of at most `enough`, or none but round-off
+    /// of the data.
+    pub fn tells(&self, upper: f64, enough: f64) -> bool {
+        upper - self.lower() <= self.round_off || self.relative_error(upper) <= enough
+    }
+
+    /// √(gap / 𝒮(λ_h)) for an upper bound `upper`; zero where there is no stress, and no gap but round-off of the data.
     pub fn relative_error(&self, upper: f64) -> f64 {
-        match (upper - self.lower()).max(0.0) {
-            // Without loads there is no energy to be relative to, and no error.
-            0.0 => 0.0,
-            gap => (gap / self.complementary.strain).sqrt(),
-        }
+        let (gap, strain) = ((upper - self.lower()).max(0.0), self.complementary.strain);
+        // Without stress there is no energy to be relative to, and no error.
+        if gap == 0.0 || (strain <= self.round_off && gap <= self.round_off) { 0.0 } else { (gap / strain).sqrt() }
     }
 }
 

@@ -2,15 +2,15 @@
 //!
 //! −Π(λ) = −½∫ a λ:λ + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g, 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫_{Γτ} P·v, and
 //!
-//! 𝓛(v) + Π(λ) = ½‖c e(v) − λ‖²_a + ∫_{ΓK} (−T_n(λ)) (g − v_n' − v_n'') ds
+//! 𝓛(v) + Π(λ) = ½‖c e(v) − λ‖²_a + ∫_{ΓK} (−t(λ)) (g − (v' − v'')·n̂) ds
 //!
-//! for equilibrated λ and admissible v. The two sides share no arithmetic.
+//! for equilibrated λ with T' = t n̂ on Γ_K and admissible v; t is T_n where the direction of contact n̂ is the normal n'. The two sides share no arithmetic.
 
 use rayon::prelude::*;
 
 use super::strain::{spreads, strains, sub_area};
 use super::sum::Sum;
-use crate::dual::equilibrium::edge_traction;
+use crate::dual::equilibrium::{contact_traction, edge_traction};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
 use crate::element::{Displacement, StressField};
@@ -76,7 +76,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     }
     let mut gap = Sum::default();
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
-        let [ta, tb] = normal_traction(problem, stress, pair);
+        let [ta, tb] = contact_traction(problem, stress, pair);
         let [ga, gb] = pair.gap;
         gap.add(pair.length / 6.0 * (2.0 * ta * ga + ta * gb + tb * ga + 2.0 * tb * gb));
     }
@@ -88,16 +88,6 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
         sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
     }
-}
-
-/// T_n of the first side at the two ends of a pair.
-pub fn normal_traction(problem: &Problem, stress: &StressField, pair: &ContactPair) -> [f64; 2] {
-    let Some(e) = pair.edges[0] else { return [0.0; 2] };
-    let t = edge_traction(problem, stress, e, 0);
-    pair.first.map(|v| {
-        let end = usize::from(problem.mesh.edges[e].vertices[0] != v);
-        t[end][0] * pair.normal[0] + t[end][1] * pair.normal[1]
-    })
 }
 
 /// Potential energy of a displacement.
@@ -193,12 +183,16 @@ pub fn edge_values(problem: &Problem, v: &Displacement, e: usize) -> [[f64; 2]; 
     [u[(side + 1) % 3], u[3 + side], u[(side + 2) % 3]]
 }
 
-/// v_n' + v_n'' at the first end, the middle and the second end of a contact pair.
+/// (v' − v'')·n̂ at the first end, the middle and the second end of a contact pair.
 pub fn jump_values(problem: &Problem, v: &Displacement, pair: &ContactPair) -> [f64; 3] {
-    let n = pair.normal;
+    let n = [0.0, 0.5, 1.0].map(|t| pair.direction.at(t));
     let side = |e: usize, start: usize| {
-        let values = edge_values(problem, v, e).map(|u| u[0] * n[0] + u[1] * n[1]);
-        if problem.mesh.edges[e].vertices[0] == start { values } else { [values[2], values[1], values[0]] }
+        let values = edge_values(problem, v, e);
+        let turned = problem.mesh.edges[e].vertices[0] != start;
+        [0, 1, 2].map(|k| {
+            let u = values[if turned { 2 - k } else { k }];
+            u[0] * n[k][0] + u[1] * n[k][1]
+        })
     };
     let own = pair.edges[0].map_or([0.0; 3], |e| side(e, pair.first[0]));
     match (pair.edges[1], pair.second) {
@@ -215,7 +209,7 @@ pub fn jump_values(problem: &Problem, v: &Displacement, pair: &ContactPair) -> [
 pub struct LocalGap {
     /// ½‖c e(v) − λ‖²_a on each triangle.
     pub triangles: Vec<f64>,
-    /// ∫ (−T_n)(g − v_n' − v_n'') ds on each contact pair, interface by interface.
+    /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, interface by interface.
     pub pairs: Vec<Vec<f64>>,
     /// Their sum.
     pub total: f64,
@@ -233,11 +227,11 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
                 .pairs
                 .iter()
                 .map(|pair| {
-                    let [ta, tb] = normal_traction(problem, stress, pair);
+                    let [ta, tb] = contact_traction(problem, stress, pair);
                     let [ga, gb] = pair.gap;
                     let j = jump_values(problem, v, pair);
                     let open = [ga - j[0], 0.5 * (ga + gb) - j[1], gb - j[2]];
-                    // Simpson's rule is exact for the cubic T_n · (g − jump).
+                    // Simpson's rule is exact for the cubic t · (g − jump): t is constant where n̂ turns.
                     -thickness * pair.length / 6.0 * (ta * open[0] + 2.0 * (ta + tb) * open[1] + tb * open[2])
                 })
                 .collect()

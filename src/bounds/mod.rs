@@ -1,5 +1,6 @@
 //! Two-sided bounds: complementary and potential energy, the free upper bound, and the gap in local terms.
 
+mod at_rest;
 mod bracket;
 pub mod energy;
 mod mid;
@@ -7,8 +8,11 @@ pub mod strain;
 mod sum;
 pub mod upper;
 
+pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound};
 pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 pub use mid::mid_field;
 pub use sum::Sum;
-pub use upper::{NoUpperBound, NodalValues, Violation, admissible, repaired};
+pub use upper::{
+    Hold, Holds, NoUpperBound, NodalValues, Violation, admissible, bernstein, holds, repaired, supports_agree,
+};

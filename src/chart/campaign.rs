@@ -2,7 +2,6 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::data::{Chart, Cold, Run, SCHEMA_VERSION, SceneChart, Status};
 use super::judge::judge;
@@ -26,6 +25,8 @@ pub struct Plan {
     pub reference: f64,
     /// Threads.
     pub threads: usize,
+    /// Bytes that a run may take; four fifths of what is available then where it is missing.
+    pub memory: Option<u64>,
 }
 
 impl Default for Plan {
@@ -37,6 +38,7 @@ impl Default for Plan {
             budget: 60.0,
             reference: REFERENCE_ADAPTIVE,
             threads: 1,
+            memory: None,
         }
     }
 }
@@ -186,11 +188,14 @@ impl Campaign<'_> {
         option("--refine", refine.to_string());
         option("--threads", self.plan.threads.to_string());
         option("--seconds", budget.to_string());
+        if let Some(memory) = self.plan.memory {
+            option("--max-memory", memory.to_string());
+        }
         if let Some(tolerance) = tolerance {
             option("--tolerance", tolerance.to_string());
             option("--max-triangles", MOST_TRIANGLES.to_string());
         }
-        let limits = Limits { budget: Duration::from_secs_f64(budget), cache };
+        let limits = Limits { budget: crate::process::limit(budget), cache };
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
 
@@ -211,7 +216,7 @@ impl Campaign<'_> {
     /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.
     fn cold(&self, scene: &Scene, method: Method) -> Result<Option<Cold>, CampaignError> {
         (self.progress)(format!("{}: first use of {}", scene.name, method.name()));
-        let Ok(cache) = tempfile::tempdir() else { return Ok(None) };
+        let Ok(cache) = crate::process::Scratch::new() else { return Ok(None) };
         let phase = |name: &str| -> Result<Option<[f64; 2]>, CampaignError> {
             let ended = self.once(scene, method, 0, None, REFERENCE_BUDGETS * self.plan.budget, Some(cache.path()))?;
             let Ended::Told(results) = ended else { return Ok(None) };

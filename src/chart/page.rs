@@ -21,7 +21,7 @@ pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {
         @for scene in &chart.scenes { (one(scene, figures)) }
         (reading())
     };
-    document("Accuracy against time", &[PLAIN], body)
+    document("Accuracy against time", &[PLAIN], None, body)
 }
 
 fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {

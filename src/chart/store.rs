@@ -1,11 +1,11 @@
 //! Files of a chart, each whole or not at all.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::data::{Chart, SCHEMA_VERSION};
 use super::figure::{Axis, error_figure};
 use super::{csv, markdown, page, phases};
+use crate::report::folder::replace;
 
 /// Why the files of a chart could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -40,18 +40,10 @@ pub enum StoreError {
 pub(crate) fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
     let path = folder.join(name);
     let io = |source: std::io::Error| StoreError::Io { path: path.clone(), source };
-    let parent = path.parent().unwrap_or(folder);
-    std::fs::create_dir_all(parent).map_err(io)?;
-    let mut file = tempfile::NamedTempFile::new_in(parent).map_err(io)?;
-    file.write_all(bytes).map_err(io)?;
-    // Temporary files are private; results are for everybody who may read the folder.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644)).map_err(io)?;
-    }
-    file.persist(&path).map_err(|e| io(e.error))?;
-    Ok(())
+    let (Some(parent), Some(file)) = (path.parent(), path.file_name().and_then(|name| name.to_str())) else {
+        return Err(io(std::io::ErrorKind::InvalidInput.into()));
+    };
+    replace(parent, &[(file, bytes.to_vec())]).map_err(|e| io(std::io::Error::other(e)))
 }
 
 /// Saves `chart.json`.

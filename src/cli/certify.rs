@@ -8,6 +8,7 @@ use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::{Comparison, compare};
 use crate::problem::Note;
+use crate::process::limit;
 use crate::study::ForeignField;
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
@@ -44,11 +45,13 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("certify", &args.scene, &args.solve, args.run.quiet)?;
     refuse_refinement(&args.solve)?;
-    let folder = args.run.folder(&session.scene);
+    let folder = args.run.report_folder(&session.scene)?;
     let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
     session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let field = ForeignField::read(&args.displacement, args.field.as_deref()).map_err(refused)?;
+    let field = ForeignField::read(&args.displacement, args.field.as_deref(), limit(args.solve.reading_seconds))
+        .map_err(refused)?;
+    args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
     let limits = Limits { max_triangles: None, max_seconds: None };
     let run = session.solve(&args.solve, &limits, &folder)?;
@@ -62,7 +65,10 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
+    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &limits, &allow)?;
     let particulars = Particulars {
+        sharpened,
+        enough: Some(enough),
         notes: repairs(&comparison),
         seconds: vec![("reading the displacement", reading)],
         components: vec![(field.name(), format!("sha256:{}", field.sha256()))],

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::value_parser;
 
-use super::options::{RunOptions, positive};
+use super::options::{MemoryOptions, RunOptions, positive};
 use super::progress::Progress;
-use super::{CliError, Exit};
+use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Plan, Status, fastest};
 use crate::measure::Method;
 use crate::scene::Scene;
@@ -45,6 +45,9 @@ pub struct Args {
     /// Threads to use
     #[arg(long, value_name = "N", default_value_t = THREADS, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,
+    /// How much memory a run may take.
+    #[command(flatten)]
+    pub memory: MemoryOptions,
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
@@ -62,6 +65,7 @@ impl Args {
             levels: self.refine as usize + 1,
             repeats: self.repeats as usize,
             threads: self.threads as usize,
+            memory: self.memory.max_memory,
             ..Plan::default()
         };
         if self.reduced {
@@ -88,6 +92,7 @@ impl Args {
             words.extend((value != usual).then(|| format!("--{name} {value}")));
         }
         words.extend(self.budget.map(|s| format!("--budget {s}")));
+        words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
         words.join(" ")
     }
 }
@@ -129,10 +134,10 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     chart::write(&chart, &folder).map_err(|e| failed(e.into()))?;
     drop(progress);
     if let Some(wanted) = args.wanted {
-        print!("{}", choices(&chart, wanted));
+        say::line(choices(&chart, wanted).trim_end());
     }
     if !args.run.quiet {
-        println!("chart: {}", Path::new(&folder).join("chart.html").display());
+        say::line(&format!("chart: {}", Path::new(&folder).join("chart.html").display()));
     }
     Ok(Exit::Agree)
 }

@@ -5,16 +5,17 @@ use std::fmt;
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 
 use super::exit::Exit;
+use super::say::shown;
 use crate::scene::SceneError;
 
 /// An error to show, with its exit code.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// The scene was refused.
-    #[error("{}", .0.found())]
+    #[error("{}", shown(&.0.found()))]
     Scene(#[from] SceneError),
     /// The command, for an answer that ends with `exit`.
-    #[error("{message}")]
+    #[error("{}", shown(message))]
     Stopped {
         /// What was found, with the file it concerns.
         message: String,
@@ -43,8 +44,10 @@ impl CliError {
 impl Diagnostic for CliError {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         match self {
-            CliError::Scene(error) => error.help(),
-            CliError::Stopped { remedy, .. } => (!remedy.is_empty()).then(|| Box::new(remedy) as Box<dyn fmt::Display>),
+            CliError::Scene(error) => Some(Box::new(shown(&error.remedy()))),
+            CliError::Stopped { remedy, .. } => {
+                (!remedy.is_empty()).then(|| Box::new(shown(remedy)) as Box<dyn fmt::Display>)
+            }
         }
     }
 
@@ -57,7 +60,16 @@ impl Diagnostic for CliError {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         match self {
-            CliError::Scene(error) => error.labels(),
+            CliError::Scene(error) => {
+                let fit = |label: LabeledSpan| {
+                    let (words, span) = (label.label().map(shown), *label.inner());
+                    match label.primary() {
+                        true => LabeledSpan::new_primary_with_span(words, span),
+                        false => LabeledSpan::new_with_span(words, span),
+                    }
+                };
+                Some(Box::new(error.labels()?.map(fit)))
+            }
             CliError::Stopped { .. } => None,
         }
     }

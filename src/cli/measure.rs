@@ -1,14 +1,16 @@
 //! `hypercircle measure`: one run for a chart or a stability matrix, printed as JSON. Not for people.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Subcommand, value_parser};
 
 use super::chart::known;
-use super::options::positive;
-use super::{CliError, Exit};
+use super::options::{MemoryOptions, positive};
+use super::{CliError, Exit, threads};
 use crate::measure::{Clock, Method, Settings, measure};
 use crate::problem::Problem;
+use crate::process::end_with_parent;
 use crate::scene::{MeshSource, Scene};
 use crate::stability;
 
@@ -64,6 +66,9 @@ pub struct Options {
     /// Triangles at which an adaptive run stops
     #[arg(long)]
     pub max_triangles: Option<usize>,
+    /// How much memory may be taken.
+    #[command(flatten)]
+    pub memory: MemoryOptions,
     /// When this process was asked for, in nanoseconds since 1970
     #[arg(long)]
     pub spawned: Option<u128>,
@@ -76,12 +81,16 @@ pub struct Options {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let (What::Scene { options, .. } | What::Regime { options, .. }) = &args.what;
     let clock = Clock::since(options.spawned);
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(options.threads as usize).build_global();
+    if options.spawned.is_some() {
+        end_with_parent();
+    }
+    let threads = threads::start(options.threads);
     let mut settings = Settings {
-        threads: options.threads as usize,
+        threads,
         tolerance: options.tolerance,
         max_triangles: options.max_triangles,
         seconds: options.seconds,
+        budget: options.memory.budget(threads),
         step_length: None,
     };
     let refined = |problem: Problem| problem.refine_uniform(options.refine as usize).map_err(|e| e.to_string());
@@ -108,6 +117,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     };
     let text = serde_json::to_string(&results)
         .map_err(|e| CliError::stopped(Exit::Failed, format!("results cannot be written: {e}"), ""))?;
-    println!("{text}");
-    Ok(Exit::Agree)
+    match writeln!(std::io::stdout(), "{text}") {
+        Ok(()) => Ok(Exit::Agree),
+        Err(e) => Err(CliError::stopped(Exit::Failed, format!("results cannot be written: {e}"), "")),
+    }
 }

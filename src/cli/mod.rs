@@ -9,13 +9,16 @@ pub mod error;
 pub mod exit;
 pub mod judge;
 pub mod measure;
+pub mod memory;
 pub mod options;
 pub mod progress;
+pub mod say;
 pub mod schema;
 pub mod session;
 pub mod show;
 pub mod solve;
 pub mod stability;
+pub mod threads;
 pub mod verify;
 
 use std::process::ExitCode;
@@ -24,6 +27,8 @@ use clap::{Parser, Subcommand};
 
 pub use error::CliError;
 pub use exit::Exit;
+
+use crate::process::signals;
 
 /// Guaranteed two-sided energy bounds for plane frictionless contact, and a displacement model to compare with.
 #[derive(Debug, Parser)]
@@ -66,6 +71,7 @@ pub fn main() -> ExitCode {
         }
     };
     show::install_panic_message();
+    signals::watch();
     match std::panic::catch_unwind(|| run(&cli.command)) {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
@@ -106,10 +112,12 @@ mod tests {
     #[test]
     fn options_arrive() {
         let line = "hypercircle verify a.toml --method active-set --refine 2 --tolerance 0.01 --threads 2 --out o -q \
-                    --baseline b.json --accept --allow energy=1e-3 --allow contact=0 --max-triangles 9 --max-seconds 1.5";
+                    --baseline b.json --accept --allow energy=1e-3 --allow contact=0 --max-triangles 9 --max-seconds 1.5 \
+                    --max-memory 2G";
         let Ok(Command::Verify(args)) = parse(line) else { panic!("{:?}", parse(line)) };
         assert_eq!(args.scene.to_str(), Some("a.toml"));
         assert_eq!((args.solve.method, args.solve.refine, args.solve.threads), (Method::ActiveSet, 2, 2));
+        assert_eq!(args.solve.memory.max_memory, Some(2_000_000_000));
         assert_eq!((args.limits.max_triangles, args.limits.max_seconds), (Some(9), Some(1.5)));
         let allowed: Vec<_> = args.judge.allow.iter().map(|a| (a.name.as_str(), a.value)).collect();
         assert_eq!(allowed, [("energy", 1e-3), ("contact", 0.0)]);
@@ -128,6 +136,8 @@ mod tests {
             "hypercircle solve a.toml --threads 0",
             "hypercircle solve a.toml --max-triangles 0",
             "hypercircle solve a.toml --max-seconds inf",
+            "hypercircle solve a.toml --max-memory 0",
+            "hypercircle chart a.toml --max-memory lots",
             "hypercircle solve a.toml --method newton",
             "hypercircle solve a.toml --baseline b.json",
             "hypercircle verify a.toml --accept",

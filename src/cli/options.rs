@@ -5,6 +5,9 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum, value_parser};
 
+use super::{CliError, Exit};
+use crate::budget::{self, Budget};
+use crate::report;
 use crate::scene::Scene;
 
 /// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
@@ -46,9 +49,35 @@ pub struct SolveOptions {
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
     #[arg(long, value_name = "X", value_parser = positive)]
     pub tolerance: Option<f64>,
-    /// Threads to use
+    /// Threads to use, at most one for each processor
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,
+    /// Give meshio at most S seconds to read a file
+    #[arg(long, value_name = "S", default_value_t = 120.0, value_parser = positive)]
+    pub reading_seconds: f64,
+    /// How much memory may be taken.
+    #[command(flatten)]
+    pub memory: MemoryOptions,
+}
+
+/// How much memory may be taken.
+#[derive(Debug, Clone, Args)]
+pub struct MemoryOptions {
+    /// Memory to take at most, for instance 500M or 2G; four fifths of what is available where it is missing.
+    #[arg(
+        long,
+        value_name = "SIZE",
+        value_parser = budget::parse,
+        help = "Take at most SIZE of memory, for instance 500M or 2G [default: four fifths of what is available]"
+    )]
+    pub max_memory: Option<u64>,
+}
+
+impl MemoryOptions {
+    /// What was asked for, or what is available now to a run with so many threads.
+    pub fn budget(&self, threads: usize) -> Budget {
+        self.max_memory.map_or_else(|| Budget::of_available(threads), Budget::of)
+    }
 }
 
 /// Where adaptive refinement stops at the latest.
@@ -82,6 +111,17 @@ impl RunOptions {
     /// The folder for results about `scene`. It need not exist.
     pub fn folder(&self, scene: &Scene) -> PathBuf {
         self.folder_named(&scene.name)
+    }
+
+    /// The folder for a report on `scene`, which can be written to.
+    ///
+    /// # Errors
+    /// Something else has its place.
+    pub fn report_folder(&self, scene: &Scene) -> Result<PathBuf, CliError> {
+        let folder = self.folder(scene);
+        let refused = |e: report::ReportError| CliError::stopped(Exit::BadInput, e.to_string(), "");
+        report::folder::refuse(&folder, report::NAMES).map_err(refused)?;
+        Ok(folder)
     }
 
     /// The folder for results called `name`.

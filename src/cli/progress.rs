@@ -1,6 +1,6 @@
-//! A sign of life for runs of more than two seconds, on a terminal only.
+//! A sign of life for runs of more than two seconds, on a terminal only, and remarks that cannot wait for the report.
 
-use std::io::{IsTerminal, stderr};
+use std::io::{IsTerminal, Write, stderr};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -11,6 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// What a run is doing, shown after two seconds.
 pub struct Progress {
     bar: ProgressBar,
+    quiet: bool,
 }
 
 impl Progress {
@@ -21,7 +22,8 @@ impl Progress {
             let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
             let late = bar.downgrade();
-            std::thread::spawn(move || {
+            // Without the thread nothing is shown, and nothing else is lost.
+            let _ = std::thread::Builder::new().spawn(move || {
                 std::thread::sleep(PATIENCE);
                 if let Some(bar) = late.upgrade().filter(|b| !b.is_finished()) {
                     bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -29,12 +31,20 @@ impl Progress {
                 }
             });
         }
-        Progress { bar }
+        Progress { bar, quiet }
     }
 
     /// Names the present phase.
     pub fn phase(&self, what: impl Into<std::borrow::Cow<'static, str>>) {
         self.bar.set_message(what);
+    }
+
+    /// Says at once, as a line of its own, what whoever waits should know.
+    pub fn remark(&self, what: &str) {
+        if !self.quiet {
+            // Nobody need be listening.
+            self.bar.suspend(|| writeln!(stderr(), "{what}")).unwrap_or_default();
+        }
     }
 }
 

@@ -3,15 +3,21 @@
 use std::path::Path;
 use std::time::Instant;
 
+use super::memory::{COARSER, enough, too_fine};
 use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
-use super::{CliError, Exit};
-use crate::compare::Comparison;
-use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Uzawa};
+use super::{CliError, Exit, say, threads};
+use crate::budget::Budget;
+use crate::compare::{Allowances, Comparison, SHARP};
+use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
+use crate::mesh;
 use crate::problem::{Note, Problem};
+use crate::process::limit;
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Scene};
-use crate::study::{self, Adapted, Certified, Fields, Findings, Goal, StudyError, assemble};
+use crate::study::{
+    self, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
+};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -25,6 +31,7 @@ pub struct Session {
     pub command: &'static str,
     quiet: bool,
     threads: usize,
+    budget: Budget,
 }
 
 /// The dual side of a command.
@@ -40,6 +47,10 @@ pub struct DualRun {
 /// What a command tells beside the dual run and its comparison.
 #[derive(Default)]
 pub struct Particulars {
+    /// A sharper bracket, where that of the run could not tell two models apart.
+    pub sharpened: Option<Sharpened>,
+    /// The guaranteed relative error that can, where models are compared.
+    pub enough: Option<f64>,
     /// Remarks of its own.
     pub notes: Vec<Note>,
     /// Its phases.
@@ -58,10 +69,9 @@ impl Session {
     pub fn open(command: &'static str, scene: &Path, solve: &SolveOptions, quiet: bool) -> Result<Self, CliError> {
         let start = Instant::now();
         let scene = Scene::read(scene)?;
-        let threads = solve.threads as usize;
-        // A second command in one process keeps the pool of the first.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        Ok(Session { scene, progress: Progress::new(quiet), start, command, quiet, threads })
+        let threads = threads::start(solve.threads);
+        let budget = enough(solve.memory.budget(threads))?;
+        Ok(Session { scene, progress: Progress::new(quiet), start, command, quiet, threads, budget })
     }
 
     /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`.
@@ -70,12 +80,13 @@ impl Session {
     /// Bad input, a solver that failed, or no equilibrium.
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
         self.progress.phase("reading the mesh");
-        let problem = self.problem(solve)?;
+        let method = method(solve.method);
+        let admission = Admission::new(method.as_ref(), self.budget);
+        let problem = self.problem(solve, &admission)?;
         let read = self.start.elapsed().as_secs_f64();
         let phase = |triangles: usize| self.progress.phase(format!("solving in stresses on {triangles} triangles"));
         phase(problem.mesh.triangles.len());
-        let method = method(solve.method);
-        let options = Options { threads: self.threads, ..Options::default() };
+        let options = Options { threads: self.threads, budget: self.budget, ..Options::default() };
         let run = match solve.tolerance {
             None => study::certify(problem, method.as_ref(), &options).map(|certified| DualRun {
                 certified,
@@ -85,9 +96,18 @@ impl Session {
             Some(tolerance) => {
                 let Limits { max_triangles, max_seconds } = *limits;
                 let goal = Goal { max_triangles, max_seconds, ..Goal::new(tolerance) };
+                let first = Size::of(&problem);
+                let (mut rows, mut warned) = (Vec::new(), false);
                 let told = |row: &HistoryRow| {
                     let bound = 100.0 * row.relative_error_bound;
-                    let text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
+                    let mut text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
+                    rows.push(*row);
+                    if let Some(pace) = outlook(&rows, &goal, &admission, first.grown(row.triangles as f64)) {
+                        if !std::mem::replace(&mut warned, true) {
+                            self.progress.remark(&format!("{} triangles: {pace}", row.triangles));
+                        }
+                        text = format!("{text}; {pace}");
+                    }
                     self.progress.phase(text);
                 };
                 study::adapt(problem, method.as_ref(), &options, &goal, told)
@@ -99,7 +119,7 @@ impl Session {
         Ok(run)
     }
 
-    fn problem(&self, solve: &SolveOptions) -> Result<Problem, CliError> {
+    fn problem(&self, solve: &SolveOptions, admission: &Admission<'_>) -> Result<Problem, CliError> {
         let refused = |e: crate::problem::ProblemError| {
             CliError::stopped(Exit::BadInput, format!("{}: {e}", self.scene.path.display()), "")
         };
@@ -108,7 +128,20 @@ impl Session {
         if let (Some(_), MeshSource::Geometry { size, .. }) = (solve.tolerance, &mut scene.mesh) {
             coarsened = size.take();
         }
-        let problem = Problem::load(scene).map_err(refused)?;
+        if let Some(triangles) = mesh::expected_triangles(&scene) {
+            let size = Size { triangles, distinct: triangles, contact_ends: 0.0 };
+            let cause = match &scene.mesh {
+                MeshSource::Geometry { size: Some(size), .. } => format!("geometry.size = {size:?}"),
+                _ => "geometry.polygons".to_string(),
+            };
+            admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
+        }
+        let problem = Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)?;
+        if solve.refine > 0 {
+            let size = Size::of(&problem).refined(solve.refine);
+            let cause = format!("--refine {}", solve.refine);
+            admission.admit(size, None).map_err(|excess| too_fine(&self.scene, &cause, size.triangles, excess))?;
+        }
         let mut problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
         problem.notes.extend(coarsened.map(|size| Note {
             weakens_guarantee: false,
@@ -137,9 +170,42 @@ impl Session {
             StudyError::Dual(DualError::Infeasible { .. }) => {
                 CliError::stopped(Exit::NoEquilibrium, message, "hold the body with a support, or change the load")
             }
-            StudyError::Mesh(_) => CliError::stopped(Exit::BadInput, message, ""),
+            StudyError::Dual(DualError::TooLarge { .. }) => CliError::stopped(Exit::Failed, message, COARSER),
+            StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {
+                CliError::stopped(Exit::BadInput, message, "")
+            }
             StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
         }
+    }
+
+    /// Refines the stress side until its bracket can tell the models of `comparison` apart, and holds them against it.
+    ///
+    /// # Errors
+    /// None that solving on the first mesh did not have.
+    pub fn sharpen(
+        &self,
+        run: &DualRun,
+        comparison: &mut Comparison,
+        solve: &SolveOptions,
+        limits: &Limits,
+        allow: &Allowances,
+    ) -> Result<(Option<Sharpened>, f64), CliError> {
+        let enough = allow.given("bracket/sharpness").unwrap_or(SHARP);
+        let Limits { max_triangles, max_seconds } = *limits;
+        let goal = Goal { max_triangles, max_seconds, ..Goal::new(enough) };
+        let told = |row: &HistoryRow| {
+            let bound = 100.0 * row.relative_error_bound;
+            self.progress
+                .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
+        };
+        let method = method(solve.method);
+        let options = Options { threads: self.threads, budget: self.budget, ..Options::default() };
+        let sharpened = study::sharpen(&run.certified, comparison, method.as_ref(), &options, goal, told)
+            .map_err(|error| CliError::stopped(Exit::Failed, format!("{}: {error}", self.scene.path.display()), ""))?;
+        if let Some(finer) = &sharpened {
+            comparison.against_finer(&finer.certified.bracket, allow);
+        }
+        Ok((sharpened, enough))
     }
 
     /// Assembles the dossier of a run with its comparison, writes the files and says the verdict.
@@ -153,8 +219,13 @@ impl Session {
         particulars: Particulars,
         folder: &Path,
     ) -> Result<Exit, CliError> {
-        let DualRun { certified, history, stopped } = run;
-        let Particulars { notes, mut seconds, components, failure } = particulars;
+        let DualRun { certified, mut history, stopped } = run;
+        let Particulars { sharpened, enough, mut notes, mut seconds, components, failure } = particulars;
+        let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
+            notes.push(sharpened_note(&certified, stopped));
+            history.extend(meshes);
+            certified
+        });
         seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
         let fields = Fields::new(&certified, comparison);
@@ -163,6 +234,8 @@ impl Session {
                 command: self.command,
                 certified: &certified,
                 comparison,
+                finer: finer.as_ref(),
+                enough,
                 history,
                 notes: stopped.into_iter().chain(notes).collect(),
                 threads: self.threads,
@@ -180,19 +253,32 @@ impl Session {
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         if !self.quiet {
             let report = &dossier.report;
-            println!("{}", report.verdict);
+            say::line(&report.verdict);
             for check in report.checks.iter().filter(|c| !c.passed) {
-                println!("  failed: {}: {}", check.name, check.why);
+                say::line(&format!("  failed: {}: {}", check.name, check.why));
             }
-            println!("report: {}", folder.join("report.html").display());
+            for remark in report.remarks.iter().filter(|c| !c.passed) {
+                say::line(&format!("  worth a look: {}", remark.name));
+            }
+            say::line(&format!("report: {}", folder.join("report.html").display()));
         }
         Ok(match dossier.report.status {
             Status::Agree => Exit::Agree,
-            Status::Disagree => Exit::Disagree,
+            Status::Disagree | Status::Undecided => Exit::Disagree,
             Status::Infeasible => Exit::NoEquilibrium,
             Status::Failed => Exit::Failed,
         })
     }
+}
+
+/// How the sharper bracket came about.
+fn sharpened_note(finer: &Certified, stopped: Option<String>) -> Note {
+    let triangles = finer.problem.mesh.triangles.len();
+    let how = format!(
+        "The bracket of the mesh as given could not tell two models apart. The stress side alone was refined to {triangles} \
+         triangles; the energy bounds are from there, contacts and stresses are compared on the mesh as given."
+    );
+    Note { weakens_guarantee: false, text: stopped.map_or(how.clone(), |reason| format!("{how} {reason}")) }
 }
 
 /// The solver of that name.

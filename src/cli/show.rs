@@ -55,6 +55,13 @@ pub fn install_panic_message() {
         let payload = panic.payload();
         let text = payload.downcast_ref::<&str>().copied();
         let what = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
+        if what.contains("failed to spawn thread") {
+            let _ = writeln!(
+                std::io::stderr(),
+                "  x a thread could not be started ({what})\n  help: allow more threads or memory (ulimit -u, ulimit -v)"
+            );
+            return;
+        }
         let version = env!("CARGO_PKG_VERSION");
         let _ = writeln!(
             std::io::stderr(),

@@ -31,7 +31,7 @@ pub struct Args {
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("solve", &args.scene, &args.solve, args.run.quiet)?;
-    let folder = args.run.folder(&session.scene);
+    let folder = args.run.report_folder(&session.scene)?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let (certified, allow) = (&run.certified, Allowances::default());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);

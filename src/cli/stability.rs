@@ -3,9 +3,9 @@
 use clap::value_parser;
 
 use super::chart::{known as known_method, quoted, this_program};
-use super::options::{RunOptions, positive};
+use super::options::{MemoryOptions, RunOptions, positive};
 use super::progress::Progress;
-use super::{CliError, Exit};
+use super::{CliError, Exit, say};
 use crate::measure::Method;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
 
@@ -34,6 +34,9 @@ pub struct Args {
     /// Runs at a time [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
+    /// How much memory all runs at a time may take.
+    #[command(flatten)]
+    pub memory: MemoryOptions,
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
@@ -47,6 +50,7 @@ impl Args {
         words.extend(self.regime.iter().map(|r| format!("--regime {}", r.id)));
         words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
         words.extend(self.budget.map(|s| format!("--budget {s}")));
+        words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
         words.join(" ")
     }
 }
@@ -76,6 +80,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         reduced: args.reduced,
         workers: args.threads.map_or(processors, |n| n as usize),
         budget: args.budget.unwrap_or(if args.reduced { BUDGET_REDUCED } else { BUDGET }),
+        memory: args.memory.budget(1),
         program: &program,
         command: args.command(),
         journal: &journal,
@@ -85,11 +90,11 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     stability::write(&matrix, &folder).map_err(|e| failed(e.to_string()))?;
     drop(progress);
     if !args.run.quiet {
-        println!("{}", markdown(&matrix));
-        println!("stability: {}", folder.join("stability.html").display());
+        say::line(&markdown(&matrix));
+        say::line(&format!("stability: {}", folder.join("stability.html").display()));
     }
     let complaints = complaints(&matrix);
-    complaints.iter().for_each(|line| eprintln!("{line}"));
+    complaints.iter().for_each(|line| say::complaint(line));
     Ok(if complaints.is_empty() { Exit::Agree } else { Exit::Disagree })
 }
 

@@ -1,13 +1,13 @@
 //! `hypercircle verify`: dual and primal model of one scene, compared.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
 use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};
+use crate::process::limit;
 use crate::study::{candidates, pins, tolerance_check};
 
 /// Options of `verify`.
@@ -54,7 +54,8 @@ pub enum Planted {
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("verify", &args.scene, &args.solve, args.run.quiet)?;
-    let folder = args.run.folder(&session.scene);
+    let folder = args.run.report_folder(&session.scene)?;
+    args.judge.refuse_early(&session.scene, &["FEniCSx P1", "FEniCSx P2"])?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
@@ -66,7 +67,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
             Planted::DropRow => primal::Sabotage::DropRow,
         }),
         ranks: args.ranks.map(|n| n as usize),
-        timeout: Duration::from_secs_f64(args.primal_seconds),
+        timeout: limit(args.primal_seconds),
         ..primal::Options::default()
     };
     let solutions = primal::run(&certified.problem, &pins(&certified.statics), &options);
@@ -91,7 +92,16 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
+    let (sharpened, enough) = match comparison.judged.is_empty() {
+        true => (None, None),
+        false => {
+            let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &args.limits, &allow)?;
+            (sharpened, Some(enough))
+        }
+    };
     let particulars = Particulars {
+        sharpened,
+        enough,
         seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
         components,
         failure: failure.as_ref().map(ToString::to_string),

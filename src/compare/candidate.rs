@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::balance::Balance;
 use crate::bounds::{Bracket, NoUpperBound, UpperBound, Violation, repaired};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
@@ -24,6 +25,8 @@ pub struct Candidate {
     pub middle: Vec<[f64; 2]>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
+    /// ½a(u_h, u_h) as the program reports it.
+    pub reported_strain: Option<f64>,
     /// Whether it is meant to be the minimiser over its space, so that the identities of a solution hold.
     pub is_solution: bool,
     /// Contact reactions, interface by interface.
@@ -43,8 +46,9 @@ pub struct Reactions {
     pub vertices: Vec<usize>,
     /// R ≥ 0 conjugate to the jump at each of them.
     pub vertex: Vec<f64>,
-    /// R ≥ 0 conjugate to the middle Bernstein coefficient of each pair (degree 2).
-    pub edge: Option<Vec<f64>>,
+    /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree 2): one, or two where the direction of
+    /// contact turns.
+    pub edge: Option<Vec<Vec<f64>>>,
     /// Force on the first side.
     pub resultant: [f64; 2],
 }
@@ -60,6 +64,8 @@ pub struct Judged {
     pub violation: Violation,
     /// The nearest admissible field; its energy is the upper bound.
     pub admissible: UpperBound,
+    /// How well it balances the loads in its own space, where it is meant to be a solution.
+    pub balance: Option<Balance>,
 }
 
 /// Solvers leave supports and contact to their own accuracy; a field within this of an admissible one is one.
@@ -73,9 +79,12 @@ impl Judged {
     pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
         let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle)?;
         let field = Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle);
+        let field = UpperBound::new(problem, dual, field);
+        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
         Ok(Judged {
-            field: UpperBound::new(problem, dual, field),
             admissible: UpperBound::new(problem, dual, mended),
+            balance: balance.transpose()?,
+            field,
             violation,
             candidate,
         })

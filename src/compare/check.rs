@@ -18,7 +18,8 @@ pub struct Check {
     pub allowed: f64,
     /// allowed − difference.
     pub margin: Option<f64>,
-    /// Whether it passed; a check that could not be made has not.
+    /// Whether it passed; a check that could not be made has not. One whose tolerance was chosen by nobody but this
+    /// program is a remark and no part of the verdict, see [`Check::decides`].
     pub passed: bool,
     /// One sentence: what is compared and where `allowed` comes from.
     pub why: String,
@@ -34,11 +35,28 @@ pub enum Basis {
     Guaranteed,
     /// Round-off of an identity that holds exactly.
     RoundOff,
-    /// Chosen: theory leaves it open.
+    /// Chosen by this program: theory leaves it open, and what exceeds it is worth a look, no more.
     Chosen,
+    /// Asked for by the user: a tolerance, an allowance, a stored result to be reproduced.
+    Asked,
 }
 
 impl Check {
+    /// Whether it takes part in the verdict: what theory or the user says does, what this program chose does not.
+    pub fn decides(&self) -> bool {
+        self.basis != Basis::Chosen
+    }
+
+    /// The same with `allowed` in place of the tolerance, as the user asks.
+    pub fn asked(mut self, allowed: f64) -> Self {
+        self.allowed = allowed;
+        self.margin = self.difference.map(|difference| allowed - difference);
+        self.passed =
+            self.value.is_some() && self.reference.is_some() && self.margin.is_some_and(|margin| margin >= 0.0);
+        self.basis = Basis::Asked;
+        self
+    }
+
     /// A check of `|value − reference| ≤ allowed`.
     pub fn equal(name: &str, value: f64, reference: f64, allowed: f64, basis: Basis, why: impl Into<String>) -> Self {
         Self::with_difference(name, value, reference, (value - reference).abs(), allowed, basis, why)

@@ -1,11 +1,12 @@
 //! Energy checks: the bracket, its order, and the identities a solution satisfies.
 
+use super::balance::Balance;
 use super::candidate::{ADMISSIBLE, Judged};
-use super::tolerance::Allowances;
+use super::tolerance::chosen;
 use super::{Basis, Check};
-use crate::bounds::Bracket;
+use crate::bounds::{Bracket, UpperBound, Violation};
 use crate::dual::DualSolution;
-use crate::problem::Problem;
+use crate::problem::{Problem, Scales};
 
 /// Round-off allowed in an identity between energies, relative to 𝒮(λ_h).
 const IDENTITY: f64 = 1e-9;
@@ -13,30 +14,22 @@ const IDENTITY: f64 = 1e-9;
 const SOLVER: f64 = 1e-7;
 
 /// Checks on the dual solution and its own bracket.
-pub fn dual_checks(dual: &DualSolution, bracket: &Bracket, best_upper: f64, allow: &Allowances) -> Vec<Check> {
-    let name = "bracket/sharpness";
-    let mut checks = vec![Check::at_most(
-        name,
-        bracket.relative_error(best_upper),
-        0.0,
-        allow.chosen(name),
-        Basis::Chosen,
-        "The guaranteed relative energy-norm error has to be small enough for the comparison to mean something.",
-    )];
+pub fn dual_checks(scales: &Scales, dual: &DualSolution, bracket: &Bracket, best_upper: f64) -> Vec<Check> {
+    let mut checks = vec![sharpness(bracket, best_upper)];
     let name = "dual/equilibrium";
     checks.push(Check::at_most(
         name,
         dual.equilibrium.residual(),
         0.0,
-        allow.get(name, dual.accuracy),
+        dual.accuracy,
         Basis::RoundOff,
         "Tractions are continuous, match the loads, and contacts only push: measured on the stresses, relative to the \
          applied load. What is left of equilibrium has been taken off the lower bound.",
     ));
     match &bracket.free {
         Ok(free) => {
-            checks.push(order("free bound", bracket, free.upper(), allow));
-            checks.push(two_ways("free bound", bracket, free.potential.total(), free.local.total, allow));
+            checks.push(order("free bound", bracket, free.upper()));
+            checks.push(two_ways("free bound", scales, bracket, free));
         }
         Err(reason) => checks.push(Check::not_made(
             "energy/lower-below/free bound",
@@ -49,36 +42,52 @@ pub fn dual_checks(dual: &DualSolution, bracket: &Bracket, best_upper: f64, allo
 }
 
 /// Checks on one displacement solution.
-pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allow: &Allowances) -> Vec<Check> {
+pub fn primal_checks(problem: &Problem, scales: &Scales, bracket: &Bracket, judged: &Judged) -> Vec<Check> {
     let who = judged.candidate.name.as_str();
-    let scale = bracket.complementary.strain;
     let own = judged.field.potential;
+    let scale = bracket.complementary.strain.max(own.magnitude);
+    let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
     let name = format!("admissible/{who}");
+    let Violation { support, penetration, at_vertices } = judged.violation;
+    // Where the direction of contact turns the jump of a P1 field is quadratic, and its minimiser bounds the vertices alone.
+    let at_vertices_alone = linear_where_contact_turns(problem, judged);
+    let (depth, where_to) = match at_vertices_alone {
+        true => {
+            (at_vertices, format!("at vertices (by {at_vertices:.1e}; by {penetration:.1e} between them, drawn back)"))
+        }
+        false => (penetration, format!("between nodes too (by {penetration:.1e})")),
+    };
     checks.push(Check::at_most(
         &name,
-        judged.violation.largest(),
+        support.max(depth),
         0.0,
-        allow.get(&name, ADMISSIBLE),
+        ADMISSIBLE,
         Basis::RoundOff,
         format!(
-            "Supports are met (off by {:.1e}) and nothing penetrates, between nodes too (by {:.1e}), relative to the \
-             largest displacement.",
-            judged.violation.support, judged.violation.penetration
+            "Supports are met (off by {support:.1e}) and nothing penetrates, {where_to}, relative to the largest \
+             displacement."
         ),
     ));
-    checks.push(order(who, bracket, judged.admissible.upper(), allow));
+    checks.push(order(who, bracket, judged.admissible.upper()));
     let admissible = &judged.admissible;
-    checks.push(two_ways(who, bracket, admissible.potential.total(), admissible.local.total, allow));
-    if let Some(reported) = judged.candidate.reported {
-        let name = format!("energy/recomputed/{who}");
+    checks.push(two_ways(who, scales, bracket, admissible));
+    let claims = [
+        ("recomputed", judged.candidate.reported, own.total()),
+        ("strain", judged.candidate.reported_strain, own.strain),
+    ];
+    for (what, reported, found) in claims {
+        let Some(reported) = reported else { continue };
         checks.push(Check::equal(
-            &name,
+            &format!("energy/{what}/{who}"),
             reported,
-            own.total(),
-            allow.get(&name, IDENTITY * scale.max(own.magnitude)),
+            found,
+            IDENTITY * scale + rounding,
             Basis::RoundOff,
-            "The energy that the displacement program reports against the energy of its field, integrated here.",
+            format!(
+                "The energy that the displacement program reports against the energy of its field, integrated here. {}",
+                lost_digits(rounding, IDENTITY * scale)
+            ),
         ));
     }
     if !judged.candidate.is_solution {
@@ -87,7 +96,7 @@ pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allo
             &name,
             judged.relative_error(bracket),
             0.0,
-            allow.chosen(&name),
+            chosen("energy-error"),
             Basis::Chosen,
             "The guaranteed relative energy-norm error of the stress of this field, made admissible where it was not: \
              √((𝓛(v) + Π(λ_h)) / 𝒮(λ_h)).",
@@ -99,20 +108,24 @@ pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allo
             &name,
             own.total(),
             -own.strain,
-            allow.get(&name, SOLVER * scale),
+            SOLVER * scale + rounding,
             Basis::RoundOff,
             "With zero gap and zero prescribed displacement the admissible set is a cone, and its minimiser satisfies \
              𝓛(u_h) = −𝒮(τ(u_h)).",
         ));
     }
-    let gap = (admissible.potential.total() - bracket.complementary.lower()).max(0.0);
+    if let Some(balance) = &judged.balance {
+        checks.push(in_its_own_space(who, scales, balance));
+        checks.extend(judged.candidate.reactions.as_ref().map(|_| reactions(who, scales, balance)));
+    }
+    let gap = (admissible.upper() - bracket.lower()).max(0.0);
     let name = format!("stress/difference/{who}");
     let difference: f64 = admissible.local.triangles.iter().sum();
     checks.push(Check::at_most(
         &name,
         (2.0 * difference).sqrt(),
         0.0,
-        allow.get(&name, (2.0 * gap).sqrt() * (1.0 + IDENTITY) + (2.0 * IDENTITY * scale).sqrt()),
+        (2.0 * gap).sqrt() * (1.0 + IDENTITY) + (2.0 * (IDENTITY * scale + scales.round_off.energy)).sqrt(),
         Basis::Guaranteed,
         "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
          √(2·gap).",
@@ -120,44 +133,115 @@ pub fn primal_checks(problem: &Problem, bracket: &Bracket, judged: &Judged, allo
     checks
 }
 
+/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges.
+fn linear_where_contact_turns(problem: &Problem, judged: &Judged) -> bool {
+    judged.candidate.is_solution && judged.candidate.degree == 1 && problem.contact_turns()
+}
+
 /// The larger space has the smaller energy.
-pub fn degree_order(judged: &[Judged], bracket: &Bracket, allow: &Allowances) -> Option<Check> {
+pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], bracket: &Bracket) -> Option<Check> {
     let of = |degree: usize| judged.iter().find(|j| j.candidate.degree == degree && j.candidate.is_solution);
     let (p1, p2) = (of(1)?, of(2)?);
     let name = "energy/p1-above-p2";
-    let scale = bracket.complementary.strain;
+    let magnitude = p1.field.potential.magnitude.max(p2.field.potential.magnitude);
+    let scale = bracket.complementary.strain.max(magnitude);
     Some(Check::at_most(
         name,
         p2.field.potential.total(),
-        p1.field.potential.total(),
-        allow.get(name, SOLVER * scale),
+        if linear_where_contact_turns(problem, p1) { p1.admissible.upper() } else { p1.field.potential.total() },
+        SOLVER * scale + energy_rounding(scales, p1) + energy_rounding(scales, p2),
         Basis::RoundOff,
         "Every admissible P1 field is an admissible P2 field, so the P2 minimum cannot be higher.",
     ))
 }
 
-fn order(who: &str, bracket: &Bracket, upper: f64, allow: &Allowances) -> Check {
+/// Whether a bracket can tell two models apart.
+pub fn sharpness(bracket: &Bracket, best_upper: f64) -> Check {
+    Check::at_most(
+        "bracket/sharpness",
+        bracket.relative_error(best_upper),
+        0.0,
+        chosen("sharpness"),
+        Basis::Chosen,
+        "The guaranteed relative energy-norm error has to be small enough for the comparison to mean something.",
+    )
+}
+
+/// −Π(λ_h) ≤ 𝓛(v).
+pub fn order(who: &str, bracket: &Bracket, upper: f64) -> Check {
     let name = format!("energy/lower-below/{who}");
     Check::at_most(
         &name,
         bracket.lower(),
         upper,
-        allow.get(&name, 0.0),
+        0.0,
         Basis::Guaranteed,
         "−Π(λ_h) ≤ 𝓛(u) ≤ 𝓛(v) for every equilibrated stress and every admissible displacement; both sides already \
          contain what rounding can have cost.",
     )
 }
 
-fn two_ways(who: &str, bracket: &Bracket, upper: f64, local: f64, allow: &Allowances) -> Check {
+fn two_ways(who: &str, scales: &Scales, bracket: &Bracket, upper: &UpperBound) -> Check {
     let name = format!("energy/gap-two-ways/{who}");
+    let scale = bracket.complementary.strain.max(upper.potential.magnitude);
     Check::equal(
         &name,
-        upper - bracket.complementary.lower(),
-        local,
-        allow.get(&name, IDENTITY * bracket.complementary.strain + bracket.lower_widening),
+        upper.potential.total() - bracket.complementary.lower(),
+        upper.local.total,
+        IDENTITY * scale + bracket.lower_widening + upper.widening + scales.round_off.energy,
         Basis::RoundOff,
         "The gap from the two energies, and from local integration of the constitutive error and the contact \
          complementarity.",
     )
+}
+
+/// Equilibrium of a solution in its own space.
+fn in_its_own_space(who: &str, scales: &Scales, balance: &Balance) -> Check {
+    let scale = balance.scale.max((2.0 * scales.round_off.energy).sqrt());
+    let relative = |left: f64| if scale > 0.0 { left / scale } else { left };
+    let place = balance.worst.map_or(String::new(), |([x, y], _)| format!(" Most is left at ({x:.6}, {y:.6})."));
+    Check::at_most(
+        &format!("primal/equilibrium/{who}"),
+        relative(balance.left),
+        0.0,
+        SOLVER + relative(balance.rounding),
+        Basis::RoundOff,
+        format!(
+            "A displacement solution balances the loads on every basis function of its space, with supports and with \
+             contacts that push where they are closed: what is left of the nodal forces, integrated here, relative to \
+             all of them.{place} {}",
+            lost_digits(relative(balance.rounding), SOLVER)
+        ),
+    )
+}
+
+/// Reported reactions against what the displacement asks for, the interface with the largest excess.
+fn reactions(who: &str, scales: &Scales, balance: &Balance) -> Check {
+    let allowed = |i: usize| SOLVER * balance.carried[i] + balance.reaction_tolerance(i) + scales.round_off.force;
+    let excess = |i: usize| balance.reactions[i] - allowed(i);
+    let worst = (0..balance.reactions.len()).max_by(|&i, &j| excess(i).total_cmp(&excess(j)));
+    Check::at_most(
+        &format!("primal/reactions/{who}"),
+        worst.map_or(0.0, |i| balance.reactions[i]),
+        0.0,
+        worst.map_or(0.0, allowed),
+        Basis::RoundOff,
+        "Every contact reaction that the displacement program reports is the one its stresses ask for, where a single contact \
+         acts on a vertex, and the reported resultant is their sum.",
+    )
+}
+
+/// What rounding of its displacements can have done to an energy of the displacement program.
+fn energy_rounding(scales: &Scales, judged: &Judged) -> f64 {
+    judged.balance.as_ref().map_or(0.0, |balance| balance.energy_rounding) + scales.round_off.energy
+}
+
+/// A sentence where the displacement side has lost digits.
+fn lost_digits(rounding: f64, usual: f64) -> &'static str {
+    if rounding > usual {
+        "Most of the allowance is rounding of the displacements, which are large beside what they strain the bodies by, or \
+         nearly incompressible: the displacement side has lost digits here."
+    } else {
+        ""
+    }
 }

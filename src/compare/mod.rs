@@ -1,9 +1,11 @@
 //! The dual solution against displacement models: energies, contact pressure, stresses, verdict.
 
+mod balance;
 mod candidate;
 mod check;
 mod contact;
 mod energy;
+mod forces;
 mod nodal;
 mod outcome;
 pub mod pressure;
@@ -11,15 +13,16 @@ mod resultant;
 mod stress;
 mod tolerance;
 
+pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use stress::{primal_means, von_mises, von_mises_map};
-pub use tolerance::{Allowances, CHOSEN};
+pub use tolerance::{Allowances, CHOSEN, SHARP, names_of_checks};
 
 use crate::bounds::{Bracket, UpperBound};
 use crate::dual::DualSolution;
-use crate::problem::Problem;
+use crate::problem::{Problem, Scales};
 
 /// Everything a comparison finds.
 #[derive(Debug, Clone)]
@@ -38,9 +41,23 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether every check passed.
+    /// Whether every check that decides passed.
     pub fn agrees(&self) -> bool {
-        self.checks.iter().all(|c| c.passed)
+        self.checks.iter().all(|c| c.passed || !c.decides())
+    }
+
+    /// Holds the energies of the candidates against the lower bound of a finer mesh too, whose displacements theirs are.
+    pub fn against_finer(&mut self, finer: &Bracket, allow: &Allowances) {
+        let upper = self.upper(finer).map_or(f64::INFINITY, |(upper, _)| upper.upper());
+        let sharper =
+            self.judged.iter().map(|judged| energy::order(&judged.candidate.name, finer, judged.admissible.upper()));
+        let mut sharper: Vec<Check> = sharper.chain([energy::sharpness(finer, upper)]).collect();
+        allow.apply(&mut sharper);
+        for new in sharper {
+            if let Some(check) = self.checks.iter_mut().find(|check| check.name == new.name) {
+                *check = new;
+            }
+        }
     }
 
     /// The best upper bound with the name of the field it comes from.
@@ -78,18 +95,21 @@ pub fn compare(
         let (a, b) = (rank(&judged[a]), rank(&judged[b]));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
+    let scales = Scales::new(problem).from_closed_contacts(problem);
     let mut comparison = Comparison { judged, best, contacts: Vec::new(), stress: None, checks: Vec::new() };
     let upper = comparison.upper(bracket).map_or(f64::INFINITY, |(u, _)| u.upper());
-    comparison.checks = energy::dual_checks(dual, bracket, upper, allow);
+    comparison.checks = energy::dual_checks(&scales, dual, bracket, upper);
     comparison.checks.extend(refused);
     for judged in &comparison.judged {
-        comparison.checks.extend(energy::primal_checks(problem, bracket, judged, allow));
+        comparison.checks.extend(energy::primal_checks(problem, &scales, bracket, judged));
     }
-    comparison.checks.extend(energy::degree_order(&comparison.judged, bracket, allow));
+    comparison.checks.extend(energy::degree_order(problem, &scales, &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);
-    let (contacts, checks) = contact::compare(problem, dual, bracket, best, &comparison.judged, allow);
+    let sides = contact::Sides { problem, scales: &scales, dual, best };
+    let (contacts, checks) = sides.compare(&comparison.judged);
     comparison.stress = best.map(|b| stress::compare(problem, dual, bracket.complementary.strain, b));
     comparison.contacts = contacts;
     comparison.checks.extend(checks);
+    allow.apply(&mut comparison.checks);
     comparison
 }

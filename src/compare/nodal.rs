@@ -1,14 +1,14 @@
 //! Contact pressure of both models, averaged with the same weights: the one comparison of pressures that has a bound.
 //!
-//! Let φ be the hat function of a vertex of Γ_K, n the normal of the first side, and w = φ n the displacement that moves
+//! Let φ be the hat function of a vertex of Γ_K, n the direction of contact there, and w = φ n the displacement that moves
 //! this vertex alone. Where supports and other contacts let w pass, both models are in equilibrium with it:
 //!
-//! ∫ λ_h : e(w) = L(w) + ∫_{ΓK} T_n φ,   ∫ σ(u_h) : e(w) = L(w) − R(φ),
+//! ∫ λ_h : e(w) = L(w) + ∫_{ΓK} t φ n·n̂,   ∫ σ(u_h) : e(w) = L(w) − R(φ),
 //!
-//! with R(φ) the reaction conjugate to φ. The difference of the two pressures is therefore the work of the difference of
+//! with R(φ) the work of the reactions on w; φ n·n̂ is φ where n̂ does not turn. The difference of the two pressures is therefore the work of the difference of
 //! the stresses in the triangles around the vertex, and no larger than its size:
 //!
-//! ∫ (−T_n) φ − R(φ) = −∫ (λ_h − σ(u_h)) : e(w),   |∫ (−T_n) φ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
+//! ∫ (−t) φ n·n̂ − R(φ) = −∫ (λ_h − σ(u_h)) : e(w),   |∫ (−t) φ n·n̂ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
 //!
 //! The equation holds to round-off for a correct solution, the inequality says what its two sides may amount to. Both hold for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
 
@@ -26,7 +26,7 @@ use crate::problem::{Condition, Interface, Problem};
 pub struct NodalPressure {
     /// ∫ φ ds.
     pub weight: f64,
-    /// ∫ (−T_n) φ / ∫ φ of the dual solution.
+    /// ∫ (−t) φ n·n̂ / ∫ φ of the dual solution.
     pub dual: f64,
     /// R(φ) / ∫ φ of the displacement solution, per thickness.
     pub primal: f64,
@@ -65,18 +65,40 @@ pub fn nodal_pressures(
 ) -> Vec<NodalPressure> {
     let normals = free_normals(problem, index, interface);
     let thickness = problem.scene.thickness;
-    // Per vertex: ∫ φ and ∫ (−T_n) φ.
+    // Per vertex: ∫ φ and ∫ (−t) φ n·n̂.
     let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
     let mut force: HashMap<usize, f64> =
         reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
+    for pair in interface.pairs.iter().filter(|pair| !pair.direction.is_constant()) {
+        for (v, n) in pair.first.into_iter().zip(pair.direction.ends) {
+            // w moves the jump at its vertex by n·n.
+            if let Some(at) = reactions.vertices.iter().position(|w| *w == v) {
+                force.insert(v, reactions.vertex[at] * dot(n, n));
+            }
+        }
+    }
     for (k, (pair, p)) in interface.pairs.iter().zip(own).enumerate() {
-        for (v, near, far) in [(pair.first[0], p[0], p[2]), (pair.first[1], p[2], p[0])] {
+        for (end, (near, far)) in [(p[0], p[2]), (p[2], p[0])].into_iter().enumerate() {
+            let v = pair.first[end];
+            let n = pair.direction.ends[end];
+            let [own, other] = [dot(n, n), dot(n, pair.direction.ends[1 - end])];
             let sum = sums.entry(v).or_default();
             sum[0] += 0.5 * pair.length;
-            sum[1] += pair.length / 6.0 * (2.0 * near + far);
-            // The middle Bernstein coefficient of a hat function is one half.
-            let middle = reactions.edge.as_ref().and_then(|e| e.get(k)).copied().unwrap_or(0.0);
-            *force.entry(v).or_default() += 0.5 * middle;
+            let inner = reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice);
+            let force = force.entry(v).or_default();
+            if pair.direction.is_constant() {
+                sum[1] += pair.length / 6.0 * (2.0 * near + far);
+                // The middle Bernstein coefficient of a hat function is one half.
+                *force += 0.5 * inner.and_then(|r| r.first()).copied().unwrap_or(0.0);
+                continue;
+            }
+            // ∫ φ (n·n̂) p with all three linear.
+            let product = near * (3.0 * own + other) + far * (own + other);
+            sum[1] += pair.length / 12.0 * product;
+            if let Some(&[first, last]) = inner {
+                let (near, far) = if end == 0 { (first, last) } else { (last, first) };
+                *force += (near * (own + other) + far * other) / 3.0;
+            }
         }
     }
     let works = works(problem, dual, judged, &normals);
@@ -119,9 +141,9 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
     let mut normals: HashMap<usize, [f64; 2]> = HashMap::new();
     let mut held: HashSet<usize> = HashSet::new();
     for pair in &interface.pairs {
-        for v in pair.first {
-            let n = *normals.entry(v).or_insert(pair.normal);
-            if dot(n, pair.normal) < 1.0 - ALIGNED {
+        for (v, direction) in pair.first.into_iter().zip(pair.direction.ends) {
+            let n = *normals.entry(v).or_insert(direction);
+            if dot(n, direction) < (1.0 - ALIGNED) * dot(n, n) {
                 held.insert(v);
             }
         }

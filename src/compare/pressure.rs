@@ -17,12 +17,16 @@ pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
 pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &Reactions) -> Vec<Piece> {
     let thickness = problem.scene.thickness;
-    // ∫ of the shape function per unit edge length: hat functions, or Bernstein polynomials of degree two.
-    let share = if reactions.edge.is_some() { 1.0 / 3.0 } else { 0.5 };
+    // ∫ of the shape function per unit edge length: hat functions, or Bernstein polynomials of the jump.
+    let share = |pair: &ContactPair| match (&reactions.edge, pair.direction.is_constant()) {
+        (None, _) => 0.5,
+        (Some(_), true) => 1.0 / 3.0,
+        (Some(_), false) => 0.25,
+    };
     let mut weight = std::collections::HashMap::new();
     for pair in &interface.pairs {
         for v in pair.first {
-            *weight.entry(v).or_insert(0.0) += share * pair.length * thickness;
+            *weight.entry(v).or_insert(0.0) += share(pair) * pair.length * thickness;
         }
     }
     let force: std::collections::HashMap<_, _> =
@@ -34,8 +38,9 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
         .enumerate()
         .map(|(k, pair)| {
             let (a, b) = (at(pair.first[0]), at(pair.first[1]));
-            let middle = reactions.edge.as_ref().and_then(|e| e.get(k));
-            [a, middle.map_or(0.5 * (a + b), |r| r / (share * pair.length * thickness)), b]
+            let inner = reactions.edge.as_ref().and_then(|e| e.get(k));
+            let mean = |r: &Vec<f64>| r.iter().sum::<f64>() / r.len() as f64 / (share(pair) * pair.length * thickness);
+            [a, inner.map_or(0.5 * (a + b), mean), b]
         })
         .collect()
 }
@@ -71,37 +76,50 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
         let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let half = 0.5 * pair.length * problem.scene.thickness;
-        for (x, y, p, q) in [(a, middle, p[0], p[1]), (middle, b, p[1], p[2])] {
+        let n = [0.0, 0.5, 1.0].map(|t| pair.direction.at(t));
+        for (x, y, k) in [(a, middle, 0), (middle, b, 1)] {
+            let (p, q) = (p[k], p[k + 1]);
             // ∫ of a linear pressure over a half, at the two ends.
             let (wx, wy) = (half / 6.0 * (2.0 * p + q), half / 6.0 * (p + 2.0 * q));
-            for (at, w) in [(x, wx), (y, wy)] {
-                let f = [-w * pair.normal[0], -w * pair.normal[1]];
+            for (at, w, n) in [(x, wx, n[k]), (y, wy, n[k + 1])] {
+                let f = [-w * n[0], -w * n[1]];
                 force[0] += f[0];
                 force[1] += f[1];
                 moment += at[0] * f[1] - at[1] * f[0];
             }
+            // Where the direction turns, the arm of the force is quadratic; the rest is p (y − x) × (n_y − n_x) t (t − 1).
+            let d = [y[0] - x[0], y[1] - x[1]];
+            let turn = [n[k + 1][0] - n[k][0], n[k + 1][1] - n[k][1]];
+            moment += half * 0.5 * (p + q) / 6.0 * (d[0] * turn[1] - d[1] * turn[0]);
         }
     }
     (force, moment)
 }
 
-/// Moment about the origin of reactions as they act on the first side. The middle Bernstein coefficient of a linear
-/// function is its value at the midpoint, so that a reaction of a pair acts there.
+/// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.
 pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
-    let cross = |[x, y]: [f64; 2], n: [f64; 2], r: f64| -r * (x * n[1] - y * n[0]);
+    let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
     let mut normal = std::collections::HashMap::new();
     let mut moment = 0.0;
     for (k, pair) in interface.pairs.iter().enumerate() {
-        for v in pair.first {
-            normal.entry(v).or_insert(pair.normal);
+        for (v, n) in pair.first.into_iter().zip(pair.direction.ends) {
+            normal.entry(v).or_insert(n);
         }
         let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        let edge = reactions.edge.as_ref().and_then(|e| e.get(k)).copied().unwrap_or(0.0);
-        moment += cross(middle, pair.normal, edge);
+        let [m, n] = pair.direction.ends;
+        match reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice) {
+            // The middle Bernstein coefficient of a linear function is its value at the midpoint.
+            Some([r]) => moment -= r * cross(middle, n),
+            Some([r, s]) => {
+                moment -= r * (cross(a, n) + 2.0 * cross(middle, m)) / 3.0;
+                moment -= s * (cross(b, m) + 2.0 * cross(middle, n)) / 3.0;
+            }
+            _ => {}
+        }
     }
     for (v, r) in reactions.vertices.iter().zip(&reactions.vertex) {
-        moment += normal.get(v).map_or(0.0, |n| cross(problem.mesh.points[*v], *n, *r));
+        moment -= normal.get(v).map_or(0.0, |n| r * cross(problem.mesh.points[*v], *n));
     }
     moment
 }

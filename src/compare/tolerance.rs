@@ -1,13 +1,58 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
-/// Defaults of the chosen tolerances, by the last part of the check name.
-pub const CHOSEN: [(&str, f64, &str); 5] = [
-    ("sharpness", 0.15, "a bracket wider than this could not tell two models apart"),
+/// The tolerances this program chose, by the last part of the check name. What exceeds them is a remark.
+pub const CHOSEN: [(&str, f64, &str); 6] = [
+    ("sharpness", SHARP, "a bracket wider than this could not tell two models apart"),
     ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
     ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
     ("pressure-max", 0.35, "where no reactions are given, nothing bounds a maximum"),
+    ("resultant", 0.05, "where supports hold every vertex of a contact, nothing bounds the force at its ends"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
 ];
+
+/// The guaranteed relative error above which a bracket cannot tell two models apart.
+pub const SHARP: f64 = 0.15;
+
+/// The chosen tolerance for checks whose name ends with `last`.
+pub(super) fn chosen(last: &str) -> f64 {
+    CHOSEN.iter().find(|(key, ..)| *key == last).map_or(0.0, |row| row.1)
+}
+
+/// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
+const NAMES: [&str; 19] = [
+    "bracket/sharpness",
+    "bracket/tolerance",
+    "dual/equilibrium",
+    "energy/p1-above-p2",
+    "admissible/{field}",
+    "certified/{field}/energy-error",
+    "energy/gap-two-ways/{field}",
+    "energy/identity/{field}",
+    "energy/lower-below/{field}",
+    "energy/recomputed/{field}",
+    "energy/strain/{field}",
+    "primal/equilibrium/{field}",
+    "primal/reactions/{field}",
+    "stress/difference/{field}",
+    "contact/{contact}/open-length",
+    "contact/{contact}/pressure-l2",
+    "contact/{contact}/pressure-max",
+    "contact/{contact}/reactions",
+    "contact/{contact}/resultant",
+];
+
+/// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make.
+pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
+    let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
+        values.iter().map(|value| template.replace(key, value)).collect()
+    };
+    let all = NAMES.iter().flat_map(|name| match *name {
+        name if name.contains("{field}") => with(name, "{field}", fields),
+        name if name.contains("{contact}") => with(name, "{contact}", contacts),
+        name => vec![name.to_string()],
+    });
+    all.collect()
+}
 
 /// Allowed values from the command line, by check name.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,17 +72,25 @@ impl Allowances {
         self
     }
 
-    /// The allowed value of the check `name`, or `default`.
-    pub fn get(&self, name: &str, default: f64) -> f64 {
+    /// The allowed value of the check `name`, where one was given; the last one given counts.
+    pub fn given(&self, name: &str) -> Option<f64> {
         let last = name.rsplit('/').next().unwrap_or(name);
-        self.entries.iter().rev().find(|(key, _)| key == name || key == last).map_or(default, |(_, value)| *value)
+        self.entries.iter().rev().find(|(key, _)| key == name || key == last).map(|(_, value)| *value)
     }
 
-    /// The chosen default for `name`, unless overridden.
-    pub fn chosen(&self, name: &str) -> f64 {
-        let last = name.rsplit('/').next().unwrap_or(name);
-        let default = CHOSEN.iter().find(|(key, ..)| *key == last).map_or(0.0, |row| row.1);
-        self.get(name, default)
+    /// Puts what was given in the place of the tolerances of `checks`; those then count, whatever they were before.
+    pub fn apply(&self, checks: &mut [super::Check]) {
+        for check in checks {
+            if let Some(allowed) = self.given(&check.name) {
+                *check = check.clone().asked(allowed);
+            }
+        }
+    }
+
+    /// Names that match none of `names` and none of their last parts.
+    pub fn foreign<'a>(&'a self, names: &[String]) -> Vec<&'a str> {
+        let matches = |key: &str| names.iter().any(|name| name == key || name.rsplit('/').next() == Some(key));
+        self.entries.iter().map(|(key, _)| key.as_str()).filter(|key| !matches(key)).collect()
     }
 
     /// Names that match none of `checks`.

@@ -1,31 +1,45 @@
 //! Primal–dual active set on the full matrix: one factorisation a step. Simple, and the yardstick for the others.
 
+use std::collections::HashSet;
 use std::time::Instant;
 
 use faer::sparse::SparseColMat;
 
-use super::factor::{Factor, SymbolicFactor};
-use super::hybrid::{Motion, explain, held_unknowns, ordering, parameters, residual};
+use super::ends::{Ends, GRAZING, next_state};
+use super::equilibrium::Equilibrium;
+use super::factor::Factor;
+use super::hybrid::{Motion, explain, held_unknowns, structure};
+use super::refinement::{Refined, Refinement};
 use super::system::{System, isolate};
-use super::{DualError, DualMethod, Found, Options, Phases};
+use super::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
 
 /// Active set with refactorisation, started from closed contact.
 #[derive(Debug, Clone, Copy)]
 pub struct ActiveSet {
-    /// Limit of steps.
+    /// Limit of steps, beside four for each end.
     pub most_steps: usize,
+    /// Limit of refinements on the stresses in each step.
+    pub most_refinements: usize,
 }
+
+/// Bytes of the sparse matrix for each triangle.
+const MATRIX: f64 = 1500.0;
 
 impl Default for ActiveSet {
     fn default() -> Self {
-        ActiveSet { most_steps: 60 }
+        ActiveSet { most_steps: 60, most_refinements: 50 }
     }
 }
 
 impl DualMethod for ActiveSet {
     fn name(&self) -> &'static str {
         "active-set"
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        // A second matrix of the system, with closed jumps taken out.
+        size.factorised(0) + MATRIX * size.triangles
     }
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
@@ -38,17 +52,18 @@ impl DualMethod for ActiveSet {
         let held = held_unknowns(problem, &system, motions);
         let first_jump = system.unknowns.first_jump;
         let broken = |breakdown| explain(problem, &system, breakdown);
-        let symbolic = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(problem, &system));
-        let symbolic = symbolic.map_err(broken)?;
+        let symbolic = structure(problem, &system, options)?;
         seconds.factor = start.elapsed().as_secs_f64();
 
         let mut closed = vec![true; system.jump_bound.len()];
         let mut symbolic = Some(symbolic);
-        for step in 1..=self.most_steps {
+        let ends = Ends::new(problem, &system);
+        let (mut seen, mut careful) = (HashSet::new(), false);
+        for step in 1..=self.most_steps + 4 * closed.len() {
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
             let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
-            let factor = Factor::new(structure, matrix.as_ref(), options.par()).map_err(broken)?;
+            let factor = Factor::of_semidefinite(structure, matrix.as_ref(), options.par()).map_err(broken)?;
             seconds.factor += start.elapsed().as_secs_f64();
 
             let start = Instant::now();
@@ -60,30 +75,54 @@ impl DualMethod for ActiveSet {
             clear(&mut load, &fixed);
             let dx = factor.solve(&load);
             x.iter_mut().zip(&dx).for_each(|(a, b)| *a += b);
-            let mut s = parameters(problem, &system, &x, true);
-            // One step of refinement on the stresses.
-            let mut r = residual(problem, &system, &s);
-            clear(&mut r, &fixed);
-            let dx = factor.solve(&r);
-            x.iter_mut().zip(&dx).for_each(|(a, b)| *a += b);
-            s.iter_mut().zip(parameters(problem, &system, &dx, false)).for_each(|(a, b)| *a += b);
-            let traction = residual(problem, &system, &s);
-            let next: Vec<bool> = (0..closed.len())
-                .map(|i| match closed[i] {
-                    true => -traction[first_jump + i] <= 0.0,
-                    false => x[first_jump + i] > system.jump_bound[i],
-                })
-                .collect();
+            // Open contact may leave a body without hold; the factor is then that of a matrix nearby.
+            let is_fixed: Vec<bool> = fixed.iter().map(Option::is_some).collect();
+            let correction = |r: &[f64]| {
+                let mut r = r.to_vec();
+                clear(&mut r, &fixed);
+                Ok(factor.solve(&r))
+            };
+            let refinement = Refinement {
+                problem,
+                system: &system,
+                fixed: &is_fixed,
+                solve: &correction,
+                most_steps: self.most_refinements,
+            };
+            let now = refinement.run(Refined::new(problem, &system, x))?;
+            let depth = now.x[first_jump..].iter().chain(&system.jump_bound).fold(0.0_f64, |m, j| m.max(j.abs()));
+            let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
+            let mut next = next_state(&closed, &misses);
+            careful |= !seen.insert(closed.clone());
+            if careful && next != closed {
+                // Back in a state it has been in: from here on one end at a time, which cannot cycle.
+                next.clone_from(&closed);
+                if let Some(last) = misses.iter().rposition(|by| *by > GRAZING) {
+                    next[last] = !next[last];
+                }
+            }
             seconds.contact += start.elapsed().as_secs_f64();
             if next == closed {
                 let start = Instant::now();
-                let stress = system.modes.stresses(problem, &s);
-                let moments = system.unknowns.moments(problem, &x);
+                let stress = system.modes.stresses(problem, &now.s);
+                let moments = system.unknowns.moments(problem, &now.x);
+                let residual = Equilibrium::measure(problem, &stress, &moments).residual();
+                if !residual.is_finite() || residual > self.accuracy() {
+                    return Err(DualError::NotConverged {
+                        method: self.name(),
+                        iterations: step,
+                        residual,
+                        wanted: self.accuracy(),
+                        advice:
+                            "refinement of the stresses leaves too much of equilibrium; refine the mesh at the contact"
+                                .to_string(),
+                    });
+                }
                 seconds.recover = start.elapsed().as_secs_f64();
                 return Ok(Found {
                     stress,
                     moments,
-                    closed,
+                    closed: system.unknowns.by_end(&closed),
                     unknowns: system.unknowns.count,
                     iterations: step,
                     seconds,
@@ -95,7 +134,7 @@ impl DualMethod for ActiveSet {
         }
         Err(DualError::NotConverged {
             method: self.name(),
-            iterations: self.most_steps,
+            iterations: self.most_steps + 4 * closed.len(),
             residual: f64::NAN,
             wanted: 0.0,
             advice: "the active set cycles; use the condensed method".to_string(),

@@ -9,13 +9,14 @@
 
 use std::time::Instant;
 
+use super::ends::Ends;
 use super::hybrid::Motion;
 use super::reduced::{Contact, Reduced};
 use super::refinement::Refined;
 use super::rigid::unsupported;
 use super::settling::Settling;
 use super::system::System;
-use super::{DualError, DualMethod, Found, Options, Phases};
+use super::{ActiveSet, DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
 
 /// The default method.
@@ -24,8 +25,8 @@ pub struct Condensed {
     /// Limit of refinements on the stresses. It ends earlier where round-off is reached; none leaves the stresses as the
     /// first solve gives them, accurate or not.
     pub most_refinements: usize,
-    /// Longest contact, in jumps (two for each pair), whose Schur complement is formed as a dense matrix. Longer ones are
-    /// solved iteratively, with the factor as it is stored.
+    /// Longest contact, in jumps (two for each pair), whose Schur complement is formed as a dense matrix, where there is
+    /// memory for it. Longer ones are solved iteratively, with the factor as it is stored.
     pub longest_dense: usize,
 }
 
@@ -40,7 +41,29 @@ impl DualMethod for Condensed {
         "condensed"
     }
 
+    fn memory(&self, size: Size) -> f64 {
+        size.factorised(self.longest_dense)
+    }
+
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        match self.condense(problem, motions, options) {
+            // Where the open part of a contact leaves a body without hold, the Schur complement does not tell the state. The
+            // active set bears that, at the price of a factorisation in each step.
+            Err(DualError::ContactUndetermined) => {
+                let mut found = ActiveSet::default().solve(problem, motions, options)?;
+                found.notes.push(
+                    "the Schur complement on the contact did not determine its state, which was found by active sets"
+                        .to_string(),
+                );
+                Ok(found)
+            }
+            other => other,
+        }
+    }
+}
+
+impl Condensed {
+    fn condense(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
         let mut system = System::new(problem, options);
@@ -51,10 +74,12 @@ impl DualMethod for Condensed {
         seconds.factor = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let contact = Contact::new(&reduced, self.longest_dense, || unsupported(problem));
+        let contact = Contact::new(&reduced, self.longest_dense, options.budget, |most| unsupported(problem, most));
         let (y, c) = reduced.condense(&system.rhs);
-        let warm = options.closed.as_deref().filter(|closed| closed.len() == system.jump_bound.len());
-        let mut state = contact.solve(&c, &system.jump_bound, warm)?;
+        let ends = 2 * problem.interfaces.iter().map(|i| i.pairs.len()).sum::<usize>();
+        let warm = options.closed.as_deref().filter(|closed| closed.len() == ends);
+        let warm = warm.map(|ends| system.unknowns.by_jump(ends));
+        let mut state = contact.solve(&c, &system.jump_bound, warm.as_deref())?;
         seconds.contact = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
@@ -66,6 +91,7 @@ impl DualMethod for Condensed {
             system: &system,
             reduced: &reduced,
             contact: &contact,
+            ends: Ends::new(problem, &system),
             most_steps: self.most_refinements,
         };
         let now = Refined::new(problem, &system, x);
@@ -79,11 +105,11 @@ impl DualMethod for Condensed {
         Ok(Found {
             stress,
             moments,
-            closed: state.closed,
+            closed: system.unknowns.by_end(&state.closed),
             unknowns: system.unknowns.count,
             iterations: state.steps,
             seconds,
-            notes: contact.notes(state.steps, self.longest_dense),
+            notes: contact.notes(state.steps),
         })
     }
 }

@@ -187,6 +187,7 @@ mod tests {
             name: "strip".to_string(),
             title: String::new(),
             path: "strip.toml".into(),
+            origin: [0.0; 2],
             kinematics: Kinematics::PlaneStrain,
             thickness: 1.0,
             mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },

@@ -2,6 +2,7 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
@@ -9,7 +10,9 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, Par, Side, Spec};
+use faer::{Accum, Conj, Mat, MatMut, Par, Side, Spec};
+
+use crate::budget::{fallible, words};
 
 /// Why a matrix could not be factorised.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,13 +67,23 @@ impl SymbolicFactor {
         Ok(SymbolicFactor { inner: Some(inner), forward, leading })
     }
 
+    /// Bytes that a numeric factorisation takes.
+    pub fn memory(&self, par: Par) -> f64 {
+        let Some(inner) = &self.inner else { return 0.0 };
+        let scratch = inner.factorize_numeric_llt_scratch::<f64>(par, Spec::default());
+        size_of::<f64>() as f64 * inner.len_val() as f64 + scratch.unaligned_bytes_required() as f64
+    }
+
     /// Values of the factor.
     fn factorise(&self, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Vec<f64>, Breakdown> {
         let Some(inner) = &self.inner else { return Ok(Vec::new()) };
+        let refused = || Breakdown::TooLarge(format!("the system refuses the {} it takes", words(self.memory(par))));
+        // Memory that is asked for and given back at once tells whether it is there; zeros then come from the system.
+        fallible(|| Vec::<f64>::new().try_reserve_exact(inner.len_val())).map_err(|_| refused())?;
         let mut values = vec![0.0; inner.len_val()];
         let params = Spec::default();
-        let mut memory = MemBuffer::try_new(inner.factorize_numeric_llt_scratch::<f64>(par, params))
-            .map_err(|_| Breakdown::TooLarge("out of memory".to_string()))?;
+        let scratch = inner.factorize_numeric_llt_scratch::<f64>(par, params);
+        let mut memory = fallible(|| MemBuffer::try_new(scratch)).map_err(|_| refused())?;
         inner
             .factorize_numeric_llt(
                 &mut values,
@@ -111,17 +124,8 @@ pub struct Factor {
 }
 
 impl Factor {
-    /// Factorises the matrix whose lower triangle is given.
-    ///
-    /// # Errors
-    /// [`Breakdown`].
-    pub fn new(symbolic: SymbolicFactor, matrix: SparseColMatRef<'_, usize, f64>, par: Par) -> Result<Self, Breakdown> {
-        let values = symbolic.factorise(matrix, par)?;
-        Ok(Factor { symbolic, values, par, broken: None })
-    }
-
-    /// As [`Factor::new`], but where rounding leaves nothing of a pivot, raises the diagonal: the factor is then one of a
-    /// matrix nearby, and solves with it have to be refined.
+    /// Factorises the matrix whose lower triangle is given. Where rounding leaves nothing of a pivot, the diagonal is
+    /// raised: the factor is then one of a matrix nearby, and solves with it have to be refined.
     ///
     /// # Errors
     /// [`Breakdown`] where no small raise helps.
@@ -238,6 +242,29 @@ impl Factor {
                 out[(row - first, k)] = *value;
             }
         });
+        out
+    }
+
+    /// L_JJ L_JJᵀ, of which one half is computed.
+    pub fn trailing_product(&self) -> Mat<f64> {
+        let (lower, m) = (self.trailing(), self.trailing_len());
+        let mut out = Mat::zeros(m, m);
+        triangular::matmul(
+            &mut out,
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            &lower,
+            BlockStructure::TriangularLower,
+            lower.transpose(),
+            BlockStructure::TriangularUpper,
+            1.0,
+            self.par,
+        );
+        for k in 0..m {
+            for i in k + 1..m {
+                out[(k, i)] = out[(i, k)];
+            }
+        }
         out
     }
 

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::DualError;
 use super::dissection::nested_dissection;
-use super::factor::Breakdown;
+use super::factor::{Breakdown, SymbolicFactor};
 use super::rows::{FreeEdge, SideEnd, free_edges, rows, side_ends};
 use super::system::System;
 use super::unknowns::EdgeMoments;
+use super::{DualError, Options};
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.
@@ -20,10 +20,29 @@ pub fn ordering(problem: &Problem, system: &System) -> Vec<usize> {
     blocks.flat_map(|block| block.start..block.start + block.len).collect()
 }
 
+/// Structure of the factor of K with its jumps last, when its values fit into memory.
+///
+/// # Errors
+/// [`DualError::TooLarge`].
+pub fn structure(problem: &Problem, system: &System, options: &Options) -> Result<SymbolicFactor, DualError> {
+    let pattern = system.matrix.symbolic();
+    let symbolic = SymbolicFactor::new(pattern, system.unknowns.first_jump, ordering(problem, system))
+        .map_err(|breakdown| explain(problem, system, breakdown))?;
+    match options.budget.admit_more(symbolic.memory(options.par())) {
+        Ok(()) => Ok(symbolic),
+        Err(excess) => Err(explain(problem, system, Breakdown::TooLarge(excess.to_string()))),
+    }
+}
+
 /// What a breakdown of the factorisation means on the mesh.
 pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> DualError {
     let reason = match breakdown {
-        Breakdown::TooLarge(reason) => reason,
+        Breakdown::TooLarge(reason) => {
+            let (unknowns, jumps) = (system.unknowns.count, system.jump_bound.len());
+            let contact = if jumps > 0 { format!(", {jumps} of them at contact,") } else { String::new() };
+            let reason = format!("the factorisation for {unknowns} unknowns{contact} does not fit: {reason}");
+            return DualError::TooLarge { reason };
+        }
         Breakdown::NotPositive(unknown) => {
             let block_of = system.unknowns.block_of();
             let has = |e: &usize| {
@@ -34,7 +53,7 @@ pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> Dual
             match (0..mesh.edges.len()).find(has) {
                 Some(e) => {
                     let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-                    let [x, y] = [0, 1].map(|c| 0.5 * (a[c] + b[c]));
+                    let [x, y] = problem.scene.as_written([0, 1].map(|c| 0.5 * (a[c] + b[c])));
                     let t = mesh.edges[e].triangles[0].unwrap_or(0);
                     let body = &problem.scene.bodies[mesh.body[t]].name;
                     format!("nothing resists a motion of the edge at ({x}, {y}) of {body}")
@@ -46,49 +65,45 @@ pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> Dual
     DualError::Factorisation { reason }
 }
 
+/// What the unknowns held so far leave of a motion, and the unknown that is held for it.
+struct Pivot {
+    unknown: usize,
+    value: f64,
+    /// Unknown and value, where it is not zero.
+    entries: Vec<(usize, f64)>,
+}
+
 /// Unknowns to hold at zero so that exactly the given motions are removed: as many as there are motions.
 ///
 /// Loads that admit an equilibrium do no work on these motions, so holding them changes no stress.
 pub fn held_unknowns(problem: &Problem, system: &System, motions: &[Motion]) -> Vec<usize> {
     let mesh = &problem.mesh;
-    let mut basis: Vec<Vec<f64>> = motions
-        .iter()
-        .map(|u| {
-            system.unknowns.project(problem, |e, end| {
-                let (length, _) = mesh.edge_frame(e);
-                let [a, b] = mesh.edges[e].vertices;
-                let (near, far) = if end == 0 { (u[a], u[b]) } else { (u[b], u[a]) };
-                [0, 1].map(|c| length * (2.0 * near[c] + far[c]) / 6.0)
-            })
-        })
-        .collect();
-    let mut held = Vec::with_capacity(basis.len());
-    // Gaussian elimination with complete pivoting over motions and unknowns.
-    while !basis.is_empty() {
-        let mut best = (0, 0, 0.0_f64);
-        for (k, z) in basis.iter().enumerate() {
-            let norm = z.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE);
-            for (i, value) in z[..system.unknowns.first_jump].iter().enumerate() {
-                if value.abs() / norm > best.2 {
-                    best = (k, i, value.abs() / norm);
-                }
+    let mut pivots: Vec<Pivot> = Vec::with_capacity(motions.len());
+    for u in motions {
+        let mut z = system.unknowns.project(problem, |e, end| {
+            let (length, _) = mesh.edge_frame(e);
+            let [a, b] = mesh.edges[e].vertices;
+            let (near, far) = if end == 0 { (u[a], u[b]) } else { (u[b], u[a]) };
+            [0, 1].map(|c| length * (2.0 * near[c] + far[c]) / 6.0)
+        });
+        // Gaussian elimination: what the unknowns held so far leave of the motion, and where it is largest. Motions of few
+        // bodies have few entries, and meet few of the others.
+        for Pivot { unknown, value, entries } in &pivots {
+            let factor = z[*unknown] / value;
+            if factor != 0.0 {
+                entries.iter().for_each(|(i, p)| z[*i] -= factor * p);
+                z[*unknown] = 0.0;
             }
         }
-        let (k, i, size) = best;
-        let pivot = basis.swap_remove(k);
-        if size == 0.0 {
-            continue;
-        }
-        held.push(i);
-        for z in &mut basis {
-            let factor = z[i] / pivot[i];
-            for (value, p) in z.iter_mut().zip(&pivot) {
-                *value -= factor * p;
-            }
-            z[i] = 0.0;
+        let free = z[..system.unknowns.first_jump].iter().enumerate();
+        let largest =
+            free.clone().fold((0, 0.0_f64), |best, (i, v)| if v.abs() > best.1.abs() { (i, *v) } else { best });
+        if largest.1 != 0.0 {
+            let entries = free.filter(|(_, v)| **v != 0.0).map(|(i, v)| (i, *v)).collect();
+            pivots.push(Pivot { unknown: largest.0, value: largest.1, entries });
         }
     }
-    held
+    pivots.into_iter().map(|pivot| pivot.unknown).collect()
 }
 
 /// Mode parameters S = Tᵀm of every triangle. `given` counts the moments of u0 in; without them the result is the

@@ -17,8 +17,8 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 use super::hybrid::{Motion, parameters, residual};
 use super::rows::{SideEnd, rows};
 use super::system::System;
-use super::{DualError, DualMethod, Found, Options, Phases};
-use crate::problem::Problem;
+use super::{DualError, DualMethod, Found, Options, Phases, Size};
+use crate::problem::{Problem, Scales};
 
 /// Interior point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,15 +29,26 @@ pub struct Clarabel {
     pub most_iterations: u32,
 }
 
+/// Bytes for each triangle: rows, iterates, and the system of optimality with its factor.
+const EACH: f64 = 18_000.0;
+
 impl Default for Clarabel {
     fn default() -> Self {
         Clarabel { tolerance: 1e-11, most_iterations: 200 }
     }
 }
 
+/// Moments this many times what the data can cause have no meaning.
+const BEYOND_MEASURE: f64 = 1e6;
+
 impl DualMethod for Clarabel {
     fn name(&self) -> &'static str {
         "clarabel"
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        // The factor of the system of optimality grows like that of the condensed method.
+        size.linear(EACH) + size.factorised(0)
     }
 
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
@@ -82,7 +93,12 @@ impl DualMethod for Clarabel {
         // The stationary point has S + q + Gᵀz = 0: moments are −z, jumps ∫ g q − z.
         let mut x: Vec<f64> = solution.z.iter().zip(&program.row_scale).map(|(z, d)| -z * d * program.size).collect();
         x[first_jump..].iter_mut().zip(&system.jump_bound).for_each(|(j, bound)| *j += bound);
-        let closed = solution.s[first_jump..].iter().zip(&solution.z[first_jump..]).map(|(s, z)| s >= z).collect();
+        // Displacements that nothing resists may come out as any number, and those beyond measure are as good as none.
+        let longest = (0..problem.mesh.edges.len()).fold(0.0_f64, |m, e| m.max(problem.mesh.edge_frame(e).0));
+        let beyond = BEYOND_MEASURE * longest * Scales::new(problem).data.displacement;
+        x.iter_mut().filter(|m| !m.is_finite() || m.abs() > beyond).for_each(|m| *m = 0.0);
+        let contact = solution.s[first_jump..].iter().zip(&solution.z[first_jump..]);
+        let closed = system.unknowns.by_end(&contact.map(|(s, z)| s >= z).collect::<Vec<bool>>());
         let stress = system.modes.stresses(problem, &s);
         let moments = system.unknowns.moments(problem, &x);
         seconds.recover = start.elapsed().as_secs_f64();
@@ -139,6 +155,15 @@ impl ConicProgram {
                 }
             }
         }
+        // Both ends of an edge contribute to the same row where the direction of contact turns.
+        for column in &mut entries {
+            column.sort_unstable_by_key(|entry| entry.0);
+            column.dedup_by(|next, kept| {
+                let same = next.0 == kept.0;
+                kept.1 += if same { next.1 } else { 0.0 };
+                same
+            });
+        }
         let mut squares = vec![0.0; count];
         for &(dof, v) in entries.iter().flatten() {
             squares[dof] += v * v;
@@ -162,9 +187,8 @@ impl ConicProgram {
         }
 
         let (mut starts, mut indices, mut values) = (vec![0], Vec::new(), Vec::new());
-        for column in &mut entries {
-            column.sort_unstable_by_key(|entry| entry.0);
-            for &(dof, v) in column.iter() {
+        for column in &entries {
+            for &(dof, v) in column {
                 indices.push(dof);
                 values.push(v * row_scale[dof]);
             }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use faer::Par;
 
-use super::{Motion, Phases};
+use super::{Motion, Phases, Size};
+use crate::budget::Budget;
 use crate::element::{Block, EquilibriumElement, StressField};
 use crate::problem::Problem;
 
@@ -17,6 +18,9 @@ pub trait DualMethod: Sync {
     fn accuracy(&self) -> f64 {
         1e-9
     }
+
+    /// Bytes that this process holds at the peak of a run on a mesh of that size, its bracket included.
+    fn memory(&self, size: Size) -> f64;
 
     /// Solves `problem`; `motions` are the rigid motions that neither supports nor closed contacts resist, on which the
     /// loads are known to do no work.
@@ -54,6 +58,8 @@ pub struct Options {
     pub threads: usize,
     /// First guess of the closed contact ends, from a similar problem.
     pub closed: Option<Vec<bool>>,
+    /// Memory that the process may hold.
+    pub budget: Budget,
     /// Told now and then how many iterations an iterative method has made and what residual it has reached.
     pub progress: Option<Progress>,
 }
@@ -63,7 +69,7 @@ pub type Progress = Arc<dyn Fn(usize, f64) + Send + Sync>;
 
 impl Default for Options {
     fn default() -> Self {
-        Options { element: &Block, threads: 1, closed: None, progress: None }
+        Options { element: &Block, threads: 1, closed: None, budget: Budget::UNLIMITED, progress: None }
     }
 }
 
@@ -85,6 +91,22 @@ pub enum DualError {
     Factorisation {
         /// What the factorisation reported.
         reason: String,
+    },
+    /// The memory is not there, or may not be taken.
+    #[error("{reason}")]
+    TooLarge {
+        /// What does not fit, with both figures.
+        reason: String,
+    },
+    /// The method has no words for something in the problem.
+    #[error("{method} cannot express {what}; {remedy}")]
+    NotExpressible {
+        /// Name of the method.
+        method: &'static str,
+        /// What it has no words for, and where.
+        what: String,
+        /// What to do.
+        remedy: &'static str,
     },
     /// The contact state is not determined by the energy.
     #[error("the contact state could not be determined: the open part of the contact leaves a body without hold")]

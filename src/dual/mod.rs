@@ -5,9 +5,12 @@
 
 mod active_set;
 mod condensed;
+mod contact_moments;
 mod dissection;
+mod ends;
 pub mod equilibrium;
 mod factor;
+mod footprint;
 mod hybrid;
 mod interior;
 mod long_contact;
@@ -29,6 +32,7 @@ use std::time::Instant;
 pub use active_set::ActiveSet;
 pub use condensed::Condensed;
 pub use equilibrium::Equilibrium;
+pub use footprint::Size;
 pub use hybrid::Motion;
 pub use interior::Clarabel;
 pub use method::{DualError, DualMethod, Found, Options, Progress};
@@ -47,7 +51,8 @@ pub struct DualSolution {
     /// Moments m_{e,p} = ∫_e u q_p ds of the edge displacement, conjugate to the traction end values: for each edge of
     /// the mesh and each of its two end vertices a vector in Cartesian components.
     pub moments: Vec<[[f64; 2]; 2]>,
-    /// Normal traction T_n ≤ 0 at the two ends of every contact pair (ends as in [`ContactPair::first`]).
+    /// t ≤ 0 of the traction T' = t n̂ at the two ends of every contact pair (ends as in [`ContactPair::first`]): T_n where n̂
+    /// is the normal.
     pub contact_traction: Vec<Vec<[f64; 2]>>,
     /// Which contact ends are closed: two per pair, interface by interface.
     pub closed: Vec<bool>,
@@ -118,15 +123,8 @@ pub fn solve(
     })
 }
 
-/// T_n at the two ends of every pair, as the first side feels it.
+/// t at the two ends of every pair.
 fn contact_traction(problem: &Problem, stress: &StressField) -> Vec<Vec<[f64; 2]>> {
-    let value = |pair: &ContactPair| {
-        let Some(e) = pair.edges[0] else { return [0.0; 2] };
-        let t = equilibrium::edge_traction(problem, stress, e, 0);
-        pair.first.map(|v| {
-            let end = usize::from(problem.mesh.edges[e].vertices[0] != v);
-            t[end][0] * pair.normal[0] + t[end][1] * pair.normal[1]
-        })
-    };
+    let value = |pair: &ContactPair| equilibrium::contact_traction(problem, stress, pair);
     problem.interfaces.iter().map(|i| i.pairs.iter().map(value).collect()).collect()
 }

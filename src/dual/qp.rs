@@ -32,8 +32,9 @@ const BLOCK_STEPS: usize = 200;
 /// Tension and penetration below this fraction of the largest force and jump are round-off: an end that grazes keeps its
 /// state.
 pub const GRAZING: f64 = 1e-13;
-/// What is added to the diagonal of S, relative to each entry, where the open part has free motions.
-const REGULAR: f64 = 1e-13;
+/// What is added to the diagonal of S, relative to each entry, where the open part has free motions: the least that leaves
+/// all pivots positive.
+const REGULAR: [f64; 3] = [1e-13, 1e-11, 1e-9];
 
 /// Solves the bound-constrained problem; `start` gives a first guess of the closed ends (all, where there is none).
 ///
@@ -102,7 +103,8 @@ pub fn with_closed(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> O
 /// [`with_closed`], with open ends held by weak springs where nothing else holds them. The stress of the result is
 /// right to the stiffness of the springs, and refinement takes that error away.
 pub fn with_closed_or_springs(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
-    with_closed(s, c, bound, closed).or_else(|| equilibrium(s, c, bound, closed, REGULAR))
+    with_closed(s, c, bound, closed)
+        .or_else(|| REGULAR.into_iter().find_map(|spring| equilibrium(s, c, bound, closed, spring)))
 }
 
 fn equilibrium(s: &Mat<f64>, c: &[f64], bound: &[f64], closed: &[bool], spring: f64) -> Option<Vec<f64>> {

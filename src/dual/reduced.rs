@@ -2,12 +2,13 @@
 
 use faer::Mat;
 
-use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
-use super::hybrid::{Motion, explain, held_unknowns, ordering};
+use super::factor::{Breakdown, Factor, power_of_two_near};
+use super::hybrid::{Motion, explain, held_unknowns, structure};
 use super::long_contact::LongContact;
 use super::qp::{self, ContactState};
 use super::system::{System, isolate};
 use super::{DualError, Options};
+use crate::budget::Budget;
 use crate::problem::Problem;
 
 /// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
@@ -15,6 +16,13 @@ const BROKEN: f64 = 1e-9;
 
 /// What is left of a vector beside others, relative to its length, that is round-off.
 const DEPENDENT: f64 = 1e-10;
+
+/// Bytes for each entry of S while the contact is solved: S twice, its open part and the factor of that.
+const DENSE: f64 = 32.0;
+
+/// Entries of S, times motions that it does not resist, up to which it is cleared of their rounding errors: many bodies in
+/// contact would make that cost more than everything else.
+const MOST_CLEARING: usize = 1_000_000_000;
 
 fn largest(r: &[f64]) -> f64 {
     r.iter().fold(0.0, |m, v| m.max(v.abs()))
@@ -40,8 +48,8 @@ impl Reduced {
         let first_jump = system.unknowns.first_jump;
         let held = held_unknowns(problem, system, motions);
         let shift = make_definite(system, &held);
-        let factor = SymbolicFactor::new(system.matrix.symbolic(), first_jump, ordering(problem, system))
-            .and_then(|symbolic| Factor::of_semidefinite(symbolic, system.matrix.as_ref(), options.par()))
+        let structure = structure(problem, system, options)?;
+        let factor = Factor::of_semidefinite(structure, system.matrix.as_ref(), options.par())
             .map_err(|breakdown| explain(problem, system, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
     }
@@ -131,14 +139,19 @@ pub struct Dense {
 }
 
 impl<'a> Contact<'a> {
-    /// `unresisted` are jumps, of motions that no support resists, to which S gives no traction.
-    pub fn new(reduced: &'a Reduced, longest_dense: usize, unresisted: impl FnOnce() -> Vec<Vec<f64>>) -> Self {
+    /// `unresisted` gives jumps, of motions that no support resists, to which S gives no traction: none where they are
+    /// more than it is asked for. S is dense up to `longest_dense` jumps, and where `budget` has room for it.
+    pub fn new(
+        reduced: &'a Reduced,
+        longest_dense: usize,
+        budget: Budget,
+        unresisted: impl FnOnce(usize) -> Vec<Vec<f64>>,
+    ) -> Self {
         let m = reduced.factor.trailing_len();
-        if m > longest_dense {
+        if m > longest_dense || budget.admit_more(DENSE * (m * m) as f64).is_err() {
             return Contact::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
         }
-        let lower = reduced.factor.trailing();
-        let mut matrix = &lower * lower.transpose();
+        let mut matrix = reduced.factor.trailing_product();
         for i in 0..m {
             matrix[(i, i)] -= reduced.shift[i];
         }
@@ -148,7 +161,8 @@ impl<'a> Contact<'a> {
                 matrix[(i, k)] *= unit[i] * unit[k];
             }
         }
-        let basis = orthonormal(unresisted().iter().map(|z| over(z, &unit)));
+        let unresisted = unresisted(MOST_CLEARING / (m * m).max(1));
+        let basis = orthonormal(unresisted.iter().map(|z| over(z, &unit)));
         let mut cleared = (!basis.is_empty()).then(|| matrix.clone());
         if let Some(s) = &mut cleared {
             basis.iter().for_each(|q| give_no_traction(s, q));
@@ -204,12 +218,12 @@ impl<'a> Contact<'a> {
         }
     }
 
-    pub fn notes(&self, steps: usize, longest_dense: usize) -> Vec<String> {
+    pub fn notes(&self, steps: usize) -> Vec<String> {
         match self {
             Contact::Dense(..) => Vec::new(),
             Contact::Long(_, m) => vec![format!(
-                "the contact has {m} ends, more than the {longest_dense} that are solved with a dense matrix: its state \
-                 was found iteratively (MPRGP, {steps} steps)"
+                "the contact has {m} ends, more than are solved with a dense matrix: its state was found iteratively \
+                 (MPRGP, {steps} steps)"
             )],
         }
     }

@@ -124,12 +124,14 @@ impl Refinement<'_> {
             let force = &mut force[problem.mesh.body[t]];
             for component in [0, 1].into_iter().flat_map(|end| system.unknowns.components(e, end, normal)) {
                 // A jump belongs to both sides, which balance it between them.
-                let &[(unknown, _)] = component.terms() else { continue };
-                gross += 0.5 * length * system.external[unknown].abs();
-                if !fixed[unknown] {
-                    largest = largest.max(r[unknown].abs());
-                    force[0] += 0.5 * length * r[unknown] * component.direction[0];
-                    force[1] += 0.5 * length * r[unknown] * component.direction[1];
+                for &(unknown, sign) in component.own_terms() {
+                    gross += 0.5 * length * system.external[unknown].abs();
+                    if !fixed[unknown] {
+                        largest = largest.max(r[unknown].abs());
+                        let part = 0.5 * length * r[unknown] * sign.signum();
+                        force[0] += part * component.direction[0];
+                        force[1] += part * component.direction[1];
+                    }
                 }
             }
         }

@@ -11,9 +11,9 @@ use crate::statics::Components;
 /// Squares of displacements at the supports, relative to the largest, that are zero.
 const UNRESISTED: f64 = 1e-15;
 
-/// The jumps, two for each pair, of a basis of the motions that supports leave to the pieces when contact does not
-/// hold them.
-pub fn unsupported(problem: &Problem) -> Vec<Vec<f64>> {
+/// The jumps of a basis of the motions that supports leave to the pieces when contact does not hold them; none where
+/// these are more than `most`.
+pub fn unsupported(problem: &Problem, most: usize) -> Vec<Vec<f64>> {
     let mesh = &problem.mesh;
     let mut clamped = vec![false; problem.scene.bodies.len()];
     for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
@@ -27,6 +27,9 @@ pub fn unsupported(problem: &Problem) -> Vec<Vec<f64>> {
     let pieces = Components::new(problem);
     let free: Vec<Vec<Vector3<f64>>> = left_by_supports(problem, &pieces);
     let mut all = Vec::new();
+    if free.iter().map(Vec::len).sum::<usize>() > most {
+        return all;
+    }
     for (piece, motions) in free.iter().enumerate() {
         all.extend(motions.iter().map(|motion| jumps(problem, &pieces, piece, motion)));
     }
@@ -76,19 +79,26 @@ fn jumps(problem: &Problem, pieces: &Components, piece: usize, motion: &Vector3<
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs
         .flat_map(|pair| {
-            let mut jump = [0.0; 2];
+            let mut jump = vec![0.0; pair.direction.columns(1)];
             for (edge, sign) in pair.edges.into_iter().zip([1.0, -1.0]) {
                 let t = edge.and_then(|e| mesh.edges[e].triangles[0]);
                 if t.is_none_or(|t| pieces.of_triangle[t] != piece) {
                     continue;
                 }
-                // Vertices of both sides have equal coordinates.
-                let across = pair.first.map(|v| {
-                    let u = at(pieces, piece, motion, mesh.points[v]);
-                    sign * (u[0] * pair.normal[0] + u[1] * pair.normal[1])
-                });
-                jump[0] += pair.length * (2.0 * across[0] + across[1]) / 6.0;
-                jump[1] += pair.length * (across[0] + 2.0 * across[1]) / 6.0;
+                // Opposite vertices lie on one line along the direction of contact, where a rigid motion is the same along it.
+                let u = pair.first.map(|v| at(pieces, piece, motion, mesh.points[v]));
+                let along = |end: usize, other: usize| {
+                    let n = pair.direction.ends[other];
+                    sign * (u[end][0] * n[0] + u[end][1] * n[1])
+                };
+                let across = [along(0, 0), along(1, 1)];
+                if let [first, second] = &mut jump[..] {
+                    *first += pair.length * (2.0 * across[0] + across[1]) / 6.0;
+                    *second += pair.length * (across[0] + 2.0 * across[1]) / 6.0;
+                } else {
+                    let mixed = along(0, 1) + along(1, 0);
+                    jump[0] += pair.length * (2.0 * (across[0] + across[1]) + mixed) / 6.0;
+                }
             }
             jump
         })

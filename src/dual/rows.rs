@@ -29,9 +29,9 @@ pub fn side_ends(mesh: &Triangulation, t: usize) -> impl Iterator<Item = SideEnd
 pub fn rows(mesh: &Triangulation, unknowns: &Unknowns, t: usize) -> impl Iterator<Item = (SideEnd, [Component; 2])> {
     side_ends(mesh, t).map(|side| {
         let normal = match unknowns.edges[side.edge] {
-            // Their components are along the axes.
-            EdgeMoments::Free(_) | EdgeMoments::Given(_) => [0.0; 2],
-            EdgeMoments::Tangential(_) | EdgeMoments::Contact { .. } => mesh.edge_frame(side.edge).1,
+            // Their components are along the axes, or along the direction of contact.
+            EdgeMoments::Free(_) | EdgeMoments::Given(_) | EdgeMoments::Contact(_) => [0.0; 2],
+            EdgeMoments::Tangential(_) => mesh.edge_frame(side.edge).1,
         };
         (side, unknowns.components(side.edge, side.end, normal))
     })

@@ -6,6 +6,7 @@
 //! part costs a step, and no accuracy.
 
 use super::DualError;
+use super::ends::{Ends, next_state};
 use super::equilibrium::{Equilibrium, load_scale};
 use super::hybrid::parameters;
 use super::qp::ContactState;
@@ -13,15 +14,11 @@ use super::reduced::{Contact, Reduced};
 use super::refinement::{Refined, Refinement};
 use super::system::System;
 use crate::element::StressField;
-use crate::problem::Problem;
+use crate::problem::{Problem, Scales};
 
 /// Changes of the contact state at most.
 const MOST_CHANGES: usize = 12;
-/// Tension relative to the load, or to the traction at the other end of its edge, and penetration relative to the
-/// largest jump, that are round-off.
-const GRAZING: f64 = 1e-12;
-
-/// The same, where the changes have come to an end: more is no contact state.
+/// Tension and penetration, relative as in [`Ends`], where the changes have come to an end: more is no contact state.
 const UNSETTLED: f64 = 1e-8;
 
 /// What is settled, and with what.
@@ -34,6 +31,8 @@ pub struct Settling<'a> {
     pub reduced: &'a Reduced,
     /// The problem on Γ_K.
     pub contact: &'a Contact<'a>,
+    /// What contact states are held against.
+    pub ends: Ends<'a>,
     /// Limit of refinements for one state.
     pub most_steps: usize,
 }
@@ -46,7 +45,7 @@ impl Settling<'_> {
     pub fn run(&self, mut now: Refined, state: &mut ContactState) -> Result<Refined, DualError> {
         now = self.refined(now, &state.closed)?;
         for _ in 0..MOST_CHANGES {
-            let next = self.next(&now, &state.closed, GRAZING);
+            let next = next_state(&state.closed, &self.misses(&now, &state.closed));
             if next == state.closed || self.most_steps == 0 {
                 return Ok(now);
             }
@@ -96,7 +95,7 @@ impl Settling<'_> {
         // The measure itself takes longer; where the remainders are very small against the load, it can only agree. A
         // sum notices what a maximum passes over: values that are not numbers.
         let numbers = now.r.iter().sum::<f64>().is_finite();
-        if numbers && left <= 0.1 * allowed * load_scale(self.problem, || stress.clone()) {
+        if numbers && left <= 0.1 * allowed * load_scale(&Scales::new(self.problem), || stress.clone()) {
             return Ok(());
         }
         let residual = Equilibrium::measure(self.problem, stress, moments).residual();
@@ -132,26 +131,9 @@ impl Settling<'_> {
         refinement.run(now)
     }
 
-    /// By how much each end misses its state: tension of closed ends relative to the load, or to the pressure at the other
-    /// end of the edge, and penetration of open ends relative to the largest jump or gap.
+    /// By how much each end misses its state, penetration relative to the largest jump or gap.
     fn misses(&self, now: &Refined, closed: &[bool]) -> Vec<f64> {
-        let first = self.system.unknowns.first_jump;
-        let load = load_scale(self.problem, || self.system.modes.stresses(self.problem, &now.s));
-        // Pairs have two ends, numbered one after the other.
-        let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
-        let whole = self.contact.allowed(&now.x[first..], &self.system.jump_bound, 1.0);
-        let end = |i: usize| {
-            let (over, of) = match closed[i] {
-                true => (traction(i), load.max(-traction(i ^ 1))),
-                false => (now.x[first + i] - self.system.jump_bound[i], whole[i]),
-            };
-            if over > 0.0 { over / of.max(f64::MIN_POSITIVE) } else { 0.0 }
-        };
-        (0..closed.len()).map(end).collect()
-    }
-
-    /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
-    fn next(&self, now: &Refined, closed: &[bool], grazing: f64) -> Vec<bool> {
-        closed.iter().zip(self.misses(now, closed)).map(|(closed, by)| *closed == (by <= grazing)).collect()
+        let jumps = &now.x[self.system.unknowns.first_jump..];
+        self.ends.misses(now, closed, &self.contact.allowed(jumps, &self.system.jump_bound, 1.0))
     }
 }

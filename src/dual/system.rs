@@ -28,7 +28,7 @@ pub struct System {
     pub rhs: Vec<f64>,
     /// The part of f that comes from applied tractions.
     pub external: Vec<f64>,
-    /// Upper bound ∫ g q_p of each jump.
+    /// Upper bound ∫ g q_p of each jump, ∫ g where the direction of contact turns.
     pub jump_bound: Vec<f64>,
 }
 
@@ -76,7 +76,10 @@ impl System {
             .flat_map(|i| &i.pairs)
             .flat_map(|pair| {
                 let [a, b] = pair.gap;
-                [pair.length * (2.0 * a + b) / 6.0, pair.length * (a + 2.0 * b) / 6.0]
+                match pair.direction.columns(1) {
+                    2 => vec![pair.length * (2.0 * a + b) / 6.0, pair.length * (a + 2.0 * b) / 6.0],
+                    _ => vec![pair.length * (a + b) / 2.0],
+                }
             })
             .collect();
         let symbolic =

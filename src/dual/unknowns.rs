@@ -1,10 +1,12 @@
 //! Numbering of the edge moments.
 //!
 //! The unknowns of the hybrid form are the moments m_{e,p} = ∫_e u q_p ds of the edge displacement against the two hat
-//! functions of each edge, conjugate to the traction end values. Moments given by a support drop out; on Γ_K the normal
-//! moments of the first side are replaced by the jump j_p = ∫(v_n' + v_n'') q_p ds, and all jumps are numbered last.
+//! functions of each edge, conjugate to the traction end values. Moments given by a support drop out; on Γ_K the moments
+//! of the first side along the direction of contact are replaced by the jumps j_p = ∫(v' − v'')·n̂ q_p ds (see
+//! [`super::contact_moments`]), and all jumps are numbered last.
 
-use crate::problem::{Condition, Problem};
+use super::contact_moments::ContactEdge;
+use crate::problem::{Condition, ContactPair, Problem};
 
 /// Unknowns that belong together: consecutive numbers that share one sparsity pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,19 +26,8 @@ pub enum EdgeMoments {
     Given([f64; 2]),
     /// Γ_0: the tangential moments at the two ends are unknown, the normal ones zero.
     Tangential(usize),
-    /// Γ_K, as blocks.
-    Contact {
-        /// Block of the two tangential moments of this side.
-        tangential: usize,
-        /// Block of the two jumps.
-        jump: usize,
-        /// Block of the two normal moments of the second side, where that is a body.
-        second_normal: Option<usize>,
-        /// 0 on the first side, 1 on the second.
-        side: usize,
-        /// Whether the pair runs against the edge, so that its first end is the edge's second.
-        reversed: bool,
-    },
+    /// Γ_K.
+    Contact(ContactEdge),
 }
 
 /// A moment component at one end of an edge, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
@@ -45,25 +36,39 @@ pub struct Component {
     /// Unit vector.
     pub direction: [f64; 2],
     /// Contributing unknowns.
-    pub terms: [(usize, f64); 2],
+    pub terms: [(usize, f64); 3],
     /// How many of `terms` count.
     pub len: usize,
+    /// How many of these, from the first on, the edges of other bodies have no part in.
+    pub own: usize,
     /// Part that is given.
     pub fixed: f64,
 }
 
 impl Component {
+    /// Σ coefficient · x over `terms`, the first `own` of which belong to this edge alone.
+    pub(super) fn sum(direction: [f64; 2], terms: &[(usize, f64)], own: usize) -> Self {
+        let mut all = [(0, 0.0); 3];
+        all[..terms.len()].copy_from_slice(terms);
+        Component { direction, terms: all, len: terms.len(), own, fixed: 0.0 }
+    }
+
     fn unknown(direction: [f64; 2], dof: usize) -> Self {
-        Component { direction, terms: [(dof, 1.0), (0, 0.0)], len: 1, fixed: 0.0 }
+        Component::sum(direction, &[(dof, 1.0)], 1)
     }
 
     fn given(direction: [f64; 2], fixed: f64) -> Self {
-        Component { direction, terms: [(0, 0.0); 2], len: 0, fixed }
+        Component { fixed, ..Component::sum(direction, &[], 0) }
     }
 
     /// The contributing unknowns with their coefficients.
     pub fn terms(&self) -> &[(usize, f64)] {
         &self.terms[..self.len]
+    }
+
+    /// Those that the edges of other bodies have no part in.
+    pub fn own_terms(&self) -> &[(usize, f64)] {
+        &self.terms[..self.own]
     }
 }
 
@@ -91,33 +96,33 @@ impl Unknowns {
             blocks.len() - 1
         };
         // Placeholders for contact blocks are filled in once all other numbers are known.
-        let mut tangential = vec![usize::MAX; problem.mesh.edges.len()];
-        let mut second_normal: Vec<Vec<Option<usize>>> =
+        let mut second: Vec<Vec<Option<usize>>> =
             problem.interfaces.iter().map(|i| vec![None; i.pairs.len()]).collect();
-        let mut starts = vec![usize::MAX; problem.mesh.edges.len()];
+        let mut first_block = vec![usize::MAX; problem.mesh.edges.len()];
         for (e, condition) in problem.conditions.iter().enumerate() {
             match *condition {
-                Condition::Interior | Condition::Traction(_) => starts[e] = push(4),
-                Condition::Roller => starts[e] = push(2),
+                Condition::Interior | Condition::Traction(_) => first_block[e] = push(4),
+                Condition::Roller => first_block[e] = push(2),
                 Condition::Clamped(_) => {}
                 Condition::Contact { interface, pair, side } => {
-                    tangential[e] = push(2);
+                    let jumps = jumps(&problem.interfaces[interface].pairs[pair]);
+                    first_block[e] = push(4 - jumps);
                     if side == 1 {
-                        second_normal[interface][pair] = Some(push(2));
+                        second[interface][pair] = Some(push(jumps));
                     }
                 }
             }
         }
-        let jump_blocks: Vec<Vec<usize>> =
-            problem.interfaces.iter().map(|i| i.pairs.iter().map(|_| push(2)).collect()).collect();
+        let pairs = problem.interfaces.iter().map(|i| i.pairs.iter());
+        let jump_blocks: Vec<Vec<usize>> = pairs.map(|pairs| pairs.map(|p| push(jumps(p))).collect()).collect();
         let first_jump = jump_blocks.iter().flatten().next().map_or(next, |&b| blocks[b].start);
         let edges = problem
             .conditions
             .iter()
             .enumerate()
             .map(|(e, condition)| match *condition {
-                Condition::Interior | Condition::Traction(_) => EdgeMoments::Free(blocks[starts[e]].start),
-                Condition::Roller => EdgeMoments::Tangential(blocks[starts[e]].start),
+                Condition::Interior | Condition::Traction(_) => EdgeMoments::Free(blocks[first_block[e]].start),
+                Condition::Roller => EdgeMoments::Tangential(blocks[first_block[e]].start),
                 Condition::Clamped(u0) => {
                     let half = 0.5 * problem.mesh.edge_frame(e).0;
                     EdgeMoments::Given([u0[0] * half, u0[1] * half])
@@ -125,21 +130,22 @@ impl Unknowns {
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let own = if side == 0 { matched.first } else { matched.second.unwrap_or(matched.first) };
-                    EdgeMoments::Contact {
-                        tangential: tangential[e],
+                    EdgeMoments::Contact(ContactEdge {
+                        across: first_block[e],
                         jump: jump_blocks[interface][pair],
-                        second_normal: second_normal[interface][pair],
+                        second: second[interface][pair],
                         side,
                         reversed: own[0] != problem.mesh.edges[e].vertices[0],
-                    }
+                        direction: matched.direction,
+                    })
                 }
             })
             .collect();
         Unknowns { blocks, edges, count: next, first_jump }
     }
 
-    /// The two components of the moment at end `end` (0 or 1, in the order of the edge's vertices) of an edge with
-    /// outward unit normal `normal`.
+    /// The two components, at right angles, of the moment at end `end` (0 or 1, in the order of the edge's vertices) of
+    /// an edge with outward unit normal `normal`.
     pub fn components(&self, e: usize, end: usize, normal: [f64; 2]) -> [Component; 2] {
         const X: [f64; 2] = [1.0, 0.0];
         const Y: [f64; 2] = [0.0, 1.0];
@@ -150,23 +156,7 @@ impl Unknowns {
             }
             EdgeMoments::Given(m) => [Component::given(X, m[0]), Component::given(Y, m[1])],
             EdgeMoments::Tangential(first) => [Component::given(normal, 0.0), Component::unknown(tangent, first + end)],
-            EdgeMoments::Contact { tangential, jump, second_normal, side, reversed } => {
-                let at = if reversed { 1 - end } else { end };
-                let along = Component::unknown(tangent, self.blocks[tangential].start + end);
-                let jump = self.blocks[jump].start + at;
-                let across = match (side, second_normal) {
-                    // m_n' = j − m_n'': outward normals point against each other.
-                    (0, Some(other)) => Component {
-                        direction: normal,
-                        terms: [(jump, 1.0), (self.blocks[other].start + at, -1.0)],
-                        len: 2,
-                        fixed: 0.0,
-                    },
-                    (1, Some(own)) => Component::unknown(normal, self.blocks[own].start + at),
-                    _ => Component::unknown(normal, jump),
-                };
-                [across, along]
-            }
+            EdgeMoments::Contact(edge) => edge.components(&self.blocks, end),
         }
     }
 
@@ -184,10 +174,10 @@ impl Unknowns {
         match self.edges[e] {
             EdgeMoments::Given(_) => ([0; 3], 0),
             EdgeMoments::Free(first) | EdgeMoments::Tangential(first) => ([block_of[first] as usize, 0, 0], 1),
-            EdgeMoments::Contact { tangential, jump, second_normal, side, .. } => match (side, second_normal) {
-                (0, Some(other)) => ([tangential, jump, other], 3),
-                (1, Some(own)) => ([tangential, own, 0], 2),
-                _ => ([tangential, jump, 0], 2),
+            EdgeMoments::Contact(ContactEdge { across, jump, second, side, .. }) => match (side, second) {
+                (0, Some(other)) => ([across, jump, other], 3),
+                (1, Some(own)) => ([across, own, 0], 2),
+                _ => ([across, jump, 0], 2),
             },
         }
     }
@@ -210,35 +200,49 @@ impl Unknowns {
             .collect()
     }
 
-    /// Values of the unknowns of a displacement that is a rigid motion on each edge: `at(e, end)` gives the vector
-    /// moment at an end. Jumps and rollers take the components they stand for.
+    /// Values of the unknowns of a displacement: `at(e, end)` gives the vector moment at an end. Jumps and rollers take the
+    /// components they stand for.
     pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
         let mut x = vec![0.0; self.count];
         for e in 0..self.edges.len() {
             let (_, normal) = problem.mesh.edge_frame(e);
             for end in 0..2 {
                 let m = at(e, end);
-                for component in self.components(e, end, normal) {
-                    if component.len == 1 {
-                        let (dof, _) = component.terms[0];
-                        x[dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
-                    }
+                if let EdgeMoments::Contact(edge) = &self.edges[e] {
+                    edge.project(&self.blocks, end, m, &mut x);
+                    continue;
                 }
-            }
-        }
-        // Jumps of two-body contacts need the second side's normal moments first.
-        for e in 0..self.edges.len() {
-            let (_, normal) = problem.mesh.edge_frame(e);
-            for end in 0..2 {
-                let m = at(e, end);
                 for component in self.components(e, end, normal) {
-                    if component.len == 2 {
-                        let ((jump, _), (other, _)) = (component.terms[0], component.terms[1]);
-                        x[jump] = m[0] * component.direction[0] + m[1] * component.direction[1] + x[other];
+                    if let [(dof, _)] = component.terms() {
+                        x[*dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
                     }
                 }
             }
         }
         x
     }
+
+    /// For every jump the other one of its pair, or itself where the pair has only one.
+    pub fn partners(&self) -> Vec<usize> {
+        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
+        jumps.flat_map(|b| (0..b.len).rev().map(|k| b.start + k - self.first_jump)).collect()
+    }
+
+    /// Which jumps are closed, from the two ends of every pair.
+    pub fn by_jump(&self, ends: &[bool]) -> Vec<bool> {
+        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
+        let each = jumps.zip(ends.chunks_exact(2));
+        each.flat_map(|(b, ends)| if b.len == 2 { ends.to_vec() } else { vec![ends[0] || ends[1]] }).collect()
+    }
+
+    /// Which of the two ends of every pair are closed, from the jumps.
+    pub fn by_end(&self, closed: &[bool]) -> Vec<bool> {
+        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
+        jumps.flat_map(|b| [0, b.len - 1].map(|k| closed[b.start + k - self.first_jump])).collect()
+    }
+}
+
+/// The number of jumps of a pair.
+fn jumps(pair: &ContactPair) -> usize {
+    pair.direction.columns(1)
 }

@@ -1,7 +1,5 @@
 //! Displacement models: the seconds and the memory are those of the process that FEniCSx runs in.
 
-use std::time::Duration;
-
 use super::memory::Watch;
 use super::record::{Answer, End, Measured, Seconds};
 use super::solve::variation;
@@ -39,7 +37,7 @@ pub(super) fn displacements(
     let asked = clock.elapsed();
     let options = primal::Options {
         degrees: degrees.to_vec(),
-        timeout: Duration::from_secs_f64(settings.seconds.max(1.0)),
+        timeout: crate::process::limit(settings.seconds.max(1.0)),
         ..primal::Options::default()
     };
     let watch = Watch::start();

@@ -1,13 +1,12 @@
 //! What happens inside the process: make the problem, solve it, evaluate the answer.
 
-use serde::{Deserialize, Serialize};
-
 use super::Clock;
 use super::memory;
 use super::method::{Family, Method};
 use super::primal;
 use super::record::{Answer, End, Measured, Seconds};
 
+use crate::budget::Budget;
 use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
@@ -15,7 +14,7 @@ use crate::problem::Problem;
 use crate::study::{self, Certified, Goal, StudyError};
 
 /// Choices of a run that are not the problem's.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Threads.
     pub threads: usize,
@@ -25,6 +24,8 @@ pub struct Settings {
     pub max_triangles: Option<usize>,
     /// Seconds that a process started from here may take.
     pub seconds: f64,
+    /// Memory that the process may hold.
+    pub budget: Budget,
     /// Step length of the paper's plain iteration, relative to the largest that converges.
     pub step_length: Option<f64>,
 }
@@ -95,7 +96,7 @@ fn stresses(
             Err(error) => return Measured::without_answer(method.name(), refusal(&StudyError::Dual(error))),
         },
     };
-    let options = Options { threads: settings.threads.max(1), ..Options::default() };
+    let options = Options { threads: settings.threads.max(1), budget: settings.budget, ..Options::default() };
     let solved = match goal {
         None => study::certify(problem, solver, &options),
         Some(goal) => study::adapt(problem, solver, &options, &goal, |_| {}).map(|adapted| adapted.certified),

@@ -6,7 +6,7 @@
 
 use super::labels::{Pair, pair};
 use super::quarter::middle;
-use super::{Map, Triangulation};
+use super::{Curved, Map, Triangulation};
 
 /// For every triangle the local index of its refinement edge.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -50,8 +50,14 @@ pub struct Bisected {
 /// Bisects the triangles `marked`, and others as far as needed for a conforming mesh.
 ///
 /// `facing` lists the edges that lie opposite each other in a contact: they are bisected together, so that both sides
-/// keep the same vertices, bit for bit. Names of boundaries are kept.
-pub fn bisect(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usize], facing: &[[usize; 2]]) -> Bisected {
+/// keep the same vertices, bit for bit. Names of boundaries are kept. Edges in `curved` are divided on their circles.
+pub fn bisect(
+    mesh: &Triangulation,
+    refinement: &RefinementEdges,
+    marked: &[usize],
+    facing: &[[usize; 2]],
+    curved: &Curved,
+) -> Bisected {
     let cut = close(mesh, refinement, marked, facing);
     let mut points = mesh.points.clone();
     let mut middles: Map<Pair, usize> = Map::default();
@@ -59,7 +65,7 @@ pub fn bisect(mesh: &Triangulation, refinement: &RefinementEdges, marked: &[usiz
     for (e, edge) in mesh.edges.iter().enumerate().filter(|(e, _)| cut[*e]) {
         let [a, b] = edge.vertices;
         let m = points.len();
-        points.push(middle(points[a], points[b]));
+        points.push(mesh.division(e, curved));
         middles.insert(pair(a, b), m);
         if let Some(name) = mesh.edges[e].name {
             label.remove(&pair(a, b));
@@ -168,7 +174,7 @@ mod tests {
     #[test]
     fn one_marked_triangle_is_cut_once() {
         let (mesh, _) = blocks(0.0);
-        let finer = bisect(&mesh, &RefinementEdges::longest(&mesh), &[0], &facing(&mesh));
+        let finer = bisect(&mesh, &RefinementEdges::longest(&mesh), &[0], &facing(&mesh), &Curved::default());
         assert_eq!(finer.mesh.triangles.len(), mesh.triangles.len() + 2, "the pair along the diagonal");
         assert_consistent(&finer.mesh);
     }
@@ -187,7 +193,7 @@ mod tests {
             let (mut mesh, mut refinement) = (coarse.clone(), RefinementEdges::longest(&coarse));
             for round in rounds {
                 let marked: Vec<usize> = round.iter().map(|i| i.index(mesh.triangles.len())).collect();
-                let finer = bisect(&mesh, &refinement, &marked, &facing(&mesh));
+                let finer = bisect(&mesh, &refinement, &marked, &facing(&mesh), &Curved::default());
                 assert_consistent(&finer.mesh);
                 let mut areas = vec![0.0; mesh.triangles.len()];
                 for (t, &p) in finer.parent.iter().enumerate() {

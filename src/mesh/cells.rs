@@ -1,6 +1,6 @@
 //! The cells of a [`RawMesh`]: each a proper triangle, turned counter-clockwise, in exactly one body of the scene.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::error::{MeshError, at};
 use super::{Map, RawMesh, labels::suggestion};
@@ -49,12 +49,13 @@ pub(super) fn check(raw: &RawMesh, scene: &Scene, notes: &mut Vec<Note>) -> Resu
         cells.body.push(body);
     }
     let mut ignored: Vec<&str> = Vec::new();
+    let mut known: HashSet<&str> = HashSet::new();
     for (number, key) in strangers {
         let name = raw.triangles[number].1.as_str();
         match seen.get(&key) {
             Some(_) if name.is_empty() => {}
-            Some(_) if ignored.contains(&name) => {}
-            Some(_) => ignored.push(name),
+            Some(_) if known.insert(name) => ignored.push(name),
+            Some(_) => {}
             None => return Err(homeless(raw, scene, number)),
         }
     }
@@ -87,7 +88,7 @@ fn check_points(raw: &RawMesh, scene: &Scene) -> Result<(), MeshError> {
         if !p.iter().all(|x| x.is_finite()) {
             return Err(MeshError::cells(
                 scene,
-                format!("vertex {} has the coordinates {}, which are not finite", i + 1, at(*p)),
+                format!("vertex {} has the coordinates {}, which are not finite", i + 1, at(scene, *p)),
                 "write the mesh again",
             ));
         }
@@ -107,7 +108,7 @@ fn check_points(raw: &RawMesh, scene: &Scene) -> Result<(), MeshError> {
 fn proper(raw: &RawMesh, number: usize, scene: &Scene) -> Result<[usize; 3], MeshError> {
     let [i, j, k] = raw.triangles[number].0;
     if i == j || j == k || k == i {
-        let (what, remedy) = (format!("{} has a vertex twice", describe(raw, number)), "remove it");
+        let (what, remedy) = (format!("{} has a vertex twice", describe(raw, scene, number)), "remove it");
         return Err(MeshError::cells(scene, what, remedy));
     }
     let [a, b, c] = [i, j, k].map(|v| raw.points[v]);
@@ -118,7 +119,7 @@ fn proper(raw: &RawMesh, number: usize, scene: &Scene) -> Result<[usize; 3], Mes
     if !enough {
         return Err(MeshError::cells(
             scene,
-            format!("{} has zero area (twice its area is {double_area:e})", describe(raw, number)),
+            format!("{} has zero area (twice its area is {double_area:e})", describe(raw, scene, number)),
             "remove degenerate triangles, or merge the vertices that coincide",
         ));
     }
@@ -128,12 +129,12 @@ fn proper(raw: &RawMesh, number: usize, scene: &Scene) -> Result<[usize; 3], Mes
 fn twice(raw: &RawMesh, scene: &Scene, numbers: [usize; 2], bodies: [usize; 2]) -> MeshError {
     let names = bodies.map(|b| scene.bodies[b].name.as_str());
     if bodies[0] == bodies[1] {
-        let what = format!("{} is a duplicate of triangle {}", describe(raw, numbers[1]), numbers[0] + 1);
+        let what = format!("{} is a duplicate of triangle {}", describe(raw, scene, numbers[1]), numbers[0] + 1);
         MeshError::cells(scene, what, "remove one of the two")
     } else {
         let what = format!(
             "{} is doubly tagged: it is in body '{}' and in body '{}'",
-            describe(raw, numbers[1]),
+            describe(raw, scene, numbers[1]),
             names[0],
             names[1]
         );
@@ -147,18 +148,18 @@ fn homeless(raw: &RawMesh, scene: &Scene, number: usize) -> MeshError {
     if name.is_empty() {
         return MeshError::cells(
             scene,
-            format!("{} is untagged: it is in no physical surface", describe(raw, number)),
+            format!("{} is untagged: it is in no physical surface", describe(raw, scene, number)),
             format!("put it into one that is named as a body ({})", bodies.join(", ")),
         );
     }
     MeshError::cells(
         scene,
-        format!("{} is in '{name}', which is no body of the scene", describe(raw, number)),
+        format!("{} is in '{name}', which is no body of the scene", describe(raw, scene, number)),
         format!("add [bodies.{name}] to the scene, or rename the physical surface{}", suggestion(name, &bodies)),
     )
 }
 
-fn describe(raw: &RawMesh, number: usize) -> String {
-    let [a, b, c] = raw.triangles[number].0.map(|v| at(raw.points[v]));
+fn describe(raw: &RawMesh, scene: &Scene, number: usize) -> String {
+    let [a, b, c] = raw.triangles[number].0.map(|v| at(scene, raw.points[v]));
     format!("triangle {} with the corners {a}, {b}, {c}", number + 1)
 }

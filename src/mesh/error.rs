@@ -114,7 +114,8 @@ fn mesh_name(scene: &Scene) -> String {
     }
 }
 
-/// A point as messages show it.
-pub(crate) fn at(point: [f64; 2]) -> String {
-    format!("({}, {})", point[0], point[1])
+/// A point as messages show it: in the coordinates of the file.
+pub(crate) fn at(scene: &Scene, point: [f64; 2]) -> String {
+    let [x, y] = scene.as_written(point);
+    format!("({x}, {y})")
 }

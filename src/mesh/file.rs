@@ -1,15 +1,16 @@
 //! Opening a mesh file with the reader that its name asks for.
 
 use std::path::Path;
+use std::time::Duration;
 
 use super::{MeshError, RawMesh, foreign, gmsh};
 use crate::scene::Note;
 
-/// Reads a mesh file: `.msh` natively, everything else through meshio.
+/// Reads a mesh file: `.msh` natively, everything else through meshio, which is given at most `limit`.
 ///
 /// # Errors
 /// [`MeshError`] when it does not exist, is no regular file, or does not follow its format.
-pub fn read(file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
+pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshError> {
     let kind = std::fs::metadata(file).map_err(|e| {
         MeshError::file(file, format!("cannot be opened: {e}"), "the path in mesh.file is relative to the scene file")
     })?;
@@ -24,6 +25,6 @@ pub fn read(file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
             .map_err(|e| MeshError::file(file, format!("cannot be read: {e}"), "check its permissions"))?;
         gmsh::parse(&bytes, file)
     } else {
-        foreign::read(file)
+        foreign::read(file, limit)
     }
 }

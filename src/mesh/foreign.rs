@@ -1,6 +1,7 @@
 //! Every format but Gmsh's, through meshio, in a Python process of its own.
 
 use std::path::Path;
+use std::time::Duration;
 
 use serde::Deserialize;
 
@@ -24,19 +25,19 @@ struct Block {
     groups: Vec<Vec<String>>,
 }
 
-/// Reads `file` through [`meshio`].
+/// Reads `file` through [`meshio`], which is given at most `limit`.
 ///
 /// # Errors
 /// [`MeshError::File`] when no interpreter has meshio, or when it cannot read the file or takes too long.
-pub fn read(file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
-    let text = meshio::run(SCRIPT, file, INSTEAD).map_err(|f| MeshError::file(file, f.what, f.remedy))?;
+pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshError> {
+    let text = meshio::run(SCRIPT, file, INSTEAD, limit).map_err(|f| MeshError::file(file, f.what, f.remedy))?;
     convert(file, &text)
 }
 
 /// The script's output as a mesh.
 fn convert(file: &Path, text: &[u8]) -> Result<(RawMesh, Vec<Note>), MeshError> {
     let found: Converted = serde_json::from_slice(text)
-        .map_err(|e| MeshError::file(file, format!("meshio gave numbers that are not finite ({e})"), INSTEAD))?;
+        .map_err(|e| MeshError::file(file, format!("meshio gave no mesh of finite numbers ({e})"), INSTEAD))?;
     let mut content = Content::default();
     for (tag, p) in (0..).zip(&found.points) {
         let coordinate = |k: usize| p.get(k).copied().unwrap_or(0.0);
@@ -60,10 +61,41 @@ fn convert(file: &Path, text: &[u8]) -> Result<(RawMesh, Vec<Note>), MeshError> 
                 return Err(MeshError::file(file, what, "mesh the plane surfaces with straight triangles"));
             }
         };
+        let corners = if kind == Kind::Line { 2 } else { 3 };
+        let odd = block.nodes.iter().find(|nodes| ![corners, corners * (corners + 1) / 2].contains(&nodes.len()));
+        if let Some(nodes) = odd {
+            let what = format!("meshio gave a cell of the kind '{}' with {} nodes", block.shape, nodes.len());
+            return Err(MeshError::file(file, what, INSTEAD));
+        }
+        if block.groups.len() != block.nodes.len() {
+            let what = format!("meshio gave {} cells and groups of {}", block.nodes.len(), block.groups.len());
+            return Err(MeshError::file(file, what, INSTEAD));
+        }
         for (nodes, groups) in block.nodes.into_iter().zip(block.groups) {
             tag += 1;
             content.elements.push(Element { kind, tag, nodes, physical: groups.iter().map(tag_of).collect() });
         }
     }
     content.into_raw(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_with_the_wrong_number_of_nodes_are_refused() {
+        for (shape, nodes, groups) in [
+            ("triangle", "[[0, 1]]", "[[]]"),
+            ("triangle", "[[]]", "[[]]"),
+            ("line", "[[0]]", "[[]]"),
+            ("line", "[[0, 1, 2, 3]]", "[[]]"),
+            ("triangle", "[[0, 1, 2], [0, 1, 2]]", "[[]]"),
+        ] {
+            let block = format!(r#"{{"shape": "{shape}", "nodes": {nodes}, "groups": {groups}}}"#);
+            let text = format!(r#"{{"points": [[0, 0], [1, 0], [0, 1]], "blocks": [{block}]}}"#);
+            let error = convert(Path::new("mesh.vtu"), text.as_bytes()).expect_err("not a mesh").to_string();
+            assert!(error.contains("mesh.vtu") && error.contains("meshio gave"), "{error}");
+        }
+    }
 }

@@ -5,12 +5,13 @@
 
 use std::collections::HashMap;
 
+use super::along::match_along;
 use super::boxes::{BoxTree, around};
 use super::error::at;
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation};
 use crate::scene::Note;
-use crate::scene::{Contact, ContactSides, Gap, Scene};
+use crate::scene::{Contact, ContactSides, Scene};
 
 /// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
 /// lies on it.
@@ -27,11 +28,16 @@ pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Ve
     let mut notes = Vec::new();
     snap(&mut mesh, scene, &mut notes);
     for contact in &scene.contacts {
-        if let ContactSides::Between(names) = &contact.sides {
-            mesh = match_vertices(mesh, scene, contact, names, &mut notes)?;
-        }
+        let ContactSides::Between(names) = &contact.sides else { continue };
+        mesh = match contact.direction {
+            None => match_vertices(mesh, scene, contact, names, &mut notes)?,
+            Some(direction) => {
+                mesh = insert_gap_breaks(mesh, scene, contact, &mut notes)?;
+                match_along(mesh, scene, contact, names, direction, &mut notes)?
+            }
+        };
     }
-    for contact in &scene.contacts {
+    for contact in scene.contacts.iter().filter(|contact| contact.direction.is_none()) {
         mesh = insert_gap_breaks(mesh, scene, contact, &mut notes)?;
     }
     Ok((mesh, notes))
@@ -68,7 +74,7 @@ fn snap(mesh: &mut Triangulation, scene: &Scene, notes: &mut Vec<Note>) {
         v
     };
     for contact in &scene.contacts {
-        let ContactSides::Between(names) = &contact.sides else { continue };
+        let (ContactSides::Between(names), None) = (&contact.sides, contact.direction) else { continue };
         let [first, second] = [0, 1].map(|i| side_vertices(mesh, &names[i]));
         if second.is_empty() {
             continue;
@@ -128,9 +134,12 @@ fn match_vertices(
                 .filter(|(d, e)| *d <= margin(*e))
                 .min_by(|x, y| x.0.total_cmp(&y.0));
             let Some((off, edge)) = nearest else {
-                let what = format!("the vertex {} of '{}' does not lie on '{}'", at(p), names[from], names[into]);
+                let what =
+                    format!("the vertex {} of '{}' does not lie on '{}'", at(scene, p), names[from], names[into]);
                 let remedy = "the two sides must be coinciding polylines with the same ends: divide the longer curve \
-                              there and name the common part only, or give both sides the same points";
+                              there and name the common part only, or give both sides the same points; sides that are no such \
+                              polylines, an arc on a line or two arcs of unlike edges, are matched along a `direction`, \
+                              with a `gap` beside their distance where there is one";
                 return Err(MeshError::contact(scene, contact.name(), what, remedy));
             };
             moved = moved.max(off);
@@ -159,7 +168,7 @@ fn match_vertices(
 }
 
 fn too_flat(scene: &Scene, contact: &Contact, p: [f64; 2]) -> MeshError {
-    let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(p));
+    let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
     MeshError::contact(scene, contact.name(), what, "mesh both sides with the same points")
 }
 
@@ -170,8 +179,10 @@ fn insert_gap_breaks(
     contact: &Contact,
     notes: &mut Vec<Note>,
 ) -> Result<Triangulation, MeshError> {
-    let Gap::Table(rows) = &contact.gap else { return Ok(mesh) };
-    let breaks: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    let breaks = contact.gap.breaks();
+    if breaks.is_empty() {
+        return Ok(mesh);
+    }
     let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
     let first = mesh.boundary(contact.first());
     let side: Vec<[[f64; 2]; 2]> = first.iter().map(|&e| ends(e)).collect();
@@ -190,7 +201,7 @@ fn insert_gap_breaks(
     let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
     notes.push(Note {
         weakens_guarantee: false,
-        text: format!("contact {}: {} vertices inserted where the gap bends", contact.name(), points.len()),
+        text: format!("contact {}: {} vertices inserted where the gap bends or touches", contact.name(), points.len()),
     });
     Ok(mesh)
 }

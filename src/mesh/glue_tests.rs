@@ -63,6 +63,7 @@ fn a_corner_triangle_takes_vertices_on_two_edges() {
             points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]],
             triangles: vec![(cell, "a".into())],
             segments: vec![([0, 1], "a_right".into()), ([1, 2], "a_right".into())],
+            ..RawMesh::default()
         };
         let mut upright = grid("b", [1.0, 0.0], [2.0, 1.0], [1, 3]);
         let mut flat = grid("b", [0.0, -1.0], [1.0, 0.0], [4, 1]);
@@ -96,7 +97,7 @@ fn break_points_of_the_gap_become_vertices() {
     assert!(problem.notes.iter().all(|n| !n.weakens_guarantee));
 
     let mut rigid = scene(&["a"]);
-    rigid.contacts.push(Contact { sides: ContactSides::Rigid("a_right".into()), gap });
+    rigid.contacts.push(Contact::new(ContactSides::Rigid("a_right".into()), gap));
     let (mesh, _) = Triangulation::new(grid("a", [0.0; 2], [1.0; 2], [2, 2]), &rigid).expect("a good mesh");
     let (mesh, _) = glue(mesh, &rigid).expect("nothing to match");
     assert_consistent(&mesh);

@@ -27,13 +27,13 @@ pub(super) fn check(mesh: &Triangulation, scene: &Scene, notes: &mut Vec<Note>) 
         for p in ends(e) {
             for f in tree.meeting(&[p, p]).into_iter().map(|i| boundary[i]) {
                 if body(e) == body(f) && inside(p, ends(f)) {
-                    let [a, b] = ends(f).map(at);
+                    let [a, b] = ends(f).map(|p| at(scene, p));
                     let name = body(e).map_or("", |b| &scene.bodies[b].name);
                     return Err(MeshError::cells(
                         scene,
                         format!(
                             "body '{name}' has a hanging node: the vertex {} lies inside the edge {a} to {b}",
-                            at(p)
+                            at(scene, p)
                         ),
                         "mesh the parts of a body conformingly (in gmsh: BooleanFragments, or Coherence)",
                     ));

@@ -1,6 +1,6 @@
 //! Which edge carries which name, and which edges are cut open because a contact runs along them.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::error::{MeshError, at};
 use super::halves::HalfEdges;
@@ -24,6 +24,8 @@ pub(super) fn pair(a: usize, b: usize) -> Pair {
 pub(super) struct Labels {
     /// Distinct names in order of appearance.
     pub names: Vec<String>,
+    /// Their places.
+    place: HashMap<String, usize>,
     /// Name of edge i (opposite corner i) of a triangle.
     pub of: Map<Side, usize>,
     /// Interior edges along which a contact separates two bodies.
@@ -32,10 +34,14 @@ pub(super) struct Labels {
 
 impl Labels {
     fn put(&mut self, side: Side, name: &str) {
-        let index = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
-            self.names.push(name.to_string());
-            self.names.len() - 1
-        });
+        let index = match self.place.get(name) {
+            Some(&index) => index,
+            None => {
+                self.names.push(name.to_string());
+                self.place.insert(name.to_string(), self.names.len() - 1);
+                self.names.len() - 1
+            }
+        };
         self.of.insert(side, index);
     }
 }
@@ -77,7 +83,7 @@ pub(super) fn assign(
         }
         if halves.joining(*a, *b).next().is_none() {
             if used.contains(&name.as_str()) {
-                let ends = [*a, *b].map(|v| at(raw.points[v]));
+                let ends = [*a, *b].map(|v| at(scene, raw.points[v]));
                 let what = format!("has the segment {} to {}, which is no edge of a triangle", ends[0], ends[1]);
                 return Err(MeshError::boundary(scene, name, what, "mesh curves and surfaces together"));
             }
@@ -88,18 +94,18 @@ pub(super) fn assign(
         if names.is_empty() {
             order.push(key);
         }
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
+        names.push(name);
     }
     let mut labels = Labels::default();
+    let conditions: HashSet<&str> = used.iter().copied().collect();
     for key in order {
-        let names = &on[&key];
-        let carrying: Vec<&str> = names.iter().copied().filter(|name| used.contains(name)).collect();
+        let mut seen = HashSet::new();
+        let names: Vec<&str> = on[&key].iter().copied().filter(|name| seen.insert(*name)).collect();
+        let carrying: Vec<&str> = names.iter().copied().filter(|name| conditions.contains(name)).collect();
         if carrying.is_empty() {
-            idle.extend(names);
+            idle.extend(&names);
         }
-        let place = key.map(|v| at(raw.points[v])).join(" to ");
+        let place = key.map(|v| at(scene, raw.points[v])).join(" to ");
         let sides: Vec<Side> = halves.joining(key[0], key[1]).map(|side| (side / 3, side % 3)).collect();
         match (sides.as_slice(), carrying.as_slice()) {
             ([side], []) => labels.put(*side, names[0]),

@@ -1,13 +1,15 @@
 //! Files that meshio reads, by a script in a Python process of its own.
 
-use std::io::Read;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use crate::process::{Outcome, Scratch, python, supervise};
 
 /// Exit code of a script whose interpreter has no meshio.
 const NO_MESHIO: i32 = 44;
-const PATIENCE: Duration = Duration::from_secs(120);
+
+/// How long meshio may read one file where nobody says otherwise.
+pub const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Why a file could not be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,33 +25,34 @@ pub(crate) struct Failure {
 /// code 44 where meshio is missing, and with a message where it fails. `instead` is a remedy that needs no meshio.
 ///
 /// # Errors
-/// [`Failure`] when there is no such interpreter, or when the script fails or takes too long.
-pub(crate) fn run(script: &str, file: &Path, instead: &str) -> Result<Vec<u8>, Failure> {
+/// [`Failure`] when there is no such interpreter, or when the script fails or takes longer than `limit`.
+pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<Vec<u8>, Failure> {
     let failure = |what: String, remedy: String| Failure { what, remedy };
     let no_folder = |e| failure(format!("no temporary folder: {e}"), "set TMPDIR to a folder with space".into());
-    let folder = tempfile::tempdir().map_err(no_folder)?;
+    let folder = Scratch::new().map_err(no_folder)?;
+    let place = folder.folder("run").map_err(no_folder)?;
     let target = folder.path().join("result.json");
-    let chosen = std::env::var("HYPERCIRCLE_PYTHON").ok();
-    for python in chosen.iter().map(String::as_str).chain(["python3", "/usr/bin/python3"]) {
-        let mut command = Command::new(python);
+    let file = std::path::absolute(file).map_err(no_folder)?;
+    let chosen = std::env::var_os("HYPERCIRCLE_PYTHON");
+    let names = chosen.iter().map(Path::new).chain(["python3", "/usr/bin/python3"].map(Path::new));
+    for interpreter in names.filter_map(python::find) {
+        let mut command = python::command(&interpreter, script, &place, &[], None).map_err(no_folder)?;
         // meshio wraps its messages at the width of the terminal.
-        command.args(["-c", script]).arg(file).arg(&target).env("COLUMNS", "1000");
-        let Ok(child) = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn() else {
-            continue;
-        };
-        match finish(child, PATIENCE) {
-            Finished::Code(Some(0), _) => {
+        command.arg(&file).arg(&target).env("COLUMNS", "1000");
+        let Ok(ended) = supervise(&mut command, limit) else { continue };
+        match ended.outcome {
+            Outcome::Exit(status) if status.success() => {
                 return std::fs::read(&target)
                     .map_err(|e| failure(format!("meshio's result cannot be read: {e}"), instead.to_string()));
             }
-            Finished::Code(Some(NO_MESHIO), _) => {}
-            Finished::Code(_, log) => {
-                let end = log.lines().map(str::trim).rfind(|line| !line.is_empty()).unwrap_or("no message");
+            Outcome::Exit(status) if status.code() == Some(NO_MESHIO) => {}
+            Outcome::Exit(_) | Outcome::Lost(_) => {
+                let end = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("no message");
                 return Err(failure(format!("meshio cannot read it: {end}"), format!("check the file, or {instead}")));
             }
-            Finished::TimeOut => {
-                let what = format!("meshio did not finish in {} s", PATIENCE.as_secs());
-                return Err(failure(what, instead.to_string()));
+            Outcome::TimedOut => {
+                let what = format!("meshio did not finish in {} s", limit.as_secs_f64());
+                return Err(failure(what, format!("allow more with --reading-seconds, or {instead}")));
             }
         }
     }
@@ -60,45 +63,4 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str) -> Result<Vec<u8>, F
              interpreter that has it, or {instead}"
         ),
     ))
-}
-
-enum Finished {
-    Code(Option<i32>, String),
-    TimeOut,
-}
-
-/// Waits for the process, at most for `patience`; what it writes to its error stream is read meanwhile.
-fn finish(mut child: Child, patience: Duration) -> Finished {
-    let stream = child.stderr.take();
-    let reader = std::thread::spawn(move || {
-        let mut log = Vec::new();
-        // What cannot be read is missing from a message, no more.
-        let _ = stream.map(|mut s| s.read_to_end(&mut log));
-        String::from_utf8_lossy(&log).into_owned()
-    });
-    let start = Instant::now();
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Finished::Code(status.code(), reader.join().unwrap_or_default()),
-            Ok(None) if start.elapsed() < patience => std::thread::sleep(Duration::from_millis(10)),
-            _ => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Finished::TimeOut;
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_process_that_hangs_is_ended() {
-        let child = Command::new("sleep").arg("60").stderr(Stdio::piped()).spawn().expect("sleep exists");
-        let start = Instant::now();
-        assert!(matches!(finish(child, Duration::from_millis(50)), Finished::TimeOut));
-        assert!(start.elapsed() < Duration::from_secs(10));
-    }
 }

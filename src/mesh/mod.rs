@@ -4,6 +4,7 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+pub(crate) mod along;
 pub mod bisect;
 mod boxes;
 mod cells;
@@ -23,6 +24,7 @@ mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;
 mod quarter;
+pub(crate) mod sets;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;
@@ -34,23 +36,50 @@ pub use error::MeshError;
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
+use std::time::Duration;
+/// The circles of the edges that stand for an arc, by edge; refining puts new vertices on them.
+pub type Curved = Map<usize, crate::scene::Circle>;
+
 use crate::scene::Note;
 use crate::scene::{MeshSource, Scene};
 
-/// Reads or makes the mesh of `scene`, checks it, and makes contact sides match.
+/// About how many triangles [`load`] makes of polygons; `None` where the mesh comes from a file.
+pub fn expected_triangles(scene: &Scene) -> Option<f64> {
+    match &scene.mesh {
+        MeshSource::Geometry { size, polygons } => Some(polygons::expected_triangles(polygons, *size)),
+        MeshSource::File(_) => None,
+    }
+}
+
+/// Reads or makes the mesh of `scene`, checks it, and makes contact sides match. The mesh counts its coordinates from a
+/// point in its middle where it lies far from (0, 0), and so does the scene that comes with it. A program that helps to read
+/// a file is given at most `limit`.
 ///
 /// # Errors
 /// [`MeshError`] says what is wrong, where, and what to do.
-pub fn load(scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
-    let (raw, mut notes) = match &scene.mesh {
-        MeshSource::File(path) => file::read(path)?,
-        MeshSource::Geometry { .. } => polygons::mesh(scene)?,
+pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<Note>), MeshError> {
+    let (scene, (raw, mut notes)) = match &scene.mesh {
+        MeshSource::File(path) => {
+            let (mut raw, notes) = file::read(path, limit)?;
+            raw.shift(scene.origin);
+            let (scene, middle) = scene.about_middle(raw.points.iter());
+            raw.shift(middle);
+            (scene, (raw, notes))
+        }
+        MeshSource::Geometry { polygons, .. } => {
+            let corners: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
+            let (scene, _) = scene.about_middle(corners.iter());
+            let made = polygons::mesh(&scene)?;
+            (scene, made)
+        }
     };
-    let (mesh, more) = Triangulation::new(raw, scene)?;
+    let (mesh, more) = Triangulation::new(raw, &scene)?;
     notes.extend(more);
-    let (mesh, more) = glue::glue(mesh, scene)?;
+    let (mesh, more) = glue::glue(mesh, &scene)?;
     notes.extend(more);
-    Ok((mesh, notes))
+    let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    notes.extend(scene.coarseness(size));
+    Ok((scene, mesh, notes))
 }
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
@@ -62,6 +91,54 @@ pub struct RawMesh {
     pub triangles: Vec<([usize; 3], String)>,
     /// Vertex indices and boundary name of each named segment.
     pub segments: Vec<([usize; 2], String)>,
+    /// More of both, with several names each.
+    pub shared: Vec<Shared>,
+}
+
+/// Cells that all carry the same names, listed once: those of an entity that is in many physical groups.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Shared {
+    /// Names of the bodies or boundaries.
+    pub names: Vec<String>,
+    /// Triangles.
+    pub triangles: Vec<[usize; 3]>,
+    /// Segments.
+    pub segments: Vec<[usize; 2]>,
+}
+
+impl RawMesh {
+    /// With all cells listed name by name: under every name that `scene` uses, and under one of the others where there is
+    /// no such name. The other names stand at one cell, so that they can be spoken of.
+    fn resolved(mut self, scene: &Scene) -> Self {
+        for Shared { names, triangles, segments } in std::mem::take(&mut self.shared) {
+            let bodies = |name: &String| scene.bodies.iter().any(|body| body.name == *name);
+            spread(&names, triangles, bodies, &mut self.triangles);
+            let used = labels::used_names(scene);
+            spread(&names, segments, |name| used.contains(&name.as_str()), &mut self.segments);
+        }
+        self
+    }
+}
+
+fn spread<C: Copy>(names: &[String], cells: Vec<C>, used: impl Fn(&String) -> bool, into: &mut Vec<(C, String)>) {
+    let Some(first) = cells.first() else { return };
+    let (mut wanted, mut others): (Vec<&String>, Vec<&String>) = names.iter().partition(|name| used(name));
+    if wanted.is_empty() && !others.is_empty() {
+        wanted.push(others.swap_remove(0));
+    }
+    for cell in &cells {
+        into.extend(wanted.iter().map(|name| (*cell, (*name).clone())));
+    }
+    into.extend(others.into_iter().map(|name| (*first, name.clone())));
+}
+
+impl RawMesh {
+    /// Counts coordinates from `origin`.
+    fn shift(&mut self, origin: [f64; 2]) {
+        if origin != [0.0; 2] {
+            self.points.iter_mut().for_each(|p| *p = [p[0] - origin[0], p[1] - origin[1]]);
+        }
+    }
 }
 
 /// An edge of a [`Triangulation`].

@@ -24,7 +24,7 @@ pub(super) fn check(mesh: &Triangulation, scene: &Scene) -> Result<(), MeshError
         None => Ok(()),
         Some(place) => Err(MeshError::cells(
             scene,
-            format!("triangles overlap at {}", at(place)),
+            format!("triangles overlap at {}", at(scene, place)),
             "bodies may touch but not overlap: correct the geometry and mesh it again",
         )),
     }

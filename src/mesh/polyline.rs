@@ -77,17 +77,23 @@ pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
     Ok(links.collect())
 }
 
-/// Parts of an edge, and of the length of a side, within which two positions count as the same.
+/// Part of the length of a side within which two positions count as the same.
 pub(crate) const SAME: f64 = 1e-9;
+
+/// The distance along a side within which two positions count as the same.
+pub(crate) fn same(links: &[Link]) -> f64 {
+    SAME * links.last().map_or(0.0, |last| last.arc[1])
+}
 
 /// The points of a side at the arc lengths `breaks` that are not at an end of an edge: (edge, point).
 pub(crate) fn inner_points(edges: &[[[f64; 2]; 2]], links: &[Link], breaks: &[f64]) -> Vec<(usize, [f64; 2])> {
     let mut found = Vec::new();
+    let close = same(links);
     for &s in breaks {
         for link in links {
             let length = link.arc[1] - link.arc[0];
             let t = (s - link.arc[0]) / length;
-            if t > SAME && t < 1.0 - SAME {
+            if s - link.arc[0] > close && link.arc[1] - s > close {
                 let [a, b] = edges[link.edge];
                 let t = if link.reversed { 1.0 - t } else { t };
                 found.push((link.edge, [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]));

@@ -1,7 +1,7 @@
 //! Uniform refinement.
 
 use super::labels::pair;
-use super::{Map, Triangulation};
+use super::{Curved, Map, Triangulation};
 
 /// The middle of an edge; the same bits from either end, so that contact sides keep matching.
 pub(crate) fn middle(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
@@ -9,12 +9,20 @@ pub(crate) fn middle(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Triangulation {
-    /// Every triangle cut into four similar ones by the middles of its edges. Vertices keep their index; the middle
-    /// of edge e becomes vertex `points.len()` + e; triangle t becomes 4t … 4t + 3, the last one in the middle.
-    pub fn quartered(&self) -> Triangulation {
+    /// The point that divides edge `e`: its middle, or the nearest point of the circle that it stands for.
+    pub(super) fn division(&self, e: usize, curved: &Curved) -> [f64; 2] {
+        let [a, b] = self.edges[e].vertices.map(|v| self.points[v]);
+        let m = middle(a, b);
+        curved.get(&e).map_or(m, |circle| circle.nearest(m))
+    }
+
+    /// Every triangle cut into four by the middles of its edges, similar ones where no edge is `curved`. Vertices keep their
+    /// index; the middle of edge e becomes vertex `points.len()` + e; triangle t becomes 4t … 4t + 3, the last one in the
+    /// middle.
+    pub fn quartered(&self, curved: &Curved) -> Triangulation {
         let first = self.points.len();
         let mut points = self.points.clone();
-        points.extend(self.edges.iter().map(|e| middle(self.points[e.vertices[0]], self.points[e.vertices[1]])));
+        points.extend((0..self.edges.len()).map(|e| self.division(e, curved)));
         let mut triangles = Vec::with_capacity(4 * self.triangles.len());
         for (corners, edges) in self.triangles.iter().zip(&self.triangle_edges) {
             let [a, b, c] = *corners;

@@ -14,6 +14,7 @@ pub(crate) fn scene(bodies: &[&str]) -> Scene {
         name: "test".into(),
         title: "test".into(),
         path: "test.toml".into(),
+        origin: [0.0; 2],
         kinematics: Kinematics::PlaneStrain,
         thickness: 1.0,
         mesh: MeshSource::File("test.msh".into()),
@@ -36,7 +37,7 @@ pub(crate) fn load(mut scene: Scene, on: &str, load: Load) -> Scene {
 
 pub(crate) fn contact(mut scene: Scene, first: &str, second: &str, gap: Gap) -> Scene {
     let sides = ContactSides::Between([first.into(), second.into()]);
-    scene.contacts.push(Contact { sides, gap });
+    scene.contacts.push(Contact::new(sides, gap));
     scene
 }
 
@@ -51,6 +52,7 @@ pub(crate) fn rectangle(body: &str, lower: [f64; 2], upper: [f64; 2]) -> Polygon
         body: body.into(),
         points: vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]],
         edges: ["bottom", "right", "top", "left"].map(|side| format!("{body}_{side}")).into(),
+        arcs: Vec::new(),
     }
 }
 

@@ -20,6 +20,7 @@ impl Triangulation {
     /// [`MeshError`] names the cell, vertex or boundary that does not fit, its place, and the remedy.
     pub fn new(raw: RawMesh, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
         let mut notes = Vec::new();
+        let raw = raw.resolved(scene);
         let cells = cells::check(&raw, scene, &mut notes)?;
         let halves = HalfEdges::new(&cells.triangles, raw.points.len());
         check_edges(&raw, &cells, &halves, scene)?;
@@ -88,7 +89,7 @@ impl Triangulation {
 fn check_edges(raw: &RawMesh, cells: &Cells, halves: &HalfEdges, scene: &Scene) -> Result<(), MeshError> {
     for side in 0..3 * cells.triangles.len() {
         let [a, b] = HalfEdges::ends(&cells.triangles, side);
-        let place = || format!("{} to {}", at(raw.points[a]), at(raw.points[b]));
+        let place = || format!("{} to {}", at(scene, raw.points[a]), at(scene, raw.points[b]));
         let mut others = halves.joining(a, b).filter(|other| *other != side);
         let (other, third) = (others.next(), others.next());
         if third.is_some() {

@@ -42,7 +42,7 @@ fn a_sliver_passes_in_any_unit() {
         let raw = RawMesh {
             points: [[0.0, 0.0], [1.0, 0.0], [0.5, 1e-6]].map(|p| p.map(|x| x * unit)).to_vec(),
             triangles: vec![([0, 1, 2], "left".into())],
-            segments: vec![],
+            ..RawMesh::default()
         };
         accept(raw, &scene(&["left"]));
     }

@@ -75,6 +75,7 @@ struct PairEntry {
     first: [usize; 2],
     second: Option<[usize; 2]>,
     normal: [f64; 2],
+    direction: [[f64; 2]; 2],
     gap: [f64; 2],
 }
 
@@ -137,6 +138,7 @@ impl<'a> ProblemFile<'a> {
                             first: pair.first,
                             second: pair.second,
                             normal: pair.normal,
+                            direction: pair.direction.ends,
                             gap: pair.gap,
                         })
                         .collect(),
@@ -192,6 +194,9 @@ fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(),
     if solution.degree != degree {
         return Err(format!("it holds degree {}, not {degree}", solution.degree));
     }
+    if let Some(rounding) = solution.energy_rounding.filter(|rounding| *rounding < 0.0) {
+        return Err(format!("energy_rounding is {rounding}, and an error cannot be negative"));
+    }
     let vertices = problem.mesh.points.len();
     if solution.vertex_displacement.len() != vertices {
         return Err(format!("{} vertex displacements for {vertices} vertices", solution.vertex_displacement.len()));
@@ -208,7 +213,13 @@ fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(),
         let edges = (degree == 2).then_some(interface.pairs.len());
         let fits = contact.vertices.len() == contact.vertex_reaction.len()
             && contact.vertices.iter().all(|&v| v < vertices)
-            && contact.edge_reaction.as_ref().map(Vec::len) == edges;
+            && contact.edge_reaction.as_ref().map(Vec::len) == edges
+            && contact
+                .edge_reaction
+                .iter()
+                .flatten()
+                .zip(&interface.pairs)
+                .all(|(inner, pair)| inner.len() == if pair.direction.is_constant() { 1 } else { 2 });
         if !fits {
             return Err(format!("the reactions of {} do not match its edges", contact.name));
         }
@@ -291,6 +302,16 @@ mod tests {
         let mut other = problem.clone();
         other.mesh.points.push([5.0, 5.0]);
         assert!(matches!(read_solution(folder.path(), 2, &other), Err(PrimalError::BadResult { .. })));
+        let path = folder.path().join(solution_file(1));
+        let mut told: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+        assert!(told["energy_rounding"].as_f64().unwrap() < 1e-12);
+        told["energy_rounding"] = json!(-1.0);
+        fs::write(&path, told.to_string()).unwrap();
+        let refused = read_solution(folder.path(), 1, &problem).unwrap_err().to_string();
+        assert!(refused.contains("energy_rounding is -1"), "{refused}");
+        told.as_object_mut().unwrap().remove("energy_rounding");
+        fs::write(&path, told.to_string()).unwrap();
+        assert_eq!(read_solution(folder.path(), 1, &problem).unwrap().energy_rounding, None);
         let mut other = problem;
         other.interfaces[0].name = "left|rigid".to_owned();
         assert!(matches!(read_solution(folder.path(), 1, &other), Err(PrimalError::BadResult { .. })));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Interface, Problem};
+use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Kinematics, MeshSource, Scene};
 
 /// The unit square, pressure 2 on its left, a rigid wall on its right, rollers below; E = 1, ν = 0, thickness ½.
@@ -30,6 +30,7 @@ pub(crate) fn pressed_square() -> Problem {
         first: [1, 2],
         second: None,
         normal: [1.0, 0.0],
+        direction: Direction::constant([1.0, 0.0]),
         length: 1.0,
         arc: [0.0, 1.0],
         gap: [0.0, 0.0],
@@ -39,6 +40,7 @@ pub(crate) fn pressed_square() -> Problem {
             name: "square".to_owned(),
             title: "square".to_owned(),
             path: PathBuf::from("square.toml"),
+            origin: [0.0; 2],
             kinematics: Kinematics::PlaneStress,
             thickness: 0.5,
             mesh: MeshSource::File(PathBuf::from("square.msh")),

@@ -13,7 +13,6 @@ pub mod exchange;
 pub(crate) mod fixture;
 pub mod process;
 
-use std::collections::VecDeque;
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -133,9 +132,12 @@ pub struct PrimalSolution {
     pub energy: f64,
     /// ½∫ c e(u_h):e(u_h).
     pub strain_energy: f64,
-    /// Newton steps of the variational inequality; 1 for a problem without contact.
+    /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
+    #[serde(default)]
+    pub energy_rounding: Option<f64>,
+    /// Sets of closed contacts that were tried; 1 for a problem without contact.
     pub iterations: usize,
-    /// PETSc's reason for stopping; positive.
+    /// The solver's reason for stopping; positive.
     pub converged_reason: i32,
     /// Unknowns left after supports are eliminated.
     pub unknowns: usize,
@@ -179,7 +181,7 @@ pub struct PrimalContact {
     pub vertex_reaction: Vec<f64>,
     /// R ≥ 0 of each pair, conjugate to the middle Bernstein coefficient of its jump (to the midpoint value with
     /// [`Options::nodal_contact`]); `None` for degree 1.
-    pub edge_reaction: Option<Vec<f64>>,
+    pub edge_reaction: Option<Vec<Vec<f64>>>,
     /// Force on the first side.
     pub resultant: [f64; 2],
 }
@@ -199,37 +201,11 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
         Some(folder) => folder.as_path(),
         None => {
             let place = std::env::temp_dir();
-            temporary = tempfile::tempdir().map_err(|source| PrimalError::Io { path: place, source })?;
+            temporary = crate::process::Scratch::new().map_err(|source| PrimalError::Io { path: place, source })?;
             temporary.path()
         }
     };
     exchange::write_problem(problem, pins, folder)?;
     process::run(folder, options)?;
     options.degrees.iter().map(|&degree| exchange::read_solution(folder, degree, problem)).collect()
-}
-
-/// The last lines of a log.
-#[derive(Debug, Default)]
-pub(crate) struct Tail {
-    lines: VecDeque<String>,
-}
-
-impl Tail {
-    const LINES: usize = 40;
-    const WIDTH: usize = 2000;
-
-    /// Keep `line`, and let go of the oldest where there are too many.
-    pub(crate) fn push(&mut self, line: &[u8]) {
-        if self.lines.len() == Self::LINES {
-            self.lines.pop_front();
-        }
-        let text = String::from_utf8_lossy(&line[..line.len().min(Self::WIDTH)]);
-        self.lines.push_back(text.trim_end().to_owned());
-    }
-
-    /// The lines, joined.
-    pub(crate) fn text(&self) -> String {
-        let lines: Vec<&str> = self.lines.iter().map(String::as_str).collect();
-        if lines.is_empty() { "(nothing was printed)".to_owned() } else { lines.join("\n") }
-    }
 }

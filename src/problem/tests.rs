@@ -97,10 +97,10 @@ fn arc_length_goes_on_over_the_pieces_of_a_side() {
     let mut scene = scene(&["a"]);
     let mut raw = both(grid("a", [2.0, 0.0], [3.0, 1.0], [2, 1]), grid("a", [0.0, 0.0], [1.0, 1.0], [4, 1]));
     raw.segments.retain(|s| s.1 == "a_bottom");
-    scene.contacts.push(Contact {
-        sides: ContactSides::Rigid("a_bottom".into()),
-        gap: Gap::Table(vec![[0.0, 0.0], [1.25, 0.5], [2.0, 0.5]]),
-    });
+    scene.contacts.push(Contact::new(
+        ContactSides::Rigid("a_bottom".into()),
+        Gap::Table(vec![[0.0, 0.0], [1.25, 0.5], [2.0, 0.5]]),
+    ));
     let (mesh, notes) = Triangulation::new(raw, &scene).expect("a good mesh");
     let problem = Problem::new(scene, mesh, notes).expect("a good scene");
     assert_paired(&problem);

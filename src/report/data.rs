@@ -19,6 +19,8 @@ pub struct Report {
     pub title: String,
     /// The command that made it: `verify`, `solve`, `certify`.
     pub command: String,
+    /// Identifies the run: the files of one report carry the same, those of two runs differ.
+    pub run: String,
     /// The verdict.
     pub status: Status,
     /// One sentence that says the verdict in words.
@@ -33,8 +35,12 @@ pub struct Report {
     pub contact: Vec<ContactSummary>,
     /// Stress comparison; `null` without a primal solution.
     pub stress: Option<StressSummary>,
-    /// Every check made, or that could not be made.
+    /// Every check that decides the verdict, made or not: what theory guarantees, what is equal but for round-off, and
+    /// what the user asks for.
     pub checks: Vec<Check>,
+    /// Comparisons with a tolerance that this program chose, because theory sets none. One that does not pass is worth a
+    /// look; none turns the verdict, unless `--allow` makes a check of it.
+    pub remarks: Vec<Check>,
     /// What the reader has to know.
     pub notes: Vec<Note>,
     /// How adaptive refinement went, one row per mesh; empty without it.
@@ -51,6 +57,8 @@ pub enum Status {
     Agree,
     /// At least one check did not.
     Disagree,
+    /// All checks passed, but the bracket is too wide to tell two models apart.
+    Undecided,
     /// The scene has no equilibrium.
     Infeasible,
     /// A solver failed.

@@ -7,16 +7,18 @@ use quick_junit::{
 };
 
 use super::number::{optional, significant};
+use super::words::worth_a_look;
 use super::{Report, Status};
 use crate::compare::Check;
 
-/// The checks as a JUnit test suite named after the scene, the notes as its output. A run without a verdict
-/// (infeasible or failed) adds one test case that says so: a file without failures must mean agreement.
+/// The checks as a JUnit test suite named after the scene, the notes and remarks as its output. A run that ends without
+/// agreement though no check failed (undecided, infeasible or failed) adds one test case that says so: a file without failures must mean agreement.
 pub fn junit(report: &Report) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(format!("hypercircle {} {}", report.command, report.scene));
     suite.add_test_cases(report.checks.iter().map(|check| case(check, &report.scene)));
+    suite.add_property(("run", report.run.as_str()));
     let verdict = match report.status {
-        Status::Infeasible => Some(NonSuccessKind::Failure),
+        Status::Infeasible | Status::Undecided => Some(NonSuccessKind::Failure),
         Status::Failed => Some(NonSuccessKind::Error),
         Status::Agree | Status::Disagree => None,
     };
@@ -28,9 +30,12 @@ pub fn junit(report: &Report) -> Result<String, SerializeError> {
     if let Some(time) = total_seconds(report) {
         suite.set_time(time);
     }
-    if !report.notes.is_empty() {
-        let notes: Vec<&str> = report.notes.iter().map(|note| note.text.as_str()).collect();
-        suite.set_system_out(notes.join("\n"));
+    let notes = report.notes.iter().map(|note| note.text.clone());
+    let remarks =
+        worth_a_look(report).into_iter().map(|remark| format!("worth a look: {}: {}", remark.name, remark.why));
+    let output: Vec<String> = notes.chain(remarks).collect();
+    if !output.is_empty() {
+        suite.set_system_out(output.join("\n"));
     }
     let mut junit = JunitReport::new("hypercircle");
     if let Some(time) = total_seconds(report) {
@@ -107,7 +112,9 @@ mod tests {
 
     #[test]
     fn no_verdict_is_no_success() {
-        for (verdict, failures, errors) in [(Verdict::Infeasible, 1, 0), (Verdict::Failed, 0, 1)] {
+        for (verdict, failures, errors) in
+            [(Verdict::Infeasible, 1, 0), (Verdict::Failed, 0, 1), (Verdict::Undecided, 1, 0)]
+        {
             let mut report = Sample::new(1, verdict).dossier().report;
             report.checks.clear();
             let parsed = JunitReport::deserialize_from_str(&junit(&report).unwrap()).unwrap();

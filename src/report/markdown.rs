@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
-use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from};
+use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from, worth_a_look};
 use super::{Report, Status};
 
 /// How many failing checks are listed before the rest is only counted.
@@ -27,7 +27,13 @@ pub fn summary(report: &Report) -> String {
     if report.notes.len() > weakening.len() {
         let _ = writeln!(text, "{} more note(s) in `report.html`.\n", report.notes.len() - weakening.len());
     }
-    let _ = writeln!(text, "`{}` · hypercircle {}", code(&report.scene), cell(&report.provenance.version));
+    let _ = writeln!(
+        text,
+        "`{}` · hypercircle {} · run {}",
+        code(&report.scene),
+        cell(&report.provenance.version),
+        report.run
+    );
     text
 }
 
@@ -72,6 +78,12 @@ fn checks(text: &mut String, report: &Report) {
             let _ = writeln!(text, "\nand {}", rest.join(", "));
         }
         text.push('\n');
+    }
+    let look = worth_a_look(report);
+    if !look.is_empty() {
+        let named: Vec<String> = look.iter().take(LISTED).map(|remark| format!("`{}`", code(&remark.name))).collect();
+        let more = if look.len() > LISTED { ", …" } else { "" };
+        let _ = writeln!(text, "Worth a look, and no part of the verdict: {}{more}.\n", named.join(", "));
     }
 }
 
@@ -121,10 +133,15 @@ fn contacts(text: &mut String, report: &Report) {
     text.push('\n');
 }
 
-/// User text on one line: whatever Markdown or HTML would act on is escaped.
+/// Takes the meaning from a character for whoever makes links of words: somebody to notify, an issue, an address.
+const NO_LINK: &str = "&#8203;";
+
+/// User text on one line: whatever Markdown or HTML would act on is escaped, and nothing becomes a link.
 fn cell(text: &str) -> String {
     let mut escaped = String::new();
-    for c in clean(text).chars() {
+    let text = clean(text);
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
         match c {
             '\n' | '\t' => escaped.push(' '),
             '<' => escaped.push_str("&lt;"),
@@ -135,6 +152,17 @@ fn cell(text: &str) -> String {
                 escaped.push(c);
             }
             _ => escaped.push(c),
+        }
+        let next = rest.peek().copied().unwrap_or(' ');
+        let links = match c {
+            '@' | '#' => !next.is_whitespace(),
+            ':' => next == '/',
+            '.' => escaped.len() >= 4 && escaped[..escaped.len() - 1].to_lowercase().ends_with("www"),
+            '-' => next.is_ascii_digit() && escaped.to_lowercase().ends_with("gh-"),
+            _ => false,
+        };
+        if links {
+            escaped.push_str(NO_LINK);
         }
     }
     escaped
@@ -164,6 +192,21 @@ mod tests {
         report.primal.clear();
         let text = summary(&report);
         assert!(text.contains(": passed") && !text.contains(": agree"), "{text}");
+    }
+
+    #[test]
+    fn nothing_in_a_title_notifies_or_links() {
+        let escaped =
+            cell("@octocat and team@example.org at https://example.org, www.example.org, #12, GH-7; a: b, 3.5");
+        for link in ["@o", "@e", "://", "www.e", "#1", "GH-7"] {
+            assert!(!escaped.contains(link), "{link} in {escaped}");
+        }
+        assert!(escaped.contains("a: b, 3.5"), "{escaped}");
+        let mut report = Sample::new(2, Verdict::Disagree).dossier().report;
+        report.title = "@octocat https://example.org".to_string();
+        report.verdict = "see www.example.org/@octocat".to_string();
+        let text = summary(&report);
+        assert!(!text.contains("@octocat") && !text.contains("://") && !text.contains("www.example"), "{text}");
     }
 
     #[test]

@@ -5,11 +5,13 @@
 mod data;
 pub(crate) mod document;
 pub mod figure;
+pub mod folder;
 mod html;
 mod json;
 mod junit;
 mod markdown;
 pub(crate) mod number;
+mod run;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]
@@ -23,5 +25,6 @@ pub use html::page;
 pub use json::{json, schema};
 pub use junit::junit;
 pub use markdown::summary;
+pub use run::run_of;
 pub use vtu::vtu;
-pub use write::{ReportError, write};
+pub use write::{NAMES, ReportError, write};

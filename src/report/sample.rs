@@ -9,7 +9,7 @@ use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
 use crate::element::{Displacement, StressField};
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Interface, Note, Problem};
+use crate::problem::{Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
 
 /// Something to make a dossier from.
@@ -184,6 +184,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         first,
         second: Some(opposite),
         normal: [1.0, 0.0],
+        direction: Direction::constant([1.0, 0.0]),
         length: h,
         arc: [k as f64 * h, (k + 1) as f64 * h],
         gap: [0.0; 2],
@@ -196,6 +197,7 @@ fn scene() -> Scene {
         name: "two_blocks".into(),
         title: "Two blocks <a&b>, \"eccentric\" traction".into(),
         path: PathBuf::from("two_blocks.toml"),
+        origin: [0.0; 2],
         kinematics: Kinematics::PlaneStrain,
         thickness: 1.0,
         mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },

@@ -26,10 +26,12 @@ const SINGLE_PRECISION_FROM: usize = 100_000;
 /// rigid `motion` where there is one (three components, the last zero). Cell data: `triangle`, `body` and the maps.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
+    let run = format!(" run {} ", dossier.report.run);
     let single = mesh.triangles.len() >= SINGLE_PRECISION_FROM;
     let cells = 3 * mesh.triangles.len();
     let mut out = Sheet { xml: Writer::new_with_indent(Vec::new(), b' ', 1), single };
     out.xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    out.xml.write_event(Event::Comment(BytesText::new(&run)))?;
     out.open(
         "VTKFile",
         &[("type", "UnstructuredGrid"), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")],
@@ -40,7 +42,7 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     cell_data(&mut out, dossier)?;
     out.open("Points", &[])?;
     let points = corner_values(mesh, |t, i| {
-        let [x, y] = corner(mesh, t, i);
+        let [x, y] = dossier.problem.scene.as_written(corner(mesh, t, i));
         [x, y, 0.0]
     });
     out.array("Points", "Float64", 3, points.iter().flat_map(|x| x.to_le_bytes()))?;

@@ -8,6 +8,7 @@ pub(crate) fn status_word(status: Status) -> &'static str {
     match status {
         Status::Agree => "agree",
         Status::Disagree => "disagree",
+        Status::Undecided => "undecided",
         Status::Infeasible => "infeasible",
         Status::Failed => "failed",
     }
@@ -26,6 +27,7 @@ pub(crate) fn status_symbol(status: Status) -> &'static str {
     match status {
         Status::Agree => "✔",
         Status::Disagree => "✘",
+        Status::Undecided => "?",
         Status::Infeasible => "∅",
         Status::Failed => "⚠",
     }
@@ -37,6 +39,7 @@ pub(crate) fn basis_word(basis: Basis) -> &'static str {
         Basis::Guaranteed => "guaranteed",
         Basis::RoundOff => "round-off",
         Basis::Chosen => "chosen",
+        Basis::Asked => "asked for",
     }
 }
 
@@ -53,8 +56,11 @@ pub(crate) fn meaning(check: &Check) -> &'static str {
              One of them was computed or transferred wrongly."
         }
         (_, Basis::Chosen) => {
-            "Chosen: theory sets no limit here, the tolerance was chosen. The models differ more than that: look at the \
-             pictures, refine the mesh, or allow more if the difference is understood."
+            "Chosen: theory sets no limit here, and this is no part of the verdict. The models differ more than is usual: \
+             look at the pictures, or refine the mesh."
+        }
+        (_, Basis::Asked) => {
+            "Asked for: the tolerance comes from the command line or from a stored result, and was not met."
         }
     }
 }
@@ -62,6 +68,11 @@ pub(crate) fn meaning(check: &Check) -> &'static str {
 /// The checks that did not pass, in the order of the report.
 pub(crate) fn failing(report: &Report) -> Vec<&Check> {
     report.checks.iter().filter(|check| !check.passed).collect()
+}
+
+/// The remarks that are worth a look, in the order of the report.
+pub(crate) fn worth_a_look(report: &Report) -> Vec<&Check> {
+    report.remarks.iter().filter(|remark| !remark.passed).collect()
 }
 
 /// The energies of the report by name: the lower bound, the free upper bound, then the displacement solutions.

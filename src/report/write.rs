@@ -1,17 +1,14 @@
-//! The five files of a run, each whole or not at all.
+//! The five files of a run.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
-
-use super::{Dossier, html, json, junit, markdown, vtu};
+use super::{Dossier, folder, html, json, junit, markdown, vtu};
 
 /// Why a report was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The output folder is something else.
-    #[error("the output folder {path} exists and is not a folder; remove it, or choose another with --out")]
+    #[error("{path}, where the output folder should be, is not a folder; remove it, or choose another with --out")]
     NotAFolder {
         /// The folder.
         path: PathBuf,
@@ -32,6 +29,28 @@ pub enum ReportError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Another run holds the folder.
+    #[error("another run is writing into {path} and does not end; wait for it, or choose another folder with --out")]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A report cannot be read.
+    #[error("{path} cannot be read: {reason}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The files of a folder are not one run's.
+    #[error("{path} is not of the run {run} that report.json in the same folder is of; run the scene again")]
+    Mixed {
+        /// The file.
+        path: PathBuf,
+        /// The run of `report.json`.
+        run: String,
+    },
     /// A file could not be put together.
     #[error("{file} could not be put together: {reason}")]
     Render {
@@ -42,31 +61,18 @@ pub enum ReportError {
     },
 }
 
+/// The names of the five files.
+pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
+
 /// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be.
 ///
-/// All five are rendered before the first is written, and all are written under temporary names before the first is
-/// given its own: a reader never sees half a file.
+/// All five are rendered before the first is written, and they take the place of an earlier run's at once (see
+/// [`folder`]): a reader sees neither half a file nor the files of two runs.
+///
+/// # Errors
+/// [`ReportError`]; an earlier report is then still there.
 pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
-    let files = render(dossier)?;
-    if dir.exists() && !dir.is_dir() {
-        return Err(ReportError::NotAFolder { path: dir.to_path_buf() });
-    }
-    std::fs::create_dir_all(dir).map_err(|source| ReportError::Create { path: dir.to_path_buf(), source })?;
-    let mut written = Vec::new();
-    for (name, bytes) in &files {
-        let path = dir.join(name);
-        if path.is_dir() {
-            let source = std::io::Error::from(std::io::ErrorKind::IsADirectory);
-            return Err(ReportError::Write { path, source });
-        }
-        let temporary =
-            write_temporary(dir, bytes).map_err(|source| ReportError::Write { path: path.clone(), source })?;
-        written.push((temporary, path));
-    }
-    for (temporary, path) in written {
-        temporary.persist(&path).map_err(|e| ReportError::Write { path, source: e.error })?;
-    }
-    Ok(())
+    folder::replace(dir, &render(dossier)?)
 }
 
 /// The five files by name.
@@ -82,27 +88,10 @@ pub(super) fn render(dossier: &Dossier) -> Result<[(&'static str, Vec<u8>); 5], 
     ])
 }
 
-fn write_temporary(dir: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".hypercircle-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Temporary files are private by default; a report is for everybody the umask allows.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(dir)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    Ok(file)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::report::sample::{Sample, Verdict};
-
-    const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 
     fn listing(dir: &Path) -> Vec<String> {
         let mut names: Vec<String> =

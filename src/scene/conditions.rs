@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use super::error::{Fault, SceneError};
 use super::fault::names;
-use super::raw::{At, RawContact, RawGap, RawScene, RawSupport, RawTraction, Table};
+use super::raw::{At, RawContact, RawCurve, RawGap, RawScene, RawSupport, RawTraction, Table};
 use super::validate::{Source, counted};
-use super::{Contact, ContactSides, Gap, Load, MeshSource, Support, SupportKind, Traction};
+use super::{Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction};
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
 
@@ -138,7 +138,7 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     let Table(contact) = &raw.value;
     let source = taken.source;
     let one_of = |both| Fault::OneOf { table: table.to_owned(), first: "`between`", second: "`on`", both };
-    let gap = contact.gap.as_ref().map_or(Ok(Gap::Constant(0.0)), |raw| gap(raw, table, source))?;
+    let gap = contact.gap.as_ref().map_or(Ok(Gap::Constant(0.0)), |raw| gap(raw, contact, table, source))?;
     let sides = match (&contact.between, &contact.on) {
         (Some(between), Some(on)) => {
             return Err(source.error(on.span(), one_of(true)).with_related(between.span(), "the other one"));
@@ -160,10 +160,51 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
             ContactSides::Between([taken.claim(first, table, "between")?, taken.claim(second, table, "between")?])
         }
     };
-    Ok(Contact { sides, gap })
+    let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
+    Ok(Contact { normals: normals(contact, table, source)?, direction, ..Contact::new(sides, gap) })
 }
 
-fn gap(raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError> {
+/// A unit vector for a contact between two sides.
+fn direction(d: &At<Vec<f64>>, contact: &RawContact, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
+    let vector = source.vector(d, (table, "direction"))?;
+    let remedy =
+        "delete `direction`; a rigid obstacle has the shape of the boundary, and `gap` says how far away it is";
+    let misplaced = |other| Fault::Misplaced { key: "direction", table: table.to_owned(), other, remedy };
+    if contact.on.is_some() {
+        return Err(source.error(d.span(), misplaced("`on`, a rigid obstacle")));
+    }
+    if let Some(normals) = &contact.normals {
+        let remedy = "keep one of the two: `direction` says along what contact acts, `normals` that its sides say so";
+        let fault = Fault::Misplaced { key: "normals", table: table.to_owned(), other: "`direction`", remedy };
+        return Err(source.error(normals.span(), fault));
+    }
+    let length = vector[0].hypot(vector[1]);
+    let words = ("a direction has a length", "write the direction from the first side to the second, like [0.0, -1.0]");
+    source.number(&At { value: length, start: d.start, end: d.end }, (table, "direction"), |l| l > 0.0, words)?;
+    Ok(vector.map(|x| x / length))
+}
+
+fn normals(contact: &RawContact, table: &str, source: &Source) -> Result<Normals, SceneError> {
+    let Some(word) = &contact.normals else { return Ok(Normals::default()) };
+    match word.value.as_str() {
+        "smooth" => Ok(Normals::Smooth),
+        "facets" => Ok(Normals::Facets),
+        other => {
+            let known = ["facets", "smooth"].map(String::from).to_vec();
+            let fault = Fault::UnknownWord { key: "normals", table: table.to_owned(), found: other.to_owned(), known };
+            Err(source.error(word.span(), fault))
+        }
+    }
+}
+
+/// Least distance of two rows of a gap table, in parts of the last arc length: both become vertices of the mesh.
+const CLOSEST: f64 = 1e-9;
+const CLOSE: (&str, &str) = (
+    "no mesh can have vertices as close together as this row and the one before it",
+    "move the two apart, or leave out one of them",
+);
+
+fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> Result<Gap, SceneError> {
     const NEGATIVE: (&str, &str) =
         ("bodies must not overlap at the start", "write a gap of zero or more, or move the bodies apart");
     const ARC: (&str, &str) = (
@@ -173,8 +214,10 @@ fn gap(raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError
     let rows = match &raw.value {
         RawGap::Constant(g) => {
             let number = At { value: *g, start: raw.start, end: raw.end };
-            return source.number(&number, (table, "gap"), |g| g >= 0.0, NEGATIVE).map(Gap::Constant);
+            let may_overlap = contact.direction.is_some();
+            return source.number(&number, (table, "gap"), |g| may_overlap || g >= 0.0, NEGATIVE).map(Gap::Constant);
         }
+        RawGap::Curve(curve) => return touching(curve, raw, table, source),
         RawGap::Table(rows) => rows,
     };
     if rows.is_empty() {
@@ -199,5 +242,31 @@ fn gap(raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError
         }
         checked.push([s, g]);
     }
+    let length = checked.last().map_or(0.0, |row| row[0]);
+    if let Some(i) = (1..checked.len()).find(|&i| checked[i][0] - checked[i - 1][0] < CLOSEST * length) {
+        let (key, found) = (format!("gap[{i}]"), source.written(rows[i].span()));
+        let fault = Fault::Number { key, table: table.to_owned(), found, rule: CLOSE.0, remedy: CLOSE.1 };
+        return Err(source.error(rows[i].span(), fault).with_related(rows[i - 1].span(), "the row before"));
+    }
     Ok(Gap::Table(checked))
+}
+
+fn touching(curve: &RawCurve, raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError> {
+    const RADIUS: (&str, &str) = ("a radius must be positive", "write the radius of the curve that touches the side");
+    const ARC: (&str, &str) = (
+        "an arc length is not negative",
+        "measure s along the first side, from its end that comes first in (x, y) order",
+    );
+    let one_of =
+        |both| Fault::OneOf { table: format!("gap of {table}"), first: "`circle`", second: "`parabola`", both };
+    let number = |value: f64, key: &str, test: fn(f64) -> bool, words| {
+        source.number(&At { value, start: raw.start, end: raw.end }, (table, key), test, words)
+    };
+    let at = number(curve.at, "gap.at", |s| s >= 0.0, ARC)?;
+    let radius = |value: f64, key: &str| number(value, key, |r| r > 0.0, RADIUS);
+    match (curve.circle, curve.parabola) {
+        (Some(r), None) => Ok(Gap::Circle(Touching { radius: radius(r, "gap.circle")?, at })),
+        (None, Some(r)) => Ok(Gap::Parabola(Touching { radius: radius(r, "gap.parabola")?, at })),
+        (circle, _) => Err(source.error(raw.span(), one_of(circle.is_some()))),
+    }
 }

@@ -13,6 +13,7 @@ use miette::{
 };
 
 pub use super::fault::Fault;
+use super::text::disarmed;
 
 /// Bytes of the longest line that is drawn whole.
 const LONGEST_LINE: usize = 300;
@@ -106,7 +107,7 @@ impl Place {
         };
         let start = floor(span.start);
         let end = floor(span.end).max(start);
-        let source = NamedSource::new(path.display().to_string(), text.to_owned());
+        let source = NamedSource::new(disarmed(&path.display().to_string()), disarmed(text));
         Self { path: path.to_owned(), source, span: start..end }
     }
 

@@ -153,6 +153,16 @@ pub enum Fault {
         /// What to do.
         remedy: &'static str,
     },
+    /// An arc that is none.
+    #[error("an arc of {table} {problem}")]
+    Arc {
+        /// Its polygon.
+        table: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// A condition on a boundary that no edge has.
     #[error("{table} is on \"{name}\", but no polygon edge has that name")]
     UnknownBoundary {
@@ -211,7 +221,8 @@ impl Fault {
             | Fault::Count { remedy, .. }
             | Fault::Misplaced { remedy, .. }
             | Fault::EmptyName { remedy, .. }
-            | Fault::Polygon { remedy, .. } => (*remedy).into(),
+            | Fault::Polygon { remedy, .. }
+            | Fault::Arc { remedy, .. } => (*remedy).into(),
             Fault::OneOf { first, second, both: true, .. } => format!("keep {first} or {second} and delete the other"),
             Fault::OneOf { first, second, both: false, .. } => format!("give one of them, {first} or {second}"),
             Fault::NoBodies => "add one table [bodies.NAME] with `young` and `poisson` for each body".into(),
@@ -248,7 +259,7 @@ impl Fault {
             Fault::EmptyName { .. } => "empty",
             Fault::UnknownBody { .. } => "no table of this name",
             Fault::BodyWithoutPolygon { .. } => "no polygon of this name",
-            Fault::Polygon { .. } => "here",
+            Fault::Polygon { .. } | Fault::Arc { .. } => "here",
             Fault::UnknownBoundary { .. } => "no edge of this name",
             Fault::TwoConditions { .. } => "the second condition",
             Fault::SelfContact { .. } => "twice the same",

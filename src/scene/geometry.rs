@@ -3,9 +3,9 @@
 use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::polygon::{Defect, EXTENT, defect};
-use super::raw::{At, RawGeometry, RawPolygon, RawScene, Table};
+use super::raw::{At, RawArc, RawGeometry, RawPolygon, RawScene, Table};
 use super::validate::{Source, counted};
-use super::{Body, MeshSource, Polygon};
+use super::{Arc, Body, Circle, MeshSource, Polygon};
 
 pub(super) fn geometry(
     raw: &At<Table<RawGeometry>>,
@@ -46,7 +46,7 @@ fn polygon(raw: &RawPolygon, number: usize, bodies: &[Body], source: &Source) ->
     }
     let mut points = Vec::with_capacity(raw.points.value.len());
     for (i, point) in raw.points.value.iter().enumerate() {
-        points.push(source.vector(point, (&table, &format!("points[{i}]")))?);
+        points.push(source.point(point, (&table, &format!("points[{i}]")))?);
     }
     if let Some(defect) = defect(&points) {
         return Err(shape_error(raw, number, &points, defect, source));
@@ -60,7 +60,27 @@ fn polygon(raw: &RawPolygon, number: usize, bodies: &[Body], source: &Source) ->
             .with_related(raw.points.span(), counted(points.len(), "corner")));
     }
     let edges = raw.edges.value.iter().map(|name| name.value.clone()).collect();
-    Ok(Polygon { body, points, edges })
+    let arcs = raw.arcs.iter().map(|raw| arc(raw, &table, &points, source)).collect::<Result<_, _>>()?;
+    Ok(Polygon { body, points, edges, arcs })
+}
+
+fn arc(raw: &At<Table<RawArc>>, table: &str, points: &[[f64; 2]], source: &Source) -> Result<Arc, SceneError> {
+    let Table(arc) = &raw.value;
+    let through = source.vector(&arc.through, (table, "arcs.through"))?;
+    let wrong = |problem: String, remedy: &'static str| {
+        Err(source.error(raw.span(), Fault::Arc { table: table.to_owned(), problem, remedy }))
+    };
+    let edge = arc.edge.value;
+    if edge >= points.len() {
+        let problem = format!("is for edge {edge}, and the polygon has edges 0 to {}", points.len() - 1);
+        return wrong(problem, "edge i runs from corner i to corner i + 1, counted from 0");
+    }
+    let [a, b] = [edge, (edge + 1) % points.len()].map(|i| points[i]);
+    if through == a || through == b || Circle::through(a, through, b).is_none() {
+        let problem = format!("passes through [{:?}, {:?}], on the line of its edge", through[0], through[1]);
+        return wrong(problem, "give a point of the arc that lies beside the straight line between its ends");
+    }
+    Ok(Arc { edge, through })
 }
 
 fn shape_error(raw: &RawPolygon, number: usize, points: &[[f64; 2]], defect: Defect, source: &Source) -> SceneError {

@@ -5,6 +5,8 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod centre;
+mod circle;
 mod conditions;
 pub mod error;
 mod fault;
@@ -14,10 +16,12 @@ mod parse;
 mod polygon;
 mod raw;
 mod read;
+pub(crate) mod text;
 mod validate;
 
 use std::path::PathBuf;
 
+pub use circle::Circle;
 pub use error::{Fault, SceneError};
 pub use raw::schema;
 pub use read::BoundaryUse;
@@ -34,6 +38,9 @@ pub struct Scene {
     pub title: String,
     /// The scene file; mesh paths are relative to its folder.
     pub path: PathBuf,
+    /// The point in the coordinates of the file from which coordinates and load gradients count; [0, 0] unless the scene
+    /// lies far away (see [`Scene::as_written`]).
+    pub origin: [f64; 2],
     /// Plane strain or plane stress.
     pub kinematics: Kinematics,
     /// Thickness t > 0 of the plate; multiplies energies and resultants.
@@ -82,6 +89,17 @@ pub struct Polygon {
     pub points: Vec<[f64; 2]>,
     /// Name of the edge from corner i to corner i + 1; empty means free and unnamed.
     pub edges: Vec<String>,
+    /// Edges that are arcs of circles.
+    pub arcs: Vec<Arc>,
+}
+
+/// An edge of a polygon that is an arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// The edge, from 0.
+    pub edge: usize,
+    /// A point that the arc passes through between the ends of the edge.
+    pub through: [f64; 2],
 }
 
 /// A homogeneous isotropic body.
@@ -148,6 +166,20 @@ pub struct Contact {
     pub sides: ContactSides,
     /// Initial gap g ≥ 0.
     pub gap: Gap,
+    /// Where the directions of contact come from.
+    pub normals: Normals,
+    /// Unit vector along which sides that need not coincide are matched, and contact acts.
+    pub direction: Option<[f64; 2]>,
+}
+
+/// Where the directions of contact come from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Normals {
+    /// From the vertices: edges that turn by less than 30° stand for a curve, see [`crate::problem::Direction`].
+    #[default]
+    Smooth,
+    /// Every edge has its own normal.
+    Facets,
 }
 
 /// The sides of one contact.
@@ -160,6 +192,11 @@ pub enum ContactSides {
 }
 
 impl Contact {
+    /// Contact with directions from smooth normals.
+    pub fn new(sides: ContactSides, gap: Gap) -> Self {
+        Contact { sides, gap, normals: Normals::default(), direction: None }
+    }
+
     /// Name used in reports and check names: `first|second`, or `first|rigid`.
     pub fn name(&self) -> String {
         match &self.sides {
@@ -185,6 +222,19 @@ pub enum Gap {
     /// Piecewise linear: (s, g) with s ascending, s being the arc length from the end of the first side that comes
     /// first in (x, y) order. Constant beyond the first and the last entry.
     Table(Vec<[f64; 2]>),
+    /// The distance of a circle that touches at an arc length, taken at the vertices of each mesh and linear between.
+    Circle(Touching),
+    /// The same with a parabola.
+    Parabola(Touching),
+}
+
+/// A curve that touches a straight side from outside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touching {
+    /// Radius of curvature at the point that touches, positive.
+    pub radius: f64,
+    /// Arc length of that point.
+    pub at: f64,
 }
 
 impl Gap {
@@ -203,6 +253,23 @@ impl Gap {
                     g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
                 }
             }
+            Gap::Circle(Touching { radius, at }) => {
+                let x = (s - at).abs();
+                // Without loss of digits near the point that touches; beyond the circle there is nothing to touch.
+                if x < *radius { x * x / (radius + (radius * radius - x * x).sqrt()) } else { x }
+            }
+            Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
+        }
+    }
+}
+
+impl Gap {
+    /// The arc lengths at which the gap bends or touches, and which have to be vertices.
+    pub fn breaks(&self) -> Vec<f64> {
+        match self {
+            Gap::Constant(_) => Vec::new(),
+            Gap::Table(rows) => rows.iter().map(|row| row[0]).collect(),
+            Gap::Circle(touching) | Gap::Parabola(touching) => vec![touching.at],
         }
     }
 }

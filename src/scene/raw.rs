@@ -152,6 +152,21 @@ pub(super) struct RawPolygon {
     /// Name of the edge from corner i to corner i + 1; "" means free and unnamed.
     #[schemars(length(min = 3))]
     pub edges: At<Vec<At<String>>>,
+    /// Edges that are arcs of circles; refinement stays on them.
+    #[serde(default)]
+    pub arcs: Vec<At<Table<RawArc>>>,
+}
+
+/// An edge that is an arc of a circle.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Arc")]
+pub(super) struct RawArc {
+    /// The edge, counted from 0.
+    pub edge: At<usize>,
+    /// A point of the arc between its ends.
+    #[schemars(with = "[f64; 2]")]
+    pub through: Pair,
 }
 
 /// A homogeneous isotropic body.
@@ -217,10 +232,17 @@ pub(super) struct RawContact {
     pub on: Option<At<String>>,
     /// Initial gap, zero where it is missing.
     pub gap: Option<At<RawGap>>,
+    /// `smooth`, the default: edges that turn by less than 30° stand for a curve. `facets`: every edge has its own normal.
+    #[schemars(extend("enum" = ["smooth", "facets"]))]
+    pub normals: Option<At<String>>,
+    /// The sides need not coincide: they are matched along this direction, the gap is their distance along it plus `gap`,
+    /// and contact acts along it.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub direction: Option<Pair>,
 }
 
 /// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
-/// (x, y) order.
+/// (x, y) order; or a circle or parabola of a radius that touches at an s.
 #[derive(Debug, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Gap")]
@@ -229,6 +251,24 @@ pub(super) enum RawGap {
     Constant(#[schemars(range(min = 0))] f64),
     /// Rows [s, g] with s increasing.
     Table(#[schemars(with = "Vec<[f64; 2]>", length(min = 1))] Vec<Pair>),
+    /// A curve that touches the side at one point.
+    Curve(RawCurve),
+}
+
+/// The distance of a curve, taken anew at the vertices of each mesh.
+#[derive(Debug, Clone, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "GapCurve", extend("oneOf" = [{"required": ["circle"]}, {"required": ["parabola"]}]))]
+pub(super) struct RawCurve {
+    /// Radius of a circle.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub circle: Option<f64>,
+    /// Radius of curvature of a parabola at its vertex.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub parabola: Option<f64>,
+    /// Arc length at which it touches.
+    #[schemars(range(min = 0))]
+    pub at: f64,
 }
 
 impl<'de> Deserialize<'de> for RawGap {
@@ -237,7 +277,10 @@ impl<'de> Deserialize<'de> for RawGap {
         impl<'de> Visitor<'de> for NumberOrRows {
             type Value = RawGap;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number or rows [[s, g], ...]")
+                f.write_str("a number or rows [[s, g], ...], or { circle = R, at = s }")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawGap, A::Error> {
+                RawCurve::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(RawGap::Curve)
             }
             fn visit_f64<E>(self, number: f64) -> Result<RawGap, E> {
                 Ok(RawGap::Constant(number))

@@ -41,6 +41,7 @@ impl Source<'_> {
         let value = number.value;
         let (rule, remedy) = match () {
             _ if !value.is_finite() => NOT_FINITE,
+            _ if value.abs() > LARGEST => OVERFLOWS,
             _ if !holds(value) => (rule, remedy),
             _ => return Ok(value),
         };
@@ -48,8 +49,30 @@ impl Source<'_> {
         Err(self.error(number.span(), Fault::Number { key, table, found, rule, remedy }))
     }
 
+    /// `number`, if it is positive and its reciprocal is no larger than numbers may be.
+    pub fn positive(
+        &self,
+        number: &At<f64>,
+        key: (&str, &str),
+        words: (&'static str, &'static str),
+    ) -> Result<f64, SceneError> {
+        let value = self.number(number, key, |x| x > 0.0, words)?;
+        self.number(number, key, |_| value >= 1.0 / LARGEST, UNDERFLOWS)
+    }
+
+    /// `N` finite numbers whose energies do not overflow.
+    pub fn vector<const N: usize>(&self, list: &At<Vec<f64>>, place: (&str, &str)) -> Result<[f64; N], SceneError> {
+        let vector = self.point(list, place)?;
+        if vector.iter().all(|x| x.abs() <= LARGEST) {
+            return Ok(vector);
+        }
+        let ((table, key), (rule, remedy)) = (place, OVERFLOWS);
+        let (table, key, found) = (table.to_owned(), key.to_owned(), self.written(list.span()));
+        Err(self.error(list.span(), Fault::Number { key, table, found, rule, remedy }))
+    }
+
     /// `N` finite numbers.
-    pub fn vector<const N: usize>(
+    pub fn point<const N: usize>(
         &self,
         list: &At<Vec<f64>>,
         (table, key): (&str, &str),
@@ -83,6 +106,14 @@ impl Source<'_> {
     }
 }
 
+/// Largest number in a scene: the square of a load, over a modulus, times an area and a thickness of such sizes is still
+/// a number.
+const LARGEST: f64 = 1e30;
+const OVERFLOWS: (&str, &str) =
+    ("energies of numbers beyond 1e30 overflow", "choose units in which the numbers are ordinary ones");
+const UNDERFLOWS: (&str, &str) =
+    ("energies overflow where this is below 1e-30", "choose units in which the numbers are ordinary ones");
+
 const NOT_FINITE: (&str, &str) = ("every number must be finite", "write a finite number");
 
 /// `1 point`, `3 points`.
@@ -93,14 +124,32 @@ pub(super) fn counted(n: usize, noun: &str) -> String {
 /// Checks the whole scene; the first fault found is the error.
 pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { text, path };
-    let name = path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let name = scene_name(path);
     let (kinematics, thickness) = model(&raw.model, &source)?;
     let bodies = bodies(&raw, &source)?;
     let mesh = mesh(&raw, &bodies, &source)?;
     let Conditions { supports, tractions, contacts } = conditions(&raw, &mesh, &source)?;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
-    Ok(Scene { name, title, path, kinematics, thickness, mesh, bodies, supports, tractions, contacts })
+    Ok(Scene {
+        name,
+        title,
+        path,
+        origin: [0.0; 2],
+        kinematics,
+        thickness,
+        mesh,
+        bodies,
+        supports,
+        tractions,
+        contacts,
+    })
+}
+
+/// The stem of the file, where it can be the name of a folder: `...toml` has the stem `..`.
+fn scene_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    if stem.trim_matches('.').is_empty() { "scene".to_owned() } else { stem }
 }
 
 fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64), SceneError> {
@@ -119,7 +168,7 @@ fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64)
         None => 1.0,
         Some(number) => {
             let words = ("a thickness must be positive", "write a positive number, or leave `thickness` out for 1");
-            source.number(number, (table, "thickness"), |t| t > 0.0, words)?
+            source.positive(number, (table, "thickness"), words)?
         }
     };
     Ok((kinematics, thickness))
@@ -137,7 +186,7 @@ fn bodies(raw: &RawScene, source: &Source) -> Result<Vec<Body>, SceneError> {
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
         let words = ("Young's modulus must be positive", "write a positive number, in units of stress");
-        let young = source.number(&raw.young, (&label, "young"), |e| e > 0.0, words)?;
+        let young = source.positive(&raw.young, (&label, "young"), words)?;
         let words = poisson_words(raw.poisson.value);
         let poisson = source.number(&raw.poisson, (&label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
         let body_force = match &raw.body_force {

@@ -5,13 +5,13 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
 use super::data::{Cell, Matrix, Outcome, Row};
 use super::journal::{Journal, Name};
 use super::judge::{Claim, judge};
 use super::regimes::Regime;
 use super::truth::Truth;
+use crate::budget::Budget;
 use crate::measure::{self, Answer, Ended, Limits, Machine, Method};
 
 /// What to run.
@@ -26,6 +26,8 @@ pub struct Sweep<'a> {
     pub workers: usize,
     /// Seconds that one run may take.
     pub budget: f64,
+    /// Memory that all runs of a time may take.
+    pub memory: Budget,
     /// This program.
     pub program: &'a Path,
     /// The command that makes the matrix again, for its readers.
@@ -183,7 +185,11 @@ fn once(what: &Sweep<'_>, job: &Job) -> std::io::Result<Ended> {
     (what.progress)(format!("{}: {}", regime.id, regime.label(job.step)));
     let mut arguments: Vec<OsString> = vec!["regime".into(), regime.id.into(), job.step.to_string().into()];
     arguments.extend(job.options.iter().cloned());
-    let limits = Limits { budget: Duration::from_secs_f64(what.budget), cache: None };
+    let share = what.memory.bytes() / what.workers.max(1) as f64;
+    if share.is_finite() {
+        arguments.extend(["--max-memory".into(), format!("{:.0}", share.max(1.0)).into()]);
+    }
+    let limits = Limits { budget: crate::process::limit(what.budget), cache: None };
     measure::run(what.program, &arguments, limits)
 }
 

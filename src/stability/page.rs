@@ -22,7 +22,7 @@ pub fn page(matrix: &Matrix, figures: &[(String, String)]) -> String {
         (table(matrix))
         @for row in &matrix.rows { (details(row, figures)) }
     };
-    document("Stability matrix", &[PLAIN, MORE_CSS], body)
+    document("Stability matrix", &[PLAIN, MORE_CSS], None, body)
 }
 
 fn class(outcome: Outcome) -> &'static str {

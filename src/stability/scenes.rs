@@ -24,6 +24,7 @@ impl Model {
             name: "regime".to_string(),
             title: "regime".to_string(),
             path: PathBuf::from("regime.toml"),
+            origin: [0.0; 2],
             kinematics: Kinematics::PlaneStrain,
             thickness: 1.0,
             mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
@@ -104,13 +105,13 @@ impl Model {
     /// Contact of two sides.
     pub fn contact(mut self, first: &str, second: &str, gap: Gap) -> Self {
         let sides = ContactSides::Between([first.into(), second.into()]);
-        self.scene.contacts.push(Contact { sides, gap });
+        self.scene.contacts.push(Contact::new(sides, gap));
         self
     }
 
     /// Contact of a side with a rigid obstacle.
     pub fn rigid(mut self, on: &str) -> Self {
-        self.scene.contacts.push(Contact { sides: ContactSides::Rigid(on.into()), gap: Gap::Constant(0.0) });
+        self.scene.contacts.push(Contact::new(ContactSides::Rigid(on.into()), Gap::Constant(0.0)));
         self
     }
 
@@ -195,7 +196,12 @@ impl Model {
 
 /// A polygon with named edges.
 pub fn polygon(body: &str, points: &[[f64; 2]], edges: &[&str]) -> Polygon {
-    Polygon { body: body.into(), points: points.to_vec(), edges: edges.iter().map(ToString::to_string).collect() }
+    Polygon {
+        body: body.into(),
+        points: points.to_vec(),
+        edges: edges.iter().map(ToString::to_string).collect(),
+        arcs: Vec::new(),
+    }
 }
 
 /// `n` equal steps from `from` to `to`.

@@ -1,5 +1,6 @@
 //! Connected pieces of the mesh and their rigid motions.
 
+use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
 
 /// One rigid motion of every piece of the mesh.
@@ -39,6 +40,8 @@ pub struct Components {
     pub centre: Vec<[f64; 2]>,
     /// Largest distance of a vertex of the piece from its centroid.
     pub size: Vec<f64>,
+    /// The point from which the coordinates count, in those of the scene as it was written.
+    pub origin: [f64; 2],
     /// Names of the bodies of each piece, in scene order.
     pub bodies: Vec<Vec<String>>,
     /// Whether the bodies of the piece have further pieces, so that their names alone do not tell it.
@@ -63,7 +66,7 @@ impl Components {
         let (of_triangle, count) = sets.labels();
 
         let mut of_vertex = vec![usize::MAX; mesh.points.len()];
-        let mut in_piece = vec![vec![false; problem.scene.bodies.len()]; count];
+        let mut in_piece: Vec<Vec<usize>> = vec![Vec::new(); count];
         // First moments about one vertex of the piece: coordinates far from the origin cost no digits.
         let mut origin = vec![None; count];
         let mut moment = vec![[0.0; 2]; count];
@@ -80,9 +83,15 @@ impl Components {
             for v in mesh.triangles[t] {
                 of_vertex[v] = c;
             }
-            if let Some(here) = in_piece[c].get_mut(mesh.body[t]) {
-                *here = true;
+            if in_piece[c].last() != Some(&mesh.body[t]) {
+                in_piece[c].push(mesh.body[t]);
             }
+        }
+        let mut pieces_of = vec![0; problem.scene.bodies.len()];
+        for bodies in &mut in_piece {
+            bodies.sort_unstable();
+            bodies.dedup();
+            bodies.iter().for_each(|b| pieces_of[*b] += 1);
         }
         let centre: Vec<[f64; 2]> = (0..count)
             .map(|c| {
@@ -96,56 +105,10 @@ impl Components {
                 size[c] = size[c].max((x[0] - centre[c][0]).hypot(x[1] - centre[c][1]));
             }
         }
-        let pieces_of = |b: usize| in_piece.iter().filter(|piece| piece[b]).count();
-        let several: Vec<bool> = (0..problem.scene.bodies.len()).map(|b| pieces_of(b) > 1).collect();
-        let one_of_several =
-            in_piece.iter().map(|piece| piece.iter().zip(&several).all(|(here, many)| !here || *many)).collect();
-        let name = |(b, _): (usize, &bool)| problem.scene.bodies[b].name.clone();
-        let bodies =
-            in_piece.iter().map(|piece| piece.iter().enumerate().filter(|(_, here)| **here).map(name).collect());
-        Components { bodies: bodies.collect(), of_triangle, of_vertex, centre, size, one_of_several }
-    }
-}
-
-/// Union–find.
-pub(super) struct DisjointSets {
-    parent: Vec<usize>,
-}
-
-impl DisjointSets {
-    /// `n` sets of one element each.
-    pub fn new(n: usize) -> Self {
-        DisjointSets { parent: (0..n).collect() }
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.parent[i] != i {
-            self.parent[i] = self.parent[self.parent[i]];
-            i = self.parent[i];
-        }
-        i
-    }
-
-    /// Unites the sets of `i` and `j`.
-    pub fn join(&mut self, i: usize, j: usize) {
-        let (i, j) = (self.root(i), self.root(j));
-        self.parent[i.max(j)] = i.min(j);
-    }
-
-    /// A label per element, numbered by first appearance, and the number of sets.
-    pub fn labels(&mut self) -> (Vec<usize>, usize) {
-        let mut label = vec![usize::MAX; self.parent.len()];
-        let mut count = 0;
-        let labels = (0..self.parent.len())
-            .map(|i| {
-                let root = self.root(i);
-                if label[root] == usize::MAX {
-                    label[root] = count;
-                    count += 1;
-                }
-                label[root]
-            })
-            .collect();
-        (labels, count)
+        let one_of_several = in_piece.iter().map(|bodies| bodies.iter().all(|b| pieces_of[*b] > 1)).collect();
+        let name = |b: &usize| problem.scene.bodies[*b].name.clone();
+        let bodies = in_piece.iter().map(|bodies| bodies.iter().map(name).collect());
+        let origin = problem.scene.origin;
+        Components { bodies: bodies.collect(), origin, of_triangle, of_vertex, centre, size, one_of_several }
     }
 }

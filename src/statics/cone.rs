@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// The rounds were used up: the working set did not settle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Unsettled;
+pub(crate) struct Unsettled;
 
 /// Cosine from which a row counts as leaning towards the unbalanced load. A row let in by round-off alone is turned away
 /// again, because it must balance more than was balanced before.
@@ -25,7 +25,7 @@ struct Working {
 }
 
 /// r above, for unit `rows` g_i. Zero to round-off of |`load`| when the rows can balance the load.
-pub(super) fn unbalanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<DVector<f64>, Unsettled> {
+pub(crate) fn unbalanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<DVector<f64>, Unsettled> {
     let size = load.norm();
     let mut now = Working { rows: Vec::new(), forces: Vec::new(), rest: load.clone() };
     let mut refused = vec![false; rows.len()];

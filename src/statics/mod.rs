@@ -9,11 +9,14 @@
 
 mod balance;
 mod components;
-mod cone;
+pub(crate) mod cone;
+mod few;
 mod loads;
+mod many;
 mod pins;
 mod restraint;
 mod span;
+mod sparse;
 mod words;
 
 #[cfg(test)]
@@ -25,10 +28,9 @@ pub use pins::{EdgePin, VertexPin};
 pub use words::{MotionKind, Moving};
 
 use crate::problem::Problem;
-use balance::{RANK, Verdict};
+use balance::Verdict;
 use nalgebra::DVector;
 use restraint::Group;
-use span::Span;
 
 /// Free motions described one by one; any more are only counted.
 const MOST_NOTES: usize = 6;
@@ -118,9 +120,11 @@ pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
         let words = |motion: &RigidMotion| words::moving(problem, &group, &loads, motion);
         vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held)?);
         edge_pins.extend(pins::edge_pins(problem, &group, &found.held)?);
-        for direction in readable(&group, &found.held) {
-            let motion = motion(&group, &direction).0;
-            both_ways.push(words::free_both_ways(&components, &words(&motion)));
+        for direction in &found.held {
+            let motion = motion(&group, direction).0;
+            // The others are only counted.
+            let told = both_ways.len() < MOST_NOTES;
+            both_ways.push(if told { words::free_both_ways(&components, &words(&motion)) } else { String::new() });
             held.push(motion);
         }
         if let Some(driven) = found.driven {
@@ -133,7 +137,8 @@ pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
         }
         if let Some(direction) = &found.one_way {
             let motion = motion(&group, direction).0;
-            one_way.push((words::free_one_way(&components, &words(&motion)), motion));
+            let loaded = group.members.iter().any(|c| loads.magnitude[*c] > 0.0);
+            one_way.push((words::free_one_way(&components, &words(&motion), loaded), motion));
         }
         if let Some(direction) = &found.beyond_mesh {
             let motion = motion(&group, direction).0;
@@ -185,34 +190,4 @@ fn together(mut motions: impl Iterator<Item = RigidMotion>) -> Option<RigidMotio
         }
     }
     Some(sum)
-}
-
-/// A basis of `held` in reduced echelon form, rotations eliminated first: most of its motions are translations of few
-/// pieces.
-fn readable(group: &Group, held: &Span) -> Vec<DVector<f64>> {
-    let mut rows = held.basis.clone();
-    let mut done = 0;
-    for class in [|i: usize| i % 3 == 2, |i: usize| i % 3 != 2] {
-        while done < rows.len() {
-            let columns = (0..group.dimension()).filter(|i| class(*i));
-            let entries = columns.flat_map(|i| (done..rows.len()).map(move |r| (r, i)));
-            let largest = entries.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()));
-            let Some((r, i)) = largest.filter(|(r, i)| rows[*r][*i].abs() > RANK) else { break };
-            rows.swap(done, r);
-            let pivot = rows[done].clone() / rows[done][i];
-            for (other, row) in rows.iter_mut().enumerate() {
-                let factor = row[i];
-                if other != done {
-                    row.axpy(-factor, &pivot, 1.0);
-                }
-            }
-            rows[done] = pivot;
-            done += 1;
-        }
-    }
-    for row in &mut rows {
-        let size = row.amax();
-        row.iter_mut().filter(|x| x.abs() < 1e-12 * size).for_each(|x| *x = 0.0);
-    }
-    rows
 }

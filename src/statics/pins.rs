@@ -4,11 +4,14 @@
 //! differ by the motion. Pins are picked by pivoting, the one that holds the remaining motions best first.
 
 use super::StaticsError;
+use super::balance::RANK;
 use super::components::Components;
 use super::restraint::Group;
 use super::span::Span;
+use super::sparse::{Row, Triangular, dense};
 use crate::problem::{Condition, Problem};
 use nalgebra::DVector;
+use std::collections::BTreeMap;
 
 /// A vertex to hold: u(vertex) · direction = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +36,12 @@ pub struct EdgePin {
 
 /// A pin that holds less than this, of displacements of size 1, holds nothing.
 const WEAKEST: f64 = 1e-7;
+
+/// A pin that holds more than this holds well.
+const WELL_HELD: f64 = 0.1;
+
+/// More motions than this are pinned piece by piece.
+const MANY: usize = 24;
 
 /// Somewhere a pin could go.
 #[derive(Debug, Clone, Copy)]
@@ -74,8 +83,12 @@ impl Kind {
 }
 
 /// One vertex pin per motion of `held`, which they take away together.
-pub(super) fn vertex_pins(problem: &Problem, group: &Group, held: &Span) -> Result<Vec<VertexPin>, StaticsError> {
-    if held.basis.is_empty() {
+pub(super) fn vertex_pins(
+    problem: &Problem,
+    group: &Group,
+    held: &[DVector<f64>],
+) -> Result<Vec<VertexPin>, StaticsError> {
+    if held.is_empty() {
         return Ok(Vec::new());
     }
     let components = group.components;
@@ -103,7 +116,7 @@ pub(super) fn vertex_pins(problem: &Problem, group: &Group, held: &Span) -> Resu
     }
     let places = kinds.iter().enumerate().filter_map(|(v, kind)| {
         let component = components.of_vertex[v];
-        group.column(component)?;
+        group.member(component)?;
         Some(Place { index: (v, 0), component, point: mesh.points[v], kind: (*kind)? })
     });
     let chosen = choose(places, group, held)?;
@@ -111,8 +124,8 @@ pub(super) fn vertex_pins(problem: &Problem, group: &Group, held: &Span) -> Resu
 }
 
 /// One edge pin per motion of `held`, which they take away together.
-pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &Span) -> Result<Vec<EdgePin>, StaticsError> {
-    if held.basis.is_empty() {
+pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &[DVector<f64>]) -> Result<Vec<EdgePin>, StaticsError> {
+    if held.is_empty() {
         return Ok(Vec::new());
     }
     let mesh = &problem.mesh;
@@ -123,7 +136,7 @@ pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &Span) -> Result
             Condition::Roller | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
         };
         let component = mesh.edges[e].triangles[0].map(|t| group.components.of_triangle[t]);
-        let component = component.filter(|c| group.column(*c).is_some());
+        let component = component.filter(|c| group.member(*c).is_some());
         let ends = mesh.edges[e].vertices.map(|v| mesh.points[v]);
         // ∫_e v q_p ds of a linear v is half the length times v a third of the way from p to the other end.
         let third = move |p: usize| [0, 1].map(|i| (2.0 * ends[p][i] + ends[1 - p][i]) / 3.0);
@@ -145,17 +158,18 @@ fn tangent(problem: &Problem, e: usize) -> [f64; 2] {
 fn choose(
     places: impl Iterator<Item = Place>,
     group: &Group,
-    held: &Span,
+    held: &[DVector<f64>],
 ) -> Result<Vec<(Place, [f64; 2])>, StaticsError> {
-    let rank = held.basis.len();
-    let mut candidates = Vec::new();
-    for place in outermost(places, group.components) {
-        for direction in place.kind.directions() {
-            let row = group.displacement(place.component, place.point, direction);
-            let on_held = DVector::from_iterator(rank, held.basis.iter().map(|q| q.dot(&row)));
-            candidates.push((place, direction, on_held));
-        }
+    let rank = held.len();
+    if rank > MANY {
+        let candidates = candidates(places, group, held);
+        return choose_by_piece(&candidates, rank).ok_or_else(|| nothing_to_pin(group));
     }
+    // Lengths say how well a pin holds only in an orthonormal basis.
+    let mut motions = Span::empty(group.dimension());
+    motions.extend(held, RANK);
+    let candidates = candidates(places, group, &motions.basis);
+    let candidates: Vec<_> = candidates.into_iter().map(|c| (c.place, c.direction, dense(&c.row, rank))).collect();
     let mut taken = Span::empty(rank);
     let mut chosen = Vec::new();
     while chosen.len() < rank {
@@ -168,13 +182,65 @@ fn choose(
             }
         }
         let Some((_, _, i)) = best.filter(|(_, hold, _)| *hold > WEAKEST) else {
-            return Err(StaticsError::NothingToPin { bodies: super::words::all_names(group) });
+            return Err(nothing_to_pin(group));
         };
         let (place, direction, row) = &candidates[i];
         chosen.push((*place, *direction));
         taken.extend(std::slice::from_ref(row), 1e-3 * WEAKEST);
     }
     Ok(chosen)
+}
+
+fn nothing_to_pin(group: &Group) -> StaticsError {
+    StaticsError::NothingToPin { bodies: super::words::all_names(group) }
+}
+
+/// A pin that could be chosen.
+struct Candidate {
+    place: Place,
+    direction: [f64; 2],
+    /// The displacement there in each motion.
+    row: Row,
+}
+
+fn candidates(places: impl Iterator<Item = Place>, group: &Group, held: &[DVector<f64>]) -> Vec<Candidate> {
+    let mut moved = vec![Row::new(); group.dimension()];
+    for (h, motion) in held.iter().enumerate() {
+        motion.iter().enumerate().filter(|(_, v)| **v != 0.0).for_each(|(i, v)| moved[i].push((h, *v)));
+    }
+    let mut all = Vec::new();
+    for place in outermost(places, group.components) {
+        for direction in place.kind.directions() {
+            let Some((m, part)) = group.displacement(place.component, place.point, direction) else { continue };
+            let mut row = BTreeMap::new();
+            for i in 0..3 {
+                moved[3 * m + i].iter().for_each(|(h, v)| *row.entry(*h).or_default() += part[i] * v);
+            }
+            all.push(Candidate { place, direction, row: row.into_iter().collect() });
+        }
+    }
+    all
+}
+
+/// Pins for many motions: piece after piece takes what holds best there, first where that holds well, then where it holds
+/// at all.
+fn choose_by_piece(candidates: &[Candidate], rank: usize) -> Option<Vec<(Place, [f64; 2])>> {
+    let mut by_piece: BTreeMap<usize, Vec<&Candidate>> = BTreeMap::new();
+    candidates.iter().for_each(|c| by_piece.entry(c.place.component).or_default().push(c));
+    let mut taken = Triangular::new(rank);
+    let mut chosen = Vec::new();
+    for weakest in [WELL_HELD, WEAKEST] {
+        for own in by_piece.values() {
+            while chosen.len() < rank {
+                let held = own.iter().map(|c| (taken.remainder(&c.row), c)).filter(|(hold, _)| *hold > weakest);
+                let merit = |(hold, c): &(f64, &&Candidate)| hold * c.place.kind.weight();
+                let Some((_, best)) = held.max_by(|a, b| merit(a).total_cmp(&merit(b))) else { break };
+                taken.insert(best.row.clone());
+                chosen.push((best.place, best.direction));
+            }
+        }
+    }
+    (taken.rank() == rank).then_some(chosen)
 }
 
 /// For each piece and kind of place, the places farthest out in eight directions: no others can hold it much better, and

@@ -2,29 +2,67 @@
 //!
 //! A rigid motion moves a straight line so that its normal displacement is linear along it. A straight run of edges
 //! therefore needs two rows, however many edges it has, and the normal is taken from the whole run: normals of single
-//! short edges carry the round-off of their coordinates.
+//! short edges carry the round-off of their coordinates. An edge along which the direction of contact turns is a run of its
+//! own; where contact acts along a given direction, the jump is linear across it however the sides run.
 
-use super::components::{Components, DisjointSets};
+use super::components::Components;
+use crate::mesh::sets::DisjointSets;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 /// Relative distance from which points leave a straight line, and directions differ.
 const STRAIGHT: f64 = 1e-10;
 
-/// A straight stretch of one contact between two pieces, or one and something that does not move.
+/// A stretch of one contact between two pieces, or one and something that does not move, along which rigid motions have a
+/// linear jump; or one edge along which the direction of contact turns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Run {
     /// Index of the interface.
     pub interface: usize,
     /// Pieces on the first and the second side; `None` for a rigid obstacle.
     pub sides: [Option<usize>; 2],
-    /// Outward unit normal of the first side.
+    /// The direction of contact, out of the first side: a unit vector. Where it turns, that at the middle.
     pub normal: [f64; 2],
+    /// The direction at the two ends where it turns.
+    pub turning: Option<[[f64; 2]; 2]>,
     /// The two ends.
     pub ends: [[f64; 2]; 2],
     /// Points a third of the last edge inside each end. A linear pressure that is nowhere negative on an edge has its
     /// resultant between these two points; they stand for the ends where pressure is linear per edge.
     pub thirds: [[f64; 2]; 2],
+}
+
+impl Run {
+    /// The direction of contact at `point`.
+    pub fn normal_at(&self, point: [f64; 2]) -> [f64; 2] {
+        let (Some([m, n]), [a, b]) = (self.turning, self.ends) else { return self.normal };
+        let chord = [b[0] - a[0], b[1] - a[1]];
+        let along = (point[0] - a[0]) * chord[0] + (point[1] - a[1]) * chord[1];
+        let t = (along / (chord[0] * chord[0] + chord[1] * chord[1])).clamp(0.0, 1.0);
+        [0, 1].map(|c| m[c] + t * (n[c] - m[c]))
+    }
+}
+
+/// The part of a row that belongs to one member of a group: its number, and the coefficients of (a, b, s ω).
+pub(super) type Part = (usize, Vector3<f64>);
+
+/// Which two points of a run tell whether it opens.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Points {
+    /// Its ends.
+    Ends,
+    /// [`Run::thirds`].
+    Thirds,
+}
+
+impl Points {
+    /// The points of `run`.
+    pub fn of(self, run: &Run) -> [[f64; 2]; 2] {
+        match self {
+            Points::Ends => run.ends,
+            Points::Thirds => run.thirds,
+        }
+    }
 }
 
 /// The straight runs of all contacts. Contacts of a piece with itself ask nothing of a rigid motion and are left out.
@@ -56,8 +94,12 @@ pub(super) fn runs(problem: &Problem, components: &Components) -> Vec<Run> {
 /// Whether pair `next` follows on pair `next` − 1 and the run from `start` stays straight with it.
 fn continues_straight(problem: &Problem, interface: &Interface, start: usize, next: usize) -> bool {
     let pairs = &interface.pairs;
-    if pairs[next].first[0] != pairs[next - 1].first[1] {
+    let (from, to) = (&pairs[start], &pairs[next]);
+    if to.first[0] != pairs[next - 1].first[1] || [from, to].iter().any(|pair| !pair.direction.is_constant()) {
         return false;
+    }
+    if [from, to].iter().any(|pair| along_line(pair)) {
+        return from.direction.ends == to.direction.ends;
     }
     let point = |v: usize| problem.mesh.points[v];
     let (a, b) = (point(pairs[start].first[0]), point(pairs[next].first[1]));
@@ -72,6 +114,11 @@ fn continues_straight(problem: &Problem, interface: &Interface, start: usize, ne
     })
 }
 
+/// Whether contact acts along a direction that is not the normal of the pair.
+fn along_line(pair: &ContactPair) -> bool {
+    pair.direction.is_constant() && pair.direction.ends[0] != pair.normal
+}
+
 fn run(problem: &Problem, interface: usize, sides: [Option<usize>; 2], pairs: &[ContactPair]) -> Run {
     let point = |v: usize| problem.mesh.points[v];
     let (head, tail) = (&pairs[0], &pairs[pairs.len() - 1]);
@@ -82,13 +129,16 @@ fn run(problem: &Problem, interface: usize, sides: [Option<usize>; 2], pairs: &[
     let length = chord[0].hypot(chord[1]);
     let across = [chord[1] / length, -chord[0] / length];
     let sign = (across[0] * head.normal[0] + across[1] * head.normal[1]).signum();
-    Run {
-        interface,
-        sides,
-        normal: across.map(|x| sign * x),
-        ends,
-        thirds: [third(ends[0], point(head.first[1])), third(ends[1], point(tail.first[0]))],
+    let normal = if along_line(head) { head.direction.ends[0] } else { across.map(|x| sign * x) };
+    let thirds = [third(ends[0], point(head.first[1])), third(ends[1], point(tail.first[0]))];
+    if head.direction.is_constant() {
+        return Run { interface, sides, normal, turning: None, ends, thirds };
     }
+    // The resultant of t n̂ with constant t passes through the middle.
+    let middle = [0, 1].map(|c| 0.5 * (ends[0][c] + ends[1][c]));
+    let [x, y] = head.direction.at(0.5);
+    let normal = [x / x.hypot(y), y / x.hypot(y)];
+    Run { interface, sides, normal, turning: Some(head.direction.ends), ends, thirds: [middle; 2] }
 }
 
 /// Pieces that can only move together or against each other: linked by contacts, clamped ones taken away. Unknowns are
@@ -142,99 +192,122 @@ impl Group<'_> {
         3 * self.members.len()
     }
 
-    /// First unknown of piece `c`, if the group moves it.
-    pub fn column(&self, c: usize) -> Option<usize> {
-        self.members.binary_search(&c).ok().map(|i| 3 * i)
+    /// Number of piece `c` among the members, if the group moves it.
+    pub fn member(&self, c: usize) -> Option<usize> {
+        self.members.binary_search(&c).ok()
     }
 
-    /// The row `direction` · u(`point`) of piece `c`; zero where the piece is held.
-    pub fn displacement(&self, c: usize, point: [f64; 2], direction: [f64; 2]) -> DVector<f64> {
-        let mut row = DVector::zeros(self.dimension());
-        if let Some(i) = self.column(c) {
-            let (centre, size) = (self.components.centre[c], self.components.size[c]);
-            row[i] = direction[0];
-            row[i + 1] = direction[1];
-            row[i + 2] = ((point[0] - centre[0]) * direction[1] - (point[1] - centre[1]) * direction[0]) / size;
+    /// The vector of all unknowns with the entries of `row`.
+    pub fn dense(&self, row: &[Part]) -> DVector<f64> {
+        let mut out = DVector::zeros(self.dimension());
+        for (m, part) in row {
+            (0..3).for_each(|i| out[3 * m + i] += part[i]);
         }
-        row
+        out
     }
 
-    /// The row v_n' + v_n'' at `point` of `run`, scaled to unit length.
-    pub fn jump(&self, run: &Run, point: [f64; 2]) -> DVector<f64> {
-        let mut row = DVector::zeros(self.dimension());
-        for (side, sign) in run.sides.iter().zip([1.0, -1.0]) {
-            if let Some(c) = side {
-                row += sign * self.displacement(*c, point, run.normal);
-            }
-        }
-        unit(row)
+    /// The row `direction` · u(`point`) of piece `c`; none where the piece is held.
+    pub fn displacement(&self, c: usize, point: [f64; 2], direction: [f64; 2]) -> Option<Part> {
+        let (centre, size) = (self.components.centre[c], self.components.size[c]);
+        let turn = ((point[0] - centre[0]) * direction[1] - (point[1] - centre[1]) * direction[0]) / size;
+        Some((self.member(c)?, Vector3::new(direction[0], direction[1], turn)))
+    }
+
+    /// The row `direction` · (u' − u'') at `point` of `run`.
+    fn apart(&self, run: &Run, point: [f64; 2], direction: [f64; 2]) -> Vec<Part> {
+        let sides = run.sides.iter().zip([1.0, -1.0]);
+        sides
+            .filter_map(|(side, sign)| {
+                let (m, part) = self.displacement((*side)?, point, direction)?;
+                Some((m, sign * part))
+            })
+            .collect()
+    }
+
+    /// The row (v' − v'')·n̂ at `point` of `run`, scaled to unit length.
+    pub fn jump(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
+        unit(self.apart(run, point, run.normal_at(point)))
     }
 
     /// The row of the relative displacement along `run` at `point`.
-    pub fn slip(&self, run: &Run, point: [f64; 2]) -> DVector<f64> {
-        let along = [-run.normal[1], run.normal[0]];
-        let mut row = DVector::zeros(self.dimension());
-        for (side, sign) in run.sides.iter().zip([1.0, -1.0]) {
-            if let Some(c) = side {
-                row += sign * self.displacement(*c, point, along);
-            }
-        }
-        row
+    pub fn slip(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
+        let [x, y] = run.normal_at(point);
+        self.apart(run, point, [-y, x])
     }
 
     /// The rows that vanish when `run` keeps closed: relative displacement of its middle and relative rotation. Unlike
-    /// the jumps at its two ends they stay independent however short the run is.
-    pub fn ties(&self, run: &Run) -> [DVector<f64>; 2] {
+    /// the jumps at its two ends they stay independent however short the run is. Where the direction turns, a rotation may
+    /// keep it closed, and the jumps at the ends say whether it does.
+    pub fn ties(&self, run: &Run) -> [Vec<Part>; 2] {
         let [p, q] = run.ends;
+        if run.turning.is_some() {
+            return [self.jump(run, p), self.jump(run, q)];
+        }
         let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
         let size = |c: &usize| self.components.size[*c];
         let smallest = run.sides.iter().flatten().map(size).fold(f64::INFINITY, f64::min);
-        let mut turn = DVector::zeros(self.dimension());
-        for (side, sign) in run.sides.iter().zip([1.0, -1.0]) {
-            if let Some((c, i)) = side.and_then(|c| Some((c, self.column(c)?))) {
-                turn[i + 2] = sign * smallest / size(&c);
-            }
-        }
-        [self.jump(run, middle), unit(turn)]
+        let sides = run.sides.iter().zip([1.0, -1.0]);
+        let turn = sides.filter_map(|(side, sign)| {
+            let c = (*side)?;
+            Some((self.member(c)?, Vector3::new(0.0, 0.0, sign * smallest / size(&c))))
+        });
+        [self.jump(run, middle), unit(turn.collect())]
+    }
+
+    /// The runs and ends that stay in touch in a `motion` that turns pieces; none where no piece turns or nothing touches.
+    /// Touch is judged at the two `points` of each run.
+    pub fn touching(&self, motion: &DVector<f64>, points: Points) -> Option<Vec<(&Run, [f64; 2])>> {
+        let size = motion.amax();
+        let turns = (0..motion.len()).any(|i| i % 3 == 2 && motion[i].abs() > 1e-5 * size);
+        let ends = self.runs.iter().flat_map(|run| points.of(run).map(|end| (*run, end)));
+        let jump = |run: &Run, end| self.jump(run, end).iter().map(|part| along(part, motion)).sum::<f64>();
+        let touching: Vec<_> = ends.filter(|(run, end)| jump(run, *end).abs() <= 1e-5 * size).collect();
+        (turns && !touching.is_empty()).then_some(touching)
     }
 
     /// The rows that vanish on rollers: no rotation, and no displacement across each direction of roller there is.
-    pub fn rollers(&self, problem: &Problem) -> Vec<DVector<f64>> {
+    pub fn rollers(&self, problem: &Problem) -> Vec<Part> {
         let mesh = &problem.mesh;
-        let mut directions: Vec<(usize, [f64; 2])> = Vec::new();
+        let mut directions: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.members.len()];
         for (e, condition) in problem.conditions.iter().enumerate() {
             let (Condition::Roller, Some(t)) = (condition, mesh.edges[e].triangles[0]) else { continue };
-            let c = self.components.of_triangle[t];
-            if self.column(c).is_none() {
-                continue;
-            }
+            let Some(m) = self.member(self.components.of_triangle[t]) else { continue };
             let (length, n) = mesh.edge_frame(e);
             // Weighted by length, equal directions add up to the normal of the line from end to end.
-            let same = directions.iter_mut().find(|(other, sum)| {
+            let same = directions[m].iter_mut().find(|sum| {
                 let turn = (n[0] * sum[1] - n[1] * sum[0]).abs();
-                *other == c && turn <= 10.0 * STRAIGHT * sum[0].hypot(sum[1])
+                turn <= 10.0 * STRAIGHT * sum[0].hypot(sum[1])
             });
             match same {
-                Some((_, sum)) => {
+                Some(sum) => {
                     let sign = (n[0] * sum[0] + n[1] * sum[1]).signum();
                     sum[0] += sign * length * n[0];
                     sum[1] += sign * length * n[1];
                 }
-                None => directions.push((c, [length * n[0], length * n[1]])),
+                None => directions[m].push([length * n[0], length * n[1]]),
             }
         }
-        let rows = |(c, normal): (usize, [f64; 2])| {
-            let mut still = DVector::zeros(self.dimension());
-            if let Some(i) = self.column(c) {
-                still[i + 2] = 1.0;
+        let rows = |(m, normals): (usize, Vec<[f64; 2]>)| {
+            let across = normals.into_iter().map(move |n| (m, Vector3::new(n[0], n[1], 0.0).normalize()));
+            let mut rows: Vec<Part> = across.collect();
+            if !rows.is_empty() {
+                rows.push((m, Vector3::z()));
             }
-            [still, unit(self.displacement(c, self.components.centre[c], normal))]
+            rows
         };
-        directions.into_iter().flat_map(rows).collect()
+        directions.into_iter().enumerate().flat_map(rows).collect()
     }
 }
 
-fn unit(row: DVector<f64>) -> DVector<f64> {
-    let norm = row.norm();
-    if norm > 0.0 { row / norm } else { row }
+/// What `part` of a row takes from a vector of all unknowns.
+pub(super) fn along((m, part): &Part, all: &DVector<f64>) -> f64 {
+    (0..3).map(|i| part[i] * all[3 * m + i]).sum()
+}
+
+fn unit(mut row: Vec<Part>) -> Vec<Part> {
+    let norm = row.iter().map(|(_, part)| part.norm_squared()).sum::<f64>().sqrt();
+    if norm > 0.0 {
+        row.iter_mut().for_each(|(_, part)| *part /= norm);
+    }
+    row
 }

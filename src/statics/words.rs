@@ -115,7 +115,7 @@ fn piece(
 /// Displacement of the first side relative to the second at `point` of `run`: across (v_n' + v_n'') and along it.
 fn relative(components: &Components, motion: &RigidMotion, run: &Run, point: [f64; 2]) -> [f64; 2] {
     let [u, v] = run.sides.map(|side| side.map_or([0.0; 2], |c| motion.at(components, c, point)));
-    let (apart, n) = ([u[0] - v[0], u[1] - v[1]], run.normal);
+    let (apart, n) = ([u[0] - v[0], u[1] - v[1]], run.normal_at(point));
     [apart[0] * n[0] + apart[1] * n[1], apart[1] * n[0] - apart[0] * n[1]]
 }
 
@@ -159,13 +159,19 @@ pub(super) fn free_both_ways(components: &Components, moving: &[Moving]) -> Stri
 }
 
 /// The same for a motion that is free in one direction only.
-pub(super) fn free_one_way(components: &Components, moving: &[Moving]) -> String {
+pub(super) fn free_one_way(components: &Components, moving: &[Moving], loaded: bool) -> String {
     let all: Vec<_> =
         moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();
+    let motion = all.join(", ");
+    if loaded {
+        return format!(
+            "The loads are on the borderline of equilibrium: they do no work on a motion that contact allows one way, \
+             {motion}. The displacement need not be unique."
+        );
+    }
     format!(
-        "The loads are on the borderline of equilibrium: they do no work on a motion that contact allows one way, {}. \
-         The displacement need not be unique.",
-        all.join(", ")
+        "Nothing is applied that would keep contact closed in this motion, which contact allows one way: {motion}. The \
+         contact carries no force there, and the displacement need not be unique."
     )
 }
 
@@ -188,7 +194,7 @@ pub(super) fn beyond_mesh(components: &Components, moving: &[Moving], borderline
 /// "slides along …", without the subject.
 fn clause(components: &Components, one: &Moving) -> String {
     let size = components.size[one.component];
-    let point = |p: [f64; 2]| format!("({}, {})", near_zero(p[0], size), near_zero(p[1], size));
+    let point = |p: [f64; 2]| place(components, p, size);
     let length = one.displacement[0].hypot(one.displacement[1]);
     let direction = || {
         let [a, b] = one.displacement.map(|x| x / length);
@@ -220,8 +226,13 @@ fn name(components: &Components, c: usize) -> String {
     if !components.one_of_several[c] {
         return bodies;
     }
-    let ([x, y], size) = (components.centre[c], components.size[c]);
-    format!("the piece of {bodies} around ({}, {})", near_zero(x, size), near_zero(y, size))
+    format!("the piece of {bodies} around {}", place(components, components.centre[c], components.size[c]))
+}
+
+/// A point in the coordinates of the scene as it was written; `size` says what is as good as zero.
+fn place(components: &Components, point: [f64; 2], size: f64) -> String {
+    let [x, y] = [0, 1].map(|c| near_zero(point[c] + components.origin[c], size));
+    format!("({x}, {y})")
 }
 
 fn list(items: &[String]) -> String {

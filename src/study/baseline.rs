@@ -1,13 +1,17 @@
 //! A stored result to compare later runs with.
 
 use std::collections::BTreeMap;
+use std::fs::Permissions;
 use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
+use rustix::fs::Access;
 use serde::{Deserialize, Serialize};
 
 use super::Certified;
 use crate::compare::{Allowances, Basis, Check, Comparison};
+use crate::process::signals;
 
 /// Largest relative change that a later run may show: the numbers are bit-stable for one build, other builds and
 /// machines round differently.
@@ -26,13 +30,27 @@ pub struct Baseline {
 /// Why a baseline cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum BaselineError {
-    /// It cannot be read or written.
+    /// It cannot be read.
     #[error("baseline {path}: {source}; write it first with --accept")]
     Io {
         /// The file.
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// It cannot be written.
+    #[error("baseline {path} cannot be written: {source}; give the path of a file in a folder that is writable")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Something else has its name.
+    #[error("baseline {path} is not a regular file; give the path of a file")]
+    NoFile {
+        /// What was given.
+        path: PathBuf,
     },
     /// It is no baseline.
     #[error("baseline {path}: {reason}; write it again with --accept")]
@@ -73,8 +91,11 @@ impl Baseline {
     /// # Errors
     /// [`BaselineError`].
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| BaselineError::Io { path: path.to_path_buf(), source })?;
+        let io = |source: std::io::Error| BaselineError::Io { path: path.to_path_buf(), source };
+        if !std::fs::metadata(path).map_err(io)?.is_file() {
+            return Err(BaselineError::NoFile { path: path.to_path_buf() });
+        }
+        let text = std::fs::read_to_string(path).map_err(io)?;
         let content = |reason: String| BaselineError::Content { path: path.to_path_buf(), reason };
         let baseline: Baseline = serde_json::from_str(&text).map_err(|e| content(e.to_string()))?;
         if baseline.version != VERSION {
@@ -83,17 +104,39 @@ impl Baseline {
         Ok(baseline)
     }
 
-    /// Writes a baseline, whole or not at all.
+    /// Refuses a path that a baseline cannot be written to.
+    ///
+    /// # Errors
+    /// [`BaselineError`].
+    pub fn refuse(path: &Path) -> Result<(), BaselineError> {
+        match std::fs::metadata(path) {
+            Ok(kind) if !kind.is_file() => return Err(BaselineError::NoFile { path: path.to_path_buf() }),
+            _ => {}
+        }
+        let unwritable = |e: rustix::io::Errno| BaselineError::Write { path: path.to_path_buf(), source: e.into() };
+        rustix::fs::access(folder_of(path), Access::WRITE_OK | Access::EXEC_OK).map_err(unwritable)
+    }
+
+    /// Writes a baseline, whole or not at all. A link to a file stays one, and the file keeps its mode.
     ///
     /// # Errors
     /// [`BaselineError`].
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
-        let io = |source: std::io::Error| BaselineError::Io { path: path.to_path_buf(), source };
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let mut file = tempfile::NamedTempFile::new_in(folder).map_err(io)?;
+        Self::refuse(path)?;
+        let io = |source: std::io::Error| BaselineError::Write { path: path.to_path_buf(), source };
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let mut builder = tempfile::Builder::new();
+        // Temporary files are private by default; a baseline is for everybody the umask allows.
+        let mut file =
+            builder.permissions(Permissions::from_mode(0o666)).tempfile_in(folder_of(&target)).map_err(io)?;
+        if let Ok(present) = std::fs::metadata(&target) {
+            file.as_file().set_permissions(present.permissions()).map_err(io)?;
+        }
         let text = serde_json::to_string_pretty(self).map_err(|e| io(e.into()))?;
         writeln!(file, "{text}").map_err(io)?;
-        file.persist(path).map_err(|e| io(e.error))?;
+        file.as_file().sync_all().map_err(io)?;
+        let _unbroken = signals::unbroken();
+        file.persist(target).map_err(|e| io(e.error))?;
         Ok(())
     }
 
@@ -104,18 +147,62 @@ impl Baseline {
         for (name, &reference) in &stored.values {
             let name_of = format!("baseline/{name}");
             let default = UNCHANGED * reference.abs().max(UNCHANGED * largest);
-            let allowed = allow.get(&name_of, default);
+            let allowed = allow.given(&name_of).unwrap_or(default);
             let why = format!("{name} against the stored value of {}.", stored.scene);
             checks.push(match self.values.get(name) {
-                Some(&value) => Check::equal(&name_of, value, reference, allowed, Basis::Chosen, why),
+                Some(&value) => Check::equal(&name_of, value, reference, allowed, Basis::Asked, why),
                 None => Check::not_made(
                     &name_of,
                     allowed,
-                    Basis::Chosen,
+                    Basis::Asked,
                     format!("The baseline has {name}, this run does not; write the baseline again with --accept."),
                 ),
             });
         }
         checks
+    }
+}
+
+/// The folder that holds the file `path`.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn baseline(value: f64) -> Baseline {
+        Baseline { version: VERSION, scene: "scene".into(), values: BTreeMap::from([("energy.lower".into(), value)]) }
+    }
+
+    #[test]
+    fn a_file_keeps_its_mode_and_a_link_its_target() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (file, link) = (folder.path().join("kept.json"), folder.path().join("link.json"));
+        baseline(1.0).write(&file).expect("writable");
+        std::fs::set_permissions(&file, Permissions::from_mode(0o640)).expect("ours");
+        std::os::unix::fs::symlink(&file, &link).expect("writable");
+        baseline(2.0).write(&link).expect("writable");
+        assert!(link.symlink_metadata().expect("there").is_symlink());
+        assert_eq!(std::fs::metadata(&file).expect("there").permissions().mode() & 0o777, 0o640);
+        assert_eq!(Baseline::read(&file).expect("a baseline"), baseline(2.0));
+    }
+
+    #[test]
+    fn only_regular_files_are_baselines() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let fifo = folder.path().join("fifo");
+        let made = std::process::Command::new("mkfifo").arg(&fifo).status().expect("mkfifo");
+        assert!(made.success());
+        for path in [fifo.as_path(), Path::new("/dev/null"), folder.path()] {
+            for refused in [baseline(1.0).write(path).err(), Baseline::read(path).err()] {
+                assert!(matches!(refused, Some(BaselineError::NoFile { .. })), "{}: {refused:?}", path.display());
+            }
+            assert!(!path.is_file());
+        }
+        let nowhere = folder.path().join("no/such/folder.json");
+        assert!(matches!(baseline(1.0).write(&nowhere), Err(BaselineError::Write { .. })));
+        assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1, "something was left");
     }
 }

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use crate::bounds::{Bracket, NodalValues};
-use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options};
+use super::admission::Admission;
+use crate::bounds::{Bracket, NoUpperBound, NodalValues, supports_agree, without_stress};
+use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::problem::{Problem, ProblemError};
 use crate::statics::{self, Equilibrium, Statics, StaticsError};
 
@@ -47,6 +48,9 @@ pub enum StudyError {
         /// What would have to be expressed.
         sentence: String,
     },
+    /// Supports and contacts contradict each other.
+    #[error("{0}; prescribe displacements that fit together there, or leave out one of the conditions")]
+    Contradiction(#[from] NoUpperBound),
     /// The dual solver failed.
     #[error(transparent)]
     Dual(#[from] DualError),
@@ -60,6 +64,11 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
+    let size = Size::of(&problem);
+    if let Err(excess) = Admission::new(method, options.budget).admit(size, None) {
+        let reason = format!("a solve on {} triangles does not fit: about {excess}", size.triangles);
+        return Err(DualError::TooLarge { reason }.into());
+    }
     let statics = balance(&problem)?;
     solve_balanced(problem, statics, method, options, None)
 }
@@ -67,8 +76,9 @@ pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> 
 /// The statics of a problem that has an equilibrium, on this mesh or a finer one.
 ///
 /// # Errors
-/// [`StudyError::NoEquilibrium`], or the question could not be decided.
+/// [`StudyError::Contradiction`], [`StudyError::NoEquilibrium`], or the question could not be decided.
 pub(super) fn balance(problem: &Problem) -> Result<Statics, StudyError> {
+    supports_agree(problem)?;
     let statics = statics::check(problem)?;
     match &statics.equilibrium {
         Equilibrium::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
@@ -97,7 +107,7 @@ pub(super) fn solve_balanced(
         return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
     }
     let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
-    let mut dual = dual::solve(method, &problem, &motions, options)?;
+    let mut dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
     let bracket = Bracket::from_start(&problem, &dual, start);
     dual.seconds.total = began.elapsed().as_secs_f64();
     Ok(Certified { problem, statics, dual, bracket })

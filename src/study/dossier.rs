@@ -1,7 +1,7 @@
 //! From results to the data behind the report.
 
 use super::Certified;
-use super::provenance::provenance;
+use super::provenance::{identifier, provenance};
 use crate::bounds::{Bracket, UpperBound, mid_field};
 use crate::compare::{Comparison, primal_means, von_mises_map};
 use crate::dual::Motion;
@@ -19,6 +19,10 @@ pub struct Findings<'a> {
     pub certified: &'a Certified,
     /// The comparison; without displacement models it still holds the checks of the bracket.
     pub comparison: &'a Comparison,
+    /// A sharper bracket from a finer mesh, where the one of `certified` could not tell two models apart.
+    pub finer: Option<&'a Certified>,
+    /// The guaranteed relative error that tells two models apart; `None` where no model has to be told from another.
+    pub enough: Option<f64>,
     /// Adaptive refinement, mesh by mesh.
     pub history: Vec<HistoryRow>,
     /// Remarks of the run itself.
@@ -129,26 +133,17 @@ fn report(findings: &Findings<'_>) -> Report {
     notes.extend(dual.notes.iter().map(remark));
     notes.extend(findings.notes.iter().cloned());
     let guaranteed = !notes.iter().any(|n| n.weakens_guarantee);
-    let energy = comparison.upper(bracket).map(|(upper, from)| Energy {
-        lower: bracket.lower(),
-        upper: upper.upper(),
-        gap: upper.upper() - bracket.lower(),
-        relative_error_bound: bracket.relative_error(upper.upper()),
-        upper_from: from.to_string(),
-        free_upper: bracket.free.as_ref().ok().map(UpperBound::upper),
-        gap_local: bracket.free.as_ref().ok().map(|f| f.local.total),
-        complementary: bracket.complementary.strain,
-        widening: bracket.lower_widening + upper.widening,
-        mid_error_bound: upper.mid_error(upper.upper() - bracket.lower()) / (2.0 * bracket.complementary.strain).sqrt(),
-        enclosed_work: enclosed_work(upper, bracket),
-        compliance: problem.is_cone().then(|| enclosed_work(upper, bracket)),
-        guaranteed,
-    });
+    let sharpest = findings.finer.map_or(bracket, |finer| &finer.bracket);
+    let energy =
+        comparison.upper(sharpest).map(|(upper, from)| energy(problem, sharpest, bracket, upper, from, guaranteed));
+    let blunt = |enough: f64| !energy.as_ref().is_some_and(|energy| sharpest.tells(energy.upper, enough));
     let status = match (&findings.failure, comparison.agrees()) {
         (Some(_), _) => Status::Failed,
-        (None, true) => Status::Agree,
         (None, false) => Status::Disagree,
+        (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
+        (None, true) => Status::Agree,
     };
+    let (checks, remarks) = comparison.checks.iter().cloned().partition(|check| check.decides());
     let mut provenance = provenance(problem, findings.threads);
     provenance.components.extend(findings.components.iter().cloned());
     provenance.seconds.extend(findings.seconds.iter().map(|(k, v)| (k.to_string(), *v)));
@@ -157,8 +152,9 @@ fn report(findings: &Findings<'_>) -> Report {
         scene: problem.scene.name.clone(),
         title: problem.scene.title.clone(),
         command: findings.command.to_string(),
+        run: identifier(),
         status,
-        verdict: verdict(findings, energy.as_ref()),
+        verdict: verdict(findings, status, energy.as_ref()),
         energy,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
@@ -178,7 +174,7 @@ fn report(findings: &Findings<'_>) -> Report {
                 degree: j.candidate.degree,
                 energy: j.candidate.reported.unwrap_or(j.field.potential.total()),
                 admissible: j.is_admissible(),
-                relative_error_bound: Some(j.relative_error(bracket)),
+                relative_error_bound: Some(j.relative_error(sharpest)),
                 iterations: j.candidate.iterations,
                 unknowns: j.candidate.unknowns,
                 seconds: j.candidate.seconds.clone(),
@@ -186,10 +182,43 @@ fn report(findings: &Findings<'_>) -> Report {
             .collect(),
         contact: comparison.contacts.clone(),
         stress: comparison.stress.clone(),
-        checks: comparison.checks.clone(),
+        checks,
+        remarks,
         notes,
         history: findings.history.clone(),
         provenance,
+    }
+}
+
+/// The bracket of `sharpest`, which is that of the mesh of the comparison, `own`, or one of a finer mesh.
+fn energy(
+    problem: &Problem,
+    sharpest: &Bracket,
+    own: &Bracket,
+    upper: &UpperBound,
+    from: &str,
+    guaranteed: bool,
+) -> Energy {
+    let free = sharpest.free.as_ref().ok();
+    let gap = upper.upper() - sharpest.lower();
+    // The constitutive error of a displacement is known against the stress of its own mesh.
+    let same_mesh = std::ptr::eq(sharpest, own) || free.is_some_and(|free| std::ptr::eq(free, upper));
+    let mid_error = if same_mesh { upper.mid_error(gap) } else { gap.max(0.0).sqrt() };
+    let energy = sharpest.complementary.strain;
+    Energy {
+        lower: sharpest.lower(),
+        upper: upper.upper(),
+        gap,
+        relative_error_bound: sharpest.relative_error(upper.upper()),
+        upper_from: from.to_string(),
+        free_upper: free.map(UpperBound::upper),
+        gap_local: free.map(|f| f.local.total),
+        complementary: energy,
+        widening: sharpest.lower_widening + upper.widening,
+        mid_error_bound: if mid_error > 0.0 { mid_error / (2.0 * energy).sqrt() } else { 0.0 },
+        enclosed_work: enclosed_work(upper, sharpest),
+        compliance: problem.is_cone().then(|| enclosed_work(upper, sharpest)),
+        guaranteed,
     }
 }
 
@@ -200,11 +229,12 @@ fn enclosed_work(upper: &UpperBound, bracket: &Bracket) -> [f64; 2] {
 }
 
 /// The verdict in one sentence.
-fn verdict(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
+fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> String {
     if let Some(failure) = &findings.failure {
         return format!("No comparison was made: {failure}");
     }
-    let failed: Vec<&str> = findings.comparison.checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
+    let failed = findings.comparison.checks.iter().filter(|c| !c.passed && c.decides());
+    let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
     let bound = energy.map_or(String::new(), |e| {
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
         format!(
@@ -216,6 +246,9 @@ fn verdict(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     });
     let models = findings.comparison.judged.len();
     match (failed.as_slice(), models) {
+        ([], _) if status == Status::Undecided => {
+            format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
+        }
         ([], 0) => format!("The bracket holds.{bound}"),
         ([], _) if findings.command == "certify" => {
             format!("The displacement field is admissible and its energy respects the bound.{bound}")
@@ -240,6 +273,7 @@ pub fn infeasible<'a>(
             scene: problem.scene.name.clone(),
             title: problem.scene.title.clone(),
             command: command.to_string(),
+            run: identifier(),
             status: Status::Infeasible,
             verdict: sentence.to_string(),
             energy: None,
@@ -248,6 +282,7 @@ pub fn infeasible<'a>(
             contact: Vec::new(),
             stress: None,
             checks: Vec::new(),
+            remarks: Vec::new(),
             notes: problem.notes.clone(),
             history: Vec::new(),
             provenance: provenance(problem, threads),

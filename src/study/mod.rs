@@ -1,22 +1,28 @@
 //! One run from a problem to a report: statics, dual solve, bracket, displacement models, verdict.
 
 mod adaptive;
+mod admission;
 mod baseline;
 mod certified;
 mod dossier;
 mod field;
 mod indicators;
+mod outlook;
 mod primal;
 mod provenance;
+mod sharpen;
 mod warm_start;
 
 pub use adaptive::{Adapted, Goal, adapt, tolerance_check};
+pub use admission::Admission;
 pub use baseline::{Baseline, BaselineError};
 pub use certified::{Certified, StudyError, certify};
 pub use dossier::{Fields, Findings, assemble, infeasible};
 pub use field::{FieldError, ForeignField};
 pub use indicators::Indicators;
+pub use outlook::outlook;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
 pub(crate) use provenance::{hash, hex};
+pub use sharpen::{Sharpened, sharpen};
 pub use warm_start::closed_ends;

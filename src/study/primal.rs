@@ -42,6 +42,7 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
         vertex: solution.vertex_displacement,
         middle,
         reported: Some(solution.energy),
+        reported_strain: Some(solution.strain_energy),
         is_solution: true,
         reactions: Some(
             solution

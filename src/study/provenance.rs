@@ -1,6 +1,7 @@
 //! What made the numbers.
 
 use std::collections::BTreeMap;
+use std::hash::{BuildHasher, Hasher};
 
 use sha2::{Digest, Sha256};
 
@@ -54,6 +55,17 @@ fn mesh_hash(problem: &Problem) -> String {
     hex(&hasher.finalize())
 }
 
+/// Sixteen hexadecimal digits that no other run has.
+pub fn identifier() -> String {
+    let mut hasher = Sha256::new();
+    hasher.update(std::process::id().to_le_bytes());
+    // Keys that the system draws for each process, and that differ from call to call.
+    hasher.update(std::hash::RandomState::new().build_hasher().finish().to_le_bytes());
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    hasher.update(now.as_nanos().to_le_bytes());
+    hex(&hasher.finalize()[..8])
+}
+
 /// SHA-256 of `bytes`, in hexadecimal digits.
 pub fn hash(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
@@ -67,6 +79,12 @@ pub fn hex(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_runs_have_the_same_identifier() {
+        let drawn: std::collections::HashSet<String> = (0..1000).map(|_| identifier()).collect();
+        assert!(drawn.len() == 1000 && drawn.iter().all(|id| id.len() == 16));
+    }
 
     #[test]
     fn the_lock_file_names_the_numerical_libraries() {

@@ -103,6 +103,14 @@ pub fn sound(name: &str) -> Report {
     assert_eq!(report.0["status"], "agree");
     assert_eq!(report.0["energy"]["guaranteed"], true, "{}", report.notes());
     assert!(report.failed().is_empty(), "{:?}", report.failed());
+    let checks = report.0["checks"].as_array().into_iter().flatten().filter_map(|c| c["name"].as_str());
+    let contacts = report.0["contact"].as_array().into_iter().flatten().filter_map(|c| c["name"].as_str());
+    let contacts: Vec<String> = contacts.map(String::from).collect();
+    let fields = ["FEniCSx P1", "FEniCSx P2", "free bound"].map(String::from);
+    let known = hypercircle::compare::names_of_checks(&contacts, &fields);
+    for check in checks {
+        assert!(known.iter().any(|name| name == check), "--allow {check} would be refused before the solve");
+    }
     let (lower, upper) = (report.number("/energy/lower"), report.number("/energy/upper"));
     let free = report.number("/energy/free_upper");
     let scale = report.number("/energy/complementary");

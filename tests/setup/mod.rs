@@ -7,7 +7,7 @@ pub mod blocks;
 use std::collections::HashMap;
 
 use hypercircle::mesh::{Edge, Triangulation};
-use hypercircle::problem::{Condition, ContactPair, Interface, Problem};
+use hypercircle::problem::{Condition, ContactPair, Direction, Interface, Problem};
 use hypercircle::scene::{Body, Kinematics, MeshSource, Scene};
 
 /// What holds on a named side.
@@ -205,6 +205,7 @@ impl Setup {
                     first: ends,
                     second: matched.map(|m| m.1),
                     normal: [dy / length, -dx / length],
+                    direction: Direction::constant([dy / length, -dx / length]),
                     length,
                     arc: [arc, arc + length],
                     gap: [gap(arc), gap(arc + length)],
@@ -218,6 +219,7 @@ impl Setup {
             name: "test".into(),
             title: "test".into(),
             path: "test.toml".into(),
+            origin: [0.0; 2],
             kinematics,
             thickness: 1.0,
             mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },

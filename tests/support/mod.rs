@@ -3,8 +3,11 @@
 
 pub mod blocks;
 pub mod double_double;
+pub mod planted;
 pub mod random;
+pub mod scenes;
 pub mod toml;
+pub mod trial;
 
 use std::path::PathBuf;
 
@@ -63,6 +66,7 @@ impl Blocks {
             name: "two_blocks".to_string(),
             title: "Two blocks".to_string(),
             path: PathBuf::from("two_blocks.toml"),
+            origin: [0.0; 2],
             kinematics: self.kinematics,
             thickness: 1.0,
             mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
@@ -78,10 +82,10 @@ impl Blocks {
                     gradient: [[0.0, self.load.1 / self.size], [0.0, 0.0]],
                 },
             }],
-            contacts: vec![Contact {
-                sides: ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
-                gap: self.gap.clone(),
-            }],
+            contacts: vec![Contact::new(
+                ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
+                self.gap.clone(),
+            )],
         }
     }
 }

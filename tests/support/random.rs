@@ -24,4 +24,24 @@ impl Random {
     pub fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
+
+    /// Whether something of that probability happens.
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.between(0.0, 1.0) < probability
+    }
+
+    /// One of `choices`.
+    pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len())]
+    }
+
+    /// 10 to a power that is uniform in [low, high).
+    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        10f64.powf(self.between(low, high))
+    }
+
+    /// Other numbers, without using up any of these.
+    pub fn aside(&self) -> Random {
+        Random(self.0 ^ 0x5851_f42d_4c95_7f2d)
+    }
 }

@@ -5,14 +5,40 @@ use std::fmt::Write;
 /// The text of a scene with `[geometry]`: E = 1 and ν = 0.3 unless said otherwise, plane strain.
 #[derive(Clone, Default)]
 pub struct Toml {
+    model: Option<String>,
+    size: Option<f64>,
+    mesh: Option<String>,
     polygons: String,
     bodies: Vec<(String, [f64; 2], (f64, f64))>,
     conditions: String,
 }
 
 impl Toml {
+    /// `plane-strain` or `plane-stress`, and the thickness.
+    pub fn model(mut self, kinematics: &str, thickness: f64) -> Self {
+        self.model = Some(format!("kinematics = \"{kinematics}\"\nthickness = {thickness:?}"));
+        self
+    }
+
+    /// The target edge length.
+    pub fn size(mut self, size: f64) -> Self {
+        self.size = Some(size);
+        self
+    }
+
+    /// A mesh file in place of the polygons.
+    pub fn mesh_file(mut self, file: &str) -> Self {
+        self.mesh = Some(file.to_owned());
+        self
+    }
+
     /// A polygon of a body, with the names of its edges.
-    pub fn polygon<const N: usize>(mut self, body: &str, points: &[[f64; 2]], edges: [&str; N]) -> Self {
+    pub fn polygon<const N: usize>(self, body: &str, points: &[[f64; 2]], edges: [&str; N]) -> Self {
+        self.outline(body, points, &edges)
+    }
+
+    /// The same for any number of edges.
+    pub fn outline(mut self, body: &str, points: &[[f64; 2]], edges: &[&str]) -> Self {
         write!(self.polygons, "[[geometry.polygons]]\nbody = \"{body}\"\npoints = {points:?}\nedges = {edges:?}\n")
             .expect("a string takes any text");
         if !self.bodies.iter().any(|b| b.0 == body) {
@@ -66,8 +92,12 @@ impl Toml {
 
     /// The scene file.
     pub fn text(&self) -> String {
-        let mut text = "[model]\nkinematics = \"plane-strain\"\n[geometry]\n".to_string();
-        text.push_str(&self.polygons);
+        let model = self.model.as_deref().unwrap_or("kinematics = \"plane-strain\"");
+        let size = self.size.map_or(String::new(), |size| format!("size = {size:?}\n"));
+        let mut text = match &self.mesh {
+            Some(file) => format!("[model]\n{model}\n[mesh]\nfile = \"{file}\"\n"),
+            None => format!("[model]\n{model}\n[geometry]\n{size}{}", self.polygons),
+        };
         for (name, [fx, fy], (young, poisson)) in &self.bodies {
             write!(text, "[bodies.{name}]\nyoung = {young:?}\npoisson = {poisson:?}\nbody_force = [{fx:?}, {fy:?}]\n")
                 .expect("a string takes any text");

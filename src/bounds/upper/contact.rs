@@ -1,8 +1,11 @@
 //! Admissible jumps on Γ_K.
 //!
-//! Along a contact edge d = v_n' + v_n'' − g is quadratic with Bernstein coefficients b0, b1, b2 and mean
+//! Along a contact edge d = (v' − v'')·n̂ − g is quadratic with Bernstein coefficients b0, b1, b2 and mean
 //! d̄ = (b0 + b1 + b2)/3 ≤ 0 known from the dual solve. With b0, b2 in [1.5 d̄, 0] the middle coefficient
 //! b1 = 3d̄ − b0 − b2 is at most zero as well: the jump is admissible everywhere and no volume is lost.
+//!
+//! Where n̂ turns along the edge d is cubic. Its coefficients at the ends are those of the vertices, the two between them
+//! add up to 4d̄ − b0 − b3; sliding parts them a little, and what is then above zero is drawn back.
 
 use super::NoUpperBound;
 use super::holds::Hold;
@@ -13,6 +16,7 @@ use crate::problem::{ContactPair, Problem};
 pub struct End {
     first: usize,
     second: Option<usize>,
+    /// The direction of contact there.
     normal: [f64; 2],
     low: f64,
     high: f64,
@@ -51,7 +55,7 @@ pub fn restrict_vertices(problem: &Problem, holds: &[Hold], vertex: &mut [[f64; 
     for end in &ends {
         let by = excess(end, vertex);
         if by > 1e-12 * size {
-            let [x, y] = problem.mesh.points[end.first];
+            let [x, y] = problem.scene.as_written(problem.mesh.points[end.first]);
             return Err(NoUpperBound::ForcedPenetration { x, y, by });
         }
     }
@@ -109,7 +113,7 @@ fn ends_below_gap(problem: &Problem) -> Vec<End> {
             [0, 1].map(|end| End {
                 first: pair.first[end],
                 second: pair.second.map(|s| s[end]),
-                normal: pair.normal,
+                normal: pair.direction.ends[end],
                 low: f64::NEG_INFINITY,
                 high: pair.gap[end],
                 give: give(problem, pair),
@@ -122,7 +126,7 @@ fn ends_below_gap(problem: &Problem) -> Vec<End> {
 pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
     let mut ends = Vec::new();
     for interface in &problem.interfaces {
-        let mean: Vec<f64> = interface.pairs.iter().map(|pair| mean_excess(dual, pair).min(0.0)).collect();
+        let mean: Vec<f64> = interface.pairs.iter().map(|pair| mean_excess(problem, dual, pair).min(0.0)).collect();
         for (k, pair) in interface.pairs.iter().enumerate() {
             for end in 0..2 {
                 // The neighbour that shares this vertex, where the interface goes on.
@@ -134,7 +138,7 @@ pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
                 ends.push(End {
                     first: pair.first[end],
                     second: pair.second.map(|s| s[end]),
-                    normal: pair.normal,
+                    normal: pair.direction.ends[end],
                     low: pair.gap[end] + 1.5 * low,
                     high: pair.gap[end],
                     give: give(problem, pair),
@@ -145,17 +149,25 @@ pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
     ends
 }
 
-/// Mean of v_n' + v_n'' − g over a pair, from the moments of the dual solve.
-fn mean_excess(dual: &DualSolution, pair: &ContactPair) -> f64 {
-    let total = |e: usize| {
+/// Mean of (v' − v'')·n̂ − g over a pair, from the moments of the dual solve.
+fn mean_excess(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
+    let n = pair.direction.ends;
+    let total = |e: usize, start: usize, share: f64| {
         let [a, b] = dual.moments[e];
-        dot([a[0] + b[0], a[1] + b[1]], pair.normal)
+        if pair.direction.is_constant() {
+            return share * dot([a[0] + b[0], a[1] + b[1]], n[0]);
+        }
+        let turned = problem.mesh.edges[e].vertices[0] != start;
+        let (a, b) = if turned { (b, a) } else { (a, b) };
+        share * (dot(a, n[0]) + dot(b, n[1]))
     };
-    let jump = pair.edges[0].map_or(0.0, total) - pair.edges[1].map_or(0.0, total);
-    jump / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
+    let [c, d] = pair.direction.shares;
+    let own = pair.edges[0].map_or(0.0, |e| total(e, pair.first[0], c));
+    let other = pair.edges[1].zip(pair.second).map_or(0.0, |(e, second)| total(e, second[0], d));
+    (own - other) / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
 }
 
-/// One Bernstein coefficient of v_n' + v_n'' − g, a linear function of the values at nodes: vertices, then edges.
+/// One Bernstein coefficient of (v' − v'')·n̂ − g, a linear function of the values at nodes: vertices, then edges.
 #[derive(Debug, Clone)]
 pub struct Row {
     terms: Vec<(usize, [f64; 2])>,
@@ -173,59 +185,114 @@ impl Row {
         self.excess_at(|node| values[node])
     }
 
-    fn excess_at(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
+    /// The same, with a function that gives the values.
+    pub fn excess_at(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
         self.terms.iter().map(|(node, factor)| dot(value(*node), *factor)).sum::<f64>() - self.gap
     }
 }
 
-/// The three coefficients of every pair, in the order of the pairs.
+/// The coefficients of every pair, in the order of the pairs: three, or four where the direction of contact turns.
 pub fn rows(problem: &Problem) -> Vec<Row> {
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs.flat_map(|pair| bernstein(pair, problem.mesh.points.len())).collect()
 }
 
-/// The coefficients b0, b1, b2 of a pair, with the number of vertices.
-fn bernstein(pair: &ContactPair, vertices: usize) -> [Row; 3] {
-    let jump = |nodes: [Option<usize>; 2], factor: f64| {
-        let term = |node: Option<usize>, sign: f64| node.map(|k| (k, pair.normal.map(|n| sign * factor * n)));
+/// The coefficients of a pair from end to end, as functions of the values at nodes: `vertices` of them, then the edges.
+pub fn bernstein(pair: &ContactPair, vertices: usize) -> Vec<Row> {
+    let [first, last] = pair.direction.ends;
+    let jump = |nodes: [Option<usize>; 2], factor: f64, n: [f64; 2]| {
+        let term = move |node: Option<usize>, sign: f64| node.map(|k| (k, n.map(|n| sign * factor * n)));
         [term(nodes[0], 1.0), term(nodes[1], -1.0)].into_iter().flatten()
     };
-    let end = |k: usize, factor: f64| jump([Some(pair.first[k]), pair.second.map(|s| s[k])], factor);
-    let centre = jump(pair.edges.map(|e| e.map(|e| vertices + e)), 2.0);
+    let end = |k: usize, factor: f64, n: [f64; 2]| jump([Some(pair.first[k]), pair.second.map(|s| s[k])], factor, n);
+    let centre = |factor: f64, n: [f64; 2]| jump(pair.edges.map(|e| e.map(|e| vertices + e)), factor, n);
     let [ga, gb] = pair.gap;
-    [
-        Row { terms: end(0, 1.0).collect(), gap: ga },
-        Row { terms: centre.chain(end(0, -0.5)).chain(end(1, -0.5)).collect(), gap: 0.5 * (ga + gb) },
-        Row { terms: end(1, 1.0).collect(), gap: gb },
-    ]
+    let head = Row { terms: end(0, 1.0, first).collect(), gap: ga };
+    let tail = Row { terms: end(1, 1.0, last).collect(), gap: gb };
+    if pair.direction.is_constant() {
+        let middle = centre(2.0, first).chain(end(0, -0.5, first)).chain(end(1, -0.5, first));
+        return vec![head, Row { terms: middle.collect(), gap: 0.5 * (ga + gb) }, tail];
+    }
+    // The product of the quadratic with coefficients V0, V1 = 2 v_mid − ½ (V0 + V2), V2 and of the linear n̂.
+    let inner = |near: usize, n: [f64; 2], m: [f64; 2]| {
+        let own = [n, m].map(|n| n.map(|n| n / 3.0));
+        let ends = end(near, -1.0, own[0]).chain(end(1 - near, -1.0, own[0])).chain(end(near, 1.0, own[1]));
+        centre(4.0, own[0]).chain(ends).collect::<Vec<_>>()
+    };
+    let near_head = Row { terms: inner(0, first, last), gap: (2.0 * ga + gb) / 3.0 };
+    let near_tail = Row { terms: inner(1, last, first), gap: (ga + 2.0 * gb) / 3.0 };
+    vec![head, near_head, near_tail, tail]
 }
 
 /// The values of the coefficients of a pair.
-fn coefficients(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 3] {
+fn coefficients(pair: &ContactPair, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Vec<f64> {
     let value = |node: usize| if node < vertex.len() { vertex[node] } else { middle[node - vertex.len()] };
-    bernstein(pair, vertex.len()).map(|row| row.excess_at(value))
+    bernstein(pair, vertex.len()).iter().map(|row| row.excess_at(value)).collect()
 }
 
-/// Deepest penetration of all pairs.
-pub fn penetration(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> f64 {
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
-    pairs.flat_map(|pair| coefficients(pair, vertex, middle)).fold(0.0, f64::max)
+/// Deepest penetration of all pairs: of all coefficients, and at the vertices.
+pub fn penetration(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> [f64; 2] {
+    let mut deepest = [0.0_f64; 2];
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let all = coefficients(pair, vertex, middle);
+        deepest[0] = all.iter().copied().fold(deepest[0], f64::max);
+        deepest[1] = deepest[1].max(all[0]).max(all[all.len() - 1]);
+    }
+    deepest
 }
 
-/// Draws midpoints back where supports at the vertices or rounding left b1 above zero.
+/// Moves the midpoints of pairs along which the direction turns so that the jump has the mean of the dual solution, and
+/// where it would penetrate both inner coefficients are the same.
+///
+/// The mean of the cubic jump depends on how the sliding varies along the edge too, which vertex values know better than
+/// edge moments: without this the bodies would come to lie apart by the difference, all along the contact. The two inner
+/// coefficients differ by the second difference of the sliding, and are evened out along the contact, not across it.
+pub fn match_means(problem: &Problem, dual: &DualSolution, vertex: &[[f64; 2]], middle: &mut [[f64; 2]]) {
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs).filter(|pair| !pair.direction.is_constant()) {
+        let [Some(own), other] = pair.edges else { continue };
+        let found = coefficients(pair, vertex, middle);
+        let wanted = (4.0 * mean_excess(problem, dual, pair).min(0.0) - found[0] - found[3]).min(0.0);
+        let more = 0.5 * (wanted - found[1] - found[2]);
+        let penetrates = found[1].max(found[2]) + more > 0.0;
+        let changes = if penetrates { [0.5 * wanted - found[1], 0.5 * wanted - found[2]] } else { [more; 2] };
+        // A jump δ at the midpoint changes the coefficients by 4/3 of its components along the directions at the ends.
+        let [m, n] = pair.direction.ends;
+        let cross = m[0] * n[1] - m[1] * n[0];
+        let step = [
+            0.75 / cross * (changes[0] * n[1] - changes[1] * m[1]),
+            0.75 / cross * (changes[1] * m[0] - changes[0] * n[0]),
+        ];
+        let [first, second] = give(problem, pair);
+        shift(&mut middle[own], step, first);
+        if let Some(e) = other {
+            shift(&mut middle[e], step, -second);
+        }
+    }
+}
+
+/// Draws midpoints back where supports at the vertices, sliding or rounding left an inner coefficient above zero.
 pub fn restrict_middles(problem: &Problem, vertex: &[[f64; 2]], middle: &mut [[f64; 2]]) {
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         let [Some(own), other] = pair.edges else { continue };
-        let b1 = coefficients(pair, vertex, middle)[1];
-        if b1 <= ROUNDING * size {
+        let inner = coefficients(pair, vertex, middle);
+        let off = inner[1..inner.len() - 1].iter().fold(0.0_f64, |m, b| m.max(*b));
+        if off <= ROUNDING * size {
             continue;
         }
-        // b1 changes by twice the jump at the midpoint.
+        // The jump at the midpoint changes a coefficient by twice itself, and by two thirds of that where there are two.
+        let (n, step) = match inner.len() {
+            3 => (pair.direction.ends[0], 0.5 * off),
+            _ => {
+                let n = pair.direction.at(0.5);
+                let least = pair.direction.ends.map(|m| dot(n, m)).into_iter().fold(f64::INFINITY, f64::min);
+                (n, 0.75 * off / least)
+            }
+        };
         let [first, second] = give(problem, pair);
-        shift(&mut middle[own], pair.normal, -0.5 * first * b1);
+        shift(&mut middle[own], n, -first * step);
         if let Some(e) = other {
-            shift(&mut middle[e], pair.normal, 0.5 * second * b1);
+            shift(&mut middle[e], n, second * step);
         }
     }
 }

@@ -113,11 +113,37 @@ pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
                 Hold::Line { normal, value } => holds.vertices[v].with_line(normal, value, size),
                 Hold::Free => continue,
             };
-            let [x, y] = mesh.points[v];
+            let [x, y] = problem.scene.as_written(mesh.points[v]);
             holds.vertices[v] = next.ok_or(NoUpperBound::SupportsDisagree { x, y })?;
         }
     }
     Ok(holds)
+}
+
+/// Whether some displacement of finite energy meets all supports and contacts: what the supports hold on their own must
+/// agree where they meet, and leave the gap that a contact asks for.
+///
+/// # Errors
+/// [`NoUpperBound`] names the place.
+pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
+    let holds = holds(problem)?.vertices;
+    let held = |v: usize, n: [f64; 2]| {
+        let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];
+        (left[0].hypot(left[1]) <= PARALLEL).then_some(own[0] * n[0] + own[1] * n[1])
+    };
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for end in 0..2 {
+            let first = held(pair.first[end], pair.normal);
+            let second = pair.second.map_or(Some(0.0), |s| held(s[end], pair.normal));
+            let Some((first, second)) = first.zip(second) else { continue };
+            let by = first - second - pair.gap[end];
+            if by > PARALLEL * first.abs().max(second.abs()) {
+                let [x, y] = problem.scene.as_written(problem.mesh.points[pair.first[end]]);
+                return Err(NoUpperBound::ForcedPenetration { x, y, by });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The outward unit normal of every roller edge: that of the whole straight side which the edge is a part of.

@@ -21,7 +21,8 @@ mod sets;
 mod split;
 mod stiffness;
 
-use self::holds::{Holds, holds};
+pub use self::contact::{Row, bernstein};
+pub use self::holds::{Hold, Holds, holds, supports_agree};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -89,6 +90,7 @@ pub fn admissible(
             holds.middles[e].impose([0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c])))
         })
         .collect();
+    contact::match_means(problem, dual, &vertex, &mut middle);
     contact::restrict_middles(problem, &vertex, &mut middle);
     let mut candidates = vec![NodalValues { vertex, middle }];
     if let Some(start) = start {
@@ -120,8 +122,10 @@ fn restricted(problem: &Problem, holds: &Holds, start: NodalValues) -> Result<(N
 pub struct Violation {
     /// Largest distance from a prescribed displacement.
     pub support: f64,
-    /// Deepest penetration, between nodes too (largest Bernstein coefficient of v_n' + v_n'' − g).
+    /// Deepest penetration, between nodes too (largest Bernstein coefficient of (v' − v'')·n̂ − g).
     pub penetration: f64,
+    /// Deepest penetration at a vertex.
+    pub at_vertices: f64,
 }
 
 impl Violation {
@@ -143,9 +147,9 @@ pub fn repaired(
 ) -> Result<(Displacement, Violation), NoUpperBound> {
     let holds = holds(problem)?;
     let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let penetration = contact::penetration(problem, vertex, middle) / size;
+    let [penetration, at_vertices] = contact::penetration(problem, vertex, middle).map(|depth| depth / size);
     let start = NodalValues { vertex: vertex.to_vec(), middle: middle.to_vec() };
     let (NodalValues { vertex, middle }, farthest) = restricted(problem, &holds, start)?;
-    let violation = Violation { support: farthest / size, penetration };
+    let violation = Violation { support: farthest / size, penetration, at_vertices };
     Ok((Displacement::from_p2(&problem.mesh, &vertex, &middle), violation))
 }

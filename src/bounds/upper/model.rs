@@ -95,12 +95,15 @@ pub struct Directions {
     pub unit: [[f64; 2]; 2],
 }
 
-/// The rows of contact at each vertex: three for each pair that ends there.
+/// The rows of contact at each vertex: all of each pair that ends there.
 fn touching(problem: &Problem) -> Vec<Vec<usize>> {
     let mut touching = vec![Vec::new(); problem.mesh.points.len()];
-    for (k, pair) in problem.interfaces.iter().flat_map(|i| &i.pairs).enumerate() {
+    let mut next = 0;
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let rows = next..next + if pair.direction.is_constant() { 3 } else { 4 };
+        next = rows.end;
         for &v in pair.first.iter().chain(pair.second.iter().flatten()) {
-            touching[v].extend([3 * k, 3 * k + 1, 3 * k + 2]);
+            touching[v].extend(rows.clone());
         }
     }
     touching

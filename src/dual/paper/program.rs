@@ -10,7 +10,7 @@ use crate::dual::equilibrium::edge_traction;
 use crate::dual::modes::materials;
 use crate::element::subtriangle::Matrix;
 use crate::element::{StressField, quadrature::triangle_rule};
-use crate::problem::{Condition, Problem};
+use crate::problem::{Condition, Problem, Scales};
 
 /// What is kept of a block once Q has been found.
 #[derive(Debug, Clone)]
@@ -44,6 +44,8 @@ pub struct Program {
     pub rows: SparseRows,
     /// G, so that the constraints read Bs + G = 0 for the rows of D and ≤ 0 for those of E.
     pub g: Vec<f64>,
+    /// The sizes that the data stand for.
+    pub scales: Scales,
     /// ∫ g q ds at the contact ends: the jump of displacement where contact closes.
     pub gap_moments: Vec<f64>,
 }
@@ -79,7 +81,9 @@ impl Program {
             .flat_map(|i| &i.pairs)
             .flat_map(|p| [0, 1].map(|end| p.length * (2.0 * p.gap[end] + p.gap[1 - end]) / 6.0))
             .collect();
-        let mut program = Program { blocks, constraints, dependences, auxiliary, b: Vec::new(), rows, g, gap_moments };
+        let scales = Scales::new(problem);
+        let b = Vec::new();
+        let mut program = Program { blocks, constraints, dependences, auxiliary, b, rows, g, scales, gap_moments };
         program.b = program.linear_term(problem, &external);
         Ok(program)
     }

@@ -9,8 +9,9 @@ use std::time::Instant;
 
 use super::program::Program;
 use super::rows::SparseRows;
-use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases};
-use crate::problem::Problem;
+use crate::dual::equilibrium::LEAST_STRESS;
+use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
+use crate::problem::{ContactPair, Problem, Sizes};
 
 /// The paper's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +39,9 @@ impl Uzawa {
     }
 }
 
+/// Bytes for each triangle: blocks with their matrices, rows, and what finds the dependences between them.
+const EACH: f64 = 42_000.0;
+
 /// Iterations between two looks at the residual.
 const LOOK_EVERY: usize = 25;
 /// Growth of the residual that is no longer a transient.
@@ -49,13 +53,18 @@ impl DualMethod for Uzawa {
     }
 
     fn accuracy(&self) -> f64 {
-        // The stopping test weighs all rows together, the residual is the worst of them.
-        100.0 * self.tolerance
+        // The stopping test weighs all rows together, the residual is the worst of them, where few rows carry the load.
+        1000.0 * self.tolerance
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        size.linear(EACH)
     }
 
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
+        expressible(problem, self.name())?;
         let program = Program::new(problem)?;
         let mut notes = notes(problem, &program);
         seconds.assemble = start.elapsed().as_secs_f64();
@@ -89,6 +98,17 @@ impl DualMethod for Uzawa {
             notes,
         })
     }
+}
+
+/// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
+fn expressible(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
+    let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
+    Err(DualError::NotExpressible {
+        method,
+        what: format!("a direction of contact that is not the normal of each edge, as on {}", interface.name),
+        remedy: "use another method, or write normals = \"facets\" for the contact of the facets themselves",
+    })
 }
 
 /// What the algorithm found out about the problem on the way.
@@ -285,9 +305,14 @@ impl<'a> Iteration<'a> {
         let total: Vec<f64> = s.iter().zip(&self.program.auxiliary.parameters).map(|(a, b)| a + b).collect();
         let energy: f64 = 0.5 * self.program.multiply_a(&total).iter().zip(&total).map(|(a, s)| a * s).sum::<f64>();
         let relative = |x: f64, size: f64| if size > 0.0 { x / size } else { x };
-        // Without loads the stresses themselves are the measure.
-        let scale = scale.max(total.iter().fold(0.0, |m, v| m.max(v.abs())));
-        relative(violation, scale).max(relative(work, energy))
+        // Without loads the stresses themselves are the measure, or, where they vanish, those that the prescribed
+        // displacements and gaps could cause.
+        let least = match &self.program.scales {
+            scales if scales.traction > 0.0 => Sizes::default(),
+            scales => scales.data,
+        };
+        let largest = total.iter().fold(LEAST_STRESS * least.stress, |m: f64, v| m.max(v.abs()));
+        relative(violation, scale.max(largest)).max(relative(work, energy.max(LEAST_STRESS * least.energy)))
     }
 
     fn stopped(&self, method: &Uzawa, iterations: usize, residual: f64, step: f64) -> DualError {

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
-use crate::mesh::error::at;
-use crate::mesh::{MeshError, RawMesh};
+use crate::mesh::{MeshError, RawMesh, Shared};
 use crate::scene::Note;
 
 /// Deviation from the plane, and of a mid-node from the middle, in parts of a length, that counts as round-off.
@@ -24,8 +24,8 @@ pub(in crate::mesh) struct Element {
     pub tag: u64,
     /// Node tags; corners first, then the middles of (0, 1), (1, 2), (2, 0).
     pub nodes: Vec<u64>,
-    /// Physical tags; none means untagged.
-    pub physical: Vec<i32>,
+    /// Physical tags; none means untagged. The elements of an entity share the list.
+    pub physical: Rc<[i32]>,
 }
 
 /// The sections that matter.
@@ -34,7 +34,7 @@ pub(in crate::mesh) struct Content {
     /// Name by dimension and physical tag.
     pub names: HashMap<(i32, i32), String>,
     /// Physical tags by dimension and tag of an elementary entity (version 4).
-    pub entities: HashMap<(i32, i32), Vec<i32>>,
+    pub entities: HashMap<(i32, i32), Rc<[i32]>>,
     /// Coordinates by node tag.
     pub nodes: HashMap<u64, [f64; 3]>,
     pub elements: Vec<Element>,
@@ -68,6 +68,8 @@ impl Content {
         let position: Vec<[f64; 3]> = order.iter().map(|tag| self.nodes[tag]).collect();
         let mut raw = RawMesh { points: position.iter().map(|p| [p[0], p[1]]).collect(), ..RawMesh::default() };
         let mut quadratic = 0_usize;
+        // The list that the last of `raw.shared` was made of, with its dimension.
+        let mut shared: Option<(i32, Rc<[i32]>)> = None;
         for element in &self.elements {
             let mut nodes = Vec::with_capacity(element.nodes.len());
             for tag in &element.nodes {
@@ -86,16 +88,26 @@ impl Content {
             let name = |dimension: i32, tag: i32| {
                 self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| tag.to_string())
             };
-            match element.kind {
-                Kind::Line => {
-                    raw.segments.extend(element.physical.iter().map(|&p| ([nodes[0], nodes[1]], name(1, p))));
-                }
-                Kind::Triangle => {
-                    let cell = [nodes[0], nodes[1], nodes[2]];
-                    if element.physical.is_empty() {
-                        raw.triangles.push((cell, String::new()));
+            let dimension = if element.kind == Kind::Line { 1 } else { 2 };
+            match (&*element.physical, element.kind) {
+                ([], Kind::Line) => {}
+                ([], Kind::Triangle) => raw.triangles.push(([nodes[0], nodes[1], nodes[2]], String::new())),
+                ([tag], Kind::Line) => raw.segments.push(([nodes[0], nodes[1]], name(1, *tag))),
+                ([tag], Kind::Triangle) => raw.triangles.push(([nodes[0], nodes[1], nodes[2]], name(2, *tag))),
+                (tags, kind) => {
+                    // With many tags and many elements, their product is what must not be stored.
+                    let same = |(d, list): &(i32, Rc<[i32]>)| *d == dimension && Rc::ptr_eq(list, &element.physical);
+                    if !shared.as_ref().is_some_and(same) {
+                        let names = tags.iter().map(|&tag| name(dimension, tag)).collect();
+                        raw.shared.push(Shared { names, ..Shared::default() });
+                        shared = Some((dimension, Rc::clone(&element.physical)));
                     }
-                    raw.triangles.extend(element.physical.iter().map(|&p| (cell, name(2, p))));
+                    if let Some(list) = raw.shared.last_mut() {
+                        match kind {
+                            Kind::Line => list.segments.push([nodes[0], nodes[1]]),
+                            Kind::Triangle => list.triangles.push([nodes[0], nodes[1], nodes[2]]),
+                        }
+                    }
                 }
             }
         }
@@ -124,7 +136,8 @@ fn straight(file: &Path, tag: u64, nodes: &[usize], corners: usize, points: &[[f
         let [a, b, middle] = [nodes[i % corners], nodes[(i + 1) % corners], node].map(|n| points[n]);
         let off = (0.5 * (a[0] + b[0]) - middle[0]).hypot(0.5 * (a[1] + b[1]) - middle[1]);
         if off > ROUND_OFF * (b[0] - a[0]).hypot(b[1] - a[1]) {
-            let what = format!("element {tag} is curved: its mid-node {} is not halfway", at(middle));
+            let [x, y] = middle;
+            let what = format!("element {tag} is curved: its mid-node ({x}, {y}) is not halfway");
             return Err(MeshError::file(file, what, "mesh with straight triangles (Mesh.ElementOrder = 1)"));
         }
     }

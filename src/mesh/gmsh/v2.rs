@@ -42,8 +42,8 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
             }
             let nodes = (0..node_count).map(|_| tag(cursor)).collect::<Result<Vec<_>, _>>()?;
             if let Some(kind) = kind {
-                let physical = if physical == 0 { vec![] } else { vec![physical.saturating_abs()] };
-                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical });
+                let physical = if physical == 0 { Vec::new() } else { vec![physical.saturating_abs()] };
+                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical: physical.into() });
             }
         }
         left -= run;

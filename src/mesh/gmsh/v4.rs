@@ -1,5 +1,7 @@
 //! `$Entities`, `$Nodes` and `$Elements` of MSH 4.1.
 
+use std::rc::Rc;
+
 use super::content::{Content, Element, element_type};
 use super::cursor::Cursor;
 use crate::mesh::MeshError;
@@ -22,7 +24,7 @@ pub(super) fn entities(cursor: &mut Cursor, content: &mut Content) -> Result<(),
                     cursor.int()?;
                 }
             }
-            if content.entities.insert((dimension, tag), physical).is_some() {
+            if content.entities.insert((dimension, tag), physical.into()).is_some() {
                 let what = format!("the entity {tag} of dimension {dimension} is there twice");
                 return Err(cursor.fault(what, "the file is damaged: write it again"));
             }
@@ -63,12 +65,12 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
         let number = cursor.int()?;
         let (kind, node_count) = element_type(number).map_err(|(what, remedy)| cursor.fault(what, remedy))?;
         let count = cursor.size()?;
-        let physical = content.entities.get(&(dimension, entity)).cloned().unwrap_or_default();
+        let physical = content.entities.get(&(dimension, entity)).cloned().unwrap_or_else(|| [].into());
         for _ in 0..count {
             let tag = cursor.size()?;
             let nodes = (0..node_count).map(|_| cursor.size()).collect::<Result<Vec<_>, _>>()?;
             if let Some(kind) = kind {
-                content.elements.push(Element { kind, tag, nodes, physical: physical.clone() });
+                content.elements.push(Element { kind, tag, nodes, physical: Rc::clone(&physical) });
             }
         }
         read = read.saturating_add(count);

@@ -13,7 +13,28 @@ use std::collections::HashMap;
 use super::polyline::key;
 use super::{MeshError, RawMesh};
 use crate::scene::Note;
-use crate::scene::{MeshSource, Scene};
+use crate::scene::{MeshSource, Polygon, Scene};
+
+/// Triangles that fill a square of the size that is asked for: they are a little smaller than equilateral ones with sides
+/// as long.
+const IN_A_SQUARE: f64 = 2.5;
+
+/// About how many triangles [`mesh`] makes at the target edge length `size`, or without one.
+pub fn expected_triangles(polygons: &[Polygon], size: Option<f64>) -> f64 {
+    let of = |polygon: &Polygon| {
+        let points = &polygon.points;
+        let Some(size) = size else { return points.len() as f64 };
+        let sides = (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]]);
+        let (mut double_area, mut pieces) = (0.0, 0.0);
+        for [a, b] in sides {
+            double_area +=
+                (a[0] - points[0][0]) * (b[1] - points[0][1]) - (b[0] - points[0][0]) * (a[1] - points[0][1]);
+            pieces += ((b[0] - a[0]).hypot(b[1] - a[1]) / size).ceil();
+        }
+        IN_A_SQUARE * 0.5 * (double_area / (size * size)).abs() + pieces
+    };
+    polygons.iter().map(of).sum()
+}
 
 /// Meshes the polygons of `scene`. Each body gets vertices of its own.
 ///

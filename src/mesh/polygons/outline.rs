@@ -1,10 +1,12 @@
 //! The divided boundaries of the polygons, equal bit for bit where two of them touch.
 
+use std::f64::consts::TAU;
+
 use crate::mesh::boxes::{BoxTree, around};
 use crate::mesh::error::at;
 use crate::mesh::overlap::cross_over;
 use crate::mesh::polyline::{chain, inner_points, key};
-use crate::scene::{Gap, Polygon, Scene};
+use crate::scene::{Circle, Polygon, Scene};
 
 /// Part of the size of the whole geometry within which two corners are the same, or a corner lies on an edge.
 const CLOSE: f64 = 1e-9;
@@ -24,14 +26,16 @@ type Fault = (usize, (String, String));
 /// The boundary pieces of every polygon, no longer than `size`.
 pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> Result<Vec<Vec<Piece>>, Fault> {
     for (number, polygon) in polygons.iter().enumerate() {
-        well_formed(polygon).map_err(|text| (number, text))?;
+        well_formed(scene, polygon).map_err(|text| (number, text))?;
     }
+    let polygons: Vec<Polygon> = polygons.iter().map(|polygon| faceted(polygon, size)).collect();
+    let polygons = polygons.as_slice();
     let every: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
     let bounds = around(&every, 0.0);
     let close = CLOSE * (bounds[1][0] - bounds[0][0]).max(bounds[1][1] - bounds[0][1]);
-    let mut outlines = snapped(polygons, close)?;
-    insert_touching(&mut outlines, close)?;
-    check_overlap(&outlines, polygons)?;
+    let mut outlines = snapped(scene, polygons, close)?;
+    insert_touching(scene, &mut outlines, close)?;
+    check_overlap(scene, &outlines, polygons)?;
     insert_gap_breaks(&mut outlines, scene);
     let length: f64 = outlines.iter().flatten().map(|p| distance(p.ends)).sum();
     if let Some(size) = size {
@@ -47,7 +51,38 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
     Ok(outlines)
 }
 
-fn well_formed(polygon: &Polygon) -> Result<(), (String, String)> {
+/// The polygon with facets in place of its arcs: equal ones, no longer than `size`.
+fn faceted(polygon: &Polygon, size: Option<f64>) -> Polygon {
+    let mut all = Polygon { points: Vec::new(), edges: Vec::new(), arcs: Vec::new(), ..polygon.clone() };
+    for (i, (start, name)) in polygon.points.iter().zip(&polygon.edges).enumerate() {
+        all.points.push(*start);
+        all.edges.push(name.clone());
+        let Some(arc) = polygon.arcs.iter().find(|arc| arc.edge == i) else { continue };
+        let end = polygon.points[(i + 1) % polygon.points.len()];
+        let Some(circle) = Circle::through(*start, arc.through, end) else { continue };
+        let angle = |p: [f64; 2]| (p[1] - circle.centre[1]).atan2(p[0] - circle.centre[0]);
+        let [from, by, to] = [*start, arc.through, end].map(angle);
+        let ahead = |a: f64| (a - from).rem_euclid(TAU);
+        // Counter-clockwise where that meets the point between first.
+        let sweep = if ahead(by) < ahead(to) { ahead(to) } else { ahead(to) - TAU };
+        let longest = size.map_or(f64::INFINITY, |size| 2.0 * (0.5 * size / circle.radius).min(1.0).asin());
+        let count = (sweep.abs() / longest.min(LARGEST) * (1.0 - CLOSE)).ceil().clamp(2.0, MOST_FACETS) as usize;
+        for k in 1..count {
+            let (sine, cosine) = (from + sweep * (k as f64 / count as f64)).sin_cos();
+            let [x, y] = circle.centre;
+            all.points.push([x + circle.radius * cosine, y + circle.radius * sine]);
+            all.edges.push(name.clone());
+        }
+    }
+    all
+}
+
+/// Largest angle of a facet: where the edges of a curve turn by 30° and more they would be taken for corners.
+const LARGEST: f64 = TAU / 24.0;
+/// No arc has more facets, whatever its size.
+const MOST_FACETS: f64 = 1e6;
+
+fn well_formed(scene: &Scene, polygon: &Polygon) -> Result<(), (String, String)> {
     let (corners, names) = (polygon.points.len(), polygon.edges.len());
     if corners < 3 {
         return Err((format!("has {corners} points"), "give at least three".into()));
@@ -57,13 +92,13 @@ fn well_formed(polygon: &Polygon) -> Result<(), (String, String)> {
         return Err((what, "name every edge; \"\" for one without a name".into()));
     }
     match polygon.points.iter().find(|p| !p.iter().all(|x| x.is_finite())) {
-        Some(p) => Err((format!("has the point {}, which is not finite", at(*p)), "correct it".into())),
+        Some(p) => Err((format!("has the point {}, which is not finite", at(scene, *p)), "correct it".into())),
         None => Ok(()),
     }
 }
 
 /// Counter-clockwise outlines; corners that are equal up to round-off get the coordinates of the first of them.
-fn snapped(polygons: &[Polygon], close: f64) -> Result<Vec<Vec<Piece>>, Fault> {
+fn snapped(scene: &Scene, polygons: &[Polygon], close: f64) -> Result<Vec<Vec<Piece>>, Fault> {
     let every: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().map(|p| p.map(|x| x + 0.0))).collect();
     let tree = BoxTree::new(every.iter().map(|p| [*p, *p]).collect());
     let first_near = |i: usize| {
@@ -79,7 +114,7 @@ fn snapped(polygons: &[Polygon], close: f64) -> Result<Vec<Vec<Piece>>, Fault> {
         let mut sorted: Vec<_> = corners.iter().map(|p| key(*p)).collect();
         sorted.sort_unstable();
         if let Some(twice) = sorted.windows(2).find(|w| w[0] == w[1]) {
-            let what = format!("has the corner {} twice", at(twice[0].map(f64::from_bits)));
+            let what = format!("has the corner {} twice", at(scene, twice[0].map(f64::from_bits)));
             return Err((number, (what, "a polygon passes every corner once".into())));
         }
         let piece = |i: usize, j: usize, name: usize| Piece {
@@ -102,7 +137,7 @@ fn snapped(polygons: &[Polygon], close: f64) -> Result<Vec<Vec<Piece>>, Fault> {
 }
 
 /// Puts every corner that lies on an edge of another polygon into that edge.
-fn insert_touching(outlines: &mut [Vec<Piece>], close: f64) -> Result<(), Fault> {
+fn insert_touching(scene: &Scene, outlines: &mut [Vec<Piece>], close: f64) -> Result<(), Fault> {
     let corners: Vec<(usize, [f64; 2])> =
         outlines.iter().enumerate().flat_map(|(n, outline)| outline.iter().map(move |p| (n, p.ends[0]))).collect();
     let tree = BoxTree::new(corners.iter().map(|(_, p)| [*p, *p]).collect());
@@ -115,8 +150,8 @@ fn insert_touching(outlines: &mut [Vec<Piece>], close: f64) -> Result<(), Fault>
                     continue;
                 }
                 if owner == number {
-                    let [a, b] = piece.ends.map(at);
-                    let what = format!("touches itself: the corner {} lies on the edge {a} to {b}", at(corner));
+                    let [a, b] = piece.ends.map(|p| at(scene, p));
+                    let what = format!("touches itself: the corner {} lies on the edge {a} to {b}", at(scene, corner));
                     return Err((number, (what, "give a simple polygon".into())));
                 }
                 inserted.push((i, corner));
@@ -155,12 +190,12 @@ fn insert(outline: &mut Vec<Piece>, points: Vec<(usize, [f64; 2])>) {
 }
 
 /// No edge crosses another one, and no polygon covers a part of another one.
-fn check_overlap(outlines: &[Vec<Piece>], polygons: &[Polygon]) -> Result<(), Fault> {
+fn check_overlap(scene: &Scene, outlines: &[Vec<Piece>], polygons: &[Polygon]) -> Result<(), Fault> {
     let pieces: Vec<(usize, &Piece)> =
         outlines.iter().enumerate().flat_map(|(n, outline)| outline.iter().map(move |p| (n, p))).collect();
     let tree = BoxTree::new(pieces.iter().map(|(_, p)| around(&p.ends, 0.0)).collect());
     let overlap = |n: usize, m: usize, place: [f64; 2]| {
-        let what = format!("overlaps geometry.polygons[{m}] (body '{}') at {}", polygons[m].body, at(place));
+        let what = format!("overlaps geometry.polygons[{m}] (body '{}') at {}", polygons[m].body, at(scene, place));
         Err((
             n,
             (what, "polygons may touch but not overlap; a hole has to be cut out by two polygons around it".into()),
@@ -173,7 +208,7 @@ fn check_overlap(outlines: &[Vec<Piece>], polygons: &[Polygon]) -> Result<(), Fa
             let (m, other) = pieces[j];
             if cross_over(piece.ends, other.ends, CLOSE) {
                 if n == m {
-                    let what = format!("crosses itself near {}", at(middle));
+                    let what = format!("crosses itself near {}", at(scene, middle));
                     return Err((n, (what, "give a simple polygon".into())));
                 }
                 return overlap(n, m, middle);
@@ -210,8 +245,10 @@ fn check_overlap(outlines: &[Vec<Piece>], polygons: &[Polygon]) -> Result<(), Fa
 /// Puts the break points of the gaps into the contact sides, so that the mesh represents the gap exactly.
 fn insert_gap_breaks(outlines: &mut [Vec<Piece>], scene: &Scene) {
     for contact in &scene.contacts {
-        let Gap::Table(rows) = &contact.gap else { continue };
-        let breaks: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+        let breaks = contact.gap.breaks();
+        if breaks.is_empty() {
+            continue;
+        }
         let pieces = outlines.iter().flatten().filter(|p| p.name == contact.first());
         let side: Vec<[[f64; 2]; 2]> = pieces.map(|p| p.ends).collect();
         // A side that branches is reported when the contact is matched.

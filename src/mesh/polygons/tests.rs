@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::mesh;
+use super::{expected_triangles, fill, mesh};
 use crate::mesh::testing::*;
 use crate::mesh::{MeshError, Triangulation};
 use crate::scene::{Gap, Polygon, Scene};
@@ -102,6 +102,7 @@ fn a_clockwise_nonconvex_polygon_keeps_its_names() {
         body: "a".into(),
         points: vec![[0.0, 0.0], [0.0, 2.0], [1.0, 0.5], [2.0, 2.0], [2.0, 0.0]],
         edges: ["left", "in", "out", "right", "foot"].map(String::from).into(),
+        arcs: Vec::new(),
     };
     for size in [None, Some(0.2)] {
         let mesh = meshed(&geometry(scene(&["a"]), size, vec![comb.clone()]));
@@ -116,7 +117,12 @@ fn a_clockwise_nonconvex_polygon_keeps_its_names() {
 #[test]
 fn polygons_that_are_refused() {
     let unit = || rectangle("a", [0.0; 2], [1.0; 2]);
-    let with = |points: Vec<[f64; 2]>| Polygon { body: "a".into(), edges: vec![String::new(); points.len()], points };
+    let with = |points: Vec<[f64; 2]>| Polygon {
+        body: "a".into(),
+        edges: vec![String::new(); points.len()],
+        points,
+        arcs: Vec::new(),
+    };
     refuse(None, vec![unit(), rectangle("b", [0.5, 0.5], [1.5, 1.5])], &["geometry.polygons[", "overlaps", "body 'b'"]);
     refuse(None, vec![unit(), rectangle("b", [0.25, 0.25], [0.5, 0.5])], &["overlaps", "a hole has to be cut out"]);
     refuse(None, vec![unit(), unit()], &["overlaps", "touch but not overlap"]);
@@ -142,7 +148,7 @@ proptest! {
         let points: Vec<[f64; 2]> = (0..n).map(corner).collect();
         let shoelace: f64 = (0..n).map(|i| { let (a, b) = (points[i], points[(i + 1) % n]); 0.5 * (a[0] * b[1] - a[1] * b[0]) }).sum();
         let edges: Vec<String> = (0..n).map(|i| format!("e{i}")).collect();
-        let scene = geometry(scene(&["a"]), Some(size * unit), vec![Polygon { body: "a".into(), points: points.clone(), edges }]);
+        let scene = geometry(scene(&["a"]), Some(size * unit), vec![Polygon { body: "a".into(), points: points.clone(), edges, arcs: Vec::new() }]);
         let mesh = meshed(&scene);
         prop_assert!((total_area(&mesh) / shoelace - 1.0).abs() < 1e-12);
         prop_assert_eq!(euler(&mesh), 1);
@@ -153,4 +159,29 @@ proptest! {
             prop_assert!((found[&name] / (b[0] - a[0]).hypot(b[1] - a[1]) - 1.0).abs() < 1e-12);
         }
     }
+}
+
+#[test]
+fn the_number_of_triangles_is_known_before_they_are_made() {
+    let square = |side: f64| Polygon {
+        body: "b".into(),
+        points: vec![[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]],
+        edges: vec![String::new(); 4],
+        arcs: Vec::new(),
+    };
+    for (side, size) in [(1.0, 0.1), (1.0, 0.02), (3.0, 0.1)] {
+        let corners = square(side).points;
+        let pieces = (side / size).round() as usize;
+        let boundary: Vec<[f64; 2]> = (0..4 * pieces)
+            .map(|i| {
+                let ([a, b], t) =
+                    ([corners[i / pieces], corners[(i / pieces + 1) % 4]], (i % pieces) as f64 / pieces as f64);
+                [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+            })
+            .collect();
+        let made = fill::fill(&boundary, Some(size)).expect("a simple polygon").triangles.len() as f64;
+        let expected = expected_triangles(&[square(side)], Some(size));
+        assert!((0.8..1.4).contains(&(expected / made)), "side {side}, size {size}: {expected} for {made}");
+    }
+    assert_eq!(expected_triangles(&[square(1.0), square(2.0)], None), 8.0);
 }

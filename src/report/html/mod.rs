@@ -28,7 +28,7 @@ pub fn page(dossier: &Dossier) -> String {
             code { "report.json" } " holds every number of this page, " code { "fields.vtu" } " the fields for ParaView."
         }
     };
-    document(&title, &[style::CSS], body)
+    document(&title, &[style::CSS], Some(&report.run), body)
 }
 
 /// What the words mean.

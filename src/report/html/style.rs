@@ -19,8 +19,8 @@ code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhe
 .verdict p{margin:3px 0 0;color:var(--ink)}
 .agree{border-color:var(--good);background:var(--good-bg)}.agree .word,.agree .symbol{color:var(--good)}
 .disagree{border-color:var(--bad);background:var(--bad-bg)}.disagree .word,.disagree .symbol{color:var(--bad)}
-.infeasible,.failed{border-color:var(--warn);background:var(--warn-bg)}
-.infeasible .word,.infeasible .symbol,.failed .word,.failed .symbol{color:var(--warn)}
+.infeasible,.failed,.undecided{border-color:var(--warn);background:var(--warn-bg)}
+.infeasible .word,.infeasible .symbol,.failed .word,.failed .symbol,.undecided .word,.undecided .symbol{color:var(--warn)}
 .failures{margin:16px 0 0;padding:14px 20px 6px;border:2px solid var(--bad);border-radius:8px}
 .failures h2{margin:0 0 8px;border:0;padding:0;color:var(--bad);font-size:1.15rem}
 .failures li{margin-bottom:14px}

@@ -4,7 +4,9 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, significant, vector};
-use crate::report::words::{accuracy, basis_word, failing, headline, meaning, status_symbol, status_word, upper_from};
+use crate::report::words::{
+    accuracy, basis_word, failing, headline, meaning, status_symbol, status_word, upper_from, worth_a_look,
+};
 use crate::report::{Report, Status};
 
 pub(super) fn first_screen(report: &Report) -> Markup {
@@ -40,6 +42,7 @@ fn gloss(report: &Report) -> &'static str {
     match report.status {
         Status::Agree if report.primal.is_empty() => ": the bounds are in order, no second model was run",
         Status::Agree | Status::Disagree => "",
+        Status::Undecided => ": no check failed, but the bracket is too wide to tell",
         Status::Infeasible => ": no equilibrium exists",
         Status::Failed => ": a solver failed, there is no comparison",
     }
@@ -107,6 +110,7 @@ fn agreement(report: &Report) -> Markup {
                     Status::Agree if report.primal.is_empty() => "No second model",
                     Status::Agree => "Yes",
                     Status::Disagree => "No",
+                    Status::Undecided => "Cannot be told",
                     Status::Infeasible | Status::Failed => "Not compared",
                 }
             }
@@ -114,6 +118,12 @@ fn agreement(report: &Report) -> Markup {
                 @if all == 0 { "No check was made." }
                 @else if passed == all { "All " (all) " checks passed." }
                 @else { (passed) " of " (all) " checks passed. The others are named above." }
+            }
+            @if !worth_a_look(report).is_empty() {
+                p {
+                    (worth_a_look(report).len()) " of " (report.remarks.len()) " " a href="#remarks" { "remarks" }
+                    " " (if worth_a_look(report).len() == 1 { "is" } else { "are" }) " worth a look."
+                }
             }
         }
     }

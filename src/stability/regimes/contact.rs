@@ -70,7 +70,7 @@ fn hair(closing: f64) -> Result<Problem, String> {
     let mut model = Model::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
     model.scene.bodies[0].body_force = [1.0, 0.0];
     let sides = ContactSides::Rigid("bar_right".into());
-    model.scene.contacts.push(Contact { sides, gap: Gap::Constant(0.5 - closing) });
+    model.scene.contacts.push(Contact::new(sides, Gap::Constant(0.5 - closing)));
     model.problem()
 }
 

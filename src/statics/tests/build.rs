@@ -1,7 +1,7 @@
 //! Scenes put together by hand.
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Interface, Problem};
+use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Kinematics, MeshSource, Scene};
 use std::collections::HashMap;
 
@@ -192,7 +192,8 @@ impl Build {
                         (f, if first[0] == a { [d, c] } else { [c, d] })
                     });
                     let (edges, second) = ([Some(e), partner.map(|p| p.0)], partner.map(|p| p.1));
-                    ContactPair { edges, first, second, normal, length, arc: first.map(key), gap: [0.0; 2] }
+                    let direction = Direction::constant(normal);
+                    ContactPair { edges, first, second, normal, direction, length, arc: first.map(key), gap: [0.0; 2] }
                 })
                 .collect();
             pairs.sort_by(|p, q| p.arc[0].total_cmp(&q.arc[0]));
@@ -210,6 +211,7 @@ impl Build {
             name: "test".into(),
             title: "test".into(),
             path: "test.toml".into(),
+            origin: [0.0; 2],
             kinematics: Kinematics::PlaneStrain,
             thickness: 1.0,
             mesh: MeshSource::File("test.msh".into()),
@@ -250,6 +252,7 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
     }
     for pair in problem.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs) {
         pair.normal = turn(pair.normal);
+        pair.direction.ends = pair.direction.ends.map(turn);
         pair.length *= length;
         pair.arc = pair.arc.map(|s| s * length);
     }

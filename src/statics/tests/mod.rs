@@ -3,4 +3,5 @@ mod freedom;
 mod pinning;
 mod program;
 mod scenes;
+mod sparse;
 mod table;

@@ -9,6 +9,7 @@ use super::{FieldError, ForeignField};
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::problem::Problem;
+use crate::scene::Scene;
 
 /// Distance, in parts of the longest edge of a triangle, within which two points are one.
 const CLOSE: f64 = 1e-6;
@@ -27,8 +28,10 @@ pub(super) struct Matched {
 
 /// Brings `field` onto the mesh of `problem`.
 pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, FieldError> {
-    let mesh = &problem.mesh;
-    let partners = partners(field, mesh)?;
+    let (mesh, scene) = (&problem.mesh, &problem.scene);
+    let moved = field.about(scene.origin);
+    let field = moved.as_ref().unwrap_or(field);
+    let partners = partners(field, mesh, scene)?;
     let size = field.values.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut vertex: Vec<Option<[f64; 2]>> = vec![None; mesh.points.len()];
     let mut middle: Vec<Option<[f64; 2]>> = vec![None; mesh.edges.len()];
@@ -37,13 +40,14 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         let nodes = &field.triangles[number];
         let value = |node: usize| {
             field.values[node].ok_or_else(|| {
-                let what = format!("there is no finite displacement at point {} {}", node + 1, at(field.points[node]));
+                let what =
+                    format!("there is no finite displacement at point {} {}", node + 1, at(scene, field.points[node]));
                 field.fault(what, "write a finite value at every point of a triangle")
             })
         };
         let put = |slot: &mut Option<[f64; 2]>, u: [f64; 2], point: [f64; 2]| match slot {
             Some(other) if (other[0] - u[0]).abs().max((other[1] - u[1]).abs()) > JUMP * size => {
-                let what = format!("the displacement jumps inside a body, at {}", at(point));
+                let what = format!("the displacement jumps inside a body, at {}", at(scene, point));
                 Err(field.fault(what, "only a continuous field has an energy: write it in a continuous space"))
             }
             Some(_) => Ok(()),
@@ -67,7 +71,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
                         let what = format!(
                             "triangle {} is curved: its mid-node {} is not halfway",
                             number + 1,
-                            at(field.points[node])
+                            at(scene, field.points[node])
                         );
                         return Err(field.fault(what, "write the field on straight triangles"));
                     }
@@ -93,7 +97,7 @@ fn middle_node(a: usize, b: usize) -> usize {
 }
 
 /// For each triangle of `mesh` the triangle of `field`, and which of its corners are those of the mesh's, in order.
-fn partners(field: &ForeignField, mesh: &Triangulation) -> Result<Vec<(usize, [usize; 3])>, FieldError> {
+fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result<Vec<(usize, [usize; 3])>, FieldError> {
     let along = |p: [f64; 2]| DIRECTION[0] * p[0] + DIRECTION[1] * p[1];
     let mut order: Vec<(f64, usize)> =
         (0..mesh.triangles.len()).map(|t| (along(centroid(&mesh.corners(t))), t)).collect();
@@ -108,18 +112,18 @@ fn partners(field: &ForeignField, mesh: &Triangulation) -> Result<Vec<(usize, [u
         let partner = near.filter_map(|(_, t)| Some((*t, same_corners(&mesh.corners(*t), &corners, close)?)));
         // Of two that overlap within the tolerance, one that is still free.
         let Some((t, permutation)) = partner.min_by_key(|(t, _)| found[*t].is_some()) else {
-            let what = format!("{} is not in the mesh of the scene", describe(number, corners));
+            let what = format!("{} is not in the mesh of the scene", describe(scene, number, corners));
             return Err(field.fault(what, REMEDY));
         };
         if let Some((other, _)) = found[t] {
-            let what = format!("{} is there twice, as triangle {} too", describe(number, corners), other + 1);
+            let what = format!("{} is there twice, as triangle {} too", describe(scene, number, corners), other + 1);
             return Err(field.fault(what, "write every triangle once"));
         }
         found[t] = Some((number, permutation));
     }
     let complete = |(t, partner): (usize, Option<_>)| {
         partner.ok_or_else(|| {
-            let corners = mesh.corners(t).map(at).join(", ");
+            let corners = mesh.corners(t).map(|p| at(scene, p)).join(", ");
             field.fault(format!("the triangle {corners} of the scene's mesh is not in it"), REMEDY)
         })
     };
@@ -135,7 +139,7 @@ fn same_corners(wanted: &[[f64; 2]; 3], found: &[[f64; 2]; 3], close: f64) -> Op
 /// Within what distance points of a triangle are one: the tolerance, and the rounding of single precision.
 fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
     let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
-    let far = corners.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let far = field.far;
     CLOSE * longest + if field.single { f64::from(f32::EPSILON) * far } else { 0.0 }
 }
 
@@ -147,6 +151,6 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-fn describe(number: usize, corners: [[f64; 2]; 3]) -> String {
-    format!("triangle {} with the corners {}", number + 1, corners.map(at).join(", "))
+fn describe(scene: &Scene, number: usize, corners: [[f64; 2]; 3]) -> String {
+    format!("triangle {} with the corners {}", number + 1, corners.map(|p| at(scene, p)).join(", "))
 }

@@ -4,6 +4,7 @@ mod matching;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use serde::Deserialize;
 
@@ -44,6 +45,8 @@ pub struct ForeignField {
     values: Vec<Option<[f64; 2]>>,
     /// Whether the displacement is stored in single precision.
     single: bool,
+    /// The largest coordinate of the file, which says how far single precision can be off.
+    far: f64,
 }
 
 #[derive(Deserialize)]
@@ -64,11 +67,11 @@ struct Data {
 impl ForeignField {
     /// Reads triangles and displacement of `file`, in any format that meshio reads. `name` is the name of the point
     /// data; without it, point data called `displacement`, `u` or `disp` in any case is looked for, and the exact
-    /// `displacement` has precedence.
+    /// `displacement` has precedence. meshio is given at most `limit`.
     ///
     /// # Errors
     /// [`FieldError`] when the file cannot be read, or does not hold one plane displacement on triangles.
-    pub fn read(file: &Path, name: Option<&str>) -> Result<Self, FieldError> {
+    pub fn read(file: &Path, name: Option<&str>, limit: Duration) -> Result<Self, FieldError> {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
         let kind = std::fs::metadata(file)
             .map_err(|e| fault(format!("cannot be opened: {e}"), "check the path given with --displacement"))?;
@@ -80,7 +83,7 @@ impl ForeignField {
         }
         let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
         let sha256 = hash(&bytes);
-        let text = meshio::run(SCRIPT, file, INSTEAD).map_err(|f| fault(f.what, &f.remedy))?;
+        let text = meshio::run(SCRIPT, file, INSTEAD, limit).map_err(|f| fault(f.what, &f.remedy))?;
         let content: Content =
             serde_json::from_slice(&text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
         Self::new(file, sha256, content, name)
@@ -106,6 +109,10 @@ impl ForeignField {
             let what = format!("'{name}' has {} values for {} points", rows.len(), points.len());
             return Err(fault(what, "write one value for every point"));
         }
+        if let Some(nodes) = content.triangles.iter().find(|nodes| ![3, 6].contains(&nodes.len())) {
+            let what = format!("meshio gave a triangle with {} nodes", nodes.len());
+            return Err(fault(what, INSTEAD));
+        }
         let damaged = content.triangles.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));
         if let Some(t) = damaged {
             let what = format!("triangle {} refers to a point beyond the {} of the file", t + 1, points.len());
@@ -118,7 +125,14 @@ impl ForeignField {
         }
         let values = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
         let single = data.single || content.single;
-        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single })
+        let far = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single, far })
+    }
+
+    /// The same field with coordinates counted from `origin`; `None` where they are already.
+    fn about(&self, origin: [f64; 2]) -> Option<Self> {
+        let points = || self.points.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect();
+        (origin != [0.0; 2]).then(|| ForeignField { points: points(), ..self.clone() })
     }
 
     /// The name of the file, by which reports and checks call the field.
@@ -152,6 +166,7 @@ impl ForeignField {
             vertex: matched.vertex,
             middle: matched.middle,
             reported: None,
+            reported_strain: None,
             is_solution: false,
             reactions: None,
             iterations: 0,

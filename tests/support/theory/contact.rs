@@ -89,16 +89,17 @@ impl Solution {
             name: "known_solution".to_string(),
             title: "Known solution".to_string(),
             path: PathBuf::from("known_solution.toml"),
+            origin: [0.0; 2],
             kinematics: Kinematics::PlaneStrain,
             thickness: 1.0,
             mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
             bodies: vec![body(0, "left"), body(1, "right")],
             supports: vec![support("left_south", SupportKind::Roller), other],
             tractions: Vec::new(),
-            contacts: vec![Contact {
-                sides: ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
-                gap: Gap::Constant(0.0),
-            }],
+            contacts: vec![Contact::new(
+                ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
+                Gap::Constant(0.0),
+            )],
         }
     }
 

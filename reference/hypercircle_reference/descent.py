@@ -1,0 +1,258 @@
+"""The minimum of ½ wᵀA w − bᵀw over lower ≤ w ≤ upper, by projected Newton steps that each lower the energy.
+
+Bounds that hold w back are kept (the *face*), all other unknowns are moved to their minimum on it, and the step is bent
+along the bounds it runs into, until the energy falls: Bertsekas, "Projected Newton methods for optimization problems
+with simple constraints", SIAM J. Control Optim. 20 (1982). A bound is let go only where the gradient pulls away from it
+by more than rounding, and only where the face's minimum is reached; then the step to the minimum of the larger face
+goes downhill, however the bounds bend it. As the energy falls in each step, no face's minimum comes back, and the
+method cannot jump between two states for ever.
+
+The minimum on a face is found by conjugate gradients that are preconditioned with the factors of A + SHIFT on that
+face: one or two iterations where the face is well supported. Where it can move without strain, the curvature of a
+search direction is lost in rounding; the step then follows that direction until the bounds hold it.
+
+Nothing here depends on units: whether a number matters is judged against what rounding leaves of the sums it comes
+from, row by row. A has a unit diagonal. Arrays are the share of this rank.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from . import ReferenceFailure, log
+
+EPSILON = float(np.finfo(float).eps)
+
+ROUNDING = 32.0
+"""What rounding may leave of a row of A w − b, in units of the last place of the sum of its terms' absolute values."""
+
+SHIFT = 1e-12
+"""Added to the unit diagonal of what is factorised, so that a face that can move without strain has factors too."""
+
+FACES = 200
+"""Steps after which the method gives up; a hundred contacts that settle one after the other take fewer."""
+
+CONJUGATE = 50
+"""Conjugate gradients on one face before the bounds are looked at again."""
+
+UNHELD = 1e-11
+"""Below this, relative to all forces, what pulls a body in a direction that nothing holds is rounding of the data."""
+
+STILL = 1e-9
+"""Below this, relative to the fastest one, an unknown does not move along a direction without strain."""
+
+HALVINGS = 30
+"""Points tried along a bent path before the one where the first bound is met."""
+
+IDLE = 3
+"""Steps in a row whose effect on the energy is below the rounding of that effect, before no further one is tried."""
+
+AT_ROUNDING, NOTHING_LOWER = 2, 4
+"""Why the method stopped: the gradient is down to its rounding, or no step lowers the energy measurably."""
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Minimiser ``w``, gradient A w − b and what rounding may have left of it, row by row; ``left`` estimates
+    the energy that residual and rounding can have cost."""
+
+    w: np.ndarray
+    gradient: np.ndarray
+    rounding: np.ndarray
+    left: float
+    steps: int
+    reason: int
+
+
+class Descent:
+    """The quadratic and its bounds. ``A`` is a PETSc matrix with unit diagonal, the vectors are arrays."""
+
+    def __init__(self, A: PETSc.Mat, b: np.ndarray, lower: np.ndarray, upper: np.ndarray):
+        self.comm, self.A, self.b, self.lower, self.upper = A.getComm().tompi4py(), A, b, lower, upper
+        self.absolute = absolute(A)
+        self._in, self._out = A.createVecRight(), A.createVecLeft()
+        self.begin = A.getOwnershipRange()[0]
+
+    def minimise(self) -> Minimum:
+        """Start with every bounded unknown at its bound, since a body may be held by contact alone, and descend."""
+        nothing = np.zeros_like(self.b)
+        if self._count((self.b != 0.0) | (self.lower > 0.0) | (self.upper < 0.0)) == 0:
+            return Minimum(nothing, nothing, nothing, 0.0, 1, AT_ROUNDING)
+        bounded = np.isfinite(self.lower) | np.isfinite(self.upper)
+        w = np.where(np.isfinite(self.upper), self.upper, np.where(bounded, self.lower, 0.0))
+        face, floor = _Face(self, bounded), nothing
+        gradient, unit = self._gradient(w, floor)
+        w = w + face.step(w, gradient, unit)[0]
+        # Where the answer is zero, what remains of this start must not count.
+        floor = EPSILON * EPSILON * self.product(self.absolute, np.abs(w))
+        faces, idle, met = 1, 0, None
+        while True:
+            gradient, unit = self._gradient(w, floor)
+            if met is None:
+                pulled = ROUNDING * unit
+                held = (w >= self.upper) & (gradient <= pulled) | (w <= self.lower) & (gradient >= -pulled)
+            else:
+                held = face.held | met
+            if self._count(held != face.held) > 0:
+                if faces == FACES:
+                    raise ReferenceFailure(f"the contact has not settled after {faces} steps")
+                face.destroy()
+                face, faces = _Face(self, held), faces + 1
+            step, left = face.step(w, gradient, unit)
+            log(self.comm, f"step {faces}: {self._count(held)} bounds hold, energy to be gained {left:.3e}")
+            moves = self._count(step != 0.0) > 0
+            found = self._search(w, step, gradient) if moves else None
+            if found is not None:
+                there, change, met = found
+                idle = idle + 1 if -change <= ROUNDING * self.dot(unit, np.abs(there - w)) else 0
+                w = there
+                if idle < IDLE or met is not None:
+                    continue
+                gradient, unit = self._gradient(w, floor)
+            elif met is not None:
+                met = None  # the minimum of this face is reached: see which bounds to let go
+                continue
+            left += face.rounding(unit)
+            face.destroy()
+            return Minimum(w, gradient, ROUNDING * unit, left, faces, NOTHING_LOWER if moves else AT_ROUNDING)
+
+    def _gradient(self, w: np.ndarray, floor: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A w − b, and a unit in the last place of each row."""
+        size = self.product(self.absolute, np.abs(w)) + np.abs(self.b)
+        return self.product(self.A, w) - self.b, EPSILON * size + floor
+
+    def _search(self, w: np.ndarray, step: np.ndarray, gradient: np.ndarray):
+        """A point of lower energy on the path that ``step`` takes along the bounds, the change of the energy, and the
+        bounds met (``None`` where the whole step was free to take). ``None`` if rounding hides every fall.
+
+        Tried are points ever nearer, to meet many bounds at once where that pays; the last is where one is met first.
+        """
+        bound = np.where(step > 0.0, self.upper, self.lower)
+        room = np.divide(bound - w, step, out=np.full_like(w, np.inf), where=step != 0.0)
+        first = self.comm.allreduce(float(np.min(room[room > 0.0], initial=np.inf)), MPI.MIN)
+        shortest = min(first, 1.0)
+        for length in (*(0.5**k for k in range(HALVINGS)), shortest):
+            last = length <= shortest
+            length = max(length, shortest)
+            met = room <= length
+            moved = np.where(met, bound - w, length * step)
+            slope, curvature = self.dot(gradient, moved), self.dot(moved, self.product(self.A, moved))
+            if last and -slope < curvature:
+                # Bounds met at once keep their unknowns where they are, and what is left of the step is too long.
+                share = -slope / curvature
+                met, moved, slope, curvature = room <= 0.0, share * moved, share * slope, share * share * curvature
+            change = slope + 0.5 * curvature
+            if change <= 0.1 * slope < 0.0:
+                there = np.where(met, bound, np.clip(w + moved, self.lower, self.upper))
+                return there, change, met if self._count(met) > 0 else None
+            if last:
+                break
+        return None
+
+    def product(self, matrix: PETSc.Mat, x: np.ndarray) -> np.ndarray:
+        """Matrix times vector."""
+        self._in.array[:] = x
+        matrix.mult(self._in, self._out)
+        return self._out.array_r.copy()
+
+    def dot(self, x: np.ndarray, y: np.ndarray) -> float:
+        """Scalar product over all ranks, the same number on each."""
+        return self.comm.allreduce(float(x @ y))
+
+    def _any(self, condition: np.ndarray) -> bool:
+        return self._count(condition) > 0
+
+    def _count(self, condition: np.ndarray) -> int:
+        return self.comm.allreduce(int(np.count_nonzero(condition)))
+
+
+class _Face:
+    """All w whose ``held`` entries stay where they are, with the factors that lead to its minimum."""
+
+    def __init__(self, descent: Descent, held: np.ndarray):
+        self.descent, self.held = descent, held
+        matrix = descent.A.copy()
+        matrix.shift(SHIFT)
+        matrix.zeroRowsColumns((np.flatnonzero(held) + descent.begin).astype(PETSc.IntType), 1.0)
+        self._ksp = PETSc.KSP().create(matrix.getComm())
+        self._ksp.setType("preonly")
+        preconditioner = self._ksp.getPC()
+        preconditioner.setType("lu")
+        preconditioner.setFactorSolverType("mumps")
+        self._ksp.setOperators(matrix)
+        self._matrix, self._in, self._out = matrix, matrix.createVecRight(), matrix.createVecLeft()
+
+    def destroy(self) -> None:
+        """Give the factors back."""
+        self._ksp.destroy()
+        self._matrix.destroy()
+
+    def step(self, w: np.ndarray, gradient: np.ndarray, unit: np.ndarray) -> tuple[np.ndarray, float]:
+        """The way from ``w`` to the minimum on this face, zero where rounding leaves nothing to gain; and that gain."""
+        it = self.descent
+        step, residual = np.zeros_like(w), np.where(self.held, 0.0, -gradient)
+        ahead = self._solve(residual)
+        left = 0.5 * it.dot(np.abs(residual), np.abs(ahead))
+        slope, direction = it.dot(residual, ahead), ahead
+        for _ in range(CONJUGATE):
+            # Of sums of rounded terms with signs by chance, the root of the sum of squares is left.
+            if not slope > np.sqrt(it.dot(unit * unit, ahead * ahead)):
+                break
+            image = np.where(self.held, 0.0, it.product(it.A, direction))
+            curvature = it.dot(direction, image)
+            size = np.abs(direction)
+            if curvature <= 4.0 * EPSILON * it.dot(size, it.product(it.absolute, size)):
+                reach = self._reach(w + step, direction)
+                if reach is not None:
+                    return step + reach * direction, left
+                if slope > UNHELD / EPSILON * np.sqrt(it.dot(unit, unit) * it.dot(direction, direction)):
+                    raise ReferenceFailure(
+                        "neither supports nor contacts hold the bodies against the loads, or so softly beside the "
+                        "stiffness of a body that rounding hides it"
+                    )
+                # In balance but for the rounding of coordinates and loads: SHIFT holds the body well enough.
+                return step + ahead, left
+            length = slope / curvature
+            step, residual = step + length * direction, residual - length * image
+            ahead = self._solve(residual)
+            before, slope = slope, it.dot(residual, ahead)
+            direction = ahead + slope / before * direction
+        return step, left
+
+    def rounding(self, unit: np.ndarray) -> float:
+        """The energy that a gradient wrong by some units in the last place costs, the sign of each row by chance.
+
+        The entries of A are rounded too, which no residual shows: a body whose strain they lose moves as they say.
+        """
+        signs = np.random.default_rng(self.descent.begin).choice((-1.0, 1.0), len(unit))
+        wrong = np.where(self.held, 0.0, 4.0 * signs * unit)
+        return 0.5 * abs(self.descent.dot(wrong, self._solve(wrong)))
+
+    def _solve(self, right: np.ndarray) -> np.ndarray:
+        self._in.array[:] = right
+        self._ksp.solve(self._in, self._out)
+        if self._ksp.getConvergedReason() < 0:
+            raise ReferenceFailure("PETSc could not factorise the stiffness matrix")
+        return np.where(self.held, 0.0, self._out.array_r)
+
+    def _reach(self, w: np.ndarray, direction: np.ndarray) -> float | None:
+        """How far it is along ``direction`` until every bound in the way is met; ``None`` where there is none."""
+        comm = self.descent.comm
+        largest = comm.allreduce(float(np.max(np.abs(direction), initial=0.0)), MPI.MAX)
+        bound = np.where(direction > 0.0, self.descent.upper, self.descent.lower)
+        meets = np.isfinite(bound) & (np.abs(direction) > STILL * largest)
+        if self.descent._count(meets) == 0:
+            return None
+        return comm.allreduce(float(np.max((bound - w)[meets] / direction[meets], initial=0.0)), MPI.MAX) or 1.0
+
+
+def absolute(matrix: PETSc.Mat) -> PETSc.Mat:
+    """The matrix of absolute values, for bounds on the rounding of sums."""
+    rows, columns, values = matrix.getValuesCSR()
+    result = PETSc.Mat().createAIJ(matrix.getSizes(), csr=(rows, columns, np.abs(values)), comm=matrix.getComm())
+    result.assemble()
+    return result

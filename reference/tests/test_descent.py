@@ -1,0 +1,112 @@
+"""The minimiser alone against enumeration, and scenes on which steps that may raise the energy go round for ever."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypercircle_reference import ReferenceFailure
+from hypercircle_reference.descent import Descent
+from mpi4py import MPI
+from petsc4py import PETSc
+from scenes import Builder, arched_blocks, two_blocks
+
+FREE, LOW, HIGH = range(3)
+
+
+def descend(matrix, right, lower, upper):
+    size = len(right)
+    rows = np.arange(0, size * size + 1, size, dtype=PETSc.IntType)
+    columns = np.tile(np.arange(size, dtype=PETSc.IntType), size)
+    A = PETSc.Mat().createAIJ((size, size), csr=(rows, columns, matrix.reshape(-1)), comm=MPI.COMM_SELF)
+    A.assemble()
+    return Descent(A, right, lower, upper).minimise()
+
+
+def enumerated(matrix, right, lower, upper):
+    """The lowest energy over all ways to put unknowns on their bounds; the others solve their equations."""
+    energies = []
+    choices = [[FREE] + [LOW] * int(np.isfinite(a)) + [HIGH] * int(np.isfinite(b)) for a, b in zip(lower, upper)]
+    for state in product(*choices):
+        state = np.array(state)
+        w, free = np.where(state == LOW, lower, np.where(state == HIGH, upper, 0.0)), state == FREE
+        if free.any():
+            w[free] = np.linalg.pinv(matrix[np.ix_(free, free)], rcond=1e-9) @ (right - matrix @ w)[free]
+        if np.all(w >= lower - 1e-9) and np.all(w <= upper + 1e-9):
+            energies.append(0.5 * w @ matrix @ w - right @ w)
+    return min(energies)
+
+
+@pytest.mark.parametrize("loose", (0, 1, 2))
+@pytest.mark.parametrize("seed", range(12))
+def test_random_minima_are_those_of_enumeration(seed, loose):
+    """``loose`` directions without curvature, held by bounds alone; matrices from well to badly conditioned."""
+    rng = np.random.default_rng([seed, loose])
+    size, bounded = 9, 7
+    basis = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    curvature = 10.0 ** rng.uniform(-rng.choice([0, 2, 4]), 0, size)
+    curvature[:loose] = 0.0
+    matrix = (basis * curvature) @ basis.T
+    scale = 1.0 / np.sqrt(np.diag(matrix))
+    matrix = scale[:, None] * matrix * scale
+    right = rng.normal(size=size)
+    lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
+    upper[:bounded] = rng.choice([0.0, 0.1, 1.0], bounded)
+    if loose:
+        lower[:bounded] = -rng.choice([0.1, 1.0], bounded)
+    found = descend(matrix, right, lower, upper)
+    energy = 0.5 * found.w @ matrix @ found.w - right @ found.w
+    assert np.all(found.w >= lower) and np.all(found.w <= upper)
+    assert energy == pytest.approx(enumerated(matrix, right, lower, upper), rel=1e-9)
+
+
+def test_a_direction_that_nothing_stops_is_a_failure():
+    matrix = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    with pytest.raises(ReferenceFailure, match="neither supports nor contacts hold the bodies"):
+        descend(matrix, np.array([-1.0, -1.0]), np.array([-np.inf, -np.inf]), np.array([1.0, np.inf]))
+
+
+@pytest.mark.parametrize("degree", (1, 2))
+@pytest.mark.parametrize("rise", (0.03, 0.1, 0.3))
+def test_curved_contact_of_facets_arrives(solve, degree, rise):
+    """Contact alone carries the load, hence the resultant; without a gap 𝓛 = −½ ∫ c e:e."""
+    for softer in (1.0, 1e-3):
+        result = solve(arched_blocks(8, rise, softer), degree)
+        assert result["energy"] == pytest.approx(-result["strain_energy"], rel=1e-9)
+        assert result["contacts"][0]["resultant"][1] == pytest.approx(-0.05 * 1.3, rel=1e-7)
+
+
+@pytest.mark.parametrize("degree", (1, 2))
+def test_nearly_incompressible_beside_stiff(solve, degree):
+    data = arched_blocks(6, 0.1, 1e-4, poisson=0.4999999)
+    result = solve(data, degree)
+    assert result["energy"] == pytest.approx(-result["strain_energy"], rel=1e-6)
+    assert result["contacts"][0]["resultant"][1] == pytest.approx(-0.05 * 1.3, rel=1e-5)
+
+
+@pytest.mark.parametrize("degree", (1, 2))
+def test_a_body_moved_rigidly_is_without_energy(solve, degree):
+    """Its support moves it by 10⁶ of its size across a gap that stays open: no strain, no force, hardly any doubt."""
+    b = Builder()
+    sides = b.block(b.body("block", 1e5), 3, 3, lambda s, t: (s, t))
+    b.clamp(sides["left"], (1e6, -2e6))
+    b.contact(sides["right"], None, (1.0, 0.0), lambda x, y: 2e6)
+    result = solve(b.data, degree)
+    at_stake = 1e5 * 1e12
+    assert abs(result["energy"]) <= result["energy_rounding"] < 1e-24 * at_stake
+    assert result["contacts"][0]["resultant"] == [0.0, 0.0]
+    assert np.array(result["vertex_displacement"]) == pytest.approx(np.tile([1e6, -2e6], (16, 1)), rel=1e-12)
+
+
+def test_rounding_of_the_energy_is_told(solve):
+    """A rigid block on a soft one: the energy tends to a limit, and differs from it by what rounding is said to do."""
+    energies = {}
+    for ratio in (1e8, 1e9, 1e10, 1e11):
+        data = two_blocks(8)
+        data["bodies"][0]["young"] = ratio
+        result = solve(data, 2)
+        energies[ratio] = result["energy"], result["energy_rounding"]
+    limit = energies[1e8][0]
+    for ratio, (energy, rounding) in energies.items():
+        # The strain of the stiff block is worth about 2 / ratio; the estimate is one of size.
+        assert abs(energy - limit) < 10.0 * rounding + 4e-8
+        assert rounding < 1e-17 * ratio

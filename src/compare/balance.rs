@@ -1,0 +1,314 @@
+//! Whether a displacement is the solution it claims to be: the minimiser of 𝓛 over the admissible fields of its space.
+//!
+//! It is exactly when, for every basis function φ of the space, the stresses σ(u_h) balance the loads, the supports and
+//! contact forces that only push where contact is closed:
+//!
+//! ∫ σ(u_h):e(φ) − L(φ) + Σ_r R_r b_r(φ) ∈ forces of the supports,  R_r ≥ 0,  R_r = 0 where b_r(u_h) < g_r,
+//!
+//! with b_r the bounded coefficients of v_n' + v_n'': its values at the vertices of degree 1, its Bernstein coefficients
+//! of degree 2. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
+//! is what the solver left and what rounding of the displacements costs. A wrong modulus, load, thickness, support or
+//! contact leaves far more, however small its effect on the energy is.
+
+mod reported;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use nalgebra::DVector;
+
+use super::candidate::Candidate;
+use super::forces::NodalForces;
+use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
+use crate::mesh::sets::DisjointSets;
+use crate::problem::{ContactPair, Problem};
+use crate::statics::cone::unbalanced;
+
+/// A coefficient this close below its bound, relative to the largest displacement, is closed.
+const CLOSED: f64 = 1e-9;
+/// What each product of an entry of the stiffness with a displacement is rounded by: about twenty of them meet in a node.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Directions that are shorter than this, once supports have taken their part, are held by supports.
+const HELD: f64 = 1e-9;
+
+/// How well a claimed solution is in equilibrium in its own space.
+#[derive(Debug, Clone)]
+pub struct Balance {
+    /// √Σ |r_i|²/K_ii over the nodes, r what neither supports nor contact can take.
+    pub left: f64,
+    /// The same for the loads, plus √(2·½a(u,u)): what `left` is relative to.
+    pub scale: f64,
+    /// The same for what rounding of the displacements can leave.
+    pub rounding: f64,
+    /// By how much rounding of the displacements can have moved an energy that is added up from nodal forces.
+    pub energy_rounding: f64,
+    /// The node with the largest remainder: where it is, and the force that is left.
+    pub worst: Option<([f64; 2], [f64; 2])>,
+    /// Largest difference of a reported reaction, or resultant, from what the displacement asks for; one for each interface.
+    pub reactions: Vec<f64>,
+    /// What rounding can leave in a reaction, interface by interface.
+    pub reaction_rounding: Vec<f64>,
+    /// Σ of the forces at the nodes of each interface, without their signs.
+    pub carried: Vec<f64>,
+    /// Σ of what the solver left of them.
+    pub unbalanced: Vec<f64>,
+}
+
+impl Balance {
+    /// What rounding of the displacements, and what their solver left, can do to a reaction of interface `index`.
+    pub fn reaction_tolerance(&self, index: usize) -> f64 {
+        let of = |values: &[f64]| values.get(index).copied().unwrap_or(0.0);
+        of(&self.reaction_rounding) + 4.0 * of(&self.unbalanced)
+    }
+}
+
+impl Balance {
+    /// Measures a candidate of degree 1 or 2; `strain` is ½a(u, u) of its field.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other.
+    pub fn new(problem: &Problem, candidate: &Candidate, strain: f64) -> Result<Self, NoUpperBound> {
+        let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
+        let holds = holds(problem)?;
+        let mut rest = forces.unsupported(&holds);
+        let solution = Solution { problem, candidate, holds: &holds };
+        solution.take_middles(&mut rest);
+        let at_vertices = rest.clone();
+        solution.take_vertices(&mut rest);
+        let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
+        let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
+        let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
+        let value = |i: usize| solution.value(i);
+        let (mut reactions, mut reaction_rounding) = (Vec::new(), Vec::new());
+        let (mut carried, mut unbalanced) = (Vec::new(), Vec::new());
+        for (index, interface) in problem.interfaces.iter().enumerate() {
+            let reported = candidate.reactions.as_ref().and_then(|r| r.get(index));
+            reactions
+                .push(reported.map_or(0.0, |r| solution.misreported(index, interface, r, &at_vertices, &forces.left)));
+            let nodes = || interface.pairs.iter().flat_map(|p| p.first);
+            reaction_rounding.push(ROUNDING * nodes().map(|v| forces.size[v]).sum::<f64>());
+            let ends = interface.pairs.iter().flat_map(|p| p.first.into_iter().chain(p.second.into_iter().flatten()));
+            let vertices = problem.mesh.points.len();
+            let middles = interface.pairs.iter().flat_map(|p| p.edges).flatten().map(|e| vertices + e);
+            unbalanced.push(ends.chain(middles.filter(|m| *m < rest.len())).map(nodal).sum::<f64>());
+            carried.push(nodes().map(|v| forces.left[v][0].hypot(forces.left[v][1])).sum::<f64>());
+        }
+        Ok(Balance {
+            left: forces.energy_size(nodal),
+            scale: forces.energy_size(|i| forces.load[i][0].hypot(forces.load[i][1])) + (2.0 * strain).sqrt(),
+            rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
+            energy_rounding: ROUNDING
+                * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
+            worst: worst.map(|i| (solution.place(i), rest[i])),
+            reactions,
+            reaction_rounding,
+            carried,
+            unbalanced,
+        })
+    }
+}
+
+/// A claimed solution with the supports of its problem.
+struct Solution<'a> {
+    problem: &'a Problem,
+    candidate: &'a Candidate,
+    holds: &'a Holds,
+}
+
+impl Solution<'_> {
+    fn value(&self, node: usize) -> [f64; 2] {
+        let vertices = self.candidate.vertex.len();
+        if node < vertices { self.candidate.vertex[node] } else { self.candidate.middle[node - vertices] }
+    }
+
+    fn place(&self, node: usize) -> [f64; 2] {
+        let mesh = &self.problem.mesh;
+        match node.checked_sub(mesh.points.len()) {
+            None => mesh.points[node],
+            Some(e) => {
+                let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+                [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+            }
+        }
+    }
+
+    /// Coefficients this far below their bound are open.
+    fn closed_within(&self) -> f64 {
+        let all = self.candidate.vertex.iter().chain(&self.candidate.middle).flatten();
+        CLOSED * all.fold(0.0_f64, |m, v| m.max(v.abs()))
+    }
+
+    /// Takes the forces of the middle coefficients b1 = 2 j_mid − ½ (j_a + j_b) out of `rest`, at the midpoints and at
+    /// the vertices.
+    fn take_middles(&self, rest: &mut [[f64; 2]]) {
+        if self.candidate.degree != 2 {
+            return;
+        }
+        let vertices = self.problem.mesh.points.len();
+        let within = self.closed_within();
+        for pair in self.problem.interfaces.iter().flat_map(|i| &i.pairs) {
+            if !pair.direction.is_constant() {
+                self.take_turning(pair, within, rest);
+                continue;
+            }
+            let n = pair.direction.ends[0];
+            let jump = |first: [f64; 2], second: Option<[f64; 2]>| dot(first, n) - second.map_or(0.0, |u| dot(u, n));
+            let end = |k: usize| jump(self.value(pair.first[k]), pair.second.map(|s| self.value(s[k])));
+            let middles = pair.edges.map(|e| e.map(|e| vertices + e));
+            let Some(own) = middles[0] else { continue };
+            let b1 = 2.0 * jump(self.value(own), middles[1].map(|m| self.value(m))) - 0.5 * (end(0) + end(1));
+            if b1 < 0.5 * (pair.gap[0] + pair.gap[1]) - within {
+                continue;
+            }
+            let pull = match middles[1] {
+                Some(other) => 0.5 * (dot(rest[own], n) - dot(rest[other], n)),
+                None => dot(rest[own], n),
+            };
+            let reaction = (-0.5 * pull).max(0.0);
+            let mut add = |node: usize, factor: f64| {
+                rest[node][0] += factor * reaction * n[0];
+                rest[node][1] += factor * reaction * n[1];
+            };
+            add(own, 2.0);
+            pair.first.into_iter().for_each(|v| add(v, -0.5));
+            if let (Some(other), Some(second)) = (middles[1], pair.second) {
+                add(other, -2.0);
+                second.into_iter().for_each(|v| add(v, 0.5));
+            }
+            // What now rests on a held vertex is the support's.
+            for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
+                rest[v] = self.holds.vertices[v].project(rest[v]);
+            }
+        }
+    }
+
+    /// The same where the direction of contact turns and there are two middle coefficients.
+    fn take_turning(&self, pair: &ContactPair, within: f64, rest: &mut [[f64; 2]]) {
+        let vertices = self.problem.mesh.points.len();
+        let [Some(own), other] = pair.edges.map(|e| e.map(|e| vertices + e)) else { return };
+        let pull = match other {
+            Some(other) => [0, 1].map(|c| 0.5 * (rest[own][c] - rest[other][c])),
+            None => rest[own],
+        };
+        let values = |node: usize| self.value(node);
+        let rows = bernstein(pair, vertices);
+        let inner = &rows[1..rows.len() - 1];
+        let closed: Vec<bool> = inner.iter().map(|row| row.excess_at(values) >= -within).collect();
+        let reactions = inner_reactions(pair, pull, [closed[0], closed[1]]);
+        for (row, reaction) in inner.iter().zip(reactions) {
+            for (node, factor) in row.terms() {
+                rest[*node] = [0, 1].map(|c| rest[*node][c] + reaction * factor[c]);
+            }
+        }
+        for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
+            rest[v] = self.holds.vertices[v].project(rest[v]);
+        }
+    }
+
+    /// Takes the forces of the vertex coefficients out of `rest`: the least remainder of each group of vertices that
+    /// contacts tie together.
+    fn take_vertices(&self, rest: &mut [[f64; 2]]) {
+        let within = self.closed_within();
+        for group in self.groups() {
+            let slot: HashMap<usize, usize> = group.vertices.iter().enumerate().map(|(i, v)| (*v, 2 * i)).collect();
+            let size = 2 * group.vertices.len();
+            let mut rows = Vec::new();
+            for end in &group.ends {
+                let jump =
+                    dot(self.value(end.first), end.normal) - end.second.map_or(0.0, |v| dot(self.value(v), end.normal));
+                if jump < end.gap - within {
+                    continue;
+                }
+                let mut row = DVector::<f64>::zeros(size);
+                for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
+                    let Some(v) = v else { continue };
+                    let d = self.holds.vertices[v].project(end.normal);
+                    row[slot[&v]] += sign * d[0];
+                    row[slot[&v] + 1] += sign * d[1];
+                }
+                let length = row.norm();
+                if length > HELD {
+                    rows.push(row / length);
+                }
+            }
+            let mut load = DVector::zeros(size);
+            for (v, i) in &slot {
+                (load[*i], load[*i + 1]) = (-rest[*v][0], -rest[*v][1]);
+            }
+            // Where the working set does not settle, the whole force is left over and the check fails in the open.
+            let Ok(left) = unbalanced(&load, &rows) else { continue };
+            for (v, i) in slot {
+                rest[v] = [left[i], left[i + 1]];
+            }
+        }
+    }
+
+    /// The vertices of Γ_K, those that contacts tie to each other in one group.
+    fn groups(&self) -> Vec<Group> {
+        let ends = || self.problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(End::of);
+        let mut sets = DisjointSets::new(self.problem.mesh.points.len());
+        for end in ends() {
+            if let Some(second) = end.second {
+                sets.join(end.first, second);
+            }
+        }
+        let (label, _) = sets.labels();
+        let mut groups: BTreeMap<usize, Group> = BTreeMap::new();
+        for end in ends() {
+            let group = groups.entry(label[end.first]).or_default();
+            group.vertices.extend([Some(end.first), end.second].into_iter().flatten());
+            group.ends.push(end);
+        }
+        groups.into_values().collect()
+    }
+}
+
+/// The reactions R_k ≥ 0 of the middle coefficients of a pair along which the direction turns that balance the force
+/// `pull` at the midpoint best; each moves the jump there by 4/3 of the direction at its end. Those not `closed` are zero.
+fn inner_reactions(pair: &ContactPair, pull: [f64; 2], closed: [bool; 2]) -> [f64; 2] {
+    let alone = |k: usize| {
+        let n = pair.direction.ends[k];
+        if closed[k] { (-0.75 * dot(pull, n) / dot(n, n)).max(0.0) } else { 0.0 }
+    };
+    if closed == [true; 2] {
+        let [m, n] = pair.direction.ends;
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let both = [-0.75 * cross(pull, n) / cross(m, n), -0.75 * cross(m, pull) / cross(m, n)];
+        match both.map(|r| r >= 0.0) {
+            [true, true] => return both,
+            [true, false] => return [alone(0), 0.0],
+            [false, true] => return [0.0, alone(1)],
+            [false, false] => return [0.0; 2],
+        }
+    }
+    [alone(0), alone(1)]
+}
+
+/// Vertices tied by contacts, and the ends of pairs that tie them.
+#[derive(Default)]
+struct Group {
+    vertices: BTreeSet<usize>,
+    ends: Vec<End>,
+}
+
+/// One end of a contact pair.
+struct End {
+    first: usize,
+    second: Option<usize>,
+    normal: [f64; 2],
+    gap: f64,
+}
+
+impl End {
+    fn of(pair: &ContactPair) -> [End; 2] {
+        [0, 1].map(|k| End {
+            first: pair.first[k],
+            second: pair.second.map(|s| s[k]),
+            normal: pair.direction.ends[k],
+            gap: pair.gap[k],
+        })
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}

@@ -1,0 +1,121 @@
+//! Reported contact reactions against what the stresses of a displacement solution ask for.
+
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
+
+use super::{End, HELD, Solution, dot, inner_reactions};
+use crate::bounds::Hold;
+use crate::compare::candidate::Reactions;
+use crate::problem::Interface;
+
+impl Solution<'_> {
+    /// By how much the reported reactions of an interface miss what the displacement asks for, at the vertices where only
+    /// this contact acts, and the reported resultant their sum. `rest` are the forces that supports leave at the vertices,
+    /// without those of the middle coefficients; `left` are all of them.
+    pub(super) fn misreported(
+        &self,
+        index: usize,
+        interface: &Interface,
+        reported: &Reactions,
+        rest: &[[f64; 2]],
+        left: &[[f64; 2]],
+    ) -> f64 {
+        let vertices = self.problem.mesh.points.len();
+        let mut worst = 0.0_f64;
+        let mut sum = [0.0; 2];
+        let mut add = |force: [f64; 2]| sum = [sum[0] + force[0], sum[1] + force[1]];
+        for (k, pair) in interface.pairs.iter().enumerate() {
+            if let (Some(edge), Some(e)) = (&reported.edge, pair.edges[0]) {
+                let r = edge.get(k).map_or(&[][..], Vec::as_slice);
+                let left = left[vertices + e];
+                let [m, n] = pair.direction.ends;
+                let (asked, moved) = if pair.direction.is_constant() {
+                    (vec![-0.5 * dot(left, n)], vec![n])
+                } else {
+                    let moved = [[m, n], [n, m]].map(|[m, n]| [0, 1].map(|c| (2.0 * m[c] + n[c]) / 3.0));
+                    (inner_reactions(pair, left, [true; 2]).to_vec(), moved.to_vec())
+                };
+                for (i, (asked, moved)) in asked.into_iter().zip(moved).enumerate() {
+                    let r = r.get(i).copied().unwrap_or(0.0);
+                    worst = worst.max((r - asked).abs());
+                    add(moved.map(|n| -r * n));
+                }
+            }
+        }
+        let mut meetings = self.meetings(index, interface);
+        let mut comparable = true;
+        for (v, &r) in reported.vertices.iter().zip(&reported.vertex) {
+            let Some(meeting) = meetings.remove(v) else {
+                // A force where there is no contact.
+                worst = worst.max(r.abs());
+                continue;
+            };
+            match meeting {
+                Meeting::One { end, alone } => {
+                    if alone {
+                        worst = worst.max((r - self.asked(&end, rest)).abs());
+                    }
+                    add(end.normal.map(|n| -r * n));
+                }
+                // The force on a vertex that nothing else holds is that of the contact, whatever its directions.
+                Meeting::Several if self.holds.vertices[*v] == Hold::Free => add(rest[*v]),
+                Meeting::Several => comparable = false,
+            }
+        }
+        // A vertex that is left out carries nothing, or the report is not whole.
+        for meeting in meetings.into_values() {
+            if let Meeting::One { end, alone: true } = meeting {
+                worst = worst.max(self.asked(&end, rest).abs());
+            }
+        }
+        if comparable {
+            worst = worst.max((reported.resultant[0] - sum[0]).hypot(reported.resultant[1] - sum[1]));
+        }
+        worst
+    }
+
+    /// How an interface meets each vertex of its first side.
+    fn meetings(&self, index: usize, interface: &Interface) -> HashMap<usize, Meeting> {
+        let others = self.problem.interfaces.iter().enumerate().filter(|(other, _)| *other != index);
+        let ends = others.flat_map(|(_, other)| &other.pairs).flat_map(End::of);
+        let elsewhere: HashSet<usize> = ends.flat_map(|end| [Some(end.first), end.second]).flatten().collect();
+        let mut meetings: HashMap<usize, Meeting> = HashMap::new();
+        let mut facing: HashMap<usize, usize> = HashMap::new();
+        for end in interface.pairs.iter().flat_map(End::of) {
+            // Two vertices of the first side over one of the second.
+            let shared = end.second.is_some_and(|w| *facing.entry(w).or_insert(end.first) != end.first);
+            let alone = !shared && ![Some(end.first), end.second].iter().flatten().any(|v| elsewhere.contains(v));
+            match meetings.entry(end.first) {
+                Entry::Vacant(place) => drop(place.insert(Meeting::One { end, alone })),
+                Entry::Occupied(mut place) => {
+                    let square = dot(end.normal, end.normal);
+                    let parallel = |other: &End| dot(other.normal, end.normal) > (1.0 - HELD) * square;
+                    let same = |other: &End| parallel(other) && other.second == end.second;
+                    if !matches!(place.get(), Meeting::One { end, .. } if same(end)) {
+                        place.insert(Meeting::Several);
+                    }
+                }
+            }
+        }
+        meetings
+    }
+
+    /// The reaction at an end that no other contact meets: what balances both vertices best. Zero where supports hold them.
+    fn asked(&self, end: &End, rest: &[[f64; 2]]) -> f64 {
+        let (mut pull, mut square) = (0.0, 0.0);
+        for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
+            let Some(v) = v else { continue };
+            let d = self.holds.vertices[v].project(end.normal);
+            pull += sign * dot(rest[v], d);
+            square += dot(d, d);
+        }
+        if square > HELD * HELD { -pull / square } else { 0.0 }
+    }
+}
+
+/// How an interface meets a vertex of its first side: in one direction, with no other contact there where it is `alone`,
+/// or in several.
+enum Meeting {
+    One { end: End, alone: bool },
+    Several,
+}

@@ -1,0 +1,130 @@
+//! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
+
+use crate::bounds::Holds;
+use crate::bounds::strain::{gradients, shape_gradients};
+use crate::dual::modes::materials;
+use crate::problem::{Condition, Problem};
+
+/// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.
+const MIDPOINTS: usize = 3;
+
+/// Per node (vertices, then for degree 2 the midpoint of every edge), thickness included.
+#[derive(Debug, Clone)]
+pub struct NodalForces {
+    /// ∫ σ(u):e(φ) − ∫ F·φ − ∫ P·φ for the two displacements of each node: the force that supports and contact exert.
+    pub left: Vec<[f64; 2]>,
+    /// ∫ F·φ + ∫ P·φ.
+    pub load: Vec<[f64; 2]>,
+    /// Σ_j |K_ij| |u_j| + |load|: what rounding errors of the values at the nodes are relative to.
+    pub size: Vec<f64>,
+    /// An upper estimate of the diagonal entry K_ii.
+    pub stiffness: Vec<f64>,
+    /// The triangle that contributes most to the stiffness, to name the body of a node.
+    pub triangle: Vec<usize>,
+}
+
+impl NodalForces {
+    /// Of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
+    pub fn new(problem: &Problem, degree: usize, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
+        let mesh = &problem.mesh;
+        let vertices = mesh.points.len();
+        let count = vertices + if degree == 2 { mesh.edges.len() } else { 0 };
+        let mut forces = NodalForces {
+            left: vec![[0.0; 2]; count],
+            load: vec![[0.0; 2]; count],
+            size: vec![0.0; count],
+            stiffness: vec![0.0; count],
+            triangle: vec![0; count],
+        };
+        let mut stiffest = vec![0.0; count];
+        let materials = materials(problem);
+        let t = problem.scene.thickness;
+        for (k, corners) in mesh.triangles.iter().enumerate() {
+            let material = &materials[mesh.body[k]];
+            // λ + 2μ, and no less than either eigenvalue of c.
+            let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
+            let area = t * mesh.area(k);
+            let g = gradients(mesh.corners(k));
+            let quadratic = [0, 1, 2].map(|i| vertices + mesh.triangle_edges[k][i]);
+            let nodes: Vec<usize> = match degree {
+                2 => corners.iter().copied().chain(quadratic).collect(),
+                _ => corners.to_vec(),
+            };
+            let value = |node: usize| if node < vertices { vertex[node] } else { middle[node - vertices] };
+            let u: Vec<[f64; 2]> = nodes.iter().map(|&node| value(node)).collect();
+            for at in 0..MIDPOINTS {
+                let shape = if degree == 2 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
+                let weight = area / MIDPOINTS as f64;
+                let (mut e, mut spread) = ([0.0; 3], 0.0);
+                for (d, value) in shape.iter().zip(&u) {
+                    // Differences from one node: a rigid translation leaves no trace.
+                    let (x, y) = (value[0] - u[0][0], value[1] - u[0][1]);
+                    e[0] += d[0] * x;
+                    e[1] += d[1] * y;
+                    e[2] += 0.5 * (d[1] * x + d[0] * y);
+                    spread += d[0].hypot(d[1]) * value[0].hypot(value[1]);
+                }
+                let s = material.stress(e);
+                for (&node, d) in nodes.iter().zip(&shape) {
+                    let long = d[0].hypot(d[1]);
+                    forces.left[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+                    forces.left[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+                    forces.size[node] += weight * modulus * long * spread;
+                    let part = weight * modulus * long * long;
+                    forces.stiffness[node] += part;
+                    if part > stiffest[node] {
+                        (stiffest[node], forces.triangle[node]) = (part, k);
+                    }
+                }
+            }
+            let f = problem.scene.bodies[mesh.body[k]].body_force;
+            // ∫ φ of a quadratic shape function is a third of the area at a midpoint, and zero at a corner.
+            let bearing: &[usize] = if degree == 2 { &quadratic } else { corners };
+            for &node in bearing {
+                forces.load[node][0] += area / 3.0 * f[0];
+                forces.load[node][1] += area / 3.0 * f[1];
+            }
+        }
+        forces.add_tractions(problem, degree);
+        for (node, load) in forces.load.iter().enumerate() {
+            forces.left[node][0] -= load[0];
+            forces.left[node][1] -= load[1];
+            forces.size[node] += load[0].hypot(load[1]);
+        }
+        forces
+    }
+
+    fn add_tractions(&mut self, problem: &Problem, degree: usize) {
+        let mesh = &problem.mesh;
+        for (e, condition) in problem.conditions.iter().enumerate() {
+            let Condition::Traction([pa, pb]) = condition else { continue };
+            let part = problem.scene.thickness * mesh.edge_frame(e).0 / 6.0;
+            let [a, b] = mesh.edges[e].vertices;
+            for c in 0..2 {
+                match degree {
+                    2 => {
+                        self.load[a][c] += part * pa[c];
+                        self.load[b][c] += part * pb[c];
+                        self.load[mesh.points.len() + e][c] += 2.0 * part * (pa[c] + pb[c]);
+                    }
+                    _ => {
+                        self.load[a][c] += part * (2.0 * pa[c] + pb[c]);
+                        self.load[b][c] += part * (pa[c] + 2.0 * pb[c]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// √Σ |f_i|²/K_ii: the size of nodal forces as the root of an energy.
+    pub fn energy_size(&self, size: impl Fn(usize) -> f64) -> f64 {
+        let term = |(i, k): (usize, &f64)| if *k > 0.0 { size(i).powi(2) / k } else { 0.0 };
+        self.stiffness.iter().enumerate().map(term).sum::<f64>().sqrt()
+    }
+
+    /// What supports cannot take of `left`.
+    pub fn unsupported(&self, holds: &Holds) -> Vec<[f64; 2]> {
+        let all = holds.vertices.iter().chain(&holds.middles);
+        self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()
+    }
+}

@@ -1,0 +1,59 @@
+//! Whether the ends of contact pairs are in the state that stresses and jumps ask for.
+
+use super::equilibrium::load_scale;
+use super::refinement::Refined;
+use super::system::System;
+use crate::problem::{Problem, Scales};
+
+/// Tension relative to the load, or to the traction at the other end of its edge, and penetration relative to the
+/// largest jump, that are round-off: an end that grazes keeps its state.
+pub const GRAZING: f64 = 1e-12;
+
+/// What states are held against.
+pub struct Ends<'a> {
+    problem: &'a Problem,
+    system: &'a System,
+    scales: Scales,
+    /// Tension at each jump that is rounding of prescribed displacements and gaps.
+    round_off: Vec<f64>,
+    /// The other jump of the same pair, or the jump itself where there is only one.
+    partner: Vec<usize>,
+}
+
+impl<'a> Ends<'a> {
+    pub fn new(problem: &'a Problem, system: &'a System) -> Self {
+        let scales = Scales::new(problem);
+        let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+        let jumps = system.unknowns.blocks.iter().filter(|b| b.start >= system.unknowns.first_jump);
+        let round_off = pairs
+            .zip(jumps)
+            .flat_map(|(pair, block)| {
+                let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
+                let rounding = triangles.map(|t| scales.stress_round_off(problem, t)).fold(0.0, f64::max);
+                std::iter::repeat_n(rounding, block.len)
+            })
+            .collect();
+        Ends { problem, system, scales, round_off, partner: system.unknowns.partners() }
+    }
+
+    /// By how much each end misses its state: tension of closed ends relative to the load, or to the pressure at the other
+    /// end of the edge, and penetration of open ends relative to `whole`.
+    pub fn misses(&self, now: &Refined, closed: &[bool], whole: &[f64]) -> Vec<f64> {
+        let first = self.system.unknowns.first_jump;
+        let load = load_scale(&self.scales, || self.system.modes.stresses(self.problem, &now.s));
+        let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
+        let end = |i: usize| {
+            let (over, of) = match closed[i] {
+                true => (traction(i) - self.round_off[i], load.max(-traction(self.partner[i]))),
+                false => (now.x[first + i] - self.system.jump_bound[i], whole[i]),
+            };
+            if over > 0.0 { over / of.max(f64::MIN_POSITIVE) } else { 0.0 }
+        };
+        (0..closed.len()).map(end).collect()
+    }
+}
+
+/// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.
+pub fn next_state(closed: &[bool], misses: &[f64]) -> Vec<bool> {
+    closed.iter().zip(misses).map(|(closed, by)| *closed == (*by <= GRAZING)).collect()
+}

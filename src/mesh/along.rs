@@ -1,0 +1,133 @@
+//! Contact sides that are matched along a direction and need not coincide.
+//!
+//! A side is seen from the direction: its edges that face the other side, each with the interval that it covers across the
+//! direction. Every vertex of one side is put into the edge of the other that it is projected onto; edges of both sides
+//! then cover the same intervals, and forces along the direction act at equal projected positions.
+
+use super::error::at;
+use super::polyline::SAME;
+use super::{MeshError, Triangulation};
+use crate::scene::{Contact, Note, Scene};
+
+/// Cosine of the angle between the direction and a normal below which an edge does not face the other side.
+const GRAZING: f64 = 0.05;
+
+/// Part of an interval within which two positions across the direction are one.
+const CLOSE: f64 = 1e-8;
+
+/// An edge that faces the other side.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Facing {
+    /// The edge.
+    pub edge: usize,
+    /// Its vertices by their position across the direction.
+    pub vertices: [usize; 2],
+    /// These positions, ascending.
+    pub span: [f64; 2],
+}
+
+/// The position of a point across a direction.
+pub(crate) fn across(d: [f64; 2], p: [f64; 2]) -> f64 {
+    p[1] * d[0] - p[0] * d[1]
+}
+
+/// The edges of boundary `name` whose outward normal points along `d`, ordered across it.
+pub(crate) fn facing(mesh: &Triangulation, name: &str, d: [f64; 2]) -> Vec<Facing> {
+    let edges = mesh.boundary(name).into_iter().filter(|&e| {
+        let (_, n) = mesh.edge_frame(e);
+        n[0] * d[0] + n[1] * d[1] > GRAZING
+    });
+    let mut all: Vec<Facing> = edges
+        .map(|edge| {
+            let [v, w] = mesh.edges[edge].vertices;
+            let [s, t] = [v, w].map(|v| across(d, mesh.points[v]));
+            if s <= t {
+                Facing { edge, vertices: [v, w], span: [s, t] }
+            } else {
+                Facing { edge, vertices: [w, v], span: [t, s] }
+            }
+        })
+        .collect();
+    all.sort_by(|a, b| a.span[0].total_cmp(&b.span[0]).then(a.edge.cmp(&b.edge)));
+    all
+}
+
+/// The direction of `contact` out of its first side, towards the second: the one given, or its opposite where only that
+/// leads from one side to the other.
+pub(crate) fn outward(mesh: &Triangulation, names: [&str; 2], given: [f64; 2]) -> [f64; 2] {
+    let back = given.map(|x| -x);
+    let meets = |d: [f64; 2]| {
+        let (first, second) = (facing(mesh, names[0], d), facing(mesh, names[1], d.map(|x| -x)));
+        // Seen the other way, positions change their sign.
+        first.iter().any(|f| second.iter().any(|s| f.span[0] < -s.span[0] && -s.span[1] < f.span[1]))
+    };
+    if !meets(given) && meets(back) { back } else { given }
+}
+
+/// Puts the vertices of each side into the edges of the other that they are projected onto.
+///
+/// # Errors
+/// [`MeshError::Contact`] where a side folds over itself, seen along the direction, or the sides do not face each other.
+pub(super) fn match_along(
+    mesh: Triangulation,
+    scene: &Scene,
+    contact: &Contact,
+    names: &[String; 2],
+    given: [f64; 2],
+    notes: &mut Vec<Note>,
+) -> Result<Triangulation, MeshError> {
+    let d = outward(&mesh, [&names[0], &names[1]], given);
+    // Both sides are seen along d, so that positions agree.
+    let sides = [facing(&mesh, &names[0], d), turned(facing(&mesh, &names[1], d.map(|x| -x)))];
+    for (side, name) in sides.iter().zip(names) {
+        if let Some(w) = side.windows(2).find(|w| w[1].span[0] < w[0].span[1] - CLOSE * (w[0].span[1] - w[0].span[0])) {
+            let what = format!("'{name}' folds over itself at {}", at(scene, mesh.points[w[1].vertices[0]]));
+            let remedy = "seen along `direction` a contact side has to be a single curve: name the part that can touch";
+            return Err(MeshError::contact(scene, contact.name(), what, remedy));
+        }
+    }
+    let mut inserted = Vec::new();
+    let mut counts = [0, 0];
+    for (from, into) in [(0, 1), (1, 0)] {
+        let mut positions: Vec<f64> = sides[from].iter().flat_map(|f| f.span).collect();
+        positions.sort_by(f64::total_cmp);
+        positions.dedup_by(|a, b| (*a - *b).abs() <= SAME * (b.abs().max(1e-300)));
+        for position in positions {
+            let Some(other) = sides[into].iter().find(|f| f.span[0] < position && position < f.span[1]) else {
+                continue;
+            };
+            let t = (position - other.span[0]) / (other.span[1] - other.span[0]);
+            if t > CLOSE && t < 1.0 - CLOSE {
+                let [p, q] = other.vertices.map(|v| mesh.points[v]);
+                inserted.push((other.edge, [0, 1].map(|c| p[c] + t * (q[c] - p[c]))));
+                counts[from] += 1;
+            }
+        }
+    }
+    let overlap = sides[0].iter().any(|f| sides[1].iter().any(|s| f.span[0] < s.span[1] && s.span[0] < f.span[1]));
+    if !overlap {
+        let what = format!("seen along its direction, '{}' and '{}' do not face each other", names[0], names[1]);
+        let remedy = "the direction has to lead from one side to the other: correct `direction`, or the names";
+        return Err(MeshError::contact(scene, contact.name(), what, remedy));
+    }
+    if inserted.is_empty() {
+        return Ok(mesh);
+    }
+    let flat = |p: [f64; 2]| {
+        let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
+        MeshError::contact(scene, contact.name(), what, "mesh both sides with about the same edge lengths")
+    };
+    let mesh = mesh.with_inserted(&inserted).map_err(flat)?;
+    let [a, b] = [0, 1].map(|i| format!("{} vertices of '{}'", counts[i], names[i]));
+    let text =
+        format!("contact {}: along its direction, {a} and {b} were inserted into the other side", contact.name());
+    notes.push(Note { weakens_guarantee: false, text });
+    Ok(mesh)
+}
+
+/// The same edges as seen from the other side.
+pub(crate) fn turned(side: Vec<Facing>) -> Vec<Facing> {
+    let turn =
+        |f: Facing| Facing { edge: f.edge, vertices: [f.vertices[1], f.vertices[0]], span: [-f.span[1], -f.span[0]] };
+    side.into_iter().rev().map(turn).collect()
+}

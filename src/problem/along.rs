@@ -1,0 +1,90 @@
+//! The two sides of a contact that acts along a given direction, edge against edge.
+
+use std::collections::HashMap;
+
+use super::{ContactPair, Direction, Interface, ProblemError};
+use crate::mesh::Triangulation;
+use crate::mesh::along::{Facing, facing, outward, turned};
+use crate::mesh::error::at;
+use crate::mesh::polyline::chain;
+use crate::scene::{Contact, Gap, Scene};
+
+/// Part of an interval within which its ends are those of another one.
+const MATCHED: f64 = 1e-6;
+/// Part of the size of the mesh by which sides may cross for round-off.
+const ROUND_OFF: f64 = 1e-10;
+
+/// Pairs the edges of both sides that cover the same interval across the direction; see [`crate::mesh::along`]. What has
+/// nothing opposite is free. The gap is the distance along the direction and that of the scene.
+pub(super) fn pair_along(
+    contact: &Contact,
+    names: &[String; 2],
+    given: [f64; 2],
+    scene: &Scene,
+    mesh: &Triangulation,
+) -> Result<Interface, ProblemError> {
+    let fault = |what: String, remedy: &str| ProblemError::Contact {
+        contact: contact.name(),
+        what,
+        remedy: remedy.to_string(),
+    };
+    let d = outward(mesh, [&names[0], &names[1]], given);
+    let first = facing(mesh, &names[0], d);
+    let second = turned(facing(mesh, &names[1], d.map(|x| -x)));
+    let edges = mesh.boundary(&names[0]);
+    let side: Vec<[[f64; 2]; 2]> = edges.iter().map(|&e| mesh.edges[e].vertices.map(|v| mesh.points[v])).collect();
+    let links = chain(&side).map_err(|p| {
+        let what = format!("more than two edges of '{}' meet at {}", names[0], at(scene, p));
+        fault(what, "a contact side is a curve without branches")
+    })?;
+    let matched: HashMap<usize, (Facing, Facing)> =
+        first.iter().filter_map(|own| Some((own.edge, (*own, opposite(own, &second)?)))).collect();
+    let extent = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let interference = matches!(contact.gap, Gap::Constant(g) if g < 0.0);
+    let mut pairs = Vec::with_capacity(matched.len());
+    for link in &links {
+        let Some((own, other)) = matched.get(&edges[link.edge]) else { continue };
+        let (length, normal) = mesh.edge_frame(own.edge);
+        let vertices = mesh.edges[own.edge].vertices;
+        let along = if link.reversed { [vertices[1], vertices[0]] } else { vertices };
+        let second = if along == own.vertices { other.vertices } else { [other.vertices[1], other.vertices[0]] };
+        let mut gap = [0.0; 2];
+        for (end, gap) in gap.iter_mut().enumerate() {
+            let [p, q] = [along[end], second[end]].map(|v| mesh.points[v]);
+            let apart = (q[0] - p[0]) * d[0] + (q[1] - p[1]) * d[1] + contact.gap.at(link.arc[end]);
+            if apart < -ROUND_OFF * extent && !interference {
+                let what = format!("the sides cross at {}, by {:.3e} along the direction", at(scene, p), -apart);
+                return Err(fault(
+                    what,
+                    "move the bodies apart, or write the depth of an interference fit as a negative gap",
+                ));
+            }
+            *gap = if interference { apart } else { apart.max(0.0) };
+        }
+        let covered = own.span[1] - own.span[0];
+        let shares = [length, mesh.edge_frame(other.edge).0].map(|length| covered / length);
+        pairs.push(ContactPair {
+            edges: [Some(own.edge), Some(other.edge)],
+            first: along,
+            second: Some(second),
+            normal,
+            direction: Direction { ends: [d; 2], shares },
+            length: covered,
+            arc: link.arc,
+            gap,
+        });
+    }
+    if pairs.is_empty() {
+        let what = format!("seen along its direction, '{}' and '{}' do not face each other", names[0], names[1]);
+        return Err(fault(what, "correct `direction`, or the names"));
+    }
+    Ok(Interface { name: contact.name(), pairs })
+}
+
+/// The edge of the other side that covers the same interval.
+fn opposite(own: &Facing, side: &[Facing]) -> Option<Facing> {
+    let close = MATCHED * (own.span[1] - own.span[0]);
+    let from = side.partition_point(|f| f.span[0] < own.span[0] - close);
+    let near = |f: &&Facing| (0..2).all(|k| (f.span[k] - own.span[k]).abs() <= close);
+    side[from..].iter().take(2).find(near).copied()
+}

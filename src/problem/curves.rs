@@ -1,0 +1,103 @@
+//! Which edges stand for arcs of circles, so that refining puts new vertices on these.
+
+use super::{Condition, ContactPair, Problem};
+use crate::mesh::Curved;
+use crate::scene::{Circle, Gap, MeshSource, Normals, Scene};
+
+/// Part of the radius within which vertices of a contact lie on a circle.
+const ON_CIRCLE: f64 = 1e-6;
+/// The same for vertices that were put on an arc of the scene.
+const ON_ARC: f64 = 1e-9;
+/// Part of the height of a triangle by which its side may be moved.
+const ROOM: f64 = 0.3;
+
+/// The circles of all edges that stand for an arc: of those in `[geometry]`, and of contact sides of which three edges in
+/// a row have their vertices on a circle. A contact with a gap along the arc length, or with a direction, keeps its edges.
+pub(super) fn curved(problem: &Problem) -> Curved {
+    let mut found = Curved::default();
+    arcs(problem, &mut found);
+    for (interface, contact) in problem.interfaces.iter().zip(&problem.scene.contacts) {
+        let pairs = &interface.pairs;
+        let stays = contact.normals == Normals::Facets
+            || contact.direction.is_some()
+            || !matches!(contact.gap, Gap::Constant(_));
+        if stays {
+            continue;
+        }
+        for (k, pair) in pairs.iter().enumerate() {
+            let Some(circle) = around(problem, pairs, k) else { continue };
+            let edges: Vec<usize> = pair.edges.iter().flatten().copied().collect();
+            if edges.iter().all(|&e| has_room(problem, e, &circle)) {
+                found.extend(edges.into_iter().map(|e| (e, circle)));
+            }
+        }
+    }
+    found
+}
+
+/// The circle of pair `k`: through the vertices of three pairs in a row, of which it is one.
+fn around(problem: &Problem, pairs: &[ContactPair], k: usize) -> Option<Circle> {
+    if pairs[k].direction.is_constant() {
+        return None;
+    }
+    let point = |v: usize| problem.mesh.points[v];
+    (k.saturating_sub(2)..=k).find_map(|from| {
+        let [a, b, c] = pairs.get(from..from + 3)? else { return None };
+        let joined = a.first[1] == b.first[0] && b.first[1] == c.first[0];
+        let smooth = a.direction.ends[1] == b.direction.ends[0] && b.direction.ends[1] == c.direction.ends[0];
+        let circle = Circle::through(point(a.first[0]), point(b.first[0]), point(c.first[1]))?;
+        (joined && smooth && circle.holds(point(b.first[1]), ON_CIRCLE)).then_some(circle)
+    })
+}
+
+/// Boundary edges between two vertices on an arc of the scene that carries their name.
+fn arcs(problem: &Problem, found: &mut Curved) {
+    let arcs = scene_arcs(&problem.scene);
+    if arcs.is_empty() {
+        return;
+    }
+    let mesh = &problem.mesh;
+    for (e, edge) in mesh.edges.iter().enumerate().filter(|(_, edge)| edge.is_boundary()) {
+        let name = edge.name.map_or("", |n| mesh.names[n].as_str());
+        let [a, b] = edge.vertices.map(|v| mesh.points[v]);
+        let stands_for = |(own, circle, corners): &&(&str, Circle, [[f64; 2]; 2])| {
+            *own == name
+                && circle.holds(a, ON_ARC)
+                && circle.holds(b, ON_ARC)
+                // A chord from corner to corner is an edge of its own.
+                && *corners != [a, b]
+                && *corners != [b, a]
+                && has_room(problem, e, circle)
+        };
+        if matches!(problem.conditions[e], Condition::Contact { .. } | Condition::Interior) {
+            continue;
+        }
+        if let Some((_, circle, _)) = arcs.iter().find(stands_for) {
+            found.insert(e, *circle);
+        }
+    }
+}
+
+/// Name, circle and ends of the arcs in `[geometry]`.
+fn scene_arcs(scene: &Scene) -> Vec<(&str, Circle, [[f64; 2]; 2])> {
+    let MeshSource::Geometry { polygons, .. } = &scene.mesh else { return Vec::new() };
+    let all = polygons.iter().flat_map(|polygon| {
+        polygon.arcs.iter().filter_map(move |arc| {
+            let ends = [arc.edge, (arc.edge + 1) % polygon.points.len()].map(|i| polygon.points[i]);
+            let circle = Circle::through(ends[0], arc.through, ends[1])?;
+            Some((polygon.edges[arc.edge].as_str(), circle, ends))
+        })
+    });
+    all.collect()
+}
+
+/// Whether the triangles at an edge stay well shaped when its middle moves onto the circle.
+fn has_room(problem: &Problem, e: usize, circle: &Circle) -> bool {
+    let mesh = &problem.mesh;
+    let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+    let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+    let to = circle.nearest(middle);
+    let moved = (to[0] - middle[0]).hypot(to[1] - middle[1]);
+    let (length, _) = mesh.edge_frame(e);
+    mesh.edges[e].triangles.iter().flatten().all(|&t| moved <= ROOM * 2.0 * mesh.area(t) / length)
+}

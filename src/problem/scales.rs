@@ -1,0 +1,282 @@
+//! The sizes of force, stress, displacement and energy that the data of a problem stand for.
+//!
+//! What counts as zero is judged against the data, never against the answer alone: where the answer is without stress
+//! (a body moved rigidly, a gap that stays open) everything in it is round-off, and round-off compared with round-off is
+//! anything. Data cause stress in two ways. Tractions and weights have a size of their own. Prescribed displacements,
+//! and gaps that a body crosses before contact holds it, cause at most modulus times displacement over length; the
+//! stresses that they do cause may be smaller or none, but are computed from displacements of that size, and carry
+//! their rounding errors.
+
+use super::{Condition, Problem};
+use crate::mesh::sets::DisjointSets;
+use crate::scene::{Body, Kinematics};
+
+/// Rounding errors that a computed number carries, relative to the largest that it was computed from.
+pub const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+
+/// One number for each kind of quantity.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sizes {
+    /// Force; thickness included.
+    pub force: f64,
+    /// Stress or traction.
+    pub stress: f64,
+    /// Displacement.
+    pub displacement: f64,
+    /// Energy; thickness included.
+    pub energy: f64,
+}
+
+/// The sizes of a problem. All are zero exactly where nothing is applied, prescribed or open, and the answer then is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scales {
+    /// What the data can cause: no estimate of the answer, which may be much smaller.
+    pub data: Sizes,
+    /// What rounding leaves where the answer is zero. Numbers up to this size are to be taken for zero.
+    pub round_off: Sizes,
+    /// Largest applied traction, or what a body force adds up to across its body.
+    pub traction: f64,
+    /// How far supports and gaps can move a body: the largest prescribed displacement and all gaps beside pieces that
+    /// are not clamped. The widest gap where there is nothing else.
+    pub imposed: f64,
+    /// Of each body, stress for a unit strain in one direction with none across it.
+    modulus: Vec<f64>,
+}
+
+impl Scales {
+    /// The sizes of `problem`.
+    pub fn new(problem: &Problem) -> Self {
+        let scene = &problem.scene;
+        let bodies = Extents::of_bodies(problem);
+        let loads = Loads::new(problem, &bodies);
+        let imposed = match imposed(problem) {
+            0.0 if loads.force == 0.0 => widest_gap(problem),
+            imposed => imposed,
+        };
+        let modulus: Vec<f64> = scene.bodies.iter().map(|body| modulus(scene.kinematics, body)).collect();
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let used = || scene.bodies.iter().zip(&bodies).filter(|(_, extent)| extent.any());
+        let stiffest = largest(&mut used().map(|(body, _)| body.young));
+        let softest = used().map(|(body, _)| body.young).fold(f64::INFINITY, f64::min);
+        let hardest = largest(&mut modulus.iter().copied());
+        let displacement = imposed + loads.force / (scene.thickness * softest);
+        let energy = |stiffness: f64| loads.force * displacement + scene.thickness * stiffness * imposed * imposed;
+        let strained = largest(&mut used().map(|(body, extent)| body.young * imposed / extent.diameter()));
+        let resolved = largest(&mut (0..problem.mesh.triangles.len()).map(|t| per_length(problem, &modulus, t)));
+        Scales {
+            data: Sizes {
+                force: loads.force + scene.thickness * stiffest * imposed,
+                stress: loads.traction.max(strained),
+                displacement,
+                energy: energy(stiffest),
+            },
+            round_off: Sizes {
+                force: ROUND_OFF * (loads.force + scene.thickness * hardest * imposed),
+                stress: ROUND_OFF * (loads.traction + resolved * imposed),
+                displacement: ROUND_OFF * displacement,
+                energy: ROUND_OFF * energy(hardest),
+            },
+            traction: loads.traction,
+            imposed,
+            modulus,
+        }
+    }
+
+    /// The same for a model that begins with every contact closed, as displacement models do: what crosses a gap and comes
+    /// back leaves a rounding error of it, even where the gap has no part in the answer. An energy at its minimum sees the
+    /// square of that.
+    pub fn from_closed_contacts(mut self, problem: &Problem) -> Self {
+        let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+        let widest = pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max);
+        let hardest = self.modulus.iter().copied().fold(0.0, f64::max);
+        let stiffness = problem.scene.thickness * hardest;
+        self.round_off.displacement += ROUND_OFF * widest;
+        self.round_off.force += ROUND_OFF * stiffness * widest;
+        self.round_off.energy += ROUND_OFF * ROUND_OFF * stiffness * widest * widest;
+        self
+    }
+
+    /// What rounding of imposed displacements leaves as stress in triangle `t`, where there is none.
+    pub fn stress_round_off(&self, problem: &Problem, t: usize) -> f64 {
+        if self.imposed > 0.0 { ROUND_OFF * self.imposed * per_length(problem, &self.modulus, t) } else { 0.0 }
+    }
+}
+
+fn norm(v: [f64; 2]) -> f64 {
+    v[0].hypot(v[1])
+}
+
+fn modulus(kinematics: Kinematics, body: &Body) -> f64 {
+    let (young, nu) = (body.young, body.poisson);
+    match kinematics {
+        Kinematics::PlaneStrain => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        Kinematics::PlaneStress => young / (1.0 - nu * nu),
+    }
+}
+
+/// The stress of a unit displacement across the smallest height of a triangle.
+fn per_length(problem: &Problem, modulus: &[f64], t: usize) -> f64 {
+    let mesh = &problem.mesh;
+    let [a, b, c] = mesh.corners(t);
+    let side = |p: [f64; 2], q: [f64; 2]| norm([q[0] - p[0], q[1] - p[1]]);
+    modulus[mesh.body[t]] * side(a, b).max(side(b, c)).max(side(c, a)) / (2.0 * mesh.area(t))
+}
+
+/// The box around a body.
+#[derive(Debug, Clone, Copy)]
+struct Extents {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Extents {
+    fn of_bodies(problem: &Problem) -> Vec<Extents> {
+        let nothing = Extents { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+        let mut all = vec![nothing; problem.scene.bodies.len()];
+        for (t, &body) in problem.mesh.body.iter().enumerate() {
+            for point in problem.mesh.corners(t) {
+                for (i, x) in point.into_iter().enumerate() {
+                    all[body].low[i] = all[body].low[i].min(x);
+                    all[body].high[i] = all[body].high[i].max(x);
+                }
+            }
+        }
+        all
+    }
+
+    fn any(&self) -> bool {
+        self.low[0].is_finite()
+    }
+
+    fn sides(&self) -> [f64; 2] {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    fn diameter(&self) -> f64 {
+        norm(self.sides())
+    }
+}
+
+/// Applied tractions and weights.
+struct Loads {
+    traction: f64,
+    /// The sum of the magnitudes of all forces; thickness included.
+    force: f64,
+}
+
+impl Loads {
+    fn new(problem: &Problem, bodies: &[Extents]) -> Self {
+        let (mut traction, mut force) = (0.0_f64, 0.0);
+        for (e, condition) in problem.conditions.iter().enumerate() {
+            let Condition::Traction([p, q]) = *condition else { continue };
+            traction = traction.max(norm(p)).max(norm(q));
+            force += 0.5 * problem.mesh.edge_frame(e).0 * (norm(p) + norm(q));
+        }
+        for (body, extent) in problem.scene.bodies.iter().zip(bodies).filter(|(_, extent)| extent.any()) {
+            let [width, height] = extent.sides();
+            traction = traction.max(norm(body.body_force) * width.min(height));
+        }
+        for (t, &body) in problem.mesh.body.iter().enumerate() {
+            force += problem.mesh.area(t) * norm(problem.scene.bodies[body].body_force);
+        }
+        Loads { traction, force: problem.scene.thickness * force }
+    }
+}
+
+/// The largest prescribed displacement, and the gaps that nothing but contact keeps a piece from crossing.
+fn imposed(problem: &Problem) -> f64 {
+    let mesh = &problem.mesh;
+    let mut sets = DisjointSets::new(mesh.triangles.len());
+    for edge in &mesh.edges {
+        if let [Some(left), Some(right)] = edge.triangles {
+            sets.join(left, right);
+        }
+    }
+    let (piece, count) = sets.labels();
+    let mut clamped = vec![false; count];
+    let mut prescribed = 0.0_f64;
+    for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
+        if let (Condition::Clamped(u0), Some(t)) = (condition, edge.triangles[0]) {
+            clamped[piece[t]] = true;
+            prescribed = prescribed.max(norm(*u0));
+        }
+    }
+    let loose = |e: &Option<usize>| e.and_then(|e| mesh.edges[e].triangles[0]).is_some_and(|t| !clamped[piece[t]]);
+    let crossed = problem.interfaces.iter().map(|interface| {
+        let pairs = interface.pairs.iter().filter(|pair| pair.edges.iter().any(loose));
+        pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
+    });
+    prescribed + crossed.sum::<f64>()
+}
+
+fn widest_gap(problem: &Problem) -> f64 {
+    let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+    pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::testing::*;
+    use crate::scene::{Gap, Load, Scene, SupportKind};
+
+    /// Two unit squares side by side, the right one clamped.
+    fn squares(gap: f64) -> Scene {
+        let polygons = vec![rectangle("a", [0.0; 2], [1.0; 2]), rectangle("b", [1.0, 0.0], [2.0, 1.0])];
+        let scene = geometry(scene(&["a", "b"]), Some(0.5), polygons);
+        contact(clamp(scene, "b_right"), "a_right", "b_left", Gap::Constant(gap))
+    }
+
+    fn scales(scene: Scene) -> Scales {
+        Scales::new(&Problem::load(scene).expect("a good scene"))
+    }
+
+    #[test]
+    fn without_data_everything_is_zero() {
+        let found = scales(squares(0.0));
+        assert_eq!((found.data, found.round_off), (Sizes::default(), Sizes::default()));
+    }
+
+    #[test]
+    fn loads_have_sizes_of_their_own() {
+        let mut scene = load(squares(0.0), "a_left", Load::Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] });
+        scene.thickness = 0.5;
+        scene.bodies[1].body_force = [0.0, -2.0];
+        scene.bodies[1].young = 10.0;
+        let found = scales(scene);
+        assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);
+        assert!((found.data.displacement - 7.0).abs() < 1e-14 && (found.data.energy - 24.5).abs() < 1e-13);
+        assert_eq!(found.round_off.stress, ROUND_OFF * 5.0);
+    }
+
+    #[test]
+    fn gaps_count_where_a_piece_can_cross_them() {
+        let loose = scales(squares(0.25));
+        let held = || clamp(squares(0.25), "a_left");
+        let loaded = scales(load(held(), "a_top", Load::Pressure(1.0)));
+        assert_eq!((loose.imposed, loaded.imposed, scales(held()).imposed), (0.25, 0.0, 0.25));
+        assert!((loose.data.stress - 0.25 / 2.0_f64.sqrt()).abs() < 1e-15 && loose.round_off.energy > 0.0);
+    }
+
+    #[test]
+    fn units_of_length_and_stress_scale_the_sizes() {
+        let made = |length: f64, stress: f64| {
+            let mut scene = load(squares(0.0), "a_left", Load::Pressure(2.0 * stress));
+            scene.supports[0].kind = SupportKind::Clamped { displacement: [0.01 * length, 0.0] };
+            scene.bodies.iter_mut().for_each(|body| body.young *= stress);
+            let mut problem = Problem::load(scene).expect("a good scene");
+            problem.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
+            Scales::new(&problem)
+        };
+        let unit = made(1.0, 1.0);
+        for (length, stress) in [(1e-3, 1e9), (1e3, 1e-3)] {
+            let found = made(length, stress);
+            for (own, of) in [(found.data, unit.data), (found.round_off, unit.round_off)] {
+                let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+                assert!(same(own.stress, of.stress * stress) && same(own.force, of.force * stress * length));
+                assert!(same(own.displacement, of.displacement * length));
+                assert!(same(own.energy, of.energy * stress * length * length));
+            }
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Temporary folders that are never left behind for long.
+
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use rustix::fs::{FlockOperation, flock};
+use tempfile::TempDir;
+
+const PREFIX: &str = "hypercircle-";
+/// Held locked by the process that made the folder, for as long as it lives: the kernel lets go of it at any death.
+const LOCK: &str = ".alive";
+/// A folder without a lock that is younger than this may be about to get one.
+const YOUNG: Duration = Duration::from_secs(60);
+
+/// The folders that a signal has to take away.
+static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// A temporary folder in `TMPDIR`, removed when this value is dropped, when a signal ends the process, or, if that could
+/// not be, when any process makes its next one.
+#[derive(Debug)]
+pub struct Scratch {
+    folder: TempDir,
+    _alive: File,
+}
+
+impl Scratch {
+    /// Makes a folder, and removes those whose processes are gone.
+    ///
+    /// # Errors
+    /// The folder for temporary files cannot be written to.
+    pub fn new() -> io::Result<Self> {
+        let root = std::path::absolute(std::env::temp_dir())?;
+        sweep(&root);
+        Self::within(&root)
+    }
+
+    fn within(root: &Path) -> io::Result<Self> {
+        loop {
+            let mut folders = folders();
+            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(root)?;
+            folders.push(folder.path().to_path_buf());
+            drop(folders);
+            let lock = folder.path().join(LOCK);
+            let file = OpenOptions::new().write(true).create_new(true).open(&lock);
+            // Another process may have taken the folder for a dead one's before it was locked.
+            if let Ok(alive) = file
+                && flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok()
+                && lock.exists()
+            {
+                return Ok(Scratch { folder, _alive: alive });
+            }
+            if folder.path().exists() && !lock.exists() {
+                return Err(io::Error::other(format!("{} cannot be written to", folder.path().display())));
+            }
+            forget(folder.path());
+        }
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// A folder inside it.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn folder(&self, name: &str) -> io::Result<PathBuf> {
+        let folder = self.path().join(name);
+        fs::create_dir(&folder)?;
+        Ok(folder)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        forget(self.folder.path());
+    }
+}
+
+/// Removes every folder of this process: it is about to end.
+pub(super) fn remove_all() {
+    for folder in folders().iter() {
+        // A thread of this process may be writing into it still.
+        for _ in 0..10 {
+            if fs::remove_dir_all(folder).is_ok() || !folder.exists() {
+                break;
+            }
+        }
+    }
+}
+
+fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
+    FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn forget(folder: &Path) {
+    folders().retain(|other| other != folder);
+}
+
+/// Removes the folders in `root` that belong to this user and to no living process.
+fn sweep(root: &Path) {
+    let user = rustix::process::geteuid().as_raw();
+    for entry in fs::read_dir(root).into_iter().flatten().flatten() {
+        let named = entry.file_name().to_string_lossy().starts_with(PREFIX);
+        // The entry itself: a link that somebody left here is not followed.
+        let own = |e: &fs::DirEntry| e.metadata().is_ok_and(|m| m.is_dir() && m.uid() == user);
+        if named && own(&entry) && is_dead(&entry) {
+            let _ = fs::remove_dir_all(entry.path());
+        }
+    }
+}
+
+fn is_dead(folder: &fs::DirEntry) -> bool {
+    match File::open(folder.path().join(LOCK)) {
+        Ok(alive) => flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok(),
+        Err(_) => {
+            let age = folder.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
+            age.is_some_and(|age| age > YOUNG)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_goes_with_its_value() {
+        let root = tempfile::tempdir().expect("a folder");
+        let scratch = Scratch::within(root.path()).expect("writable");
+        let path = scratch.path().to_path_buf();
+        fs::write(scratch.folder("inner").expect("writable").join("file"), "text").expect("writable");
+        assert!(folders().contains(&path));
+        drop(scratch);
+        assert!(!path.exists() && !folders().contains(&path));
+    }
+
+    #[test]
+    fn what_the_dead_left_is_removed_and_the_living_stay() {
+        let root = tempfile::tempdir().expect("a folder");
+        let living = Scratch::within(root.path()).expect("writable");
+        let dead = root.path().join("hypercircle-dead");
+        fs::create_dir(&dead).expect("writable");
+        fs::write(dead.join(LOCK), "").expect("writable");
+        fs::write(dead.join("problem.json"), "{}").expect("writable");
+        // Not yet locked, somebody else's, and a link.
+        for name in ["hypercircle-young", "other-dead"] {
+            fs::create_dir(root.path().join(name)).expect("writable");
+        }
+        let aside = tempfile::tempdir().expect("a folder");
+        fs::write(aside.path().join(LOCK), "").expect("writable");
+        std::os::unix::fs::symlink(aside.path(), root.path().join("hypercircle-link")).expect("writable");
+        sweep(root.path());
+        assert!(!dead.exists() && living.path().exists() && aside.path().join(LOCK).exists());
+        assert!(["hypercircle-young", "other-dead"].iter().all(|name| root.path().join(name).exists()));
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_written_to_is_an_error() {
+        assert!(Scratch::within(Path::new("/nonexistent")).is_err());
+    }
+}

@@ -1,0 +1,47 @@
+//! Refinement of the stress side alone, until its bracket can tell two models apart.
+//!
+//! A displacement of the mesh that was given is one of every finer mesh, with the same energy: bounds from a finer mesh
+//! hold for it as they stand, and nothing has to be solved twice on the displacement side.
+
+use super::adaptive::{Goal, adapt};
+use super::certified::{Certified, StudyError};
+use crate::compare::Comparison;
+use crate::dual::{DualMethod, Options};
+use crate::report::HistoryRow;
+
+/// Seconds that refinement for the sake of the verdict may take where nobody sets a limit.
+const PATIENCE: f64 = 120.0;
+
+/// A sharper bracket of the same scene.
+#[derive(Debug, Clone)]
+pub struct Sharpened {
+    /// On the last mesh.
+    pub certified: Certified,
+    /// Mesh by mesh.
+    pub history: Vec<HistoryRow>,
+    /// Why refinement stopped before the bracket was sharp.
+    pub stopped: Option<String>,
+}
+
+/// Refines the mesh of `certified` until the guaranteed relative error is at most `goal.tolerance`, within its
+/// limits; `None` where the bracket is sharp already.
+///
+/// # Errors
+/// [`StudyError`], where the first mesh could not be solved again.
+pub fn sharpen(
+    certified: &Certified,
+    comparison: &Comparison,
+    method: &dyn DualMethod,
+    options: &Options,
+    goal: Goal,
+    on_step: impl FnMut(&HistoryRow),
+) -> Result<Option<Sharpened>, StudyError> {
+    let upper = comparison.upper(&certified.bracket).map_or(f64::INFINITY, |(upper, _)| upper.upper());
+    if certified.bracket.tells(upper, goal.tolerance) {
+        return Ok(None);
+    }
+    let known_upper = comparison.judged.iter().map(|j| j.admissible.upper()).reduce(f64::min);
+    let goal = Goal { known_upper, max_seconds: goal.max_seconds.or(Some(PATIENCE)), ..goal };
+    let adapted = adapt(certified.problem.clone(), method, options, &goal, on_step)?;
+    Ok(Some(Sharpened { certified: adapted.certified, history: adapted.history, stopped: adapted.stopped }))
+}

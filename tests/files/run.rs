@@ -1,0 +1,119 @@
+//! Starts the program in a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder to work in, and one for temporary files.
+pub struct Place {
+    pub folder: TempDir,
+    pub temporary: TempDir,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        let folder = || tempfile::tempdir().expect("a folder");
+        Place { folder: folder(), temporary: folder() }
+    }
+
+    /// With `scene.toml` in it.
+    pub fn with(scene: &str) -> Self {
+        let place = Place::new();
+        place.write("scene.toml", scene);
+        place
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).expect("writable");
+    }
+
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
+        command.args(arguments).current_dir(self.folder.path()).env("TMPDIR", self.temporary.path());
+        command.env_remove("RUST_BACKTRACE").stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().expect("the program starts")
+    }
+
+    /// Asserts that `arguments` end with exit code 2, saying `fragments` and leaving nothing new; gives the message.
+    #[track_caller]
+    pub fn refuses(&self, arguments: &[&str], fragments: &[&str]) -> String {
+        let before = names(self.folder.path());
+        let output = self.run(arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        for fragment in fragments {
+            assert!(message.contains(fragment), "{arguments:?}: no `{fragment}` in\n{message}");
+        }
+        assert!(!message.contains("internal error"), "{message}");
+        assert_eq!(names(self.folder.path()), before, "{arguments:?} left something");
+        message
+    }
+
+    #[track_caller]
+    pub fn report(&self, folder: &str) -> Value {
+        let path = self.path(folder).join("report.json");
+        serde_json::from_slice(&std::fs::read(&path).expect("a report")).expect("JSON")
+    }
+}
+
+/// The names in a folder, hidden ones too.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    let mut names: Vec<String> = entries.filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
+    names.sort();
+    names
+}
+
+/// Whether `holds` becomes true within some seconds.
+pub fn soon(holds: impl Fn() -> bool) -> bool {
+    let since = Instant::now();
+    while since.elapsed() < Duration::from_secs(20) {
+        if holds() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    false
+}
+
+/// Whether a process is there and no zombie.
+pub fn alive(process: &str) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.trim())).unwrap_or_default();
+    stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
+}
+
+/// The scene `name` of `cases/`.
+pub fn case(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{name}.toml"));
+    std::fs::read_to_string(path).expect("a case")
+}
+
+/// Whether FEniCSx is expected.
+pub fn with_reference() -> bool {
+    std::env::var_os("HYPERCIRCLE_WITHOUT_REFERENCE").is_none_or(|value| value != "1")
+}
+
+/// A square that is pressed, on the two triangles of `mesh.mesh`.
+pub const SQUARE: &str = "model.kinematics = \"plane-strain\"\nmesh.file = \"mesh.mesh\"\n\
+    bodies.1 = { young = 1.0, poisson = 0.3 }\nsupports = [{ on = \"11\", type = \"clamped\" }]\n\
+    tractions = [{ on = \"12\", pressure = 1.0 }]\n";
+
+/// Medit's format, which meshio reads.
+pub const MESH: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
+    Edges\n2\n1 2 11\n3 4 12\nTriangles\n2\n1 2 3 1\n1 3 4 1\nEnd\n";
+
+/// A displacement on the same triangles.
+pub const FIELD: &str = "# vtk DataFile Version 3.0\nfield\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+    0 0 0\n1 0 0\n1 1 0\n0 1 0\nCELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 2\n5\n5\nPOINT_DATA 4\n\
+    VECTORS displacement double\n0 0 0\n0 0 0\n0 -0.7 0\n0 -0.7 0\n";

@@ -1,0 +1,64 @@
+//! Trials as Markdown.
+
+use std::collections::BTreeMap;
+
+use super::run::Ended;
+use super::{METHODS, Trial};
+
+/// One line about a trial; verdicts in the order of its runs.
+pub fn row(trial: &Trial) -> String {
+    let seconds: f64 = trial.runs.iter().map(|r| r.1.seconds).sum();
+    let triangles = trial.runs[0].1.number("/dual/triangles").map_or("–".to_owned(), |n| n.to_string());
+    let runs: Vec<String> = trial.runs.iter().map(|r| r.1.verdict()).collect();
+    let error = trial.runs.iter().rev().find_map(|r| r.1.number("/energy/relative_error_bound"));
+    let error = error.map_or("–".to_owned(), |e| format!("{e:.1e}"));
+    let mut faults: Vec<&str> = trial.faults.iter().map(|f| f.kind.as_str()).collect();
+    faults.dedup();
+    let (seed, family) = (trial.seed, trial.family);
+    format!(
+        "| {seed} | {family} | {triangles} | {} | {error} | {seconds:.1} | {} |",
+        runs.join(" | "),
+        faults.join("; ")
+    )
+}
+
+/// The head of the table whose lines [`row`] makes.
+pub fn head(models: bool) -> String {
+    let mut names: Vec<&str> = METHODS.to_vec();
+    names.push("finer");
+    names.extend(models.then_some("verify"));
+    let rule = "|---".repeat(names.len());
+    format!(
+        "| seed | family | triangles | {} | error at most | seconds | wrong |\n|--:|---|--:{rule}|--:|--:|---|",
+        names.join(" | ")
+    )
+}
+
+/// What went wrong how often, with the seeds; and how often each verdict was given.
+pub fn groups(trials: &[Trial]) -> String {
+    let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
+    let mut kinds: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
+    for trial in trials {
+        let last: Option<&Ended> = trial.runs.last().map(|r| &r.1);
+        *verdicts.entry(last.map_or(String::new(), Ended::verdict)).or_default() += 1;
+        for fault in &trial.faults {
+            let seeds = kinds.entry(&fault.kind).or_default();
+            if seeds.last() != Some(&trial.seed) {
+                seeds.push(trial.seed);
+            }
+        }
+    }
+    let verdicts: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
+    let wrong = trials.iter().filter(|t| !t.faults.is_empty()).count();
+    let mut text = format!("{} scenes: {}; something is wrong with {wrong}.\n", trials.len(), verdicts.join(", "));
+    let mut kinds: Vec<_> = kinds.into_iter().collect();
+    kinds.sort_by_key(|(_, seeds)| std::cmp::Reverse(seeds.len()));
+    if !kinds.is_empty() {
+        text.push_str("\n| wrong | scenes | seeds |\n|---|--:|---|\n");
+    }
+    for (kind, seeds) in kinds {
+        let list: Vec<String> = seeds.iter().map(u64::to_string).collect();
+        text.push_str(&format!("| {} | {} | {} |\n", kind.replace('|', "\\|"), seeds.len(), list.join(" ")));
+    }
+    text
+}
