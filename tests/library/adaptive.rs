@@ -1,0 +1,192 @@
+//! Adaptive refinement to a guaranteed tolerance, on the two blocks of which the energy is known to nine digits.
+
+use crate::support::toml::Toml;
+use hypercircle::dual::{Condensed, Options};
+use hypercircle::problem::Problem;
+use hypercircle::scene::Scene;
+use hypercircle::study::{Adapted, Goal, adapt, certify, closed_ends};
+
+/// Between the bounds of a run to 0.008 %.
+const EXACT: f64 = -1.796413405;
+
+fn problem(toml: &Toml) -> Problem {
+    let text = toml.text();
+    let scene = Scene::parse(&text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    Problem::load(scene).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// Two unit blocks, the left one on a roller and pressed on by `load` against the clamped right one.
+fn blocks(nu: f64, load: &str) -> Toml {
+    Toml::default()
+        .polygon("left", &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], ["rollers", "face", "", "load"])
+        .polygon("right", &[[1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]], ["", "wall", "", "right_face"])
+        .material("left", 1.0, nu)
+        .material("right", 1.0, nu)
+        .clamp("wall")
+        .roller("rollers")
+        .table(&format!("[[tractions]]\non = \"load\"\n{load}"))
+        .contact("face", "right_face")
+}
+
+const LIFT_OFF: &str = "value = [4.0, 0.0]\ngradient = [[0.0, -7.0], [0.0, 0.0]]";
+
+fn run(problem: Problem, tolerance: f64) -> Adapted {
+    let adapted =
+        adapt(problem, &Condensed::default(), &Options::default(), &Goal::new(tolerance), |_| ()).expect("solves");
+    for row in &adapted.history {
+        println!("{:6} {:7} {:.3e} {:?}", row.triangles, row.unknowns, row.relative_error_bound, row.rate);
+    }
+    assert!(adapted.stopped.is_none());
+    assert!(adapted.history.last().expect("one mesh").relative_error_bound <= tolerance);
+    adapted
+}
+
+fn triangles(adapted: &Adapted) -> usize {
+    adapted.certified.problem.mesh.triangles.len()
+}
+
+#[test]
+fn one_per_cent_to_one_per_mille_with_few_triangles() {
+    let limits = [(1e-2, 1_000), (3e-3, 3_000), (1e-3, 10_000)];
+    let mut needed = Vec::new();
+    for (tolerance, most) in limits {
+        let adapted = run(problem(&blocks(0.3, LIFT_OFF)), tolerance);
+        assert!(triangles(&adapted) < most, "{} for {tolerance}", triangles(&adapted));
+        assert_eq!(adapted.history[0].triangles, 4, "the coarsest mesh");
+        for row in &adapted.history {
+            assert!(row.lower <= EXACT + 2e-9 && row.upper >= EXACT - 2e-9, "{row:?}");
+        }
+        needed.push(triangles(&adapted));
+        if tolerance == 1e-3 {
+            // Asymptotically the bound falls like 1/unknowns; least squares over the meshes beyond the first hundred.
+            let points: Vec<[f64; 2]> = (adapted.history.iter().filter(|r| r.triangles > 100))
+                .map(|r| [(r.unknowns as f64).ln(), r.relative_error_bound.ln()])
+                .collect();
+            let mean = [0, 1].map(|c| points.iter().map(|p| p[c]).sum::<f64>() / points.len() as f64);
+            let xy: f64 = points.iter().map(|p| (p[0] - mean[0]) * (p[1] - mean[1])).sum();
+            let xx: f64 = points.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
+            assert!(-xy / xx > 0.95, "rate {}", -xy / xx);
+        }
+    }
+    let nearly_incompressible = run(problem(&blocks(0.4999, LIFT_OFF)), 1e-3);
+    assert!(triangles(&nearly_incompressible) <= 3 * needed[2], "{}", triangles(&nearly_incompressible));
+}
+
+#[test]
+fn uniform_refinement_is_slower() {
+    let adaptive = run(problem(&blocks(0.3, LIFT_OFF)), 3e-3);
+    let uniform = problem(&blocks(0.3, LIFT_OFF)).refine_uniform(5).expect("refines");
+    assert!(uniform.mesh.triangles.len() > triangles(&adaptive));
+    let uniform = certify(uniform, &Condensed::default(), &Options::default()).expect("solves");
+    let bound = uniform.bracket.relative_error(uniform.bracket.free.as_ref().expect("an upper bound").upper());
+    assert!(bound > 3e-3, "{bound}");
+}
+
+/// Meshes grow by a factor of more than two: all of them together have little more than twice the triangles of the last.
+#[test]
+fn all_meshes_together_cost_little_more_than_the_last() {
+    for (nu, tolerance) in [(0.3, 1e-2), (0.3, 3e-3), (0.3, 1e-3), (0.4999, 3e-3)] {
+        let history = run(problem(&blocks(nu, LIFT_OFF)), tolerance).history;
+        let all: usize = history.iter().map(|row| row.unknowns).sum();
+        let last = history.last().expect("one mesh").unknowns;
+        assert!(all < 3 * last, "{all} unknowns in all, {last} on the last mesh");
+    }
+}
+
+#[test]
+fn wholly_closed_contact_and_no_contact_take_one_step() {
+    // Scene B of the paper's example stays closed.
+    let closed = problem(&blocks(0.3, "value = [1.5, 0.0]\ngradient = [[0.0, -1.8], [0.0, 0.0]]"));
+    let adapted = run(closed.clone(), 1e-2);
+    assert_eq!(adapted.certified.dual.iterations, 1);
+    assert!(adapted.certified.dual.closed.iter().all(|c| *c));
+    assert_eq!(certify(closed, &Condensed::default(), &Options::default()).expect("solves").dual.iterations, 1);
+    let alone = Toml::default()
+        .polygon("plate", &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["", "load", "", "wall"])
+        .clamp("wall")
+        .traction("load", [1.0, 0.5]);
+    let adapted = run(problem(&alone), 1e-2);
+    assert!(adapted.certified.dual.closed.is_empty() && adapted.certified.dual.iterations <= 1);
+}
+
+#[test]
+fn a_limit_is_said_with_the_bound_reached() {
+    let scene = problem(&blocks(0.3, LIFT_OFF));
+    let goal = Goal { max_triangles: Some(300), ..Goal::new(1e-3) };
+    let adapted = adapt(scene.clone(), &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
+    assert!(triangles(&adapted) <= 300 && triangles(&adapted) > 100);
+    let row = adapted.history.last().expect("one mesh");
+    let said = adapted.stopped.expect("stopped");
+    assert!(said.contains("more than 300 triangles"), "{said}");
+    assert!(said.contains(&format!("{:.3} %", 100.0 * row.relative_error_bound)), "{said}");
+    let goal = Goal { max_seconds: Some(1e-9), ..Goal::new(1e-3) };
+    let adapted = adapt(scene, &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
+    assert_eq!(adapted.history.len(), 1);
+    assert!(adapted.stopped.expect("stopped").contains("seconds"));
+}
+
+/// The corner of a block that slides down a slanted wall runs into a clamped corner, where the displacement all but jumps:
+/// refinement goes down to edges whose direction is known to few digits, and what they hold must stay one direction.
+#[test]
+fn a_slanted_roller_stays_one_as_far_as_numbers_resolve_its_edges() {
+    let scene = Toml::default()
+        .polygon("base", &[[0.0, 0.0], [1.1, 0.0], [0.7, 1.1], [-0.07, 0.97]], ["foot", "", "head", "west"])
+        .polygon("top", &[[-0.07, 0.97], [0.7, 1.1], [0.2, 2.3]], ["sole", "load", "wall"])
+        .material("base", 0.1, 0.2)
+        .clamp("foot")
+        .clamp("west")
+        .roller("wall")
+        .traction("load", [0.1, -0.9])
+        .table("[[contacts]]\nbetween = [\"head\", \"sole\"]\ngap = 0.005");
+    let goal = Goal { max_triangles: Some(40_000), ..Goal::new(0.05) };
+    let adapted = adapt(problem(&scene), &Condensed::default(), &Options::default(), &goal, |_| ()).expect("solves");
+    let smallest = |p: &Problem| (0..p.mesh.edges.len()).map(|e| p.mesh.edge_frame(e).0).fold(1.0, f64::min);
+    let smallest = smallest(&adapted.certified.problem);
+    assert!(smallest < 1e-8, "{smallest:e} after {:?}", adapted.history.last());
+    for pair in adapted.history.windows(2).filter(|pair| pair[0].triangles > 200) {
+        assert!(pair[1].upper < pair[0].upper && pair[1].lower > pair[0].lower, "{pair:?}");
+    }
+}
+
+/// Whatever the first guess of the contact state: same state, same bits.
+#[test]
+fn the_first_guess_of_the_contact_state_does_not_change_the_answer() {
+    let coarse = run(problem(&blocks(0.3, LIFT_OFF)), 5e-2).certified;
+    let fine = run(problem(&blocks(0.3, LIFT_OFF)), 1e-2).certified.problem;
+    let cold = certify(fine.clone(), &Condensed::default(), &Options::default()).expect("solves");
+    let from_coarse = closed_ends(&coarse.problem, &coarse.dual.closed, &fine);
+    assert_eq!(from_coarse.len(), cold.dual.closed.len());
+    let wrong = from_coarse.iter().zip(&cold.dual.closed).filter(|(a, b)| a != b).count();
+    assert!(4 * wrong < from_coarse.len(), "{wrong} of {} ends guessed wrong", from_coarse.len());
+    let opposite = from_coarse.iter().map(|c| !c).collect();
+    let open = vec![false; from_coarse.len()];
+    for guess in [from_coarse, opposite, open] {
+        let warm = Options { closed: Some(guess), ..Options::default() };
+        let warm = certify(fine.clone(), &Condensed::default(), &warm).expect("solves");
+        assert_eq!(warm.dual.closed, cold.dual.closed);
+        assert_eq!(warm.bracket.complementary, cold.bracket.complementary);
+    }
+}
+
+/// Gaps with break points, rigid obstacles and two contacts at once are refined alike.
+#[test]
+fn a_beam_over_a_gap_is_refined_to_one_per_cent() {
+    let beam = Toml::default()
+        .polygon(
+            "beam",
+            &[[0.0, 1.0], [1.0, 1.0], [3.0, 1.0], [4.0, 1.0], [4.0, 1.5], [0.0, 1.5]],
+            ["foot", "under", "roll", "", "load", ""],
+        )
+        .polygon("post", &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], ["floor", "", "seat", ""])
+        .clamp("floor")
+        .pressure("load", 0.01)
+        .contact("foot", "seat")
+        .table("[[contacts]]\non = \"under\"\ngap = [[0.0, 0.0], [0.7, 0.02], [2.0, 0.0]]")
+        .rigid("roll");
+    let adapted = run(problem(&beam), 1e-2);
+    assert!(adapted.certified.problem.notes.iter().all(|n| !n.weakens_guarantee));
+    let Adapted { certified, .. } = adapted;
+    let free = certified.bracket.free.as_ref().expect("an upper bound");
+    let gap = free.potential.total() - certified.bracket.complementary.lower();
+    assert!((gap - free.local.total).abs() < 1e-9 * certified.bracket.complementary.strain);
+}

@@ -1,0 +1,37 @@
+//! The library, called as a program calls it.
+
+mod accuracy;
+mod adaptive;
+#[path = "../support/arcs.rs"]
+mod arcs;
+mod comparison;
+mod congruent;
+mod contact_qp;
+mod curved_contact;
+mod dual_limits;
+mod dual_methods;
+mod effectivity;
+mod element_formulas;
+mod element_properties;
+mod equilibrium;
+mod inner_segments;
+mod invariance;
+mod known_solutions;
+#[path = "../malformed/mod.rs"]
+mod malformed;
+mod malformed_scenes;
+mod mesh_files;
+mod methods_on_cases;
+mod paper_block;
+mod paper_objects;
+mod paper_rates;
+mod paper_reactions;
+mod paper_theorems;
+mod rounding;
+mod setup;
+mod squares;
+#[path = "../support/mod.rs"]
+mod support;
+#[path = "../support/theory/mod.rs"]
+mod theory;
+mod two_blocks;

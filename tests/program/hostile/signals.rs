@@ -1,0 +1,88 @@
+//! Ended at any moment, the program leaves the files of one run, and after the next run nothing else.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use hypercircle::report::{NAMES, run_of};
+
+use super::run::{Place, alive, case, names, soon};
+
+fn kill(signal: &str, process: u32) {
+    let _ =
+        Command::new("kill").args(["-s", signal, &process.to_string()]).stderr(std::process::Stdio::null()).status();
+}
+
+#[test]
+fn a_report_is_one_run_s_whenever_runs_are_killed() {
+    let place = Place::with(&case("patch"));
+    let start = || place.command(&["solve", "scene.toml", "-q"]).spawn().expect("the program starts");
+    let since = Instant::now();
+    assert!(start().wait().expect("ends").success());
+    let usual = since.elapsed();
+    let folder = place.path("out/scene");
+    for i in 0..60 {
+        let mut child = start();
+        // From the start to the end, most of them late, when files are written.
+        std::thread::sleep(usual.mul_f64(f64::from(i % 20) / 19.0));
+        kill(["KILL", "TERM", "INT"][i as usize % 3], child.id());
+        let status = child.wait().expect("ends");
+        assert_ne!(status.code(), Some(3), "{status}");
+        run_of(&folder).expect("the files of one run");
+        let mut found = names(&folder);
+        found.retain(|name| !name.starts_with('.'));
+        assert_eq!(found.len(), NAMES.len(), "{found:?}");
+    }
+    assert!(start().wait().expect("ends").success());
+    assert_eq!((names(&folder).len(), names(&place.path("out"))), (NAMES.len(), vec!["scene".to_string()]));
+    assert_eq!(names(place.temporary.path()), [""; 0]);
+}
+
+/// An interpreter that waits, told in a file, and ends with what it was started by.
+fn waiting(place: &Place) -> std::path::PathBuf {
+    let path = place.path("python3");
+    let text = format!("#!/bin/sh\necho $$ > {}\nexec sleep 300\n", place.path("pid").display());
+    std::fs::write(&path, text).expect("writable");
+    std::fs::set_permissions(&path, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("ours");
+    path
+}
+
+#[test]
+fn the_exchange_folder_and_the_reference_go_with_the_process() {
+    for signal in ["TERM", "INT", "HUP"] {
+        let place = Place::with(&case("patch"));
+        let mut command = place.command(&["verify", "scene.toml"]);
+        let mut child = command.env("HYPERCIRCLE_PYTHON", waiting(&place)).spawn().expect("the program starts");
+        let note = place.path("pid");
+        let pid = || std::fs::read_to_string(&note).unwrap_or_default();
+        assert!(soon(|| pid().ends_with('\n')), "the interpreter was not started");
+        assert!(!names(place.temporary.path()).is_empty());
+        let since = Instant::now();
+        kill(signal, child.id());
+        let status = child.wait().expect("ends");
+        assert!(std::os::unix::process::ExitStatusExt::signal(&status).is_some(), "{signal}: {status}");
+        assert!(since.elapsed() < Duration::from_secs(5), "{signal}: {:?}", since.elapsed());
+        assert!(soon(|| !alive(&pid())), "{signal}: the interpreter lives on");
+        assert_eq!(names(place.temporary.path()), [""; 0], "{signal}");
+        assert!(!place.path("out").exists(), "{signal}");
+    }
+}
+
+#[test]
+fn an_ignored_hangup_stays_ignored() {
+    let place = Place::with(&case("patch"));
+    let mut command = Command::new("nohup");
+    command.arg(env!("CARGO_BIN_EXE_hypercircle")).args(["verify", "scene.toml"]).current_dir(place.folder.path());
+    command.env("HYPERCIRCLE_PYTHON", waiting(&place)).env("TMPDIR", place.temporary.path());
+    command
+        .stdin(std::process::Stdio::null())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped());
+    let mut child = command.spawn().expect("nohup");
+    let note = place.path("pid");
+    assert!(soon(|| std::fs::read_to_string(&note).is_ok_and(|text| text.ends_with('\n'))));
+    kill("HUP", child.id());
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().expect("watched").is_none(), "it ended");
+    kill("TERM", child.id());
+    child.wait().expect("ends");
+}

@@ -1,0 +1,12 @@
+//! The program, called as a user calls it, without FEniCSx but where a test says so.
+
+mod certify;
+mod chart;
+mod command_line;
+mod fields;
+mod hostile;
+#[path = "../malformed/mod.rs"]
+mod malformed;
+mod malformed_meshes;
+mod memory;
+mod stability;

@@ -1,0 +1,81 @@
+//! Cases whose stress the equilibrium elements hold exactly: both bounds are the energy itself.
+
+use super::run::{Report, carries, close, sound, turns, with_reference};
+
+/// The bracket has closed on `energy` but for what it was widened by, and P2 has found it too.
+#[track_caller]
+fn closed_on(report: &Report, energy: f64) {
+    let [lower, upper, free, widening] =
+        ["lower", "upper", "free_upper", "widening"].map(|key| report.number(&format!("/energy/{key}")));
+    assert!(lower <= energy && energy <= upper, "{lower} {energy} {upper}");
+    assert!(widening < 1e-11 * energy.abs(), "{widening}");
+    close(lower + widening, energy, 1e-12 + widening / energy.abs());
+    close(free, energy, 1e-12 + 2.0 * widening / energy.abs());
+    if with_reference() {
+        close(report.number("/primal/1/energy"), energy, 1e-11);
+        assert!(report.number("/stress/relative_energy_norm_difference") < 1e-6);
+    }
+}
+
+/// The dual pressure of contact `index` is `pressure(arc length)` at both ends of every edge.
+#[track_caller]
+fn pressed(report: &Report, index: usize, pressure: impl Fn(f64) -> f64) {
+    let points = report.profile(index, "dual");
+    assert!(points.len() >= 4);
+    for [arc, found] in points {
+        close(found, pressure(arc), 1e-9);
+    }
+}
+
+#[test]
+fn patch() {
+    let report = sound("patch");
+    // σ_xx = −2 in both plates, thickness ½, moduli 4 and 1, each a unit square.
+    closed_on(&report, -0.5 * 2.0_f64.powi(2) * (1.0 / 4.0 + 1.0) * 0.5);
+    if with_reference() {
+        // A linear displacement is in P1.
+        close(report.number("/primal/0/energy"), -1.25, 1e-11);
+    }
+    carries(&report, 0, [-1.0, 0.0]);
+    turns(&report, 0, 0.5);
+    pressed(&report, 0, |_| 2.0);
+}
+
+#[test]
+fn bending() {
+    let report = sound("bending");
+    // ½ (1 − ν²)/E · length · ∫ (1 + 3/2 y)² dy over |y| < ½.
+    closed_on(&report, -0.5 * 0.91 * 4.0 * (1.0 + 2.25 / 12.0));
+    if with_reference() {
+        assert!(report.number("/primal/0/energy") > -2.15, "P1 cannot bend without an error");
+    }
+    carries(&report, 0, [-1.0, 0.0]);
+    // ∫ y (1 + 3/2 y) dy.
+    turns(&report, 0, 0.125);
+    pressed(&report, 0, |arc| 1.0 + 1.5 * (arc - 0.5));
+    assert!(report.notes().contains("slides"), "{}", report.notes());
+}
+
+#[test]
+fn silo() {
+    let report = sound("silo");
+    // Oedometer: ½ ∫ σ_yy² / M with M = E (1 − ν) / ((1 + ν)(1 − 2ν)); thickness 2, width 1.
+    let modulus = |young: f64, nu: f64| young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let upper = (3.0_f64.powi(3) / 3.0 / 3.0) / modulus(30.0, 0.4);
+    let lower = ((7.0_f64.powi(3) - 3.0_f64.powi(3)) / 3.0 / 2.0) / modulus(100.0, 0.25);
+    closed_on(&report, -0.5 * 2.0 * (upper + lower));
+    carries(&report, 0, [0.0, 6.0]);
+    carries(&report, 1, [0.0, 14.0]);
+    pressed(&report, 0, |_| 3.0);
+    pressed(&report, 1, |_| 7.0);
+}
+
+#[test]
+fn gap() {
+    let report = sound("gap");
+    // Two springs in series, E/L = 2 and 1/0.91 per unit of height, share what is left of the motion.
+    let force = 0.02 / (1.0 / 2.0 + 0.91);
+    closed_on(&report, 0.5 * force * 0.02);
+    carries(&report, 0, [-force, 0.0]);
+    pressed(&report, 0, |_| force);
+}

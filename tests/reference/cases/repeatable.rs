@@ -1,0 +1,63 @@
+//! The same input gives the same bits, and a baseline notices when it does not.
+
+use serde_json::Value;
+
+use super::run::{Run, case, with_reference};
+
+/// Drops times and the name of the run, which are the only things that may differ.
+fn without_seconds(value: &mut Value) {
+    match value {
+        Value::Object(map) => {
+            map.remove("seconds");
+            map.remove("run");
+            map.values_mut().for_each(without_seconds);
+        }
+        Value::Array(list) => list.iter_mut().for_each(without_seconds),
+        _ => {}
+    }
+}
+
+#[test]
+fn solving_twice_gives_the_same_bits() {
+    for (name, threads) in [("two_blocks", "1"), ("hertz_elastic", "2")] {
+        let report = || {
+            let run = Run::new("solve", &case(name), &["--threads", threads]);
+            assert_eq!(run.code, Some(0), "{}", run.stderr);
+            let mut value: Value = serde_json::from_str(&run.file("report.json")).expect("JSON");
+            let name = value["run"].as_str().expect("a name").to_string();
+            without_seconds(&mut value);
+            (value.to_string(), run.file("fields.vtu").replace(&name, "RUN"))
+        };
+        assert_eq!(report(), report(), "{name}");
+    }
+}
+
+#[test]
+fn a_baseline_holds_later_runs_to_it() {
+    if !with_reference() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("baseline.json");
+    let given = ["--baseline", file.to_str().expect("plain path")];
+    let scene = case("two_blocks");
+    let missing = Run::new("verify", &scene, &given);
+    assert_eq!(missing.code, Some(2), "{}", missing.stderr);
+    assert!(missing.stderr.contains("--accept"), "{}", missing.stderr);
+    let accepted = Run::new("verify", &scene, &[&given[..], &["--accept"]].concat());
+    assert_eq!(accepted.code, Some(0), "{}{}", accepted.stdout, accepted.stderr);
+    let same = Run::new("verify", &scene, &given);
+    assert_eq!(same.code, Some(0), "{}{}", same.stdout, same.stderr);
+    let made = same.report().0["checks"].to_string();
+    assert!(made.contains("baseline/energy.lower") && made.contains("baseline/energy.FEniCSx P2"), "{made}");
+
+    let mut stored: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("readable")).expect("JSON");
+    let lower = stored["values"]["energy.lower"].as_f64().expect("a number");
+    stored["values"]["energy.lower"] = (lower * (1.0 + 1e-6)).into();
+    std::fs::write(&file, stored.to_string()).expect("writes");
+    let altered = Run::new("verify", &scene, &given);
+    assert_eq!(altered.code, Some(1), "{}{}", altered.stdout, altered.stderr);
+    assert_eq!(altered.report().failed(), ["baseline/energy.lower"]);
+    let allowed = Run::new("verify", &scene, &[&given[..], &["--allow", "baseline/energy.lower=1e-5"]].concat());
+    assert_eq!(allowed.code, Some(0), "{}{}", allowed.stdout, allowed.stderr);
+}

@@ -1,0 +1,86 @@
+//! Cases whose contact forces follow from equilibrium alone.
+
+use super::run::{carries, close, models, sound, turns, with_reference};
+
+#[test]
+fn two_blocks() {
+    let report = sound("two_blocks");
+    // ∫ (4 − 7y) dy = ½.
+    carries(&report, 0, [-0.5, 0.0]);
+    // The energy of finer meshes, bracketed independently of this program.
+    assert!(report.number("/energy/lower") < -1.7964083583 && report.number("/energy/upper") > -1.7964189504);
+    // The load pulls at the top: contact ends once, near y = 0.6, and is open above.
+    let ends = report.0["contact"][0]["contact_ends"].as_array().expect("a list").clone();
+    assert_eq!(ends.len(), 1);
+    assert!((ends[0].as_f64().expect("a number") - 0.6).abs() < 0.125, "{ends:?}");
+    for [arc, pressure] in report.profile(0, "dual") {
+        assert!(if arc < 0.45 { pressure > 0.0 } else { arc < 0.75 || pressure.abs() < 1e-9 }, "{arc}: {pressure}");
+    }
+}
+
+#[test]
+fn inclined() {
+    let report = sound("inclined");
+    // Frictionless: the force is normal to a slope of 1 in 2, and its vertical part carries the load.
+    carries(&report, 0, [-1.0, 2.0]);
+}
+
+#[test]
+fn sliding() {
+    let report = sound("sliding");
+    carries(&report, 0, [0.0, 1.0]);
+    // ∫ x (x − ½) dx over [1, 2].
+    turns(&report, 0, 19.0 / 12.0);
+    let notes = report.notes();
+    assert!(notes.contains("`block` slides along its contact"), "{notes}");
+}
+
+#[test]
+fn stack() {
+    let report = sound("stack");
+    let load = 2.0 * 1.0 * 0.2;
+    let weight = 0.4 * 2.0 * 0.5 * 0.2;
+    carries(&report, 0, [0.0, load]);
+    carries(&report, 1, [0.0, load + weight]);
+    // The plate is free: what its two contacts and its weight, at x = 1.5, turn it by adds up to nothing.
+    for model in models() {
+        let moment = |i| report.number(&format!("/contact/{i}/moment/{model}"));
+        close(moment(1), moment(0) + 1.5 * weight, 1e-9);
+    }
+}
+
+#[test]
+fn seal() {
+    let report = sound("seal");
+    // A pressure of 0.2 on 0.75.
+    carries(&report, 0, [0.0, -0.15]);
+    if with_reference() {
+        // Linear displacements lock: they miss more of the exact energy than the bracket leaves open.
+        let [lower, upper] = ["lower", "upper"].map(|key| report.number(&format!("/energy/{key}")));
+        let [p1, p2] = [0, 1].map(|i| report.number(&format!("/primal/{i}/energy")));
+        assert!(p1 - upper > 10.0 * (upper - lower) && p2 - lower < 2.0 * (upper - lower), "{lower} {upper} {p1} {p2}");
+    }
+}
+
+#[test]
+fn gravity() {
+    let report = sound("gravity");
+    carries(&report, 0, [0.0, 2.0]);
+    turns(&report, 0, 2.0 * 1.0);
+    carries(&report, 1, [0.0, 3.5]);
+    turns(&report, 1, 2.0 * 1.0 + 1.5 * 1.5);
+    assert!(report.number("/energy/upper") < 0.0);
+}
+
+#[test]
+fn from_gmsh() {
+    let report = sound("from_gmsh");
+    carries(&report, 0, [0.0, 2.0 * 0.7 * 3.0]);
+    let notes = report.notes();
+    for side in ["vertices of 'foot' inserted into 'seat'", "vertices of 'seat' inserted into 'foot'"] {
+        assert!(notes.contains(side), "{notes}");
+    }
+    if with_reference() {
+        assert!(report.number("/contact/0/pressure_l2_difference") < 0.1);
+    }
+}
