@@ -3,13 +3,13 @@
 //!
 //! `cargo run --release --example theory_rates`
 
-#[path = "../tests/support/theory/mod.rs"]
-mod theory;
+#[path = "../tests/support/mod.rs"]
+mod support;
 
 use std::path::Path;
 
 use serde_json::json;
-use theory::{constant, rates, tables};
+use support::theory::{constant, rates, tables};
 
 const COMMAND: &str = "cargo run --release --example theory_rates";
 const FINER: [usize; 5] = [8, 16, 32, 64, 128];

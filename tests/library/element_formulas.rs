@@ -1,6 +1,6 @@
 //! The closed forms of Section 3, (3.1), (3.2) and (3.4), against quadrature and point evaluation.
 
-use crate::theory::quadrature;
+use crate::support::theory::quadrature;
 use hypercircle::element::subtriangle::{Moments, flexibility, shift, side_map, stress_map};
 use nalgebra::SVector;
 use proptest::prelude::*;

@@ -1,9 +1,9 @@
 //! The contact solutions that rates are measured against are what they claim to be.
 
-use crate::theory::contact::Solution;
-use crate::theory::meshes::Family;
-use crate::theory::quadrature::{gauss, visit};
-use crate::theory::rates::solutions;
+use crate::support::theory::contact::Solution;
+use crate::support::theory::meshes::Family;
+use crate::support::theory::quadrature::{gauss, visit};
+use crate::support::theory::rates::solutions;
 
 const STEP: f64 = 1e-5;
 

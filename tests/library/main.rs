@@ -32,6 +32,4 @@ mod setup;
 mod squares;
 #[path = "../support/mod.rs"]
 mod support;
-#[path = "../support/theory/mod.rs"]
-mod theory;
 mod two_blocks;

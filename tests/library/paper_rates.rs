@@ -1,8 +1,8 @@
 //! Theorems 2.2 and 2.3 and the energies: the committed rates of `docs/data/rates.json`, measured again.
 
-use crate::theory::constant::Row;
-use crate::theory::rates::{self, Measured, Study, fitted};
-use crate::theory::tables;
+use crate::support::theory::constant::Row;
+use crate::support::theory::rates::{self, Measured, Study, fitted};
+use crate::support::theory::tables;
 
 /// The meshes that a test can afford; the committed studies go on to finer ones.
 const INTERPOLATION: [usize; 4] = [8, 16, 32, 64];

@@ -5,9 +5,9 @@
 
 use std::path::PathBuf;
 
-use crate::theory::contact::free_motions;
-use crate::theory::meshes::{Family, blocks};
-use crate::theory::quadrature::gauss;
+use crate::support::theory::contact::free_motions;
+use crate::support::theory::meshes::{Family, blocks};
+use crate::support::theory::quadrature::gauss;
 use hypercircle::dual::{self, Condensed, Options};
 use hypercircle::element::StressField;
 use hypercircle::mesh::Triangulation;

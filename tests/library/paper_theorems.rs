@@ -1,10 +1,10 @@
 //! Theorems 2.1 and 2.2: one field for every load in equilibrium, its bound c(α), and the mapping r_h.
 
-use crate::theory::constant::{self, Row, equilibrium, triangle_with_angles};
-use crate::theory::contact::Solution;
-use crate::theory::fields::FIELDS;
-use crate::theory::meshes::Family;
-use crate::theory::quadrature::{area, gauss, sub_corners};
+use crate::support::theory::constant::{self, Row, equilibrium, triangle_with_angles};
+use crate::support::theory::contact::Solution;
+use crate::support::theory::fields::FIELDS;
+use crate::support::theory::meshes::Family;
+use crate::support::theory::quadrature::{area, gauss, sub_corners};
 use hypercircle::element::{
     Block, Compliance, EquilibriumElement, interpolant, parameters_from_tractions, side_projection,
 };

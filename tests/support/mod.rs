@@ -6,6 +6,7 @@ pub mod double_double;
 pub mod planted;
 pub mod random;
 pub mod scenes;
+pub mod theory;
 pub mod toml;
 pub mod trial;
 

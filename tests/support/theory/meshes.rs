@@ -2,8 +2,8 @@
 
 use hypercircle::mesh::RawMesh;
 
+use super::super::blocks::grid;
 use super::Numbers;
-use super::blocks::grid;
 
 /// How squares are turned into quadrilaterals before they are cut.
 #[derive(Debug, Clone, Copy, PartialEq)]

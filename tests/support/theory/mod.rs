@@ -4,8 +4,6 @@
 //! is what is measured. Shared by the tests and by `examples/theory_rates.rs`.
 #![allow(dead_code)]
 
-#[path = "../blocks.rs"]
-pub mod blocks;
 pub mod constant;
 pub mod contact;
 pub mod fields;
