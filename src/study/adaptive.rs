@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use super::admission::Admission;
 use super::certified::{Certified, StudyError, balance, solve_balanced};
+use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::outlook::outlook;
 use super::warm_start::{carried, closed_ends};
@@ -30,12 +31,20 @@ const AIM: f64 = 0.9;
 /// How far growth and prediction may be off before a round is made smaller.
 const SLACK: f64 = 0.1;
 
-/// Least power of the prediction by which the gap is taken to fall: that of a point which holds a body where it would
-/// slide, the strongest singularity there is, is about a third.
-const LEAST_POWER: f64 = 0.25;
-
 /// Least growth: a mesh with hardly more triangles than the last one costs as much and tells little more.
 const WORTH_A_SOLVE: f64 = 1.1;
+
+/// Part of the area of a triangle of the last mesh that its pieces have on the next one, at least: predictions hold no
+/// farther.
+const DEEPEST: f64 = 1e-6;
+
+/// Triangles across less than this, relative to the farthest coordinate, are not refined: rounding of the corners would
+/// show in them.
+const SHORTEST: f64 = 1e-11;
+
+/// Where triangles were too small all the same, the next try keeps them larger by this factor, up to `LONGEST`.
+const COARSER: f64 = 30.0;
+const LONGEST: f64 = 1e-5;
 
 /// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
 const MOST_AT_ENDS: usize = 60;
@@ -91,32 +100,44 @@ pub fn adapt(
     let refinement = RefinementEdges::longest(&problem.mesh);
     let mut stage = Stage::new(problem, refinement);
     let mut history: Vec<HistoryRow> = Vec::new();
-    let mut forecast = Forecast { from: f64::NAN, to: f64::NAN, power: 1.0 };
-    let mut before: Option<(Certified, HistoryRow)> = None;
+    let mut forecast = Forecast::default();
+    let mut before: Option<(Certified, HistoryRow, RefinementEdges)> = None;
+    let mut shortest = SHORTEST;
     loop {
         let began = Instant::now();
-        let (certified, refinement) = match stage.solved(method, options, before.as_ref().map(|(c, _)| c)) {
-            Ok(solved) => solved,
-            // What was reached is worth more than the reason why there is no more.
-            Err(StudyError::Dual(reason)) if let Some((certified, row)) = before.take() => {
-                let reason = format!("the next mesh could not be solved ({reason})");
-                let pace = outlook(&history, goal, &admission, Size::of(&certified.problem));
-                return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal, pace)), certified, history });
+        let solved = stage.solved(method, options, before.as_ref().map(|(c, _, _)| c));
+        let (certified, row, refinement, fault) = match (solved, before.take()) {
+            (Ok((certified, refinement)), _) => {
+                let seconds = [start.elapsed().as_secs_f64(), began.elapsed().as_secs_f64()];
+                let row = row(&certified, goal, seconds, history.last());
+                on_step(&row);
+                history.push(row);
+                forecast.learn(&certified);
+                (certified, row, refinement, None)
             }
-            Err(error) => return Err(error),
+            // What was reached is worth more than the reason why there is no more. Triangles that are less small may do.
+            (Err(StudyError::Dual(reason)), Some((certified, row, refinement))) => {
+                shortest *= COARSER;
+                (certified, row, refinement, Some(format!("the next mesh could not be solved ({reason})")))
+            }
+            (Err(error), _) => return Err(error),
         };
-        let seconds = [start.elapsed().as_secs_f64(), began.elapsed().as_secs_f64()];
-        let row = row(&certified, goal, seconds, history.last());
-        on_step(&row);
-        history.push(row);
         if certified.bracket.tells(row.upper, goal.tolerance) {
             return Ok(Adapted { certified, history, stopped: None });
         }
-        forecast.learn(&certified);
         let spent = start.elapsed().as_secs_f64();
-        let finer = match goal.max_seconds {
-            Some(most) if spent >= most => Err(format!("{most} seconds have passed")),
-            _ => refined(&certified, refinement, goal, &admission, row.relative_error_bound, &mut forecast)?,
+        let finer = match (goal.max_seconds, fault) {
+            (_, Some(fault)) if shortest > LONGEST => Err(fault),
+            (Some(most), _) if spent >= most => Err(format!("{most} seconds have passed")),
+            _ => refined(
+                &certified,
+                refinement.clone(),
+                goal,
+                &admission,
+                shortest,
+                row.relative_error_bound,
+                &forecast,
+            )?,
         };
         stage = match finer {
             Ok(finer) => finer,
@@ -125,7 +146,7 @@ pub fn adapt(
                 return Ok(Adapted { stopped: Some(stopped(&reason, &row, goal, pace)), certified, history });
             }
         };
-        before = Some((certified, row));
+        before = Some((certified, row, refinement));
     }
 }
 
@@ -264,26 +285,6 @@ fn contact_ends(problem: &Problem) -> Vec<usize> {
     marked
 }
 
-/// How the gap falls: against how a smooth solution's would, as a power of it.
-struct Forecast {
-    /// The gap of the last mesh, and the one predicted for the next.
-    from: f64,
-    to: f64,
-    power: f64,
-}
-
-impl Forecast {
-    /// Singularities make the gap fall more slowly than predicted, and by about the same power from mesh to mesh.
-    fn learn(&mut self, certified: &Certified) {
-        if let Ok(free) = &certified.bracket.free {
-            let ratio = (self.from / free.local.total).ln() / (self.from / self.to).ln();
-            if ratio.is_finite() {
-                self.power = (ratio * self.power).clamp(LEAST_POWER, 1.0);
-            }
-        }
-    }
-}
-
 /// The next mesh: rounds of Dörfler marking with predicted indicators, until the mesh has grown enough or the predicted
 /// bound meets the tolerance; or the reason why there is none.
 fn refined(
@@ -291,8 +292,9 @@ fn refined(
     refinement: RefinementEdges,
     goal: &Goal,
     admission: &Admission<'_>,
+    shortest: f64,
     bound: f64,
-    forecast: &mut Forecast,
+    forecast: &Forecast,
 ) -> Result<Result<Stage, String>, StudyError> {
     let free = match &certified.bracket.free {
         Ok(free) => free,
@@ -301,17 +303,19 @@ fn refined(
     let mut indicators = Indicators::new(&certified.problem, free);
     // The part of the gap that may stay: the bound is its root.
     let enough = indicators.total() * (AIM * goal.tolerance / bound).powi(2);
-    forecast.from = indicators.total();
     let kept = Size::of(&certified.problem);
     let now = kept.triangles;
     let (worth, grown) = (WORTH_A_SOLVE * now, GROWTH * now);
     let mut stage = Stage::new(certified.problem.clone(), refinement);
+    let smallest = smallest_area(&certified.problem, shortest);
     loop {
         let mut bulk = goal.bulk;
+        let area = |t: usize| stage.problem.mesh.area(t);
+        let may = |t: usize| area(t) > DEEPEST * certified.problem.mesh.area(stage.parent[t]) && area(t) > smallest;
         // The last round is tried with smaller parts, down to a sixteenth, while it would overshoot.
         let (next, predicted) = loop {
-            let (next, within) = stage.bisect(&indicators.marked(bulk))?;
-            let predicted = indicators.inherited(&stage.problem.mesh, &next.problem.mesh, &within, forecast.power);
+            let (next, within) = stage.bisect(&indicators.marked(bulk, may))?;
+            let predicted = forecast.foresee(&indicators, &stage.problem.mesh, &next.problem.mesh, &within);
             let count = next.problem.mesh.triangles.len();
             let beyond = match goal.max_triangles {
                 Some(most) if count > most => Some(format!("the next mesh would have more than {most} triangles")),
@@ -329,7 +333,7 @@ fn refined(
             }
             let reason = match beyond {
                 Some(reason) => reason,
-                _ if resolvable(&next.problem) => break (next, predicted),
+                _ if count > stage.problem.mesh.triangles.len() as f64 => break (next, predicted),
                 _ => "the triangles are as small as numbers can resolve".to_string(),
             };
             let reached = stage.problem.mesh.triangles.len() as f64;
@@ -338,7 +342,6 @@ fn refined(
         };
         let count = next.problem.mesh.triangles.len() as f64;
         indicators = predicted;
-        forecast.to = indicators.total();
         stage = next;
         if count >= (1.0 - SLACK) * grown || (count >= worth && indicators.total() <= enough) {
             return Ok(Ok(stage));
@@ -346,13 +349,8 @@ fn refined(
     }
 }
 
-/// Whether the smallest triangles are still far above the spacing of numbers at their corners.
-fn resolvable(problem: &Problem) -> bool {
-    const SMALLEST: f64 = 1e-11;
-    let mesh = &problem.mesh;
-    let mut size = 0.0_f64;
-    for p in &mesh.points {
-        size = size.max(p[0].abs()).max(p[1].abs());
-    }
-    (0..mesh.edges.len()).all(|e| mesh.edge_frame(e).0 > SMALLEST * size)
+/// The area of triangles that are `shortest` across, relative to the farthest corner.
+fn smallest_area(problem: &Problem, shortest: f64) -> f64 {
+    let farthest = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    (shortest * farthest).powi(2)
 }

@@ -1,12 +1,10 @@
 //! Local terms of the gap as refinement indicators.
 
 use crate::bounds::UpperBound;
-use crate::mesh::Triangulation;
 use crate::problem::Problem;
 
-/// A term of the gap falls like this power of the triangle's area where the solution is smooth: with stresses linear on
-/// a triangle of size h, ½∫ a(λ − τ):(λ − τ) is of order h⁴ · h².
-const DECAY: f64 = 3.0;
+/// Part of the largest term below which terms wait.
+const STANDS_OUT: f64 = 0.1;
 
 /// Terms whose relative difference is smaller count as equal.
 const EQUAL: f64 = 1e-7;
@@ -39,14 +37,17 @@ impl Indicators {
         self.terms.iter().sum()
     }
 
-    /// Dörfler's marking: as few triangles as carry the part `bulk` of the total, the largest terms first.
-    pub fn marked(&self, bulk: f64) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..self.terms.len()).collect();
+    /// Dörfler's marking: as few triangles as carry the part `bulk` of the total, the largest terms first, without those
+    /// far below the largest: a singular point is first refined until it stands out no more, which takes few triangles.
+    /// Only triangles that `may` be refined count.
+    pub fn marked(&self, bulk: f64, may: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.terms.len()).filter(|&t| may(t)).collect();
         order.sort_by(|&a, &b| self.terms[b].total_cmp(&self.terms[a]).then(a.cmp(&b)));
-        let wanted = bulk * self.total();
+        let wanted = bulk * order.iter().map(|&t| self.terms[t]).sum::<f64>();
         let mut sum = 0.0;
         let mut count = 0;
-        while count < order.len() && (sum < wanted || count == 0) {
+        let least = order.first().map_or(0.0, |&t| STANDS_OUT * self.terms[t]);
+        while count < order.len() && ((sum < wanted && self.terms[order[count]] >= least) || count == 0) {
             sum += self.terms[order[count]];
             count += 1;
         }
@@ -61,13 +62,14 @@ impl Indicators {
         order
     }
 
-    /// Predicts the terms on a finer mesh, each from the triangle it came from: with `power` one as for a smooth solution,
-    /// with less as where singularities rule.
-    pub fn inherited(&self, coarse: &Triangulation, fine: &Triangulation, parent: &[usize], power: f64) -> Indicators {
-        let part = |(t, &p): (usize, &usize)| match fine.area(t) / coarse.area(p) {
-            whole if whole > 0.9 => self.terms[p],
-            part => self.terms[p] * part.powf(DECAY * power),
-        };
-        Indicators { terms: parent.iter().enumerate().map(part).collect() }
+    /// The term of triangle `t`.
+    pub fn of(&self, t: usize) -> f64 {
+        self.terms[t]
+    }
+}
+
+impl FromIterator<f64> for Indicators {
+    fn from_iter<I: IntoIterator<Item = f64>>(terms: I) -> Self {
+        Indicators { terms: terms.into_iter().collect() }
     }
 }

@@ -6,6 +6,7 @@ mod baseline;
 mod certified;
 mod dossier;
 mod field;
+mod forecast;
 mod indicators;
 mod outlook;
 mod primal;

@@ -10,7 +10,7 @@ use crate::dual::{DualMethod, Options};
 use crate::report::HistoryRow;
 
 /// Seconds that refinement for the sake of the verdict may take where nobody sets a limit.
-const PATIENCE: f64 = 120.0;
+const PATIENCE: f64 = 30.0;
 
 /// A sharper bracket of the same scene.
 #[derive(Debug, Clone)]

@@ -44,6 +44,8 @@ struct Row {
 /// Units and direction that a row is given in: length of a side, Young's modulus, angle in degrees.
 type Frame = (f64, f64, f64);
 
+/// Where coordinates are numbers without rounding.
+const UPRIGHT: Frame = (1.0, 1.0, 0.0);
 const APPROACH: f64 = 0.05;
 const POISSON: f64 = 0.3;
 
@@ -166,7 +168,8 @@ fn answer(row: &Row, frame: Frame, method: &dyn DualMethod) -> Result<Answer, St
 }
 
 /// What is wrong with the answers of all methods to `row` in `frame`; whether it has an equilibrium.
-fn judge(row: &Row, frame: Frame, others: bool, complaints: &mut Vec<String>) -> bool {
+fn judge(row: &Row, frame: Frame, complaints: &mut Vec<String>) -> bool {
+    let exact = frame == UPRIGHT;
     let (active, clarabel, uzawa) = (ActiveSet::default(), Clarabel::default(), Uzawa::default());
     let first = match answer(row, frame, &Condensed::default()) {
         Ok(Some(first)) => first,
@@ -184,7 +187,7 @@ fn judge(row: &Row, frame: Frame, others: bool, complaints: &mut Vec<String>) ->
         complaints.push(format!("{row:?} in {frame:?}: {first:?} for {:e}", unit * energy));
     }
     let methods = [(&active as &dyn DualMethod, 1e-9), (&clarabel, 1e-8), (&uzawa, 1e-5)];
-    for (method, allowed) in methods.into_iter().filter(|_| others) {
+    for (method, allowed) in methods {
         match answer(row, frame, method) {
             Ok(Some(other)) => {
                 let enclose = other[0] <= first[1] && first[0] <= other[1];
@@ -194,18 +197,19 @@ fn judge(row: &Row, frame: Frame, others: bool, complaints: &mut Vec<String>) ->
                 }
             }
             Ok(None) => complaints.push(format!("{row:?} in {frame:?} by {}: no equilibrium", method.name())),
-            // An interior point may stop short, and the paper's iteration at its limit; both say so.
-            Err(reason) if reason.contains(" stopped after ") && method.name() != "active-set" => {}
+            // An interior point may stop short, the paper's iteration at its limit, and where nothing presses rounding
+            // may lead the active set round in circles; they say so.
+            Err(reason) if reason.contains(" stopped after ") && !(method.name() == "active-set" && exact) => {}
             Err(complaint) => complaints.push(complaint),
         }
     }
     true
 }
 
-/// Solves `rows` in `frame` by the default method and, where they are to agree with it, by all `others`.
-fn all_agree(rows: &[Row], frame: Frame, others: bool) {
+/// Solves `rows` in `frame` by all methods.
+fn all_agree(rows: &[Row], frame: Frame) {
     let mut complaints = Vec::new();
-    let stand = rows.iter().filter(|row| judge(row, frame, others, &mut complaints)).count();
+    let stand = rows.iter().filter(|row| judge(row, frame, &mut complaints)).count();
     println!("{stand} of {} rows have an equilibrium in {frame:?}", rows.len());
     assert!(stand > rows.len() / 2);
     assert!(complaints.is_empty(), "{} complaints:\n{}", complaints.len(), complaints.join("\n"));
@@ -213,15 +217,15 @@ fn all_agree(rows: &[Row], frame: Frame, others: bool) {
 
 #[test]
 fn every_row_is_answered_alike_by_all_methods() {
-    all_agree(&Row::all(), (1.0, 1.0, 0.0), true);
+    all_agree(&Row::all(), UPRIGHT);
 }
 
 #[test]
-fn direction_and_units_change_nothing_for_the_default_method() {
+fn direction_and_units_change_nothing() {
     let rows = Row::all();
     for (frame, start) in [((1e-3, 1e9, 30.0), 0), ((1e3, 1e-3, 45.0), 1), ((1.0, 1e9, 45.0), 2), ((1e3, 1.0, 30.0), 3)]
     {
         let some: Vec<Row> = rows.iter().skip(start).step_by(4).copied().collect();
-        all_agree(&some, frame, false);
+        all_agree(&some, frame);
     }
 }

@@ -92,14 +92,14 @@ pub fn admissible(
         .collect();
     contact::match_means(problem, dual, &vertex, &mut middle);
     contact::restrict_middles(problem, &vertex, &mut middle);
-    let mut candidates = vec![NodalValues { vertex, middle }];
+    // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
+    let at_rest = NodalValues { vertex: vec![[0.0; 2]; vertex.len()], middle: vec![[0.0; 2]; middle.len()] };
+    let mut candidates = vec![NodalValues { vertex, middle }, restricted(problem, &holds, at_rest)?.0];
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, start)?.0);
     }
-    let NodalValues { mut vertex, mut middle } =
-        relax::relax(problem, &holds, floor / problem.scene.thickness, candidates);
-    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
-    contact::restrict_middles(problem, &vertex, &mut middle);
+    let relaxed = relax::relax(problem, &holds, floor / problem.scene.thickness, candidates);
+    let NodalValues { vertex, middle } = restricted(problem, &holds, relaxed)?.0;
     Ok(interior::fill(problem, &vertex, &middle))
 }
 

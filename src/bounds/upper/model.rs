@@ -95,6 +95,21 @@ pub struct Directions {
     pub unit: [[f64; 2]; 2],
 }
 
+impl Directions {
+    /// The part of a step that goes along them.
+    pub fn along(&self, step: [f64; 2]) -> [f64; 2] {
+        match self.count {
+            0 => [0.0; 2],
+            1 => {
+                let [x, y] = self.unit[0];
+                let by = step[0] * x + step[1] * y;
+                [by * x, by * y]
+            }
+            _ => step,
+        }
+    }
+}
+
 /// The rows of contact at each vertex: all of each pair that ends there.
 fn touching(problem: &Problem) -> Vec<Vec<usize>> {
     let mut touching = vec![Vec::new(); problem.mesh.points.len()];

@@ -17,7 +17,9 @@ impl Momentum {
     /// Moves `values`, the result of a sweep from `before`, and gives the energy gained. No jump grows beyond its gap by
     /// more than `slack`.
     pub fn push(&mut self, model: &Model<'_>, before: &[[f64; 2]], slack: f64, values: &mut [[f64; 2]]) -> f64 {
-        let sweep: Vec<[f64; 2]> = values.iter().zip(before).map(|(v, b)| [v[0] - b[0], v[1] - b[1]]).collect();
+        // Near the minimum a sweep moves little but rounding, and a factor may be large: what supports hold stays out.
+        let moved = values.iter().zip(before).map(|(v, b)| [v[0] - b[0], v[1] - b[1]]);
+        let sweep: Vec<[f64; 2]> = moved.zip(&model.free).map(|(step, free)| free.along(step)).collect();
         if self.step.is_empty() {
             self.step = vec![[0.0; 2]; values.len()];
         }

@@ -52,13 +52,11 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<Nodal
         ..Patch::default()
     };
     let all = |nodal: NodalValues| -> Vec<[f64; 2]> { nodal.vertex.into_iter().chain(nodal.middle).collect() };
-    let mut fields = candidates.into_iter().map(all);
-    let mut values = fields.next().unwrap_or_default();
-    for field in fields {
-        if model.energy(&field) < model.energy(&values) {
-            values = field;
-        }
-    }
+    let fields = candidates.into_iter().map(all).map(|field| (model.energy(&field), field));
+    // A displacement that is not a number has no energy to compare.
+    let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
+    let least = fields.min_by(|(a, _), (b, _)| known(*a).total_cmp(&known(*b)));
+    let mut values = least.map(|(_, field)| field).unwrap_or_default();
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut momentum = Momentum::default();
     let mut gained = f64::INFINITY;
