@@ -8,7 +8,7 @@ use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit, say, threads};
 use crate::budget::Budget;
-use crate::compare::{Allowances, Comparison, SHARP};
+use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
 use crate::mesh;
 use crate::problem::{Note, Problem};
@@ -190,9 +190,10 @@ impl Session {
         limits: &Limits,
         allow: &Allowances,
     ) -> Result<(Option<Sharpened>, f64), CliError> {
-        let enough = allow.given("bracket/sharpness").unwrap_or(SHARP);
+        let asked = allow.given("bracket/sharpness");
+        let (aim, enough) = (asked.unwrap_or(SHARP), asked.unwrap_or(BLUNT));
         let Limits { max_triangles, max_seconds } = *limits;
-        let goal = Goal { max_triangles, max_seconds, ..Goal::new(enough) };
+        let goal = Goal { max_triangles, max_seconds, ..Goal::new(aim) };
         let told = |row: &HistoryRow| {
             let bound = 100.0 * row.relative_error_bound;
             self.progress

@@ -18,7 +18,7 @@ pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use stress::{primal_means, von_mises, von_mises_map};
-pub use tolerance::{Allowances, CHOSEN, SHARP, names_of_checks};
+pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
 
 use crate::bounds::{Bracket, UpperBound};
 use crate::dual::DualSolution;

@@ -10,8 +10,12 @@ pub const CHOSEN: [(&str, f64, &str); 6] = [
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
 ];
 
-/// The guaranteed relative error above which a bracket cannot tell two models apart.
+/// The guaranteed relative error that a bracket is refined to before two models are compared by it.
 pub const SHARP: f64 = 0.15;
+
+/// The guaranteed relative error above which a bracket that could not be refined further does not tell two models apart:
+/// the interval of the energy is then wider than a tenth of the strain energy.
+pub const BLUNT: f64 = 0.32;
 
 /// The chosen tolerance for checks whose name ends with `last`.
 pub(super) fn chosen(last: &str) -> f64 {

@@ -61,6 +61,8 @@ pub struct Goal {
     pub max_seconds: Option<f64>,
     /// An upper bound of the exact energy that is known from elsewhere.
     pub known_upper: Option<f64>,
+    /// Refinement ends where two meshes in line brought the error down by less than this power of the unknowns.
+    pub least_rate: Option<f64>,
     /// Part of the gap that the triangles marked in one round carry (Dörfler's bulk parameter), in (0, 1].
     pub bulk: f64,
 }
@@ -68,7 +70,7 @@ pub struct Goal {
 impl Goal {
     /// This tolerance without limits.
     pub fn new(tolerance: f64) -> Self {
-        Goal { tolerance, max_triangles: None, max_seconds: None, known_upper: None, bulk: 0.6 }
+        Goal { tolerance, max_triangles: None, max_seconds: None, known_upper: None, least_rate: None, bulk: 0.6 }
     }
 }
 
@@ -129,6 +131,7 @@ pub fn adapt(
         let finer = match (goal.max_seconds, fault) {
             (_, Some(fault)) if shortest > LONGEST => Err(fault),
             (Some(most), _) if spent >= most => Err(format!("{most} seconds have passed")),
+            _ if stalls(&history, goal) => Err("it no longer makes the error smaller".to_string()),
             _ => refined(
                 &certified,
                 refinement.clone(),
@@ -148,6 +151,12 @@ pub fn adapt(
         };
         before = Some((certified, row, refinement));
     }
+}
+
+/// Whether the last two meshes were hardly worth their triangles.
+fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
+    let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
+    history.len() > 2 && history[history.len() - 2..].iter().all(slow)
 }
 
 /// A mesh to solve on.

@@ -12,6 +12,10 @@ use crate::report::HistoryRow;
 /// Seconds that refinement for the sake of the verdict may take where nobody sets a limit.
 const PATIENCE: f64 = 30.0;
 
+/// Below this rate refinement has met what numbers resolve: at the strongest singularities errors fall like the
+/// unknowns to a few hundredths.
+const STALLED: f64 = 0.01;
+
 /// A sharper bracket of the same scene.
 #[derive(Debug, Clone)]
 pub struct Sharpened {
@@ -41,7 +45,8 @@ pub fn sharpen(
         return Ok(None);
     }
     let known_upper = comparison.judged.iter().map(|j| j.admissible.upper()).reduce(f64::min);
-    let goal = Goal { known_upper, max_seconds: goal.max_seconds.or(Some(PATIENCE)), ..goal };
+    let goal =
+        Goal { known_upper, max_seconds: goal.max_seconds.or(Some(PATIENCE)), least_rate: Some(STALLED), ..goal };
     let adapted = adapt(certified.problem.clone(), method, options, &goal, on_step)?;
     Ok(Some(Sharpened { certified: adapted.certified, history: adapted.history, stopped: adapted.stopped }))
 }
