@@ -1,8 +1,10 @@
-//! Adaptive refinement by newest-vertex bisection.
+//! Adaptive refinement by bisection of the longest edge.
 //!
-//! Every triangle has a refinement edge. Bisecting it joins the middle of that edge to the opposite vertex; the
-//! refinement edges of the halves are the ones opposite the new vertex. The triangles that can arise from one triangle
-//! fall into four similarity classes, so angles stay bounded however often this is repeated.
+//! Every triangle has a refinement edge, its longest. Bisecting it joins the middle of that edge to the opposite vertex. No angle
+//! becomes smaller than half the smallest of the first mesh, however often this is repeated (Rosenberg & Stenger 1975), and
+//! stretched triangles fall into better ones, which the newest vertex alone, with its four similarity classes, would
+//! leave as stretched as they are. Where the edge opposite the newest vertex is as long as any other it is the one: right
+//! isosceles triangles stay such.
 
 use super::labels::{Pair, pair};
 use super::quarter::middle;
@@ -16,18 +18,7 @@ impl RefinementEdges {
     /// The longest edge of every triangle; of equal ones that whose middle comes last in (x, y) order, which does not
     /// depend on the numbering.
     pub fn longest(mesh: &Triangulation) -> Self {
-        let rank = |e: usize| {
-            let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-            let square = (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
-            let [x, y] = middle(a, b);
-            [square, x, y]
-        };
-        let longest = |edges: &[usize; 3]| {
-            let after =
-                |i: usize, j: usize| rank(edges[i]).partial_cmp(&rank(edges[j])) == Some(std::cmp::Ordering::Greater);
-            (1..3).fold(0, |best, i| if after(i, best) { i } else { best })
-        };
-        RefinementEdges(mesh.triangle_edges.iter().map(longest).collect())
+        RefinementEdges(mesh.triangles.iter().map(|corners| longest(&mesh.points, corners)).collect())
     }
 
     /// Local index of the refinement edge of triangle `t`.
@@ -79,7 +70,7 @@ pub fn bisect(
         if middles.contains_key(&pair(a, b)) {
             let before = triangles.len();
             halve([a, b, c], &middles, &mut triangles);
-            edges.resize(triangles.len(), 2);
+            edges.extend(triangles[before..].iter().map(|corners| next_edge(&points, corners)));
             parent.resize(parent.len() + triangles.len() - before, t);
         } else {
             triangles.push(*corners);
@@ -120,6 +111,38 @@ fn halve([a, b, c]: [usize; 3], middles: &Map<Pair, usize>, into: &mut Vec<[usiz
             halve([b, c, m], middles, into);
         }
     }
+}
+
+/// Edges whose squared lengths differ by less than this part are equally long.
+const AS_LONG: f64 = 0.02;
+
+/// Local index of the refinement edge of a triangle that a bisection made, whose newest vertex is its last corner.
+fn next_edge(points: &[[f64; 2]], corners: &[usize; 3]) -> usize {
+    const NEWEST: usize = 2;
+    let longest = longest(points, corners);
+    let [long, new] = [longest, NEWEST].map(|i| square(ends(points, corners, i)));
+    if long > (1.0 + AS_LONG) * new { longest } else { NEWEST }
+}
+
+/// Local index of the longest edge; of equal ones that whose middle comes last in (x, y) order.
+fn longest(points: &[[f64; 2]], corners: &[usize; 3]) -> usize {
+    let rank = |i: usize| {
+        let [a, b] = ends(points, corners, i);
+        let [x, y] = middle(a, b);
+        [square([a, b]), x, y]
+    };
+    let after = |i: usize, j: usize| rank(i).partial_cmp(&rank(j)) == Some(std::cmp::Ordering::Greater);
+    (1..3).fold(0, |best, i| if after(i, best) { i } else { best })
+}
+
+/// The ends of the edge opposite corner `i`.
+fn ends(points: &[[f64; 2]], corners: &[usize; 3], i: usize) -> [[f64; 2]; 2] {
+    [1, 2].map(|k| points[corners[(i + k) % 3]])
+}
+
+/// The square of the distance between two points.
+fn square([a, b]: [[f64; 2]; 2]) -> f64 {
+    (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)
 }
 
 #[cfg(test)]
