@@ -148,6 +148,7 @@ fn square([a, b]: [[f64; 2]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::RawMesh;
     use crate::mesh::testing::*;
     use proptest::prelude::*;
 
@@ -200,6 +201,33 @@ mod tests {
         let finer = bisect(&mesh, &RefinementEdges::longest(&mesh), &[0], &facing(&mesh), &Curved::default());
         assert_eq!(finer.mesh.triangles.len(), mesh.triangles.len() + 2, "the pair along the diagonal");
         assert_consistent(&finer.mesh);
+    }
+
+    #[test]
+    fn stretched_triangles_fall_into_better_ones() {
+        let scene = scene(&["a"]);
+        let raw = RawMesh {
+            points: vec![[0.0, 0.0], [1.0, -0.02], [1.03, 0.02]],
+            triangles: vec![([0, 1, 2], "a".to_string())],
+            ..RawMesh::default()
+        };
+        let mut mesh = Triangulation::new(raw, &scene).expect("a good mesh").0;
+        let whole = mesh.area(0);
+        let sharpest = smallest_angle(&mesh);
+        let mut refinement = RefinementEdges::longest(&mesh);
+        for _ in 0..12 {
+            let all: Vec<usize> = (0..mesh.triangles.len()).collect();
+            let finer = bisect(&mesh, &refinement, &all, &[], &Curved::default());
+            (mesh, refinement) = (finer.mesh, finer.refinement);
+        }
+        assert!(smallest_angle(&mesh) >= 0.5 * sharpest - 1e-9);
+        // Height over longest side: 0.04 for the whole, 0.5 for right isosceles triangles.
+        let good = |t: usize| {
+            let longest = mesh.triangle_edges[t].map(|e| mesh.edge_frame(e).0).into_iter().fold(0.0, f64::max);
+            2.0 * mesh.area(t) > 0.25 * longest * longest
+        };
+        let part = (0..mesh.triangles.len()).filter(|t| good(*t)).map(|t| mesh.area(t)).sum::<f64>() / whole;
+        assert!(part > 0.8, "{part}");
     }
 
     proptest! {
