@@ -9,6 +9,12 @@ use spade::{
 /// Smallest angle that refinement aims at inside a polygon, in degrees.
 const ANGLE: f64 = 27.0;
 
+/// The same without a size: what refinement cannot mend is a vertex at which many sharp angles meet.
+const COARSE_ANGLE: f64 = 20.0;
+
+/// Vertices inside per vertex of the outline that may be added without a size.
+const COARSE_INSIDE: usize = 20;
+
 /// Largest area in squares of the edge length: between an equilateral triangle (0.43) and two of them.
 const AREA: f64 = 0.66;
 
@@ -27,7 +33,7 @@ pub(super) struct Filled {
 
 /// Fills the polygon with the corners `boundary` (at least three, simple), without a vertex added on its edges.
 ///
-/// `size` is the target edge length; `None` adds no vertex at all.
+/// `size` is the target edge length; `None` adds vertices only where sharp angles would be left.
 pub(super) fn fill(boundary: &[[f64; 2]], size: Option<f64>) -> Result<Filled, (String, String)> {
     let fault = |what: String| (what, "scale the scene to ordinary numbers, or simplify the polygon".to_string());
     let local = |p: [f64; 2]| Point2::new(p[0], p[1]);
@@ -46,7 +52,9 @@ pub(super) fn fill(boundary: &[[f64; 2]], size: Option<f64>) -> Result<Filled, (
     let outline_area: f64 = (0..count).map(|i| cross(local(boundary[i]), local(boundary[(i + 1) % count]))).sum();
     let parameters = RefinementParameters::<f64>::new().exclude_outer_faces(true).keep_constraint_edges();
     let parameters = match size {
-        None => parameters.with_angle_limit(AngleLimit::from_deg(0.0)).with_max_additional_vertices(0),
+        None => parameters
+            .with_angle_limit(AngleLimit::from_deg(COARSE_ANGLE))
+            .with_max_additional_vertices(COARSE_INSIDE * count),
         Some(size) => {
             let expected = outline_area / (size * size);
             let affordable = expected <= MOST;

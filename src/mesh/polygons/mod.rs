@@ -4,6 +4,7 @@
 //! its fixed boundary. So the two sides of a contact match bit for bit, and polygons of one body join without gaps.
 
 mod fill;
+mod grade;
 mod outline;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::grade::grade;
 use crate::mesh::boxes::{BoxTree, around};
 use crate::mesh::error::at;
 use crate::mesh::overlap::cross_over;
@@ -28,6 +29,7 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
     for (number, polygon) in polygons.iter().enumerate() {
         well_formed(scene, polygon).map_err(|text| (number, text))?;
     }
+    let drawn = polygons;
     let polygons: Vec<Polygon> = polygons.iter().map(|polygon| faceted(polygon, size)).collect();
     let polygons = polygons.as_slice();
     let every: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
@@ -47,6 +49,8 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
         for outline in &mut outlines {
             *outline = outline.iter().flat_map(|piece| subdivided(piece, size)).collect();
         }
+    } else {
+        grade(&mut outlines, scene, drawn);
     }
     Ok(outlines)
 }

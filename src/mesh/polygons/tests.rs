@@ -1,5 +1,7 @@
 //! Polygons that mesh, and polygons that do not.
 
+use std::f64::consts::PI;
+
 use proptest::prelude::*;
 
 use super::{expected_triangles, fill, mesh};
@@ -50,6 +52,43 @@ fn without_a_size_only_corners_and_contact_ends_are_vertices() {
     );
     let mesh = meshed(&scene);
     assert_eq!((mesh.points.len(), mesh.triangles.len(), euler(&mesh)), (4 + 2 + 4, 4 + 2, 2));
+}
+
+/// A block under a curve of `n` facets, beside which it is divided in two along an edge of its own.
+fn faceted(n: usize) -> Vec<Polygon> {
+    let curve = |i: usize| [i as f64 / n as f64, 1.0 + 0.3 * (PI * i as f64 / n as f64).sin()];
+    let mut upper = vec![[0.0, 0.5], [1.0, 0.5]];
+    upper.extend((0..=n).rev().map(|i| if i == 0 || i == n { [curve(i)[0], 1.0] } else { curve(i) }));
+    let mut edges = vec![String::new(), "right".to_string()];
+    edges.extend(vec!["top".to_string(); n]);
+    edges.push("left".to_string());
+    let lower = rectangle("a", [0.0; 2], [1.0, 0.5]);
+    vec![lower, Polygon { body: "a".into(), points: upper, edges, arcs: Vec::new() }]
+}
+
+#[test]
+fn without_a_size_facets_are_met_by_triangles_of_their_own_size() {
+    for n in [12, 24, 48] {
+        let mesh = meshed(&geometry(scene(&["a"]), None, faceted(n)));
+        assert_eq!((euler(&mesh), mesh.boundary("top").len()), (1, n));
+        assert!(mesh.triangles.len() < 10 * n, "{n}: {}", mesh.triangles.len());
+        // Sharp angles that meet in one vertex: n of them where the outline alone is triangulated.
+        let mut at = vec![0; mesh.points.len()];
+        mesh.triangles.iter().flatten().for_each(|v| at[*v] += 1);
+        assert!(at.iter().all(|count| *count < 12), "{n}: {at:?}");
+    }
+}
+
+#[test]
+fn sides_of_contacts_keep_their_vertices() {
+    let scene = contact(scene(&["a", "b"]), "a_top", "b_bottom", Gap::Constant(0.0));
+    let mut polygons = vec![rectangle("a", [0.0; 2], [8.0, 1.0]), rectangle("b", [0.0, 1.0], [8.0, 2.0])];
+    // Facets at both ends of the contact.
+    polygons[0].points.insert(2, [8.0, 0.9]);
+    polygons[0].edges.insert(2, "a_facet".into());
+    let mesh = meshed(&geometry(scene, None, polygons));
+    assert_eq!((mesh.boundary("a_top").len(), mesh.boundary("b_bottom").len()), (1, 1));
+    assert!(mesh.boundary("a_right").len() > 1);
 }
 
 #[test]
