@@ -7,6 +7,7 @@ mod arcs;
 mod comparison;
 mod congruent;
 mod contact_qp;
+mod curved_adaptive;
 mod curved_contact;
 mod dual_limits;
 mod dual_methods;

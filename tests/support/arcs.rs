@@ -36,13 +36,7 @@ impl Arcs {
         let mut above = named(self.n, "upper");
         above.extend(["", "load", "side"].map(String::from));
         let polygons = [("low", lower, below), ("up", upper, above)];
-        let conditions = format!(
-            "[[supports]]\non = \"base\"\ntype = \"clamped\"\n[[supports]]\non = \"side\"\ntype = \"roller\"\n\
-             [[tractions]]\non = \"load\"\nvalue = [0.0, -1.0]\ngradient = [[0.0, 0.0], [0.5, 0.0]]\n\
-             [[contacts]]\nbetween = [\"lower\", \"upper\"]\nnormals = \"{}\"\n",
-            self.normals
-        );
-        scene(1.05 / self.n as f64, &polygons, &conditions)
+        scene(1.05 / self.n as f64, &polygons, &pressed(self.normals))
     }
 
     fn point(&self, i: usize) -> [f64; 2] {
@@ -61,6 +55,33 @@ impl Arcs {
         let x = 0.5 + radius * angle.sin();
         [if self.squeezed { x * (0.8 + 0.2 * x) } else { x }, 0.5 + height]
     }
+}
+
+/// Two blocks as those of [`Arcs`], with an arc of the scene file between them.
+pub fn between_arcs(rise: f64) -> String {
+    let through = [0.5, 0.5 + rise];
+    let mut text = String::from("[model]\nkinematics = \"plane-strain\"\n[geometry]\n");
+    let blocks = [
+        ("low", [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 0.5]], ["base", "", "lower", ""], 2),
+        ("up", [[0.0, 0.5], [1.0, 0.5], [1.0, 1.3], [0.0, 1.3]], ["upper", "", "load", "side"], 0),
+    ];
+    for (body, points, edges, arc) in blocks {
+        let _ = write!(
+            text,
+            "[[geometry.polygons]]\nbody = \"{body}\"\npoints = {points:?}\nedges = {edges:?}\n\
+             arcs = [{{ edge = {arc}, through = {through:?} }}]\n[bodies.{body}]\nyoung = 1.0\npoisson = 0.3\n"
+        );
+    }
+    text + &pressed("smooth")
+}
+
+/// The lower block clamped at its base, the upper one guided on its left and pressed down.
+fn pressed(normals: &str) -> String {
+    format!(
+        "[[supports]]\non = \"base\"\ntype = \"clamped\"\n[[supports]]\non = \"side\"\ntype = \"roller\"\n\
+         [[tractions]]\non = \"load\"\nvalue = [0.0, -1.0]\ngradient = [[0.0, 0.0], [0.5, 0.0]]\n\
+         [[contacts]]\nbetween = [\"lower\", \"upper\"]\nnormals = \"{normals}\"\n"
+    )
 }
 
 /// A disc with a hole of radius ½ in the bore, of radius 1 and `n` facets, of a round plate that is clamped at its rim. `load` is

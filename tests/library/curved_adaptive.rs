@@ -1,0 +1,73 @@
+//! How far adaptive refinement gets where contact turns: triangles for a guaranteed one per cent, and bounds that are bounds.
+
+use crate::arcs::{Arcs, between_arcs};
+use hypercircle::dual::{Condensed, Options};
+use hypercircle::problem::Problem;
+use hypercircle::scene::Scene;
+use hypercircle::study::{Adapted, Goal, adapt, certify};
+
+/// Most triangles for one per cent.
+const MOST: usize = 3000;
+
+/// The problem on the coarsest mesh that represents the scene.
+fn coarsest(text: &str) -> Problem {
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("size")).collect();
+    let text = lines.join("\n");
+    let scene = Scene::parse(&text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    Problem::load(scene).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn refined(problem: Problem, tolerance: f64) -> Adapted {
+    adapt(problem, &Condensed::default(), &Options::default(), &Goal::new(tolerance), |_| ()).expect("refines")
+}
+
+#[track_caller]
+fn one_per_cent(text: &str, name: &str) {
+    let run = refined(coarsest(text), 0.01);
+    let last = run.history.last().expect("a mesh");
+    println!("{name}: {:.3} % with {} triangles", 100.0 * last.relative_error_bound, last.triangles);
+    assert!(run.stopped.is_none() && last.relative_error_bound <= 0.01, "{name}: {last:?}");
+    assert!(last.triangles <= MOST, "{name}: {} triangles", last.triangles);
+}
+
+#[test]
+fn blocks_that_meet_along_facets_of_an_arc_take_few_triangles_for_one_per_cent() {
+    for rise in [0.03, 0.12, 0.3] {
+        for n in [12, 16, 24] {
+            for rise in [rise, -rise] {
+                one_per_cent(&Arcs { n, rise, ..Arcs::default() }.text(), &format!("{n} facets, rise {rise}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_that_meet_along_an_arc_take_few_triangles_for_one_per_cent() {
+    for rise in [0.03, -0.03, 0.12, -0.12, 0.3, -0.3] {
+        one_per_cent(&between_arcs(rise), &format!("rise {rise}"));
+    }
+}
+
+/// Facets of an ellipse stay what they are under refinement, and so does the direction of contact: every mesh is one of the
+/// same problem, and any upper bound lies above any lower one.
+#[test]
+fn bounds_of_every_mesh_hold_for_the_finest() {
+    for rise in [0.12, -0.3] {
+        let run = refined(coarsest(&Arcs { n: 12, rise, squeezed: true, ..Arcs::default() }.text()), 0.01);
+        let coarse = Arcs { n: 12, rise, squeezed: true, ..Arcs::default() }.text();
+        let finest = run.certified.problem.refine_uniform(1).expect("refines");
+        let fine = certify(finest, &Condensed::default(), &Options::default()).expect("solves").bracket;
+        let fine = [fine.lower(), fine.free.as_ref().expect("an upper bound").upper()];
+        let uniform = coarsest(&coarse).refine_uniform(3).expect("refines");
+        let uniform = certify(uniform, &Condensed::default(), &Options::default()).expect("solves").bracket;
+        let uniform = [uniform.lower(), uniform.free.as_ref().expect("an upper bound").upper()];
+        let of_run = run.history.iter().map(|row| [row.lower, row.upper]);
+        let all: Vec<[f64; 2]> = of_run.chain([fine, uniform]).collect();
+        let lower = all.iter().map(|b| b[0]).fold(f64::NEG_INFINITY, f64::max);
+        let upper = all.iter().map(|b| b[1]).fold(f64::INFINITY, f64::min);
+        println!("rise {rise}: {lower} to {upper}");
+        assert!(lower < upper, "{all:?}");
+        // The finest mesh contains the last of the run.
+        assert_eq!([lower, upper], fine);
+    }
+}
