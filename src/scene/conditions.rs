@@ -205,8 +205,10 @@ const CLOSE: (&str, &str) = (
 );
 
 fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> Result<Gap, SceneError> {
-    const NEGATIVE: (&str, &str) =
-        ("bodies must not overlap at the start", "write a gap of zero or more, or move the bodies apart");
+    const NEGATIVE: (&str, &str) = (
+        "the sides must not overlap at the start",
+        "write a gap of zero or more; an interference fit is one number below zero, between two sides",
+    );
     const ARC: (&str, &str) = (
         "an arc length is not negative",
         "measure s along the first side, from its end that comes first in (x, y) order",
@@ -214,7 +216,8 @@ fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> 
     let rows = match &raw.value {
         RawGap::Constant(g) => {
             let number = At { value: *g, start: raw.start, end: raw.end };
-            let may_overlap = contact.direction.is_some();
+            // One number below zero for the whole of two sides is an interference fit.
+            let may_overlap = contact.between.is_some();
             return source.number(&number, (table, "gap"), |g| may_overlap || g >= 0.0, NEGATIVE).map(Gap::Constant);
         }
         RawGap::Curve(curve) => return touching(curve, raw, table, source),

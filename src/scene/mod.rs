@@ -164,7 +164,7 @@ pub enum Load {
 pub struct Contact {
     /// The two boundaries, or the one that meets a rigid obstacle.
     pub sides: ContactSides,
-    /// Initial gap g ≥ 0.
+    /// Initial gap g; below zero only as one number, an interference fit.
     pub gap: Gap,
     /// Where the directions of contact come from.
     pub normals: Normals,

@@ -230,7 +230,7 @@ pub(super) struct RawContact {
     pub between: Option<At<Vec<At<String>>>>,
     /// One boundary that meets a rigid obstacle of its own shape.
     pub on: Option<At<String>>,
-    /// Initial gap, zero where it is missing.
+    /// Initial gap, zero where it is missing; one number below zero between two sides is an interference fit.
     pub gap: Option<At<RawGap>>,
     /// `smooth`, the default: edges that turn by less than 30° stand for a curve. `facets`: every edge has its own normal.
     #[schemars(extend("enum" = ["smooth", "facets"]))]

@@ -18,6 +18,8 @@ mod equilibrium;
 mod inner_segments;
 mod invariance;
 mod known_solutions;
+#[path = "../support/lame.rs"]
+mod lame;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;
@@ -28,6 +30,7 @@ mod paper_objects;
 mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
+mod rings;
 mod rounding;
 mod setup;
 mod squares;

@@ -3,6 +3,8 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
+use super::lame::Rings;
+
 /// Two blocks that meet along an arc of `n` facets; the upper one is guided on its left and pressed down.
 pub struct Arcs {
     /// Number of facets.
@@ -122,6 +124,9 @@ pub fn disc(n: usize, load: &str, normals: &str) -> String {
     if load == "force" { text.replace("[bodies.disc]\n", "[bodies.disc]\nbody_force = [0.0, -0.1]\n") } else { text }
 }
 
+/// A ring in another one under a pressure of one inside.
+pub const PRESSED: Rings = Rings { radii: [1.0, 1.5, 2.0], young: [2.0, 1.0], poisson: 0.3, inside: 1.0, depth: 0.0 };
+
 /// A quarter of a ring (radii 1 and 1.5, E = 2) in another (1.5 and 2, E = 1), rollers on the cuts, a pressure of 1
 /// inside, each of n facets along the contact; and the pressure between them after Lamé.
 pub fn ring_on_ring(n: usize) -> (String, f64) {
@@ -155,23 +160,7 @@ pub fn ring_on_ring(n: usize) -> (String, f64) {
     conditions
         .push_str("[[tractions]]\non = \"inside\"\npressure = 1.0\n[[contacts]]\nbetween = [\"seat\", \"bore\"]\n");
     let text = scene(0.5 * PI * 1.5 / n as f64 * 1.05, &polygons, &conditions);
-    (text.replace("[bodies.inner]\nyoung = 1.0", "[bodies.inner]\nyoung = 2.0"), lame([1.0, 1.5, 2.0], [2.0, 1.0], 0.3))
-}
-
-/// The pressure p at radius b between rings a…b and b…c under a pressure of one at a, from equal radial displacement at b
-/// in plane strain: u = (1 + ν)/E · [(1 − 2ν) A r + B/r] with σ_r = A − B/r², A = (p_i a² − p_o b²)/(b² − a²) and
-/// B = a² b² (p_i − p_o)/(b² − a²).
-fn lame([a, b, c]: [f64; 3], [inner, outer]: [f64; 2], nu: f64) -> f64 {
-    let moved = |r: f64, [p, q]: [f64; 2], [r_p, r_q]: [f64; 2], young: f64| {
-        let (pp, qq) = (r_p * r_p, r_q * r_q);
-        let (own, inverse) = ((p * pp - q * qq) / (qq - pp), pp * qq * (p - q) / (qq - pp));
-        (1.0 + nu) / young * ((1.0 - 2.0 * nu) * own * r + inverse / r)
-    };
-    // Linear in p: the inner ring moves by u0 + u1 p, the outer by v1 p.
-    let u0 = moved(b, [1.0, 0.0], [a, b], inner);
-    let u1 = moved(b, [0.0, 1.0], [a, b], inner);
-    let v1 = moved(b, [1.0, 0.0], [b, c], outer);
-    u0 / (v1 - u1)
+    (text.replace("[bodies.inner]\nyoung = 1.0", "[bodies.inner]\nyoung = 2.0"), PRESSED.pressure())
 }
 
 /// A body with its corners and the names of its edges.

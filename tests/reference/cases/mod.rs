@@ -1,6 +1,7 @@
 //! Every scene in `cases/`, end to end: both models, the comparison, the report. What is asserted comes from closed
 //! formulas and from statics by hand.
 
+mod curved;
 mod exact;
 mod failures;
 mod half_planes;
@@ -14,7 +15,13 @@ mod statics;
 fn every_case_is_asserted_and_listed() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let list = std::fs::read_to_string(folder.join("README.md")).expect("the list of cases");
-    let tests = [include_str!("exact.rs"), include_str!("statics.rs"), include_str!("half_planes.rs")].concat();
+    let tests = [
+        include_str!("exact.rs"),
+        include_str!("statics.rs"),
+        include_str!("half_planes.rs"),
+        include_str!("curved.rs"),
+    ]
+    .concat();
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("readable") {
         let path = entry.expect("readable").path();

@@ -123,7 +123,9 @@ pub fn sound(name: &str) -> Report {
         // What a displacement model reports carries no allowance for rounding, the bounds do.
         let rounding = 1e-12 * scale + report.number("/energy/widening");
         for i in 0..2 {
-            assert_eq!(report.0["primal"][i]["admissible"], true);
+            // Along a curve, linear displacements are bounded at vertices alone.
+            let curved = report.notes().contains("stand for a curve");
+            assert!(report.0["primal"][i]["admissible"] == true || i == 0 && curved);
             let energy = report.number(&format!("/primal/{i}/energy"));
             assert!(lower <= energy + rounding && upper <= energy + rounding, "{lower} {upper} {energy}");
         }
