@@ -9,20 +9,20 @@ const RADIUS: f64 = 50.0;
 const EDGE: f64 = 0.05;
 
 /// Plane-strain compliance (1 − ν²)/E.
-fn compliance(young: f64, nu: f64) -> f64 {
+pub fn compliance(young: f64, nu: f64) -> f64 {
     (1.0 - nu * nu) / young
 }
 
-/// Half-width and peak pressure of Hertz's theory under a force `force` per thickness.
-fn hertz(force: f64, modulus: f64) -> (f64, f64) {
-    let width = (4.0 * force * RADIUS / (std::f64::consts::PI * modulus)).sqrt();
-    let peak = (force * modulus / (std::f64::consts::PI * RADIUS)).sqrt();
+/// Half-width and peak pressure of Hertz's theory under a force `force` per thickness, for curves of radius `radius`.
+pub fn hertz(force: f64, modulus: f64, radius: f64) -> (f64, f64) {
+    let width = (4.0 * force * radius / (std::f64::consts::PI * modulus)).sqrt();
+    let peak = (force * modulus / (std::f64::consts::PI * radius)).sqrt();
     (width, peak)
 }
 
 /// p² of Hertz's pressure is linear in x²: the line through the points with at least a third of the largest pressure
 /// gives peak and half-width without looking at single values, at the end of contact least of all.
-fn fit(points: &[[f64; 2]]) -> (f64, f64) {
+pub fn fit(points: &[[f64; 2]]) -> (f64, f64) {
     let largest = points.iter().fold(0.0_f64, |m, p| m.max(p[1]));
     let used: Vec<[f64; 2]> =
         points.iter().filter(|p| p[1] > largest / 3.0).map(|p| [p[0] * p[0], p[1] * p[1]]).collect();
@@ -36,7 +36,7 @@ fn fit(points: &[[f64; 2]]) -> (f64, f64) {
 
 #[track_caller]
 fn is_hertz(report: &Report, half_force: f64, modulus: f64) {
-    let (width, peak) = hertz(2.0 * half_force, modulus);
+    let (width, peak) = hertz(2.0 * half_force, modulus, RADIUS);
     let mut profiles = vec!["dual"];
     if with_reference() {
         profiles.push("FEniCSx P2 reactions");
