@@ -85,7 +85,11 @@ pub(crate) fn same(links: &[Link]) -> f64 {
     SAME * links.last().map_or(0.0, |last| last.arc[1])
 }
 
-/// The points of a side at the arc lengths `breaks` that are not at an end of an edge: (edge, point).
+/// Part of an edge beside its ends in which no vertex is put: the triangles there would be too flat to carry a digit.
+const SLIVER: f64 = 1e-6;
+
+/// The points of a side at the arc lengths `breaks` that are not at an end of an edge: (edge, point). Where they are within
+/// a millionth of an edge of its ends no point is put, and the gap is linear on the edge as it is.
 pub(crate) fn inner_points(edges: &[[[f64; 2]; 2]], links: &[Link], breaks: &[f64]) -> Vec<(usize, [f64; 2])> {
     let mut found = Vec::new();
     let close = same(links);
@@ -93,6 +97,7 @@ pub(crate) fn inner_points(edges: &[[[f64; 2]; 2]], links: &[Link], breaks: &[f6
         for link in links {
             let length = link.arc[1] - link.arc[0];
             let t = (s - link.arc[0]) / length;
+            let close = close.max(SLIVER * length);
             if s - link.arc[0] > close && link.arc[1] - s > close {
                 let [a, b] = edges[link.edge];
                 let t = if link.reversed { 1.0 - t } else { t };
@@ -114,6 +119,8 @@ mod tests {
         let passed: Vec<(usize, bool, [f64; 2])> = links.iter().map(|l| (l.edge, l.reversed, l.arc)).collect();
         assert_eq!(passed, [(2, false, [0.0, 0.5]), (0, true, [0.5, 1.0]), (1, true, [1.0, 2.0])]);
         assert_eq!(inner_points(&edges, &links, &[0.5, 0.75, 9.0]), [(0, [0.75, 0.0])]);
+        // gmsh puts vertices on arcs to about 1e-9 of their length.
+        assert_eq!(inner_points(&edges, &links, &[0.5 - 4e-7, 1.0 + 1e-8]), []);
     }
 
     #[test]
