@@ -47,6 +47,14 @@ impl Toml {
         self
     }
 
+    /// Arcs in place of edges of the polygon before: its edge and a point between its ends.
+    pub fn arcs(mut self, arcs: &[(usize, [f64; 2])]) -> Self {
+        let rows: Vec<String> =
+            arcs.iter().map(|(edge, through)| format!("{{ edge = {edge}, through = {through:?} }}")).collect();
+        writeln!(self.polygons, "arcs = [{}]", rows.join(", ")).expect("a string takes any text");
+        self
+    }
+
     /// The body force of a body.
     pub fn force(mut self, body: &str, force: [f64; 2]) -> Self {
         self.bodies.iter_mut().filter(|b| b.0 == body).for_each(|b| b.1 = force);

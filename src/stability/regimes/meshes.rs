@@ -98,11 +98,6 @@ fn slit(shear: f64) -> Result<Problem, String> {
     model.problem()
 }
 
-fn curved(bend: f64) -> Result<Problem, String> {
-    let to = |[x, y]: [f64; 2]| [x + bend * (std::f64::consts::PI * y).sin() * x * (2.0 - x), y];
-    Lift { load: [1.5, -1.8], ..Lift::new(8) }.model().moved(to).problem()
-}
-
 fn unequal_row(n: f64) -> Strips {
     let n = n as usize;
     let mut row = Strips::new(n);
@@ -242,18 +237,6 @@ pub(super) const REGIMES: &[Regime] = &[
         reduced: &[0, 1, 5],
         build: |n| unequal_row(n).model().problem(),
         known: |n| unequal_row(n).known(),
-        ..PLAIN
-    },
-    Regime {
-        id: "curved",
-        title: "A curved contact, as a polygon",
-        parameter: "rise of the curve over its chord",
-        reported: "MOOSE #23802",
-        values: &[0.0, 0.01, 0.05, 0.1, 0.2],
-        reduced: &[0, 3],
-        build: curved,
-        // The roller takes up what the curve leaves of the vertical force.
-        known: |_| Known::forces(vec![[-0.6, f64::NAN]], 1.5),
         ..PLAIN
     },
     Regime {

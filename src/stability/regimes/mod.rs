@@ -1,6 +1,7 @@
 //! The rows of the matrix.
 
 mod contact;
+mod curved;
 mod material;
 mod meshes;
 mod units;
@@ -91,7 +92,7 @@ impl std::fmt::Display for Shown {
 }
 
 /// All regimes.
-pub static REGIMES: &[&[Regime]] = &[material::REGIMES, meshes::REGIMES, units::REGIMES, contact::REGIMES];
+pub static REGIMES: &[&[Regime]] = &[material::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
 
 /// The regime of that name.
 pub fn regime(id: &str) -> Option<&'static Regime> {

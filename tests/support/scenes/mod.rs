@@ -5,6 +5,7 @@
 //! `fn(&mut Random) -> Made` and a line in [`FAMILIES`].
 
 mod conditions;
+mod curved;
 mod frame;
 mod lattice;
 mod layout;
@@ -57,11 +58,15 @@ type Family = fn(&mut Random) -> Made;
 const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
+/// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
+const LATER: [(&str, f64, Family); 2] = [("crowd", 0.1, lattice::crowd), ("curved", 0.15, curved::curved)];
+
 /// The scene of a seed.
 pub fn sample(seed: u64) -> Sample {
     let mut random = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d));
-    if random.aside().chance(0.1) {
-        return finished(seed, "crowd", lattice::crowd(&mut random));
+    let mut aside = random.aside();
+    if let Some((family, _, make)) = LATER.into_iter().find(|(_, probability, _)| aside.chance(*probability)) {
+        return finished(seed, family, make(&mut random));
     }
     let mut ticket = random.below(FAMILIES.iter().map(|f| f.1).sum());
     let (family, _, make) = FAMILIES

@@ -1,0 +1,198 @@
+//! Bodies that meet along curves: blocks along an arc, rings, a cap in its seat, a round body on a straight one.
+
+use std::f64::consts::PI;
+
+use super::Made;
+use super::frame::Frame;
+use crate::support::random::Random;
+use crate::support::toml::Toml;
+
+/// A scene of one of these kinds.
+pub fn curved(random: &mut Random) -> Made {
+    let frame = Frame::random(random);
+    let drawing = Drawing { length: frame.length, turn: frame.turn };
+    let toml = match random.below(5) {
+        0 | 1 => blocks(random, &frame, &drawing),
+        2 => rings(random, &frame, &drawing),
+        3 => cap(random, &frame, &drawing),
+        _ => round_on_straight(random, &frame, &drawing),
+    };
+    let plain = random.chance(0.6);
+    let toml = if plain { toml } else { toml.model("plane-stress", random.between(0.1, 3.0)) };
+    // Interferences are prescribed displacements.
+    let most = 0.02 * frame.length;
+    Made { toml, mesh: None, energy: frame.young * 4.0 * most * most }
+}
+
+/// Places in the units and the direction of a scene.
+struct Drawing {
+    length: f64,
+    turn: [f64; 2],
+}
+
+impl Drawing {
+    fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.turn;
+        [c * x - s * y, s * x + c * y].map(|x| x * self.length)
+    }
+
+    fn along(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [c, s] = self.turn;
+        [c * x - s * y, s * x + c * y]
+    }
+
+    fn all(&self, points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        points.iter().map(|p| self.at(*p)).collect()
+    }
+}
+
+fn materials(toml: Toml, random: &mut Random, frame: &Frame, bodies: [&str; 2]) -> Toml {
+    bodies.into_iter().fold(toml, |toml, body| {
+        let poisson = if random.chance(0.2) { 0.4999 } else { random.between(0.0, 0.45) };
+        toml.material(body, frame.young * random.magnitude(-1.0, 1.0), poisson)
+    })
+}
+
+fn normals(random: &mut Random) -> &'static str {
+    if random.chance(0.75) { "" } else { "\nnormals = \"facets\"" }
+}
+
+/// No gap, one that the loads may close, or an interference.
+fn gap(random: &mut Random, frame: &Frame) -> String {
+    let small = frame.length * frame.load.min(0.01) * random.between(0.1, 1.0);
+    match random.below(6) {
+        0 => format!("\ngap = {small:?}"),
+        1 => format!("\ngap = {:?}", -small),
+        _ => String::new(),
+    }
+}
+
+/// A pressure that varies, along the direction down.
+fn weight_on(toml: Toml, on: &str, random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+    let size = frame.traction(random);
+    let down = drawing.along([random.between(-0.1, 0.1) * size, -size]);
+    let steep = size / frame.length * random.between(-1.0, 1.0);
+    let along = drawing.along([1.0, 0.0]);
+    let gradient = [0, 1].map(|r| [0, 1].map(|c| steep * drawing.along([0.0, 1.0])[r] * along[c]));
+    toml.table(&format!("[[tractions]]\non = \"{on}\"\nvalue = {down:?}\ngradient = {gradient:?}"))
+}
+
+/// Two blocks that meet along an arc, as facets or as an arc of `[geometry]`.
+fn blocks(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+    let rise = random.between(0.01, 0.3) * if random.chance(0.5) { 1.0 } else { -1.0 };
+    let height = 0.6 + 0.3 * random.between(0.0, 1.0);
+    let radius = (0.25 + rise * rise) / (2.0 * rise);
+    let half = (0.5 / radius).asin();
+    let on = |t: f64| [0.5 + radius * (t * half).sin(), height + radius * (t * half).cos() - (radius - rise)];
+    let top = height + rise.max(0.0) + random.between(0.3, 0.8);
+    let mut toml = Toml::default();
+    if random.chance(0.5) {
+        let through = drawing.at(on(0.0));
+        let size = random.between(0.1, 0.3);
+        let (a, b) = ([0.0, height], [1.0, height]);
+        toml = toml
+            .size(size * frame.length)
+            .outline("low", &drawing.all(&[[0.0, 0.0], [1.0, 0.0], b, a]), &["base", "", "lower", ""])
+            .arcs(&[(2, through)])
+            .outline("up", &drawing.all(&[a, b, [1.0, top], [0.0, top]]), &["upper", "", "load", "side"])
+            .arcs(&[(0, through)]);
+    } else {
+        let facets = 3 + random.below(12);
+        let mut curve: Vec<[f64; 2]> = (0..=facets).map(|i| on(2.0 * i as f64 / facets as f64 - 1.0)).collect();
+        (curve[0], curve[facets]) = ([0.0, height], [1.0, height]);
+        let mut lower = vec![[0.0, 0.0], [1.0, 0.0]];
+        lower.extend(curve.iter().rev());
+        let mut upper = curve;
+        upper.extend([[1.0, top], [0.0, top]]);
+        let below = [vec!["base", ""], vec!["lower"; facets], vec![""]].concat();
+        let above = [vec!["upper"; facets], vec!["", "load", "side"]].concat();
+        toml = toml
+            .size(frame.length * random.between(0.15, 0.4))
+            .outline("low", &drawing.all(&lower), &below)
+            .outline("up", &drawing.all(&upper), &above);
+    }
+    toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
+    toml = if random.chance(0.7) { toml.roller("side") } else { toml };
+    toml = weight_on(toml, "load", random, frame, drawing);
+    toml.table(&format!("[[contacts]]\nbetween = [\"lower\", \"upper\"]{}{}", gap(random, frame), normals(random)))
+}
+
+/// Part of a ring in another one, rollers on the cuts, a pressure inside or an interference.
+fn rings(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+    let radii = [1.0, 1.0 + random.between(0.2, 0.6), 0.0];
+    let radii = [radii[0], radii[1], radii[1] + random.between(0.2, 0.6)];
+    let angle = if random.chance(0.5) { 0.5 * PI } else { random.between(0.4, 2.5) };
+    let at = |r: f64, a: f64| drawing.at([r * a.cos(), r * a.sin()]);
+    let mut toml = Toml::default().size(frame.length * random.between(0.15, 0.4));
+    for (body, [r, s], [inside, outside]) in
+        [("inner", [radii[0], radii[1]], ["inside", "seat"]), ("outer", [radii[1], radii[2]], ["bore", "outside"])]
+    {
+        let cuts = ["foot", "head"].map(|cut| format!("{body}_{cut}"));
+        let corners = [at(r, 0.0), at(s, 0.0), at(s, angle), at(r, angle)];
+        toml = toml
+            .outline(body, &corners, &[&cuts[0], outside, &cuts[1], inside])
+            .arcs(&[(1, at(s, 0.5 * angle)), (3, at(r, 0.5 * angle))])
+            .roller(&cuts[0])
+            .roller(&cuts[1]);
+    }
+    toml = materials(toml, random, frame, ["inner", "outer"]);
+    toml = toml.pressure("inside", frame.traction(random));
+    toml.table(&format!("[[contacts]]\nbetween = [\"seat\", \"bore\"]{}{}", gap(random, frame), normals(random)))
+}
+
+/// A round cap in a seat of the same radius, held by nothing else: it may turn in it.
+fn cap(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+    let reach = random.between(0.4, 1.3);
+    let depth = random.between(0.4, 1.0);
+    let at = |a: f64| [a.sin(), 1.0 - a.cos()];
+    let (left, right) = (at(-reach), at(reach));
+    let through = drawing.at(at(0.0));
+    let foot = -depth;
+    let seat = [[left[0], foot], [right[0], foot], right, left];
+    let head = left[1] + random.between(0.2, 0.8);
+    let body = [left, right, [right[0], head], [left[0], head]];
+    let mut toml = Toml::default()
+        .size(frame.length * random.between(0.15, 0.35))
+        .outline("low", &drawing.all(&seat), &["base", "", "seat", ""])
+        .arcs(&[(2, through)])
+        .outline("up", &drawing.all(&body), &["round", "", "load", ""])
+        .arcs(&[(0, through)]);
+    toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
+    toml = if random.chance(0.5) {
+        // Symmetric but for rounding.
+        let size = frame.traction(random);
+        toml.pressure("load", size)
+    } else {
+        weight_on(toml, "load", random, frame, drawing)
+    };
+    toml.table(&format!("[[contacts]]\nbetween = [\"seat\", \"round\"]{}", normals(random)))
+}
+
+/// A body with a round foot on a straight one, matched along the direction between them.
+fn round_on_straight(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+    let radius = random.between(0.8, 6.0);
+    let reach = random.between(0.3, 0.6);
+    let facets = 4 + random.below(12);
+    let height = |x: f64| radius - (radius * radius - x * x).sqrt();
+    let from = if random.chance(0.5) { 0.0 } else { -reach };
+    let mut foot: Vec<[f64; 2]> = (0..=facets)
+        .map(|i| from + (reach - from) * i as f64 / facets as f64)
+        .map(|x| [x, height(x)])
+        .collect();
+    let top = height(reach) + random.between(0.3, 0.8);
+    let mut names = vec!["round"; facets];
+    names.extend(["", "load", "side"]);
+    foot.extend([[reach, top], [from, top]]);
+    let ends = [from - if from < 0.0 { 0.2 } else { 0.0 }, reach + random.between(0.0, 0.5)];
+    let block = [[ends[0], -0.7], [ends[1], -0.7], [ends[1], 0.0], [ends[0], 0.0]];
+    let mut toml = Toml::default()
+        .size(frame.length * random.between(0.08, 0.3))
+        .outline("up", &drawing.all(&foot), &names)
+        .outline("low", &drawing.all(&block), &["base", "", "flat", ""]);
+    toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
+    toml = if from < 0.0 && random.chance(0.3) { toml } else { toml.roller("side") };
+    toml = weight_on(toml, "load", random, frame, drawing);
+    let down = drawing.along([0.0, -1.0]);
+    let direction = format!("direction = {down:?}");
+    toml.table(&format!("[[contacts]]\nbetween = [\"round\", \"flat\"]\n{direction}{}", gap(random, frame)))
+}
