@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::contact::{gap_note, pair_up};
 use super::curves::curved;
-use super::normals::{Coarser, inherit, replace, smooth};
-use super::{Condition, Note, Problem, ProblemError};
+use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
+use super::{Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
@@ -76,6 +76,9 @@ impl Problem {
             let of_the_mesh_before = gap_note(contact);
             notes.retain(|note| !note.text.starts_with(&of_the_mesh_before));
             let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
+            if let Some(coarser) = coarser.filter(|coarser| coarser.refinement == Refinement::KeepsEdges) {
+                keep_gap(&mut matched.pairs, coarser, interface);
+            }
             if contact.normals == Normals::Smooth && contact.direction.is_none() {
                 match coarser {
                     None => smooth(&mut matched.pairs),
@@ -100,7 +103,8 @@ impl Problem {
                 notes.push(remark);
             }
         }
-        Ok(Problem { scene, mesh, conditions, interfaces, notes })
+        let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
+        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -119,7 +123,12 @@ impl Problem {
 
     /// The problem on a mesh whose edges are those of this one, divided once at most, those in `curved` on their circles.
     fn divided(&self, mesh: Triangulation, curved: &Curved) -> Result<Problem, ProblemError> {
-        let coarser = Coarser { interfaces: &self.interfaces, vertices: self.mesh.points.len(), curved };
+        let coarser = Coarser {
+            interfaces: &self.interfaces,
+            vertices: self.mesh.points.len(),
+            curved,
+            refinement: self.refinement,
+        };
         Problem::with_directions(self.scene.clone(), mesh, self.notes.clone(), Some(&coarser))
     }
 

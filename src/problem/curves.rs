@@ -1,6 +1,6 @@
 //! Which edges stand for arcs of circles, so that refining puts new vertices on these.
 
-use super::{Condition, ContactPair, Problem};
+use super::{Condition, ContactPair, Problem, Refinement};
 use crate::mesh::Curved;
 use crate::scene::{Circle, Gap, MeshSource, Normals, Scene};
 
@@ -15,6 +15,9 @@ const ROOM: f64 = 0.3;
 /// a row have their vertices on a circle. A contact with a gap along the arc length, or with a direction, keeps its edges.
 pub(super) fn curved(problem: &Problem) -> Curved {
     let mut found = Curved::default();
+    if problem.refinement == Refinement::KeepsEdges {
+        return found;
+    }
     arcs(problem, &mut found);
     for (interface, contact) in problem.interfaces.iter().zip(&problem.scene.contacts) {
         let pairs = &interface.pairs;

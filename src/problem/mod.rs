@@ -32,6 +32,18 @@ pub struct Problem {
     pub interfaces: Vec<Interface>,
     /// What the reader of the report has to know about how the mesh and the data were represented.
     pub notes: Vec<Note>,
+    /// What refinement makes of curves.
+    pub refinement: Refinement,
+}
+
+/// What refinement makes of edges and gaps that stand for a curve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Refinement {
+    /// New vertices lie on the curve: a finer mesh is another domain, with other admissible fields.
+    #[default]
+    FollowsCurves,
+    /// Polygon and gap stay as they are: fields of the mesh are fields of every finer one.
+    KeepsEdges,
 }
 
 /// What holds on one edge.

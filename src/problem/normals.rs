@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use super::direction::unit;
-use super::{ContactPair, Interface, Note};
+use super::{ContactPair, Interface, Note, Refinement};
 use crate::mesh::Curved;
 
 /// Cosine of the angle between the normals of two edges beyond which the vertex between them is a corner: 30°.
@@ -79,19 +79,32 @@ pub(super) struct Coarser<'a> {
     pub vertices: usize,
     /// The edges that were divided on a circle.
     pub curved: &'a Curved,
+    /// What it makes of curves.
+    pub refinement: Refinement,
+}
+
+impl<'a> Coarser<'a> {
+    /// Finds the coarser pairs of an interface that finer ones are parts of: every part has an end in common with the whole.
+    fn parents(&self, interface: usize) -> impl Fn(&ContactPair) -> Option<&'a ContactPair> + use<'a> {
+        let pairs = self.interfaces.get(interface).map_or(&[][..], |coarse| &coarse.pairs);
+        let starting: HashMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p.first[0], k)).collect();
+        let ending: HashMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p.first[1], k)).collect();
+        let vertices = self.vertices;
+        move |pair| {
+            let [a, b] = pair.first;
+            let parent = if a < vertices { starting.get(&a) } else { ending.get(&b) };
+            parent.map(|k| &pairs[*k])
+        }
+    }
 }
 
 /// Gives the pairs of a finer mesh the directions of the coarser pairs that they are parts of: a vertex put on an edge lies
 /// between its ends, and so does its direction; one put on a circle has the normal of that.
 pub(super) fn inherit(pairs: &mut [ContactPair], points: &[[f64; 2]], coarser: &Coarser, interface: usize) {
-    let Some(coarse) = coarser.interfaces.get(interface) else { return };
-    let starting: HashMap<usize, usize> = coarse.pairs.iter().enumerate().map(|(k, p)| (p.first[0], k)).collect();
-    let ending: HashMap<usize, usize> = coarse.pairs.iter().enumerate().map(|(k, p)| (p.first[1], k)).collect();
+    let parent = coarser.parents(interface);
     for pair in pairs {
-        // Every part of a pair has an end in common with it.
         let [a, b] = pair.first;
-        let parent = if a < coarser.vertices { starting.get(&a) } else { ending.get(&b) };
-        let Some(parent) = parent.map(|k| &coarse.pairs[*k]).filter(|p| !p.direction.is_constant()) else { continue };
+        let Some(parent) = parent(pair).filter(|p| !p.direction.is_constant()) else { continue };
         let circle = parent.edges[0].and_then(|e| coarser.curved.get(&e));
         let kept = |end: usize, v: usize| (v == parent.first[end]).then_some(parent.direction.ends[end]);
         let new = |v: usize| match circle {
@@ -103,6 +116,20 @@ pub(super) fn inherit(pairs: &mut [ContactPair], points: &[[f64; 2]], coarser: &
             None => parent.direction.at(0.5),
         };
         pair.direction.ends = [kept(0, a).unwrap_or_else(|| new(a)), kept(1, b).unwrap_or_else(|| new(b))];
+    }
+}
+
+/// Gives the pairs of a finer mesh the gap of the coarser pairs that they are parts of, linear along these.
+pub(super) fn keep_gap(pairs: &mut [ContactPair], coarser: &Coarser, interface: usize) {
+    let parent = coarser.parents(interface);
+    for pair in pairs {
+        let Some(parent) = parent(pair) else { continue };
+        let [first, last] = parent.gap;
+        let of = |end: usize| {
+            let whole = pair.first[end] == parent.first[end];
+            if whole { parent.gap[end] } else { 0.5 * (first + last) }
+        };
+        pair.gap = [of(0), of(1)];
     }
 }
 

@@ -129,6 +129,7 @@ fn two_blocks(n: usize) -> Problem {
         conditions,
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
         notes,
+        refinement: crate::problem::Refinement::default(),
     }
 }
 

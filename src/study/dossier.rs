@@ -1,6 +1,7 @@
 //! From results to the data behind the report.
 
 use super::Certified;
+use super::curves;
 use super::provenance::{identifier, provenance};
 use crate::bounds::{Bracket, UpperBound, mid_field};
 use crate::compare::{Comparison, primal_means, von_mises_map};
@@ -132,6 +133,9 @@ fn report(findings: &Findings<'_>) -> Report {
     notes.extend(statics.notes.iter().map(remark));
     notes.extend(dual.notes.iter().map(remark));
     notes.extend(findings.notes.iter().cloned());
+    // A finer mesh for the sake of the verdict keeps the edges.
+    let followed = if findings.finer.is_none() { findings.history.as_slice() } else { &[] };
+    notes.extend(curves::remarks(findings.certified, followed));
     let guaranteed = !notes.iter().any(|n| n.weakens_guarantee);
     let sharpest = findings.finer.map_or(bracket, |finer| &finer.bracket);
     let energy =

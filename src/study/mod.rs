@@ -4,6 +4,7 @@ mod adaptive;
 mod admission;
 mod baseline;
 mod certified;
+mod curves;
 mod dossier;
 mod field;
 mod forecast;

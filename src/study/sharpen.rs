@@ -1,12 +1,14 @@
 //! Refinement of the stress side alone, until its bracket can tell two models apart.
 //!
 //! A displacement of the mesh that was given is one of every finer mesh, with the same energy: bounds from a finer mesh
-//! hold for it as they stand, and nothing has to be solved twice on the displacement side.
+//! hold for it as they stand, and nothing has to be solved twice on the displacement side. Where edges stand for curves,
+//! they are divided and stay where they are.
 
 use super::adaptive::{Goal, adapt};
 use super::certified::{Certified, StudyError};
 use crate::compare::Comparison;
 use crate::dual::{DualMethod, Options};
+use crate::problem::{Problem, Refinement};
 use crate::report::HistoryRow;
 
 /// Seconds that refinement for the sake of the verdict may take where nobody sets a limit.
@@ -47,6 +49,7 @@ pub fn sharpen(
     let known_upper = comparison.judged.iter().map(|j| j.admissible.upper()).reduce(f64::min);
     let goal =
         Goal { known_upper, max_seconds: goal.max_seconds.or(Some(PATIENCE)), least_rate: Some(STALLED), ..goal };
-    let adapted = adapt(certified.problem.clone(), method, options, &goal, on_step)?;
+    let problem = Problem { refinement: Refinement::KeepsEdges, ..certified.problem.clone() };
+    let adapted = adapt(problem, method, options, &goal, on_step)?;
     Ok(Some(Sharpened { certified: adapted.certified, history: adapted.history, stopped: adapted.stopped }))
 }

@@ -3,7 +3,7 @@
 use crate::arcs::{Arcs, disc, ring_on_ring};
 use hypercircle::bounds::{Bracket, complementary, local_gap, potential};
 use hypercircle::dual::{self, ActiveSet, Clarabel, Condensed, DualError, DualMethod, DualSolution, Options, Uzawa};
-use hypercircle::problem::Problem;
+use hypercircle::problem::{Problem, Refinement};
 use hypercircle::scene::Scene;
 use hypercircle::statics::{self, Equilibrium, MotionKind};
 
@@ -192,4 +192,32 @@ fn a_facetted_curve_that_is_no_circle_keeps_its_directions_under_refinement() {
         assert_eq!(near.direction.ends[1], pair.direction.at(0.5));
     }
     relative_error(&fine);
+}
+
+/// A field of a mesh is one of every finer mesh that keeps edges and gaps: bounds from there hold for it.
+#[test]
+fn a_finer_mesh_that_keeps_its_edges_bounds_the_same_problem() {
+    let (rings, _) = ring_on_ring(6);
+    let touching = "[model]\nkinematics = \"plane-strain\"\n[geometry]\nsize = 0.25\n\
+        [[geometry.polygons]]\nbody = \"a\"\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n\
+        edges = [\"foot\", \"\", \"top\", \"axis\"]\n[bodies.a]\nyoung = 1.0\npoisson = 0.3\n\
+        [[supports]]\non = \"axis\"\ntype = \"roller\"\n[[tractions]]\non = \"top\"\npressure = 0.1\n\
+        [[contacts]]\non = \"foot\"\ngap = { circle = 3, at = 0 }\n";
+    for text in [rings.as_str(), touching] {
+        let kept = Problem { refinement: Refinement::KeepsEdges, ..problem(text) };
+        let follows = problem(text).refine_uniform(1).expect("refines");
+        let finer = kept.refine_uniform(1).expect("refines");
+        assert_eq!(finer.refinement, Refinement::KeepsEdges);
+        let area = |p: &Problem| (0..p.mesh.triangles.len()).map(|t| p.mesh.area(t)).sum::<f64>();
+        assert!((area(&finer) - area(&kept)).abs() < 1e-12);
+        for (k, pair) in kept.interfaces[0].pairs.iter().enumerate() {
+            let parts = [&finer.interfaces[0].pairs[2 * k], &finer.interfaces[0].pairs[2 * k + 1]];
+            assert_eq!([parts[0].gap[0], parts[1].gap[1]], pair.gap);
+            assert_eq!([parts[0].gap[1], parts[1].gap[0]], [0.5 * (pair.gap[0] + pair.gap[1]); 2]);
+        }
+        let lower = |p: &Problem| Bracket::new(p, &solve(p, &Condensed::default())).lower();
+        assert!(lower(&finer) >= lower(&kept), "{} after {}", lower(&finer), lower(&kept));
+        // Following the curve changes the problem: rounder rings are stiffer or softer, but not the same.
+        assert_ne!(lower(&follows), lower(&finer));
+    }
 }

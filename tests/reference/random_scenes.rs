@@ -52,7 +52,7 @@ fn hard_scenes_get_the_right_verdict() {
         let path = entry.expect("readable").path();
         let text = std::fs::read_to_string(&path).expect("readable");
         let family = path.file_stem().and_then(|n| n.to_str()).expect("a plain name").to_owned().leak();
-        samples.push(Sample { seed: seed as u64, family, text, mesh: None, rounding: 0.0 });
+        samples.push(Sample { seed: seed as u64, family, text, mesh: None, rounding: 0.0, rounds: false });
     }
     assert!(samples.len() >= 10, "{} scenes", samples.len());
     try_all(samples);
@@ -117,7 +117,7 @@ fn ended(code: i32, [lower, upper]: [f64; 2], more: &str) -> Ended {
 }
 
 fn kinds(runs: Vec<(Way, Ended)>) -> Vec<String> {
-    faults(&runs, 0.0).into_iter().map(|f| f.kind).collect()
+    faults(&runs, 0.0, false).into_iter().map(|f| f.kind).collect()
 }
 
 const FIRST: Way = Way::Method("condensed");

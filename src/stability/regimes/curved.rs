@@ -104,12 +104,7 @@ const BORE: Regime = Regime {
 };
 
 pub(super) const REGIMES: &[Regime] = &[
-    Regime {
-        id: "curved",
-        title: "A curved contact, convex",
-        build: |rise| wave(rise, Normals::Smooth),
-        ..WAVE
-    },
+    Regime { id: "curved", title: "A curved contact, convex", build: |rise| wave(rise, Normals::Smooth), ..WAVE },
     Regime {
         id: "curved-hollow",
         title: "A curved contact, hollow",

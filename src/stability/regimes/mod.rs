@@ -92,7 +92,8 @@ impl std::fmt::Display for Shown {
 }
 
 /// All regimes.
-pub static REGIMES: &[&[Regime]] = &[material::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
+pub static REGIMES: &[&[Regime]] =
+    &[material::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
 
 /// The regime of that name.
 pub fn regime(id: &str) -> Option<&'static Regime> {

@@ -220,7 +220,7 @@ impl Build {
             tractions: Vec::new(),
             contacts: Vec::new(),
         };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new() }
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
     }
 }
 

@@ -230,7 +230,7 @@ impl Setup {
         };
         let (triangles, body) = triangles.into_iter().unzip();
         let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new() }
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
     }
 }
 

@@ -11,17 +11,18 @@ use crate::support::toml::Toml;
 pub fn curved(random: &mut Random) -> Made {
     let frame = Frame::random(random);
     let drawing = Drawing { length: frame.length, turn: frame.turn };
-    let toml = match random.below(5) {
-        0 | 1 => blocks(random, &frame, &drawing),
-        2 => rings(random, &frame, &drawing),
-        3 => cap(random, &frame, &drawing),
-        _ => round_on_straight(random, &frame, &drawing),
+    let (toml, rounds) = match random.below(5) {
+        0 => blocks_along_an_arc(random, &frame, &drawing),
+        1 => blocks_along_facets(random, &frame, &drawing),
+        2 => (rings(random, &frame, &drawing), true),
+        3 => (cap(random, &frame, &drawing), true),
+        _ => (round_on_straight(random, &frame, &drawing), false),
     };
     let plain = random.chance(0.6);
     let toml = if plain { toml } else { toml.model("plane-stress", random.between(0.1, 3.0)) };
     // Interferences are prescribed displacements.
     let most = 0.02 * frame.length;
-    Made { toml, mesh: None, energy: frame.young * 4.0 * most * most }
+    Made { toml, mesh: None, energy: frame.young * 4.0 * most * most, rounds }
 }
 
 /// Places in the units and the direction of a scene.
@@ -77,44 +78,70 @@ fn weight_on(toml: Toml, on: &str, random: &mut Random, frame: &Frame, drawing: 
     toml.table(&format!("[[tractions]]\non = \"{on}\"\nvalue = {down:?}\ngradient = {gradient:?}"))
 }
 
-/// Two blocks that meet along an arc, as facets or as an arc of `[geometry]`.
-fn blocks(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
-    let rise = random.between(0.01, 0.3) * if random.chance(0.5) { 1.0 } else { -1.0 };
-    let height = 0.6 + 0.3 * random.between(0.0, 1.0);
-    let radius = (0.25 + rise * rise) / (2.0 * rise);
-    let half = (0.5 / radius).asin();
-    let on = |t: f64| [0.5 + radius * (t * half).sin(), height + radius * (t * half).cos() - (radius - rise)];
-    let top = height + rise.max(0.0) + random.between(0.3, 0.8);
-    let mut toml = Toml::default();
-    if random.chance(0.5) {
-        let through = drawing.at(on(0.0));
-        let size = random.between(0.1, 0.3);
-        let (a, b) = ([0.0, height], [1.0, height]);
-        toml = toml
-            .size(size * frame.length)
-            .outline("low", &drawing.all(&[[0.0, 0.0], [1.0, 0.0], b, a]), &["base", "", "lower", ""])
-            .arcs(&[(2, through)])
-            .outline("up", &drawing.all(&[a, b, [1.0, top], [0.0, top]]), &["upper", "", "load", "side"])
-            .arcs(&[(0, through)]);
-    } else {
-        let facets = 3 + random.below(12);
-        let mut curve: Vec<[f64; 2]> = (0..=facets).map(|i| on(2.0 * i as f64 / facets as f64 - 1.0)).collect();
-        (curve[0], curve[facets]) = ([0.0, height], [1.0, height]);
-        let mut lower = vec![[0.0, 0.0], [1.0, 0.0]];
-        lower.extend(curve.iter().rev());
-        let mut upper = curve;
-        upper.extend([[1.0, top], [0.0, top]]);
-        let below = [vec!["base", ""], vec!["lower"; facets], vec![""]].concat();
-        let above = [vec!["upper"; facets], vec!["", "load", "side"]].concat();
-        toml = toml
-            .size(frame.length * random.between(0.15, 0.4))
-            .outline("low", &drawing.all(&lower), &below)
-            .outline("up", &drawing.all(&upper), &above);
+/// Height of the ends of an arc over a chord of length one, its rise, and the top of the upper block.
+struct Arc {
+    height: f64,
+    rise: f64,
+    top: f64,
+}
+
+impl Arc {
+    fn random(random: &mut Random) -> Self {
+        let rise = random.between(0.01, 0.3) * if random.chance(0.5) { 1.0 } else { -1.0 };
+        let height = random.between(0.6, 0.9);
+        Arc { height, rise, top: height + rise.max(0.0) + random.between(0.3, 0.8) }
     }
-    toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
-    toml = if random.chance(0.7) { toml.roller("side") } else { toml };
-    toml = weight_on(toml, "load", random, frame, drawing);
-    toml.table(&format!("[[contacts]]\nbetween = [\"lower\", \"upper\"]{}{}", gap(random, frame), normals(random)))
+
+    /// The point at t from −1 to 1.
+    fn at(&self, t: f64) -> [f64; 2] {
+        let rise = self.rise;
+        let radius = (0.25 + rise * rise) / (2.0 * rise);
+        let angle = t * (0.5 / radius).asin();
+        [0.5 + radius * angle.sin(), self.height + radius * angle.cos() - (radius - rise)]
+    }
+
+    fn conditions(&self, toml: Toml, random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
+        let toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
+        let toml = if random.chance(0.7) { toml.roller("side") } else { toml };
+        let toml = weight_on(toml, "load", random, frame, drawing);
+        toml.table(&format!("[[contacts]]\nbetween = [\"lower\", \"upper\"]{}{}", gap(random, frame), normals(random)))
+    }
+}
+
+/// Two blocks that meet along an arc of `[geometry]`.
+fn blocks_along_an_arc(random: &mut Random, frame: &Frame, drawing: &Drawing) -> (Toml, bool) {
+    let arc = Arc::random(random);
+    let through = drawing.at(arc.at(0.0));
+    let (a, b) = ([0.0, arc.height], [1.0, arc.height]);
+    let toml = Toml::default()
+        .size(frame.length * random.between(0.1, 0.3))
+        .outline("low", &drawing.all(&[[0.0, 0.0], [1.0, 0.0], b, a]), &["base", "", "lower", ""])
+        .arcs(&[(2, through)])
+        .outline("up", &drawing.all(&[a, b, [1.0, arc.top], [0.0, arc.top]]), &["upper", "", "load", "side"])
+        .arcs(&[(0, through)]);
+    (arc.conditions(toml, random, frame, drawing), true)
+}
+
+/// The same with facets: of the arc itself, or of one that is squeezed to the left, so that no four vertices lie on a circle
+/// and refinement keeps the facets.
+fn blocks_along_facets(random: &mut Random, frame: &Frame, drawing: &Drawing) -> (Toml, bool) {
+    let arc = Arc::random(random);
+    let facets = 3 + random.below(12);
+    let squeezed = facets > 3 && random.chance(0.7);
+    let place = |[x, y]: [f64; 2]| [if squeezed { x * (0.8 + 0.2 * x) } else { x }, y];
+    let mut curve: Vec<[f64; 2]> = (0..=facets).map(|i| place(arc.at(2.0 * i as f64 / facets as f64 - 1.0))).collect();
+    (curve[0], curve[facets]) = ([0.0, arc.height], [1.0, arc.height]);
+    let mut lower = vec![[0.0, 0.0], [1.0, 0.0]];
+    lower.extend(curve.iter().rev());
+    let mut upper = curve;
+    upper.extend([[1.0, arc.top], [0.0, arc.top]]);
+    let below = [vec!["base", ""], vec!["lower"; facets], vec![""]].concat();
+    let above = [vec!["upper"; facets], vec!["", "load", "side"]].concat();
+    let toml = Toml::default()
+        .size(frame.length * random.between(0.15, 0.4))
+        .outline("low", &drawing.all(&lower), &below)
+        .outline("up", &drawing.all(&upper), &above);
+    (arc.conditions(toml, random, frame, drawing), !squeezed)
 }
 
 /// Part of a ring in another one, rollers on the cuts, a pressure inside or an interference.
@@ -151,21 +178,20 @@ fn cap(random: &mut Random, frame: &Frame, drawing: &Drawing) -> Toml {
     let seat = [[left[0], foot], [right[0], foot], right, left];
     let head = left[1] + random.between(0.2, 0.8);
     let body = [left, right, [right[0], head], [left[0], head]];
-    let mut toml = Toml::default()
+    let toml = Toml::default()
         .size(frame.length * random.between(0.15, 0.35))
         .outline("low", &drawing.all(&seat), &["base", "", "seat", ""])
         .arcs(&[(2, through)])
         .outline("up", &drawing.all(&body), &["round", "", "load", ""])
         .arcs(&[(0, through)]);
-    toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
-    toml = if random.chance(0.5) {
+    let toml = materials(toml, random, frame, ["low", "up"]).clamp("base");
+    if random.chance(0.5) {
         // Symmetric but for rounding.
-        let size = frame.traction(random);
-        toml.pressure("load", size)
-    } else {
-        weight_on(toml, "load", random, frame, drawing)
-    };
-    toml.table(&format!("[[contacts]]\nbetween = [\"seat\", \"round\"]{}", normals(random)))
+        let toml = toml.pressure("load", frame.traction(random));
+        return toml.table(&format!("[[contacts]]\nbetween = [\"seat\", \"round\"]{}", normals(random)));
+    }
+    // Facets would hold the couple with forces at the ends of edges, which linear pressures cannot follow on coarse meshes.
+    weight_on(toml, "load", random, frame, drawing).table("[[contacts]]\nbetween = [\"seat\", \"round\"]")
 }
 
 /// A body with a round foot on a straight one, matched along the direction between them.
@@ -175,10 +201,8 @@ fn round_on_straight(random: &mut Random, frame: &Frame, drawing: &Drawing) -> T
     let facets = 4 + random.below(12);
     let height = |x: f64| radius - (radius * radius - x * x).sqrt();
     let from = if random.chance(0.5) { 0.0 } else { -reach };
-    let mut foot: Vec<[f64; 2]> = (0..=facets)
-        .map(|i| from + (reach - from) * i as f64 / facets as f64)
-        .map(|x| [x, height(x)])
-        .collect();
+    let mut foot: Vec<[f64; 2]> =
+        (0..=facets).map(|i| from + (reach - from) * i as f64 / facets as f64).map(|x| [x, height(x)]).collect();
     let top = height(reach) + random.between(0.3, 0.8);
     let mut names = vec!["round"; facets];
     names.extend(["", "load", "side"]);

@@ -110,7 +110,7 @@ fn complete(random: &mut Random, mut aside: Random, frame: Frame, mut layout: La
         msh::text(&layout, size, place, |body| format!("b{body}"), &sides, |k| name(&sides, k))
     });
     let farthest = moved.iter().flatten().fold(frame.load * frame.length, |m, u| m.max(u.abs()));
-    Made { toml, mesh, energy: thickness * stiffest * farthest * farthest }
+    Made { toml, mesh, energy: thickness * stiffest * farthest * farthest, rounds: false }
 }
 
 /// The name of a side.

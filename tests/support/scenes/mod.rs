@@ -28,6 +28,8 @@ pub struct Sample {
     /// What arithmetic alone can cost an energy: the energy of strains as large as the prescribed displacements, times
     /// a little more than the machine epsilon.
     pub rounding: f64,
+    /// Whether refinement puts vertices on curves, so that a finer mesh is another problem.
+    pub rounds: bool,
 }
 
 impl Sample {
@@ -49,6 +51,8 @@ pub struct Made {
     /// The mesh file, for a scene without polygons.
     pub mesh: Option<String>,
     pub energy: f64,
+    /// As [`Sample::rounds`].
+    pub rounds: bool,
 }
 
 /// Makes a scene of one kind.
@@ -80,10 +84,10 @@ pub fn sample(seed: u64) -> Sample {
     finished(seed, family, make(&mut random))
 }
 
-fn finished(seed: u64, family: &'static str, Made { mut toml, mesh, energy }: Made) -> Sample {
+fn finished(seed: u64, family: &'static str, Made { mut toml, mesh, energy, rounds }: Made) -> Sample {
     if mesh.is_some() {
         toml = toml.mesh_file(&format!("seed-{seed}.msh"));
     }
     let text = format!("# Random scene {seed}: {family}\n{}", toml.text());
-    Sample { seed, family, text, mesh, rounding: 1e-13 * energy }
+    Sample { seed, family, text, mesh, rounding: 1e-13 * energy, rounds }
 }

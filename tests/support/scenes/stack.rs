@@ -7,7 +7,7 @@ use super::Made;
 
 /// [`slanted`] as a family; nothing is prescribed but zero.
 pub fn made(random: &mut Random) -> Made {
-    Made { toml: slanted(random), mesh: None, energy: 0.0 }
+    Made { toml: slanted(random), mesh: None, energy: 0.0, rounds: false }
 }
 
 /// Two or three convex bodies on top of each other, each resting on the slanted edge of the one below.

@@ -21,8 +21,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// Every fault in the runs of one scene.
 ///
-/// `rounding` is what arithmetic alone can cost a displacement model in energy.
-pub fn faults(runs: &[(Way, Ended)], rounding: f64) -> Vec<Fault> {
+/// `rounding` is what arithmetic alone can cost a displacement model in energy, and `rounds` says that the finer mesh is
+/// another polygon for the same curve, which bounds nothing on this one.
+pub fn faults(runs: &[(Way, Ended)], rounding: f64, rounds: bool) -> Vec<Fault> {
     let mut faults: Vec<Fault> = runs.iter().flat_map(|(way, ended)| of_one(*way, ended)).collect();
     let codes: Vec<(Way, bool)> =
         runs.iter().filter(|(_, e)| matches!(e.code, 0 | 1 | 5)).map(|(way, e)| (*way, e.code == 5)).collect();
@@ -30,7 +31,8 @@ pub fn faults(runs: &[(Way, Ended)], rounding: f64) -> Vec<Fault> {
         let list: Vec<_> = codes.iter().filter(|c| c.1).map(|c| c.0.name()).collect();
         faults.push(Fault::new("infeasible for some", format!("infeasible for {} only", list.join(", "))));
     }
-    faults.extend(contradictions(runs, rounding));
+    let same: Vec<&(Way, Ended)> = runs.iter().filter(|(way, _)| !(rounds && *way == Way::Finer)).collect();
+    faults.extend(contradictions(&same, rounding));
     faults
 }
 
@@ -94,10 +96,13 @@ fn bracketed(name: &str, ended: &Ended) -> Vec<Fault> {
 }
 
 /// Bounds that exclude each other, and displacement models below a lower bound.
-fn contradictions(runs: &[(Way, Ended)], rounding: f64) -> Vec<Fault> {
+fn contradictions(runs: &[&(Way, Ended)], rounding: f64) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let known: Vec<(Way, [f64; 2])> =
-        runs.iter().filter(|(_, e)| matches!(e.code, 0 | 1)).filter_map(|(w, e)| Some((*w, e.bracket()?))).collect();
+    let known: Vec<(Way, [f64; 2])> = runs
+        .iter()
+        .filter(|run| matches!(run.1.code, 0 | 1))
+        .filter_map(|run| Some((run.0, run.1.bracket()?)))
+        .collect();
     for (a, [lower, _]) in &known {
         for (b, [_, upper]) in &known {
             if a != b && lower > upper {
@@ -107,7 +112,7 @@ fn contradictions(runs: &[(Way, Ended)], rounding: f64) -> Vec<Fault> {
         }
     }
     let scale = |ended: &Ended| ended.number("/energy/complementary").unwrap_or(0.0).abs();
-    for (_, verified) in runs.iter().filter(|(way, _)| *way == Way::Verify) {
+    for (_, verified) in runs.iter().filter(|run| run.0 == Way::Verify) {
         let models = verified.report.iter().filter_map(|r| r["primal"].as_array()).flatten();
         for model in models.filter(|m| m["admissible"] == true) {
             let Some(energy) = model["energy"].as_f64() else { continue };
@@ -120,7 +125,7 @@ fn contradictions(runs: &[(Way, Ended)], rounding: f64) -> Vec<Fault> {
             }
         }
     }
-    let of = |wanted: Way| runs.iter().find(|(way, e)| *way == wanted && matches!(e.code, 0 | 1)).map(|r| &r.1);
+    let of = |wanted: Way| runs.iter().find(|run| run.0 == wanted && matches!(run.1.code, 0 | 1)).map(|run| &run.1);
     if let (Some(coarse), Some(fine)) = (of(Way::Method("condensed")), of(Way::Finer))
         && let (Some([before, _]), Some([after, _])) = (coarse.bracket(), fine.bracket())
     {

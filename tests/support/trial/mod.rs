@@ -34,7 +34,7 @@ impl Trial {
         ways.push(Way::Finer);
         ways.extend(models.then_some(Way::Verify));
         let runs: Vec<(Way, Ended)> = ways.into_iter().map(|way| (way, program.run(way, &scene, &results))).collect();
-        let faults = faults(&runs, sample.rounding);
+        let faults = faults(&runs, sample.rounding, sample.rounds);
         if faults.is_empty() {
             // Left-overs are no reason to fail.
             let _ = std::fs::remove_dir_all(&results);
