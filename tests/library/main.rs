@@ -16,6 +16,7 @@ mod effectivity;
 mod element_formulas;
 mod element_properties;
 mod equilibrium;
+mod gap_breaks;
 mod inner_segments;
 mod invariance;
 mod known_solutions;

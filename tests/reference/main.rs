@@ -1,5 +1,8 @@
 //! Both models of a scene, end to end: the cases, random scenes, and displacement models that are wrong on purpose.
 
+#[allow(dead_code)]
+#[path = "../support/arcs.rs"]
+mod arcs;
 mod cases;
 #[path = "../support/lame.rs"]
 mod lame;

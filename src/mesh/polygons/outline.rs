@@ -202,7 +202,10 @@ fn check_overlap(scene: &Scene, outlines: &[Vec<Piece>], polygons: &[Polygon]) -
         let what = format!("overlaps geometry.polygons[{m}] (body '{}') at {}", polygons[m].body, at(scene, place));
         Err((
             n,
-            (what, "polygons may touch but not overlap; a hole has to be cut out by two polygons around it".into()),
+            (what, "polygons may touch but not overlap; a hole has to be cut out by two polygons around it. Two sides that stand for \
+             one curve need the same points, or `arcs`; where they do not coincide, move them apart and match them along a \
+             `direction`, with a negative `gap`"
+                .into()),
         ))
     };
     for (i, &(n, piece)) in pieces.iter().enumerate() {

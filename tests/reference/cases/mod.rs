@@ -2,6 +2,7 @@
 //! formulas and from statics by hand.
 
 mod curved;
+mod discs;
 mod exact;
 mod failures;
 mod half_planes;

@@ -1,0 +1,53 @@
+//! A disc in its bore: it turns freely, and rests where it is pressed through its centre.
+
+use super::run::{Run, with_reference};
+use crate::arcs::disc;
+
+fn written(text: &str) -> (tempfile::TempDir, std::path::PathBuf) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("disc.toml");
+    std::fs::write(&path, text).expect("written");
+    (folder, path)
+}
+
+#[test]
+fn turned_by_a_couple_there_is_no_equilibrium() {
+    let (_folder, scene) = written(&disc(24, "couple", "smooth"));
+    for command in ["solve", "verify"] {
+        let run = Run::new(command, &scene, &[]);
+        assert_eq!(run.code, Some(5), "{}{}", run.stdout, run.stderr);
+        assert!(run.stderr.contains("turns counter-clockwise about (0, 0)"), "{}", run.stderr);
+        assert_eq!(run.report().0["status"], "infeasible");
+    }
+}
+
+#[test]
+fn pressed_through_its_centre_both_models_agree() {
+    let (_folder, scene) = written(&disc(24, "force", "smooth"));
+    let run = Run::new(if with_reference() { "verify" } else { "solve" }, &scene, &[]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let report = run.report();
+    assert_eq!(report.0["status"], "agree");
+    assert_eq!(report.0["energy"]["guaranteed"], true);
+    // Weight 0.1 on the ring of 24 facets between radii ½ and 1.
+    let weight = 0.1 * 12.0 * 0.75 * (std::f64::consts::TAU / 24.0).sin();
+    let force = [0, 1].map(|c| report.number(&format!("/contact/0/resultant/dual/{c}")));
+    assert!(force[0].abs() < 1e-9 * weight && (force[1] - weight).abs() < 1e-9 * weight, "{force:?} for {weight}");
+}
+
+/// A bracket that cannot tell is sharpened on the polygon that the displacements know, and not on a rounder one.
+#[test]
+fn a_coarse_ring_is_sharpened_without_a_false_alarm() {
+    if !with_reference() {
+        return;
+    }
+    let text =
+        std::fs::read_to_string(super::run::case("ring")).expect("readable").replace("size = 0.05", "size = 0.7");
+    let (_folder, scene) = written(&text);
+    let run = Run::new("verify", &scene, &[]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let report = run.report();
+    assert!(report.failed().is_empty(), "{:?}", report.failed());
+    let (lower, best) = (report.number("/energy/lower"), report.number("/primal/1/energy"));
+    assert!(lower <= best && report.number("/energy/upper") <= best + 1e-12, "{lower} {best}");
+}
