@@ -4,7 +4,6 @@
 #[allow(dead_code)]
 #[path = "../tests/support/arcs.rs"]
 mod arcs;
-#[allow(dead_code)]
 #[path = "../tests/support/lame.rs"]
 mod lame;
 

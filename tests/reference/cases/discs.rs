@@ -34,20 +34,3 @@ fn pressed_through_its_centre_both_models_agree() {
     let force = [0, 1].map(|c| report.number(&format!("/contact/0/resultant/dual/{c}")));
     assert!(force[0].abs() < 1e-9 * weight && (force[1] - weight).abs() < 1e-9 * weight, "{force:?} for {weight}");
 }
-
-/// A bracket that cannot tell is sharpened on the polygon that the displacements know, and not on a rounder one.
-#[test]
-fn a_coarse_ring_is_sharpened_without_a_false_alarm() {
-    if !with_reference() {
-        return;
-    }
-    let text =
-        std::fs::read_to_string(super::run::case("ring")).expect("readable").replace("size = 0.05", "size = 0.7");
-    let (_folder, scene) = written(&text);
-    let run = Run::new("verify", &scene, &[]);
-    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
-    let report = run.report();
-    assert!(report.failed().is_empty(), "{:?}", report.failed());
-    let (lower, best) = (report.number("/energy/lower"), report.number("/primal/1/energy"));
-    assert!(lower <= best && report.number("/energy/upper") <= best + 1e-12, "{lower} {best}");
-}
