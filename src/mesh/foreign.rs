@@ -31,11 +31,14 @@ struct Block {
 /// [`MeshError::File`] when no interpreter has meshio, or when it cannot read the file or takes too long.
 pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshError> {
     let text = meshio::run(SCRIPT, file, INSTEAD, limit).map_err(|f| MeshError::file(file, f.what, f.remedy))?;
-    convert(file, &text)
+    parse(&text, file)
 }
 
-/// The script's output as a mesh.
-fn convert(file: &Path, text: &[u8]) -> Result<(RawMesh, Vec<Note>), MeshError> {
+/// The mesh in what the script writes, which is JSON; `file` is for messages.
+///
+/// # Errors
+/// [`MeshError::File`] when it is no mesh of triangles.
+pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
     let found: Converted = serde_json::from_slice(text)
         .map_err(|e| MeshError::file(file, format!("meshio gave no mesh of finite numbers ({e})"), INSTEAD))?;
     let mut content = Content::default();
@@ -94,7 +97,7 @@ mod tests {
         ] {
             let block = format!(r#"{{"shape": "{shape}", "nodes": {nodes}, "groups": {groups}}}"#);
             let text = format!(r#"{{"points": [[0, 0], [1, 0], [0, 1]], "blocks": [{block}]}}"#);
-            let error = convert(Path::new("mesh.vtu"), text.as_bytes()).expect_err("not a mesh").to_string();
+            let error = parse(text.as_bytes(), Path::new("mesh.vtu")).expect_err("not a mesh").to_string();
             assert!(error.contains("mesh.vtu") && error.contains("meshio gave"), "{error}");
         }
     }

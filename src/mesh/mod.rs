@@ -10,7 +10,7 @@ mod boxes;
 mod cells;
 pub(crate) mod error;
 mod file;
-mod foreign;
+pub mod foreign;
 pub mod glue;
 #[cfg(test)]
 mod glue_tests;

@@ -1,7 +1,7 @@
 //! The two files shared with the displacement model; `docs/exchange.md` describes them.
 
 use std::fs::{self, File};
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -176,10 +176,21 @@ struct SolutionFile {
 
 /// Read the result for `degree` from `folder` and check that it fits `problem`.
 pub fn read_solution(folder: &Path, degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
-    let name = solution_file(degree);
-    let bad = |reason: String| PrimalError::BadResult { file: name.clone(), reason };
-    let file = File::open(folder.join(&name)).map_err(|error| bad(format!("it cannot be read ({error})")))?;
-    let found: SolutionFile = serde_json::from_reader(BufReader::new(file)).map_err(|error| bad(error.to_string()))?;
+    let file = solution_file(degree);
+    let text = fs::read(folder.join(&file)).map_err(|error| {
+        let reason = format!("it cannot be read ({error})");
+        PrimalError::BadResult { file, reason }
+    })?;
+    parse_solution(&text, degree, problem)
+}
+
+/// The result for `degree` from the content of its file, once it was seen to fit `problem`.
+///
+/// # Errors
+/// [`PrimalError::BadResult`].
+pub fn parse_solution(text: &[u8], degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let bad = |reason: String| PrimalError::BadResult { file: solution_file(degree), reason };
+    let found: SolutionFile = serde_json::from_slice(text).map_err(|error| bad(error.to_string()))?;
     if (found.format.as_str(), found.version) != ("hypercircle-primal", 1) {
         return Err(bad(format!(
             "expected hypercircle-primal version 1, found {} version {}",

@@ -17,6 +17,7 @@ mod element_formulas;
 mod element_properties;
 mod equilibrium;
 mod gap_breaks;
+mod fuzzed;
 mod inner_segments;
 mod invariance;
 mod known_solutions;

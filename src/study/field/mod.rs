@@ -82,15 +82,18 @@ impl ForeignField {
             return Err(fault("this is not a regular file".into(), "write the field into a file"));
         }
         let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
-        let sha256 = hash(&bytes);
         let text = meshio::run(SCRIPT, file, INSTEAD, limit).map_err(|f| fault(f.what, &f.remedy))?;
-        let content: Content =
-            serde_json::from_slice(&text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
-        Self::new(file, sha256, content, name)
+        Self::parse(&text, file, hash(&bytes), name)
     }
 
-    fn new(file: &Path, sha256: String, content: Content, name: Option<&str>) -> Result<Self, FieldError> {
+    /// The field in the arrays of `file` as meshio gave them, in JSON; `sha256` is that of the file.
+    ///
+    /// # Errors
+    /// As [`ForeignField::read`], without those of the file.
+    pub fn parse(text: &[u8], file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
+        let content: Content =
+            serde_json::from_slice(text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
         if let Some(kind) = content.others.first() {
             let what = format!("it has cells of the kind '{kind}'");
             return Err(fault(what, "write the field on straight triangles with three or six nodes"));
