@@ -58,10 +58,10 @@ def _near(number, random):
         value = float(number.replace("_", ""))
     except ValueError:
         return number
-    if value.is_integer() and "." not in number and random.random() < 0.5:
+    if value.is_integer() and abs(value) < 1e18 and "." not in number and random.random() < 0.5:
         return str(int(value) + random.choice([-1, 1, 2]))
     factor = random.choice([-1, 0.5, 2, 1 + 1e-9, 1 - 1e-7, 1.01, 0.1, 10, 1e3, 1e-3])
-    return repr(random.choice([value * factor, value + random.choice([1e-9, 0.1, -0.25, 1, -1]), float(round(value))]))
+    return repr(random.choice([value * factor, value + random.choice([1e-9, 0.1, -0.25, 1, -1]), value // 1]))
 
 
 def in_text(text, random):

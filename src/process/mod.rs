@@ -3,7 +3,7 @@
 //! A process started here has a group of its own, a limit of time, pipes that are drained into the end of a log, and does
 //! not outlive this one. Python is started so that no file in the current folder is taken for a module ([`python`]).
 //! Temporary folders ([`Scratch`]) go with the process: on its way out, on a signal ([`signals`]), and after a signal that
-//! leaves no time by the next process that makes one.
+//! leaves no time by the next run ([`clear`]).
 
 pub mod child;
 pub mod python;
@@ -14,7 +14,7 @@ mod tail;
 use std::time::Duration;
 
 pub use child::{Ended, Outcome, supervise};
-pub use scratch::Scratch;
+pub use scratch::{Scratch, clear};
 
 /// A time in seconds as a limit; one that no clock reaches is as good as none.
 pub fn limit(seconds: f64) -> Duration {

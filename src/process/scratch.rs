@@ -8,12 +8,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
 use tempfile::TempDir;
 
 const PREFIX: &str = "hypercircle-";
 /// Held locked by the process that made the folder, for as long as it lives: the kernel lets go of it at any death.
 const LOCK: &str = ".alive";
-/// A folder without a lock that is younger than this may be about to get one.
+/// A folder without a lock that is younger than this may be about to get one, unless the process in its name is gone.
 const YOUNG: Duration = Duration::from_secs(60);
 
 /// The folders that a signal has to take away.
@@ -33,28 +34,32 @@ impl Scratch {
     /// # Errors
     /// The folder for temporary files cannot be written to.
     pub fn new() -> io::Result<Self> {
-        let root = std::path::absolute(std::env::temp_dir())?;
-        sweep(&root);
-        Self::within(&root)
+        clear();
+        Self::within(&std::path::absolute(std::env::temp_dir())?)
     }
 
     fn within(root: &Path) -> io::Result<Self> {
+        let prefix = format!("{PREFIX}{}-", std::process::id());
         loop {
             let mut folders = folders();
-            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(root)?;
+            let folder = tempfile::Builder::new().prefix(&prefix).tempdir_in(root)?;
             folders.push(folder.path().to_path_buf());
             drop(folders);
+            // Another process may take the folder for a dead one's before it is locked; then there will be another one.
             let lock = folder.path().join(LOCK);
-            let file = OpenOptions::new().write(true).create_new(true).open(&lock);
-            // Another process may have taken the folder for a dead one's before it was locked.
-            if let Ok(alive) = file
-                && flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok()
-                && lock.exists()
-            {
+            let alive = match OpenOptions::new().write(true).create_new(true).open(&lock) {
+                Ok(alive) => alive,
+                Err(error) => {
+                    forget(folder.path());
+                    if error.kind() == io::ErrorKind::NotFound {
+                        continue;
+                    }
+                    return Err(error);
+                }
+            };
+            let taken = flock(&alive, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK);
+            if !taken && lock.exists() {
                 return Ok(Scratch { folder, _alive: alive });
-            }
-            if folder.path().exists() && !lock.exists() {
-                return Err(io::Error::other(format!("{} cannot be written to", folder.path().display())));
             }
             forget(folder.path());
         }
@@ -118,10 +123,25 @@ fn sweep(root: &Path) {
 fn is_dead(folder: &fs::DirEntry) -> bool {
     match File::open(folder.path().join(LOCK)) {
         Ok(alive) => flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok(),
+        Err(_) if is_gone(&folder.file_name().to_string_lossy()) => true,
         Err(_) => {
             let age = folder.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
             age.is_some_and(|age| age > YOUNG)
         }
+    }
+}
+
+/// Whether the process that a folder is named after is gone; not known without `/proc`.
+fn is_gone(name: &str) -> bool {
+    let process =
+        name.strip_prefix(PREFIX).and_then(|rest| rest.split_once('-')).and_then(|(id, _)| id.parse::<u32>().ok());
+    Path::new("/proc/self").exists() && process.is_some_and(|id| !Path::new("/proc").join(id.to_string()).exists())
+}
+
+/// Removes the temporary folders whose processes are gone.
+pub fn clear() {
+    if let Ok(root) = std::path::absolute(std::env::temp_dir()) {
+        sweep(&root);
     }
 }
 
@@ -148,8 +168,11 @@ mod tests {
         fs::create_dir(&dead).expect("writable");
         fs::write(dead.join(LOCK), "").expect("writable");
         fs::write(dead.join("problem.json"), "{}").expect("writable");
+        // Killed before it was locked: no process has a number as large.
+        fs::create_dir(root.path().join("hypercircle-4294967295-x")).expect("writable");
         // Not yet locked, somebody else's, and a link.
-        for name in ["hypercircle-young", "other-dead"] {
+        let own = format!("hypercircle-{}-x", std::process::id());
+        for name in ["hypercircle-young", "other-dead", &own] {
             fs::create_dir(root.path().join(name)).expect("writable");
         }
         let aside = tempfile::tempdir().expect("a folder");
@@ -157,7 +180,8 @@ mod tests {
         std::os::unix::fs::symlink(aside.path(), root.path().join("hypercircle-link")).expect("writable");
         sweep(root.path());
         assert!(!dead.exists() && living.path().exists() && aside.path().join(LOCK).exists());
-        assert!(["hypercircle-young", "other-dead"].iter().all(|name| root.path().join(name).exists()));
+        assert!(!root.path().join("hypercircle-4294967295-x").exists());
+        assert!(["hypercircle-young", "other-dead", &own].iter().all(|name| root.path().join(name).exists()));
     }
 
     #[test]

@@ -9,4 +9,7 @@ mod hostile;
 mod malformed;
 mod malformed_meshes;
 mod memory;
+#[path = "../support/random.rs"]
+#[allow(dead_code)]
+mod random;
 mod stability;

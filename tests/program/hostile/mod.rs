@@ -4,6 +4,7 @@
 mod children;
 mod early;
 mod isolation;
+mod kills;
 mod offsets;
 mod outputs;
 mod run;

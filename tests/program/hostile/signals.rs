@@ -1,40 +1,13 @@
-//! Ended at any moment, the program leaves the files of one run, and after the next run nothing else.
+//! What a run has started and its temporary folder go with it, by any signal that can be waited for.
 
 use std::process::Command;
 use std::time::{Duration, Instant};
-
-use hypercircle::report::{NAMES, run_of};
 
 use super::run::{Place, alive, case, names, soon};
 
 fn kill(signal: &str, process: u32) {
     let _ =
         Command::new("kill").args(["-s", signal, &process.to_string()]).stderr(std::process::Stdio::null()).status();
-}
-
-#[test]
-fn a_report_is_one_run_s_whenever_runs_are_killed() {
-    let place = Place::with(&case("patch"));
-    let start = || place.command(&["solve", "scene.toml", "-q"]).spawn().expect("the program starts");
-    let since = Instant::now();
-    assert!(start().wait().expect("ends").success());
-    let usual = since.elapsed();
-    let folder = place.path("out/scene");
-    for i in 0..60 {
-        let mut child = start();
-        // From the start to the end, most of them late, when files are written.
-        std::thread::sleep(usual.mul_f64(f64::from(i % 20) / 19.0));
-        kill(["KILL", "TERM", "INT"][i as usize % 3], child.id());
-        let status = child.wait().expect("ends");
-        assert_ne!(status.code(), Some(3), "{status}");
-        run_of(&folder).expect("the files of one run");
-        let mut found = names(&folder);
-        found.retain(|name| !name.starts_with('.'));
-        assert_eq!(found.len(), NAMES.len(), "{found:?}");
-    }
-    assert!(start().wait().expect("ends").success());
-    assert_eq!((names(&folder).len(), names(&place.path("out"))), (NAMES.len(), vec!["scene".to_string()]));
-    assert_eq!(names(place.temporary.path()), [""; 0]);
 }
 
 /// An interpreter that waits, told in a file, and ends with what it was started by.
