@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::Clock;
 use super::record::Measured;
+use crate::process::Tail;
 
 /// What a run is allowed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,6 +37,8 @@ pub enum Ended {
 const POLL: Duration = Duration::from_millis(2);
 /// Pipes that grandchildren keep open are not waited for longer than this.
 const DRAINED: Duration = Duration::from_secs(3);
+/// Bytes beyond which what it prints is no list of results.
+const RESULTS: usize = 16 << 20;
 
 /// Runs `program measure ARGUMENTS`, which prints a list of [`Measured`].
 ///
@@ -64,7 +67,7 @@ pub fn run(program: &Path, arguments: &[OsString], limits: Limits<'_>) -> std::i
         }
         thread::sleep(POLL);
     };
-    let text = received(&out);
+    let text = received(&out).beginning;
     if status.success()
         && let Ok(results) = serde_json::from_slice::<Vec<Measured>>(&text)
     {
@@ -73,28 +76,66 @@ pub fn run(program: &Path, arguments: &[OsString], limits: Limits<'_>) -> std::i
     if status.success() {
         return Ok(Ended::Crashed("it printed results that are not numbers".to_string()));
     }
-    let complaint = String::from_utf8_lossy(&received(&err)).trim().to_string();
+    let complaint = received(&err).end.lines().join("\n");
     Ok(Ended::Crashed(match complaint.is_empty() {
         true => status.to_string(),
         false => format!("{status}: {complaint}"),
     }))
 }
 
-type Drained = std::sync::mpsc::Receiver<Vec<u8>>;
+/// What is kept of a stream: results are in its beginning, complaints in its end.
+#[derive(Default)]
+struct Printed {
+    beginning: Vec<u8>,
+    end: Tail,
+}
+
+type Drained = std::sync::mpsc::Receiver<Printed>;
 
 fn drain(stream: Option<impl Read + Send + 'static>) -> Drained {
     let (send, receive) = std::sync::mpsc::channel();
     thread::spawn(move || {
-        let mut bytes = Vec::new();
-        if let Some(mut stream) = stream {
-            // What cannot be read is missing from the text, and the run then counts as crashed.
-            let _ = stream.read_to_end(&mut bytes);
+        let mut printed = Printed::default();
+        let mut buffer = vec![0; 1 << 16];
+        let mut stream = stream;
+        // What cannot be read is missing from the text, and the run then counts as crashed.
+        while let Some(read) = stream.as_mut().and_then(|s| s.read(&mut buffer).ok()).filter(|read| *read > 0) {
+            let room = RESULTS - printed.beginning.len();
+            printed.beginning.extend_from_slice(&buffer[..read.min(room)]);
+            printed.end.push(&buffer[..read]);
         }
-        let _ = send.send(bytes);
+        let _ = send.send(printed);
     });
     receive
 }
 
-fn received(from: &Drained) -> Vec<u8> {
+fn received(from: &Drained) -> Printed {
     from.recv_timeout(DRAINED).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::PermissionsExt;
+
+    use super::*;
+
+    /// What comes of a program that does `body`.
+    fn run_script(body: &str) -> Ended {
+        let folder = tempfile::tempdir().expect("a folder");
+        let program = folder.path().join("program");
+        std::fs::write(&program, format!("#!/bin/sh\n{body}\n")).expect("writable");
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).expect("ours");
+        run(&program, &[], Limits { budget: Duration::from_secs(120), cache: None }).expect("a shell")
+    }
+
+    #[test]
+    fn a_gigabyte_of_complaints_or_results_costs_no_memory() {
+        let Ended::Crashed(text) = run_script("yes no | head -c 1000000000 >&2; echo last >&2; exit 7") else {
+            panic!("it has no results")
+        };
+        assert!(text.contains('7') && text.ends_with("last") && text.len() < 100_000, "{} bytes", text.len());
+        let wordy = run_script("yes '[]' | head -c 1000000000");
+        assert_eq!(wordy, Ended::Crashed("it printed results that are not numbers".to_string()));
+        assert_eq!(run_script("echo '[]'"), Ended::Told(Vec::new()));
+    }
 }

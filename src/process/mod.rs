@@ -15,6 +15,7 @@ use std::time::Duration;
 
 pub use child::{Ended, Outcome, supervise};
 pub use scratch::{Scratch, clear};
+pub use tail::Tail;
 
 /// A time in seconds as a limit; one that no clock reaches is as good as none.
 pub fn limit(seconds: f64) -> Duration {

@@ -2,7 +2,7 @@
 
 /// The last lines of a stream.
 #[derive(Debug, Default)]
-pub(super) struct Tail {
+pub struct Tail {
     bytes: Vec<u8>,
 }
 

@@ -62,7 +62,7 @@ fn meshio_ends_with_its_parent_by_any_signal() {
 fn a_grandchild_and_a_flood_do_not_hold_the_program() {
     let (place, library) = with_meshio(
         "child = subprocess.Popen(['setsid', 'sleep', '100'])\nopen(here + '/pid', 'w').write(str(child.pid))\n\
-         line = b'x' * 99999 + b'\\n'\nfor _ in range(2000):\n    os.write(2, line)\n\
+         line = b'x' * 99999 + b'\\n'\nfor _ in range(10_000):\n    os.write(2, line)\n\
          print('that was all', file=sys.stderr)\nsys.exit(1)\n",
     );
     let since = Instant::now();
