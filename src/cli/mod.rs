@@ -28,7 +28,7 @@ use clap::{Parser, Subcommand};
 pub use error::CliError;
 pub use exit::Exit;
 
-use crate::process::signals;
+use crate::process::{clear, signals};
 
 /// Guaranteed two-sided energy bounds for plane frictionless contact, and a displacement model to compare with.
 #[derive(Debug, Parser)]
@@ -72,6 +72,7 @@ pub fn main() -> ExitCode {
     };
     show::install_panic_message();
     signals::watch();
+    clear();
     match std::panic::catch_unwind(|| run(&cli.command)) {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {

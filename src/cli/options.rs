@@ -113,14 +113,15 @@ impl RunOptions {
         self.folder_named(&scene.name)
     }
 
-    /// The folder for a report on `scene`, which can be written to.
+    /// The folder for a report on `scene`, which can be written to; a run that writes into it now is waited for.
     ///
     /// # Errors
-    /// Something else has its place.
+    /// Something else has its place, or another run does not end.
     pub fn report_folder(&self, scene: &Scene) -> Result<PathBuf, CliError> {
         let folder = self.folder(scene);
         let refused = |e: report::ReportError| CliError::stopped(Exit::BadInput, e.to_string(), "");
         report::folder::refuse(&folder, report::NAMES).map_err(refused)?;
+        report::folder::wait(&folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         Ok(folder)
     }
 

@@ -62,13 +62,12 @@ pub struct Particulars {
 }
 
 impl Session {
-    /// Reads the scene, after what killed runs left in the temporary folder was removed.
+    /// Reads the scene.
     ///
     /// # Errors
     /// The scene is refused.
     pub fn open(command: &'static str, scene: &Path, solve: &SolveOptions, quiet: bool) -> Result<Self, CliError> {
         let start = Instant::now();
-        crate::process::clear();
         let scene = Scene::read(scene)?;
         let threads = threads::start(solve.threads);
         let budget = enough(solve.memory.budget(threads))?;

@@ -73,6 +73,38 @@ fn replace_within(dir: &Path, files: &[NamedFile], patience: Duration) -> Result
     }
 }
 
+/// Waits for a run that is writing into `dir` now, so that one that does not end is known before there is anything to write.
+///
+/// # Errors
+/// [`ReportError::Busy`].
+pub fn wait(dir: &Path) -> Result<(), ReportError> {
+    wait_within(dir, PATIENCE)
+}
+
+fn wait_within(dir: &Path, patience: Duration) -> Result<(), ReportError> {
+    let since = Instant::now();
+    let around = dir.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+    let _around = lock(around, since, patience, dir)?;
+    lock(Some(dir), since, patience, dir).map(drop)
+}
+
+/// Puts `bytes` in the place of the file `path`, which keeps its mode, in one step and under the lock of its folder.
+///
+/// # Errors
+/// It cannot be written; what was there is then still there.
+pub fn replace_file(path: &Path, bytes: Vec<u8>) -> io::Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let _alone = lock(Some(folder), Instant::now(), PATIENCE, folder).map_err(io::Error::other)?;
+    let _unbroken = signals::unbroken();
+    sweep(folder);
+    let staging = Staging::new(folder, &[("file", bytes)])?;
+    let new = staging.0.path().join("file");
+    if let Ok(present) = fs::metadata(path) {
+        fs::set_permissions(&new, present.permissions())?;
+    }
+    fs::rename(new, path)
+}
+
 /// Refuses a folder that cannot take `names`, before there is anything to write.
 ///
 /// # Errors

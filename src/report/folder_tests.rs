@@ -117,3 +117,33 @@ fn a_run_that_does_not_end_is_not_waited_for_for_ever() {
     drop(other);
     replace(&dir, &set(1)).expect("writable");
 }
+
+#[test]
+fn a_run_that_does_not_end_is_known_before_there_is_anything_to_write() {
+    let root = tempfile::tempdir().expect("a folder");
+    let dir = root.path().join("out");
+    let short = Duration::from_millis(50);
+    assert!(wait_within(&dir, short).is_ok(), "a folder that is not there is free");
+    replace(&dir, &set(0)).expect("writable");
+    assert!(wait_within(&dir, short).is_ok());
+    for held in [&dir, &root.path().to_path_buf()] {
+        let folder = File::open(held).expect("readable");
+        flock(&folder, FlockOperation::LockExclusive).expect("locks");
+        assert!(matches!(wait_within(&dir, short), Err(ReportError::Busy { .. })), "{}", held.display());
+    }
+}
+
+#[test]
+fn what_a_killed_run_left_beside_a_file_is_removed_with_the_next() {
+    let root = tempfile::tempdir().expect("a folder");
+    let file = root.path().join("file.json");
+    fs::create_dir(root.path().join(".hypercircle-killed")).expect("writable");
+    fs::write(root.path().join(".hypercircle-killed/file"), "half").expect("writable");
+    for text in ["one", "two"] {
+        replace_file(&file, text.into()).expect("writable");
+        assert_eq!(
+            (fs::read_to_string(&file).expect("there").as_str(), names(root.path())),
+            (text, vec!["file.json".into()])
+        );
+    }
+}

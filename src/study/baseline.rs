@@ -1,9 +1,6 @@
 //! A stored result to compare later runs with.
 
 use std::collections::BTreeMap;
-use std::fs::Permissions;
-use std::io::Write;
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use rustix::fs::Access;
@@ -11,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Certified;
 use crate::compare::{Allowances, Basis, Check, Comparison};
-use crate::process::signals;
+use crate::report::folder::replace_file;
 
 /// Largest relative change that a later run may show: the numbers are bit-stable for one build, other builds and
 /// machines round differently.
@@ -125,19 +122,8 @@ impl Baseline {
         Self::refuse(path)?;
         let io = |source: std::io::Error| BaselineError::Write { path: path.to_path_buf(), source };
         let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are private by default; a baseline is for everybody the umask allows.
-        let mut file =
-            builder.permissions(Permissions::from_mode(0o666)).tempfile_in(folder_of(&target)).map_err(io)?;
-        if let Ok(present) = std::fs::metadata(&target) {
-            file.as_file().set_permissions(present.permissions()).map_err(io)?;
-        }
         let text = serde_json::to_string_pretty(self).map_err(|e| io(e.into()))?;
-        writeln!(file, "{text}").map_err(io)?;
-        file.as_file().sync_all().map_err(io)?;
-        let _unbroken = signals::unbroken();
-        file.persist(target).map_err(|e| io(e.error))?;
-        Ok(())
+        replace_file(&target, format!("{text}\n").into_bytes()).map_err(io)
     }
 
     /// Holds these numbers against stored ones: one check each, and one for every number that is new or missing.
@@ -170,6 +156,9 @@ fn folder_of(path: &Path) -> &Path {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::Permissions;
+    use std::os::unix::fs::PermissionsExt;
+
     use super::*;
 
     fn baseline(value: f64) -> Baseline {
