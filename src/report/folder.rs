@@ -83,9 +83,11 @@ pub fn wait(dir: &Path) -> Result<(), ReportError> {
 
 fn wait_within(dir: &Path, patience: Duration) -> Result<(), ReportError> {
     let since = Instant::now();
-    let around = dir.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+    // By one name each: a folder locked twice would wait for itself.
+    let inside = dir.canonicalize().ok();
+    let around = inside.as_deref().unwrap_or(dir).parent();
     let _around = lock(around, since, patience, dir)?;
-    lock(Some(dir), since, patience, dir).map(drop)
+    lock(inside.as_deref(), since, patience, dir).map(drop)
 }
 
 /// Puts `bytes` in the place of the file `path`, which keeps its mode, in one step and under the lock of its folder.
