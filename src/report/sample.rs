@@ -78,12 +78,12 @@ pub(crate) fn assert_well_formed(xml: &str) {
             Ok(quick_xml::events::Event::Start(start)) => {
                 depth += 1;
                 for attribute in start.attributes() {
-                    attribute.unwrap().unescape_value().unwrap();
+                    attribute.unwrap().normalized_value(quick_xml::XmlVersion::Explicit1_0).unwrap();
                 }
             }
             Ok(quick_xml::events::Event::Empty(start)) => {
                 for attribute in start.attributes() {
-                    attribute.unwrap().unescape_value().unwrap();
+                    attribute.unwrap().normalized_value(quick_xml::XmlVersion::Explicit1_0).unwrap();
                 }
             }
             Ok(quick_xml::events::Event::End(_)) => depth -= 1,

@@ -10,8 +10,12 @@ fn arrays(xml: &str) -> BTreeMap<String, (String, usize, Vec<u8>)> {
     loop {
         match reader.read_event().unwrap() {
             Event::Start(start) if start.name().as_ref() == b"DataArray" => {
-                let find =
-                    |key: &str| start.try_get_attribute(key).unwrap().map(|a| a.unescape_value().unwrap().into_owned());
+                let find = |key: &str| {
+                    start
+                        .try_get_attribute(key)
+                        .unwrap()
+                        .map(|a| a.normalized_value(quick_xml::XmlVersion::Explicit1_0).unwrap().into_owned())
+                };
                 let get = |key: &str| find(key).unwrap();
                 assert_eq!(get("format"), "binary");
                 let components = find("NumberOfComponents").map_or(1, |n| n.parse::<usize>().unwrap());
