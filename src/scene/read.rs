@@ -3,7 +3,10 @@
 use std::fmt;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
+
+use rustix::fs::OFlags;
 
 use super::error::{FileFault, SceneError};
 use super::{ContactSides, MAX_BYTES, Scene, parse, validate};
@@ -31,6 +34,13 @@ impl fmt::Display for BoundaryUse {
     }
 }
 
+/// Opens a file to read. A pipe that nobody writes to is empty; it is not waited for.
+fn open(path: &Path) -> std::io::Result<File> {
+    let file = File::options().read(true).custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)?;
+    rustix::fs::fcntl_setfl(&file, OFlags::empty())?;
+    Ok(file)
+}
+
 impl Scene {
     /// Reads and checks the scene file at `path`.
     ///
@@ -44,7 +54,7 @@ impl Scene {
             ErrorKind::IsADirectory => file(FileFault::Directory),
             _ => file(FileFault::Unreadable(error)),
         };
-        let input = File::open(path).map_err(broken)?;
+        let input = open(path).map_err(broken)?;
         if input.metadata().map_err(broken)?.is_dir() {
             return Err(file(FileFault::Directory));
         }

@@ -144,3 +144,15 @@ fn a_scene_whose_name_is_all_dots_stays_in_its_folder() {
     assert_eq!(super::run::names(place.folder.path()), ["...toml", "out"]);
     assert_eq!(super::run::names(Path::new(&place.path("out"))), ["scene"]);
 }
+
+#[test]
+fn a_pipe_is_read_and_one_that_nobody_writes_to_is_empty() {
+    let place = Place::with(&case("patch"));
+    assert!(std::process::Command::new("mkfifo").arg(place.path("pipe.toml")).status().expect("mkfifo").success());
+    place.refuses(&["solve", "pipe.toml"], &["pipe.toml", "empty"]);
+    let line = "(sleep 0.3; cat scene.toml) | \"$0\" solve /dev/stdin --out out/piped";
+    let mut shell = std::process::Command::new("/bin/sh");
+    let program = env!("CARGO_BIN_EXE_hypercircle");
+    let output = shell.args(["-c", line, program]).current_dir(place.folder.path()).output().expect("a shell");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
