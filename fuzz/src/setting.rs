@@ -10,7 +10,7 @@ use hypercircle::report;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Certified, Fields, Findings, assemble, certify};
 
-/// Two blocks of unequal material in contact, 14 triangles or so; the corpora of `exchange` and `field` belong to it.
+/// Two blocks of unequal material in contact, four triangles; the corpora of `exchange` and `field` belong to it.
 pub const SCENE: &str = include_str!("setting.toml");
 
 /// Largest mesh that a target solves on.
