@@ -197,14 +197,16 @@ fn two_ways(who: &str, scales: &Scales, bracket: &Bracket, upper: &UpperBound) -
 
 /// Equilibrium of a solution in its own space.
 fn in_its_own_space(who: &str, scales: &Scales, balance: &Balance) -> Check {
-    let scale = balance.scale.max((2.0 * scales.round_off.energy).sqrt());
+    // Forces that could hold no more energy than rounding of the data are none.
+    let none = (2.0 * scales.round_off.energy).sqrt();
+    let scale = balance.scale.max(none);
     let relative = |left: f64| if scale > 0.0 { left / scale } else { left };
     let place = balance.worst.map_or(String::new(), |([x, y], _)| format!(" Most is left at ({x:.6}, {y:.6})."));
     Check::at_most(
         &format!("primal/equilibrium/{who}"),
         relative(balance.left),
         0.0,
-        SOLVER + relative(balance.rounding),
+        SOLVER + relative(balance.rounding + none),
         Basis::RoundOff,
         format!(
             "A displacement solution balances the loads on every basis function of its space, with supports and with \
