@@ -54,7 +54,7 @@ fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
             });
             let mut found: Vec<Fault> = list.collect();
             if found.is_empty() {
-                found.push(Fault::new(format!("{name}: {verdict} without a reason"), ended.message()));
+                found.push(Fault::new(format!("{name}: {verdict}, and no check failed"), ended.message()));
             }
             found
         }
