@@ -94,11 +94,12 @@ pub fn admissible(
     contact::restrict_middles(problem, &vertex, &mut middle);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
     let at_rest = NodalValues { vertex: vec![[0.0; 2]; vertex.len()], middle: vec![[0.0; 2]; middle.len()] };
-    let mut candidates = vec![NodalValues { vertex, middle }, restricted(problem, &holds, at_rest)?.0];
+    let at_rest = restricted(problem, &holds, at_rest)?.0;
+    let mut candidates = vec![NodalValues { vertex, middle }];
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, start)?.0);
     }
-    let relaxed = relax::relax(problem, &holds, floor / problem.scene.thickness, candidates);
+    let relaxed = relax::relax(problem, &holds, floor / problem.scene.thickness, candidates, at_rest);
     let NodalValues { vertex, middle } = restricted(problem, &holds, relaxed)?.0;
     Ok(interior::fill(problem, &vertex, &middle))
 }

@@ -35,6 +35,10 @@ const WORTH_WHERE_TURNING: f64 = 1e-3;
 /// gain little lead to others that gain much.
 const GOOD: f64 = 1e-3;
 
+/// A field with more energy than this, relative to what bodies at rest have or to the lower bound, says nothing about the
+/// displacement. On slivers a good one may have very much.
+const WILD: f64 = 1e30;
+
 /// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
@@ -45,8 +49,15 @@ const KEPT_BY_VERTEX: usize = 512;
 /// The factor of the stiffness of a patch, from the first sweep on.
 type Kept = Option<Box<[f64]>>;
 
-/// Lowers the energy of the best of several admissible fields; `floor` is a lower bound of it, per unit thickness.
-pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<NodalValues>) -> NodalValues {
+/// Lowers the energy of the best of several admissible fields, or of the one `at_rest` where these are wild; `floor` is a
+/// lower bound of it, per unit thickness.
+pub fn relax(
+    problem: &Problem,
+    holds: &Holds,
+    floor: f64,
+    candidates: Vec<NodalValues>,
+    at_rest: NodalValues,
+) -> NodalValues {
     let model = Model::new(problem, holds);
     let groups = groups(problem);
     let mut kept: Vec<Kept> = vec![None; groups.len()];
@@ -60,7 +71,9 @@ pub fn relax(problem: &Problem, holds: &Holds, floor: f64, candidates: Vec<Nodal
     // A displacement that is not a number has no energy to compare.
     let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
     let least = fields.min_by(|(a, _), (b, _)| known(*a).total_cmp(&known(*b)));
-    let mut values = least.map(|(_, field)| field).unwrap_or_default();
+    let rest = all(at_rest);
+    let tame = WILD * model.energy(&rest).abs().max(floor.abs());
+    let mut values = least.filter(|(energy, _)| known(*energy) <= tame).map_or(rest, |(_, field)| field);
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
     let mut momentum = Momentum::default();
