@@ -14,6 +14,7 @@ mod compliance;
 mod field;
 mod interpolate;
 pub mod quadrature;
+pub mod side;
 pub mod subtriangle;
 
 pub use block::Block;
