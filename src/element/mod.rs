@@ -15,14 +15,67 @@ mod field;
 mod interpolate;
 pub mod quadrature;
 pub mod side;
+mod side_values;
 pub mod subtriangle;
 
 pub use block::Block;
 pub use compliance::Compliance;
 pub use field::{Displacement, StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use side_values::SideValues;
 
 use std::borrow::Cow;
+use std::sync::Arc;
+
+/// The element of every triangle.
+#[derive(Clone)]
+pub enum Elements {
+    /// The same on all.
+    Uniform(&'static dyn EquilibriumElement),
+    /// Blocks, of a degree for each triangle.
+    Blocks(Arc<[u8]>),
+}
+
+impl Elements {
+    /// The element of triangle `t`.
+    pub fn of(&self, t: usize) -> &'static dyn EquilibriumElement {
+        match self {
+            Elements::Uniform(element) => *element,
+            Elements::Blocks(degrees) => block(degrees[t].into()),
+        }
+    }
+
+    /// The degree p of triangle `t`.
+    pub fn degree(&self, t: usize) -> usize {
+        match self {
+            Elements::Uniform(element) => element.degree(),
+            Elements::Blocks(degrees) => degrees[t].into(),
+        }
+    }
+
+    /// The largest degree of the triangles.
+    pub fn largest_degree(&self) -> usize {
+        match self {
+            Elements::Uniform(element) => element.degree(),
+            Elements::Blocks(degrees) => degrees.iter().copied().max().unwrap_or(1).into(),
+        }
+    }
+}
+
+impl std::fmt::Debug for Elements {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Elements::Uniform(element) => f.debug_tuple("Uniform").field(&element.name()).finish(),
+            Elements::Blocks(degrees) => f.debug_tuple("Blocks").field(degrees).finish(),
+        }
+    }
+}
+
+/// The block element of degree `degree`.
+pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
+    assert_eq!(degree, 1);
+    &Block
+}
 
 /// A space of self-equilibrated stresses on a triangle.
 ///

@@ -9,6 +9,8 @@
 //! moments of one degree are conjugate. Where two degrees meet, coefficients of the lower one are elevated
 //! ([`elevate`]) and moments of the higher one lowered by the transpose of the same matrix ([`lower_moments`]).
 
+use std::sync::OnceLock;
+
 /// C(n, k).
 pub fn binomial(n: usize, k: usize) -> f64 {
     (0..k.min(n - k)).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
@@ -46,6 +48,12 @@ pub fn elevation(p: usize, q: usize, j: usize, k: usize) -> f64 {
         return 0.0;
     }
     binomial(p, k) * binomial(q - p, j - k) / binomial(q, j)
+}
+
+/// The matrix of [`elevation`], row by row: q + 1 rows of p + 1 entries.
+pub fn elevation_matrix(p: usize, q: usize) -> &'static [f64] {
+    static MATRICES: [OnceLock<Vec<f64>>; 16 * 16] = [const { OnceLock::new() }; 16 * 16];
+    MATRICES[16 * p + q].get_or_init(|| (0..=q).flat_map(|j| (0..=p).map(move |k| elevation(p, q, j, k))).collect())
 }
 
 /// Coefficients of degree q of the polynomial with the given ones, q no less than its degree.
