@@ -13,7 +13,7 @@ use super::sum::Sum;
 use crate::dual::equilibrium::{contact_traction, edge_traction};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Displacement, StressField};
+use crate::element::{Displacement, StressField, side};
 use crate::problem::{Condition, ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -42,7 +42,6 @@ impl Complementary {
 pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let rule = triangle_rule(2 * stress.degree());
     let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
@@ -51,7 +50,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
             let third = mesh.area(t) / 3.0;
             let (mut sum, mut sensitivity) = (0.0, 0.0);
             for sub in 0..3 {
-                for (bary, weight) in rule {
+                for (bary, weight) in triangle_rule(2 * stress.degree(t)) {
                     let value = stress.at(t, sub, *bary);
                     sum += 0.5 * weight * third * material.product(value, value);
                 }
@@ -69,16 +68,17 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let Condition::Clamped(u0) = condition {
             let (length, _) = mesh.edge_frame(e);
-            for t in edge_traction(problem, stress, e, 0) {
-                support.add(0.5 * length * (t[0] * u0[0] + t[1] * u0[1]));
+            let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
+            for t in edge_traction(problem, stress, e, 0, degree) {
+                support.add(length / (degree + 1) as f64 * (t[0] * u0[0] + t[1] * u0[1]));
             }
         }
     }
     let mut gap = Sum::default();
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
-        let [ta, tb] = contact_traction(problem, stress, pair);
-        let [ga, gb] = pair.gap;
-        gap.add(pair.length / 6.0 * (2.0 * ta * ga + ta * gb + tb * ga + 2.0 * tb * gb));
+        let t = contact_traction(problem, stress, pair);
+        let work = t.iter().zip(side::moments(&pair.gap, t.len() - 1)).map(|(t, g)| t * g).sum::<f64>();
+        gap.add(pair.length * work);
     }
     let t = problem.scene.thickness;
     Complementary {
@@ -227,7 +227,8 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
                 .pairs
                 .iter()
                 .map(|pair| {
-                    let [ta, tb] = contact_traction(problem, stress, pair);
+                    let t = contact_traction(problem, stress, pair);
+                    let (ta, tb) = (t[0], t[t.len() - 1]);
                     let [ga, gb] = pair.gap;
                     let j = jump_values(problem, v, pair);
                     let open = [ga - j[0], 0.5 * (ga + gb) - j[1], gb - j[2]];

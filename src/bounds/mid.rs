@@ -19,7 +19,7 @@ use crate::problem::Problem;
 
 /// m = (λ + c e(v))/2, linear on each subtriangle; `None` for stresses of higher degree, which that could not hold.
 pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> Option<StressField> {
-    if stress.degree() != 1 || stress.len() != v.values.len() {
+    if stress.largest_degree() != 1 || stress.len() != v.values.len() {
         return None;
     }
     let mesh = &problem.mesh;

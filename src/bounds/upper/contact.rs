@@ -153,7 +153,7 @@ pub fn ends_near(problem: &Problem, dual: &DualSolution) -> Vec<End> {
 fn mean_excess(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
     let n = pair.direction.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let [a, b] = dual.moments[e];
+        let (a, b) = (dual.moments.of(e)[0], dual.moments.of(e)[1]);
         if pair.direction.is_constant() {
             return share * dot([a[0] + b[0], a[1] + b[1]], n[0]);
         }

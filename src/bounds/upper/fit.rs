@@ -46,7 +46,7 @@ fn corner_values(problem: &Problem, dual: &DualSolution, material: &Compliance, 
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let e = mesh.triangle_edges[t][side];
         let (length, _) = mesh.edge_frame(e);
-        let [m0, m1] = dual.moments[e];
+        let (m0, m1) = (dual.moments.of(e)[0], dual.moments.of(e)[1]);
         let (ua, um, ub) = (u.at(a), u.at(middle), u.at(b));
         let off = [0, 1].map(|c| (m0[c] + m1[c]) / length - (ua[c] + 4.0 * um[c] + ub[c]) / 6.0);
         shift[0] += off[0] / 3.0;

@@ -85,7 +85,7 @@ pub fn admissible(
         .map(|e| {
             let (length, _) = mesh.edge_frame(e);
             let [a, b] = mesh.edges[e].vertices.map(|v| vertex[v]);
-            let [ma, mb] = dual.moments[e];
+            let (ma, mb) = (dual.moments.of(e)[0], dual.moments.of(e)[1]);
             // Simpson: l/6 (u_a + 4 u_mid + u_b) = m_a + m_b.
             holds.middles[e].impose([0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c])))
         })
