@@ -12,6 +12,7 @@
 mod block;
 mod compliance;
 mod field;
+mod frame;
 mod interpolate;
 pub mod quadrature;
 pub mod side;
