@@ -16,6 +16,7 @@ mod frame;
 mod interpolate;
 pub mod quadrature;
 pub mod side;
+mod split;
 pub mod subtriangle;
 
 pub use block::Block;
@@ -24,6 +25,29 @@ pub use field::{Displacement, StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 
 use std::borrow::Cow;
+
+use self::split::Split;
+
+/// The largest degree of [`block`].
+pub const MAX_DEGREE: usize = 8;
+
+/// The equilibrium block of degree `degree`: stresses of that degree on the three subtriangles, dim N(K) = 6(p + 1) − 3.
+///
+/// For p = 1 this is [`Block`], the element of the paper. From p = 2 on some self-equilibrated fields have no traction; N(K) is then the space
+/// of those that have the least energy among the fields with their tractions, and λ̄ is orthogonal to fields without traction too.
+///
+/// # Panics
+///
+/// If the degree is not one of 1, …, [`MAX_DEGREE`].
+pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
+    static SPLIT: [Split; MAX_DEGREE - 1] =
+        [Split::new(2), Split::new(3), Split::new(4), Split::new(5), Split::new(6), Split::new(7), Split::new(8)];
+    assert!((1..=MAX_DEGREE).contains(&degree), "no equilibrium block of degree {degree}");
+    match degree {
+        1 => &Block,
+        p => &SPLIT[p - 2],
+    }
+}
 
 /// A space of self-equilibrated stresses on a triangle.
 ///
