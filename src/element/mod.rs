@@ -3,11 +3,11 @@
 //! An equilibrium element is a space N(K) of stress fields on a triangle with div τ = 0, in which the traction on the
 //! boundary of the triangle is a polynomial of degree p on each side. The dual problem needs to know three things of
 //! it, all contained in [`Modes`]: a basis of N(K), the tractions of each basis field on the sides, and a particular
-//! field that balances a constant body force. The basis is orthonormal in complementary energy, so that
+//! field λ̄ that balances a constant body force. The basis is orthonormal in complementary energy, so that
 //!
 //! ½∫ a λ:λ = ½|S|² + ½∫ a λ̄:λ̄ for λ = Σ S_k τ_k + λ̄, and the element's stiffness is K = T Tᵀ,
 //!
-//! where T holds the traction values of the modes (theory in `docs/theory.md`).
+//! where T holds the traction coefficients of the modes (theory in `docs/theory.md`).
 
 mod block;
 mod compliance;
@@ -51,9 +51,9 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 
 /// A space of self-equilibrated stresses on a triangle.
 ///
-/// Traction values are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
-/// the p + 1 values from its first to its second end, each with its x and y component. They are values of the outward
-/// traction at the nodes of degree p on the side, conjugate to the moments ∫ u q_j ds against the nodal basis q_j.
+/// Traction coefficients are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
+/// the p + 1 Bernstein coefficients of the outward traction ([`side`]) from its first to its second end, each with its x and y
+/// component. They are conjugate to the moments ∫ u B_k ds. For p = 1 they are the values at the ends.
 pub trait EquilibriumElement: Sync {
     /// Name for reports.
     fn name(&self) -> &'static str;
@@ -64,7 +64,7 @@ pub trait EquilibriumElement: Sync {
     /// Dimension of N(K).
     fn parameters(&self) -> usize;
 
-    /// Number of traction values, 6(p + 1).
+    /// Number of traction coefficients, 6(p + 1).
     fn tractions(&self) -> usize {
         6 * (self.degree() + 1)
     }
@@ -121,7 +121,7 @@ pub trait EquilibriumElement: Sync {
 pub struct Layout {
     /// Dimension of N(K).
     pub parameters: usize,
-    /// Number of traction values.
+    /// Number of traction coefficients.
     pub tractions: usize,
     /// Number of values that the element keeps.
     pub kept: usize,
@@ -179,17 +179,17 @@ impl<'a> Modes<'a> {
         self.layout.parameters
     }
 
-    /// Traction values of the modes, mode by mode: `traction()[k * tractions + i]` is value i of mode k.
+    /// Traction coefficients of the modes, mode by mode: `traction()[k * tractions + i]` is coefficient i of mode k.
     pub fn traction(&self) -> &[f64] {
         &self.data[..self.layout.parameters * self.layout.tractions]
     }
 
-    /// Traction values of every mode.
+    /// Traction coefficients of every mode.
     pub fn tractions(&self) -> impl Iterator<Item = &[f64]> {
         self.traction().chunks_exact(self.layout.tractions)
     }
 
-    /// Traction values of the particular field λ̄, which is energy-orthogonal to all modes.
+    /// Traction coefficients of the particular field λ̄, which is energy-orthogonal to all modes.
     pub fn particular_traction(&self) -> &[f64] {
         let start = self.layout.parameters * self.layout.tractions;
         &self.data[start..start + self.layout.tractions]
@@ -213,7 +213,7 @@ impl<'a> Modes<'a> {
         }
     }
 
-    /// Traction values `particular` · T̄ + T S.
+    /// Traction coefficients `particular` · T̄ + T S.
     pub fn tractions_from_parameters(&self, s: &[f64], particular: f64, out: &mut [f64]) {
         out.iter_mut().zip(self.particular_traction()).for_each(|(o, t)| *o = particular * t);
         for (s, mode) in s.iter().zip(self.tractions()) {

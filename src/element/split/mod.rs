@@ -34,7 +34,7 @@ use self::across::Across;
 use self::factor::Factor;
 use self::reference::{Field, Reference};
 use self::shape::Shape;
-use super::{Compliance, EquilibriumElement, Modes, ModesMut};
+use super::{Compliance, EquilibriumElement, MAX_DEGREE, Modes, ModesMut};
 
 /// The block of degree p.
 #[derive(Debug, Clone, Copy)]
@@ -43,7 +43,7 @@ pub struct Split {
 }
 
 impl Split {
-    /// The block of the given degree, at most [`MAX_DEGREE`](super::MAX_DEGREE).
+    /// The block of the given degree, 1 to [`MAX_DEGREE`].
     pub const fn new(degree: usize) -> Self {
         Split { degree }
     }
@@ -62,8 +62,7 @@ impl Split {
 
 impl EquilibriumElement for Split {
     fn name(&self) -> &'static str {
-        const NAMES: [&str; 9] = [
-            "equilibrium block, p = 0",
+        const NAMES: [&str; MAX_DEGREE] = [
             "equilibrium block, p = 1",
             "equilibrium block, p = 2",
             "equilibrium block, p = 3",
@@ -73,7 +72,7 @@ impl EquilibriumElement for Split {
             "equilibrium block, p = 7",
             "equilibrium block, p = 8",
         ];
-        NAMES[self.degree]
+        NAMES[self.degree - 1]
     }
 
     fn degree(&self) -> usize {
