@@ -7,22 +7,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::quadrature::segment_rule;
 use super::{Block, Compliance, EquilibriumElement, Modes, StressField};
 use crate::mesh::Triangulation;
-
-/// Gauss–Legendre points on [0, 1] with weights, exact to degree 9.
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_6, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
 
 /// End values of the linear function that is nearest to `traction` in L² on the side from `a` to `b`.
 pub fn side_projection(a: [f64; 2], b: [f64; 2], traction: impl Fn([f64; 2]) -> [f64; 2]) -> [[f64; 2]; 2] {
     let mut ends = [[0.0; 2]; 2];
-    for (s, weight) in GAUSS {
+    for &(s, weight) in segment_rule(9) {
         let value = traction([0, 1].map(|c| a[c] + s * (b[c] - a[c])));
         for c in 0..2 {
             // 4 − 6s and 6s − 2 are biorthogonal to the hat functions 1 − s and s.
@@ -33,7 +25,7 @@ pub fn side_projection(a: [f64; 2], b: [f64; 2], traction: impl Fn([f64; 2]) -> 
     ends
 }
 
-/// The parameters of the field of N(K) whose traction values come nearest to `tractions`, in the order of
+/// The parameters of the field of N(K) whose traction coefficients come nearest to `tractions`, in the order of
 /// [`EquilibriumElement`], and what is left of them: the largest difference, which is round-off for tractions in
 /// equilibrium. `None` where the triangle is degenerate.
 pub fn parameters_from_tractions(modes: &Modes<'_>, tractions: &[f64]) -> Option<(Vec<f64>, f64)> {

@@ -1,8 +1,8 @@
 //! Nine fields that span N(K), with their energies and tractions.
 
-use super::frame::Frame;
 use super::{COMMON, N};
 use crate::element::Compliance;
+use crate::element::frame::Frame;
 use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
 
 /// A basis of N(K), in the parameters (3.1) about the centroid of the block.

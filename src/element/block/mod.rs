@@ -7,7 +7,6 @@
 //! for ℓ_k that are combinations of the d_k this has two solutions.
 
 mod basis;
-mod frame;
 mod particular;
 
 use self::basis::Basis;

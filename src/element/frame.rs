@@ -1,4 +1,4 @@
-//! The coordinates in which the basis of a block is written.
+//! The coordinates in which the stresses of an element are written.
 
 /// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
 ///
@@ -7,6 +7,8 @@
 pub struct Frame {
     centre: [f64; 2],
     axis: [f64; 2],
+    /// The longest side, by the corner opposite.
+    pub base: usize,
     /// √area.
     pub scale: f64,
 }
@@ -19,18 +21,23 @@ impl Frame {
             [b[0] - a[0], b[1] - a[1]]
         });
         let length = |s: [f64; 2]| s[0].hypot(s[1]);
-        let longest = sides.into_iter().reduce(|l, s| if length(s) > length(l) { s } else { l }).unwrap_or(sides[0]);
+        let base = (1..3).fold(0, |longest, i| if length(sides[i]) > length(sides[longest]) { i } else { longest });
+        let longest = sides[base];
         let area = 0.5 * (sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]);
         // Differences from a corner: no digits are lost far from the origin.
         let from = corners[0];
         let centre = [0, 1].map(|c| from[c] + ((corners[1][c] - from[c]) + (corners[2][c] - from[c])) / 3.0);
         let l = length(longest);
-        Frame { centre, axis: [longest[0] / l, longest[1] / l], scale: area.sqrt() }
+        Frame { centre, axis: [longest[0] / l, longest[1] / l], base, scale: area.sqrt() }
     }
 
     /// A point in it.
     pub fn to_local(&self, p: [f64; 2]) -> [f64; 2] {
-        let (x, y) = ((p[0] - self.centre[0]) / self.scale, (p[1] - self.centre[1]) / self.scale);
+        self.vector_to_local([0, 1].map(|c| (p[c] - self.centre[c]) / self.scale))
+    }
+
+    /// A vector in its components.
+    pub fn vector_to_local(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [c * x + s * y, c * y - s * x]
     }
