@@ -61,7 +61,7 @@ impl UpperBound {
     pub fn new(problem: &Problem, dual: &DualSolution, displacement: Displacement) -> Self {
         let potential = potential(problem, &displacement);
         let local = local_gap(problem, &dual.stress, &displacement);
-        let size = |t: usize| displacement.values[t].iter().fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1])));
+        let size = |t: usize| displacement.largest(t);
         let widening = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
         UpperBound { widening, displacement, potential, local }
     }
@@ -85,8 +85,9 @@ impl Bracket {
             let edges = problem.mesh.triangle_edges[t];
             // A linear displacement is at most four times its moments over the length.
             let at = |e: usize| {
-                let [a, b] = dual.moments[e];
-                4.0 * (a[0].hypot(a[1]) + b[0].hypot(b[1])) / problem.mesh.edge_frame(e).0
+                let moments = &dual.moments[e];
+                let sum: f64 = moments.iter().map(|m| m[0].hypot(m[1])).sum();
+                (moments.len() * moments.len()) as f64 * sum / problem.mesh.edge_frame(e).0
             };
             edges.map(at).into_iter().fold(0.0, f64::max)
         };

@@ -11,16 +11,19 @@
 
 mod block;
 mod compliance;
+pub mod displacement;
 mod field;
 mod frame;
 mod interpolate;
 pub mod quadrature;
 pub mod side;
 pub mod subtriangle;
+pub mod triangle;
 
 pub use block::Block;
 pub use compliance::Compliance;
-pub use field::{Displacement, StressField, lattice_len};
+pub use displacement::Displacement;
+pub use field::{StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 
 use std::borrow::Cow;
