@@ -13,7 +13,7 @@ use crate::cli::options::Method;
 use crate::cli::session::method as solver;
 use crate::dual::Options;
 use crate::element::subtriangle::{self, Moments};
-use crate::element::{Block, Compliance, EquilibriumElement};
+use crate::element::{Block, Compliance, EquilibriumElement, SideValues};
 use crate::problem::{Condition, Interface, Problem};
 use crate::scene::{Kinematics, Scene};
 use crate::study;
@@ -108,8 +108,8 @@ fn load(path: &str) -> PyResult<Problem> {
     Problem::load(Scene::read(Path::new(path)).map_err(fault)?).map_err(fault)
 }
 
-/// The dual solution of a scene: energies, bracket, `contact_traction` (interface, pair, end), `stress` (triangle, node,
-/// component), `moments` (edge, end, component), `closed`.
+/// The dual solution of a scene: energies, bracket, `contact_traction` (interface, pair, coefficient), `stress` (triangle, node,
+/// component), `moments` (edge, coefficient, component), `closed`.
 ///
 /// # Errors
 /// `ValueError` where the scene is refused or has no solution.
@@ -132,11 +132,12 @@ fn solve<'py>(py: Python<'py>, scene: &str, method: &str) -> PyResult<Bound<'py,
     out.set_item("complementary", complementary.strain)?;
     out.set_item("support_work", complementary.support_work)?;
     out.set_item("gap_work", complementary.gap_work)?;
-    out.set_item("contact_traction", dual.contact_traction.clone())?;
-    out.set_item("closed", dual.closed.clone())?;
+    let traction = |t: &SideValues<f64>| t.iter().map(<[f64]>::to_vec).collect::<Vec<_>>();
+    out.set_item("contact_traction", dual.contact_traction.iter().map(traction).collect::<Vec<_>>())?;
+    out.set_item("closed", dual.closed.values())?;
     let stress: Vec<Vec<[f64; 3]>> = (0..dual.stress.len()).map(|t| dual.stress.block(t).to_vec()).collect();
     out.set_item("stress", stress)?;
-    out.set_item("moments", dual.moments.clone())?;
+    out.set_item("moments", dual.moments.iter().map(<[[f64; 2]]>::to_vec).collect::<Vec<_>>())?;
     out.set_item("equilibrium_residual", dual.equilibrium.residual())?;
     out.set_item("iterations", dual.iterations)?;
     out.set_item("unknowns", dual.unknowns)?;

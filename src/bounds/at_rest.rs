@@ -21,7 +21,7 @@ pub fn without_stress(problem: &Problem, mut dual: DualSolution) -> DualSolution
         return dual;
     }
     dual.stress.values_mut().iter_mut().for_each(|s| *s = [0.0; 3]);
-    dual.contact_traction.iter_mut().flatten().for_each(|t| *t = [0.0; 2]);
+    dual.contact_traction.iter_mut().for_each(|t| t.values_mut().fill(0.0));
     dual.equilibrium = Equilibrium::measure(problem, &dual.stress, &dual.moments);
     dual
 }

@@ -20,7 +20,7 @@
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::upper::{NoUpperBound, NodalValues, admissible};
 use crate::dual::DualSolution;
-use crate::element::{Displacement, StressField};
+use crate::element::{Displacement, StressField, side};
 use crate::problem::{Problem, Scales};
 
 /// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
@@ -83,11 +83,12 @@ impl Bracket {
         let complementary = complementary(problem, &dual.stress);
         let size = |t: usize| {
             let edges = problem.mesh.triangle_edges[t];
-            // A linear displacement is at most four times its moments over the length.
+            // A polynomial lies between its coefficients.
             let at = |e: usize| {
-                let moments = &dual.moments[e];
-                let sum: f64 = moments.iter().map(|m| m[0].hypot(m[1])).sum();
-                (moments.len() * moments.len()) as f64 * sum / problem.mesh.edge_frame(e).0
+                let moments = dual.moments.of(e);
+                let along = |c: usize| side::from_moments(&moments.iter().map(|m| m[c]).collect::<Vec<_>>());
+                let largest = along(0).iter().zip(along(1)).fold(0.0_f64, |m, (x, y)| m.max(x.hypot(y)));
+                largest / problem.mesh.edge_frame(e).0
             };
             edges.map(at).into_iter().fold(0.0, f64::max)
         };

@@ -51,7 +51,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
             let third = mesh.area(t) / 3.0;
             let mut sum = 0.0;
             for sub in 0..3 {
-                for (bary, weight) in triangle_rule(2 * stress.degree()) {
+                for (bary, weight) in triangle_rule(2 * stress.degree(t)) {
                     let value = stress.at(t, sub, *bary);
                     sum += 0.5 * weight * third * material.product(value, value);
                 }
@@ -68,7 +68,8 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let Condition::Clamped(u0) = condition {
             let (length, _) = mesh.edge_frame(e);
-            let tractions = edge_traction(problem, stress, e, 0);
+            let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
+            let tractions = edge_traction(problem, stress, e, 0, degree);
             for t in &tractions {
                 support.add(length / tractions.len() as f64 * (t[0] * u0[0] + t[1] * u0[1]));
             }
@@ -221,7 +222,7 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
-            let samples = Samples::of(v.degree(t) - 1, stress.degree());
+            let samples = Samples::of(v.degree(t) - 1, stress.degree(t));
             let mut sum = 0.0;
             let mut strains = Strains::default();
             for sub in 0..3 {

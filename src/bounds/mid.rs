@@ -24,12 +24,12 @@ pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> O
     }
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let degree = (0..v.len()).map(|t| stress.degree().max(v.degree(t) - 1)).max().unwrap_or(1);
-    let mut mid = StressField::zeros(degree, v.len());
+    let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
+    let mut mid = StressField::of_degrees((0..v.len()).map(degree));
     let mut strains = Strains::default();
     for t in 0..v.len() {
         let corners = mesh.corners(t);
-        let material = &materials[mesh.body[t]];
+        let (material, degree) = (&materials[mesh.body[t]], degree(t));
         for (sub, values) in mid.block_mut(t).chunks_exact_mut(triangle::len(degree)).enumerate() {
             strains.on(corners, v, t, sub);
             for (value, node) in values.iter_mut().zip(triangle::indices(degree)) {

@@ -134,7 +134,7 @@ impl Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Triangulation;
+    use crate::mesh::{Edge, Triangulation};
 
     const CORNERS: [[f64; 2]; 3] = [[0.2, -0.1], [1.7, 0.4], [0.5, 1.3]];
 
@@ -181,7 +181,9 @@ mod tests {
             points: CORNERS.to_vec(),
             triangles: vec![[0, 1, 2]],
             body: vec![0],
-            edges: Vec::new(),
+            edges: [[1, 2], [2, 0], [0, 1]]
+                .map(|vertices| Edge { vertices, triangles: [Some(0), None], name: None })
+                .to_vec(),
             triangle_edges: vec![[0, 1, 2]],
             names: Vec::new(),
         };

@@ -4,6 +4,7 @@ use super::candidate::{Judged, Reactions};
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
+use crate::element::side;
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// Pressure on one pair: values at the first end, the middle and the second end; linear in each half.
@@ -11,7 +12,7 @@ pub type Piece = [f64; 3];
 
 /// −T_n of the dual solution.
 pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
-    dual.contact_traction[interface].iter().map(|[a, b]| [-a, -0.5 * (a + b), -b]).collect()
+    dual.contact_traction[interface].iter().map(|t| [0.0, 0.5, 1.0].map(|s| -side::value(t, s))).collect()
 }
 
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.

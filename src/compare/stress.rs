@@ -64,7 +64,7 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
     for t in 0..mesh.triangles.len() {
         let poisson = scene.bodies[mesh.body[t]].poisson;
         let field = &judged.field.displacement;
-        let samples = Samples::of(field.degree(t) - 1, dual.stress.degree());
+        let samples = Samples::of(field.degree(t) - 1, dual.stress.degree(t));
         for sub in 0..3 {
             strains.on(mesh.corners(t), field, t, sub);
             for (q, (bary, weight)) in samples.points.iter().enumerate() {

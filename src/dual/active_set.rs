@@ -122,7 +122,7 @@ impl DualMethod for ActiveSet {
                 return Ok(Found {
                     stress,
                     moments,
-                    closed: system.unknowns.by_end(&closed),
+                    closed: system.unknowns.by_pair(closed),
                     unknowns: system.unknowns.count,
                     iterations: step,
                     seconds,

@@ -17,6 +17,7 @@ use super::rigid::unsupported;
 use super::settling::Settling;
 use super::system::System;
 use super::{ActiveSet, DualError, DualMethod, Found, Options, Phases, Size};
+use crate::element::SideValues;
 use crate::problem::Problem;
 
 /// The default method.
@@ -74,12 +75,12 @@ impl Condensed {
         seconds.factor = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let contact = Contact::new(&reduced, self.longest_dense, options.budget, |most| unsupported(problem, most));
+        let contact = Contact::new(&reduced, self.longest_dense, options.budget, |most| {
+            unsupported(problem, &system.unknowns, most)
+        });
         let (y, c) = reduced.condense(&system.rhs);
-        let ends = 2 * problem.interfaces.iter().map(|i| i.pairs.len()).sum::<usize>();
-        let warm = options.closed.as_deref().filter(|closed| closed.len() == ends);
-        let warm = warm.map(|ends| system.unknowns.by_jump(ends));
-        let mut state = contact.solve(&c, &system.jump_bound, warm.as_deref())?;
+        let warm = options.closed.as_ref().map(SideValues::values).filter(|closed| closed.len() == c.len());
+        let mut state = contact.solve(&c, &system.jump_bound, warm)?;
         seconds.contact = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
@@ -105,7 +106,7 @@ impl Condensed {
         Ok(Found {
             stress,
             moments,
-            closed: system.unknowns.by_end(&state.closed),
+            closed: system.unknowns.by_pair(state.closed),
             unknowns: system.unknowns.count,
             iterations: state.steps,
             seconds,

@@ -169,6 +169,7 @@ impl Dissection {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::element::Elements;
     use crate::mesh::{RawMesh, Triangulation};
     use crate::scene::{Body, Kinematics, MeshSource, Scene};
 
@@ -198,7 +199,7 @@ mod tests {
         };
         let (mesh, notes) = Triangulation::new(raw, &scene).expect("a strip");
         let problem = Problem::new(scene, mesh, notes).expect("a problem");
-        let unknowns = Unknowns::new(&problem);
+        let unknowns = Unknowns::new(&problem, &Elements::Uniform(&crate::element::Block));
         let order = nested_dissection(&problem, &unknowns);
         let mut sorted = order.clone();
         sorted.sort_unstable();

@@ -1,12 +1,15 @@
-//! Whether the ends of contact pairs are in the state that stresses and jumps ask for.
+//! Whether the coefficients of contact pairs are in the state that stresses and jumps ask for.
+
+use std::ops::Range;
 
 use super::equilibrium::load_scale;
 use super::refinement::Refined;
 use super::system::System;
+use super::unknowns::Block;
 use crate::problem::{Problem, Scales};
 
-/// Tension relative to the load, or to the traction at the other end of its edge, and penetration relative to the
-/// largest jump, that are round-off: an end that grazes keeps its state.
+/// Tension relative to the load, or to the largest pressure of its pair, and penetration relative to the largest jump,
+/// that are round-off: a coefficient that grazes keeps its state.
 pub const GRAZING: f64 = 1e-12;
 
 /// What states are held against.
@@ -16,15 +19,15 @@ pub struct Ends<'a> {
     scales: Scales,
     /// Tension at each jump that is rounding of prescribed displacements and gaps.
     round_off: Vec<f64>,
-    /// The other jump of the same pair, or the jump itself where there is only one.
-    partner: Vec<usize>,
+    /// The jumps of the pair that each jump belongs to.
+    pair: Vec<Range<usize>>,
 }
 
 impl<'a> Ends<'a> {
     pub fn new(problem: &'a Problem, system: &'a System) -> Self {
         let scales = Scales::new(problem);
         let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
-        let jumps = system.unknowns.blocks.iter().filter(|b| b.start >= system.unknowns.first_jump);
+        let jumps = system.unknowns.jump_blocks();
         let round_off = pairs
             .zip(jumps)
             .flat_map(|(pair, block)| {
@@ -33,18 +36,23 @@ impl<'a> Ends<'a> {
                 std::iter::repeat_n(rounding, block.len)
             })
             .collect();
-        Ends { problem, system, scales, round_off, partner: system.unknowns.partners() }
+        let first = system.unknowns.first_jump;
+        let own = |b: &Block| b.start - first..b.start + b.len - first;
+        let pair = system.unknowns.jump_blocks().flat_map(|b| std::iter::repeat_n(own(b), b.len)).collect();
+        Ends { problem, system, scales, round_off, pair }
     }
 
-    /// By how much each end misses its state: tension of closed ends relative to the load, or to the pressure at the other
-    /// end of the edge, and penetration of open ends relative to `whole`.
+    /// By how much each coefficient misses its state: tension of closed ones relative to the load, or to the largest pressure
+    /// of the pair, and penetration of open ones relative to `whole`.
     pub fn misses(&self, now: &Refined, closed: &[bool], whole: &[f64]) -> Vec<f64> {
         let first = self.system.unknowns.first_jump;
         let load = load_scale(&self.scales, || self.system.modes.stresses(self.problem, &now.s));
         let traction = |i: usize| if closed[i] { -now.r[first + i] } else { 0.0 };
         let end = |i: usize| {
             let (over, of) = match closed[i] {
-                true => (traction(i) - self.round_off[i], load.max(-traction(self.partner[i]))),
+                true => {
+                    (traction(i) - self.round_off[i], self.pair[i].clone().fold(load, |most, k| most.max(-traction(k))))
+                }
                 false => (now.x[first + i] - self.system.jump_bound[i], whole[i]),
             };
             if over > 0.0 { over / of.max(f64::MIN_POSITIVE) } else { 0.0 }

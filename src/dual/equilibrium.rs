@@ -1,6 +1,9 @@
 //! Equilibrium, measured on the stresses themselves.
 
-use crate::element::StressField;
+use nalgebra::DMatrix;
+
+use super::contact_moments::columns;
+use crate::element::{SideValues, StressField, side};
 use crate::problem::{Condition, ContactPair, Problem, Scales};
 
 /// How well a stress field balances the loads.
@@ -32,7 +35,7 @@ impl Equilibrium {
     }
 
     /// Measures `stress` on `problem`; `moments` are those of the displacement that the remainders are weighed with.
-    pub fn measure(problem: &Problem, stress: &StressField, moments: &[[[f64; 2]; 2]]) -> Self {
+    pub fn measure(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Self {
         let mesh = &problem.mesh;
         let bodies = problem.scene.bodies.len();
         let scales = Scales::new(problem);
@@ -57,31 +60,33 @@ impl Equilibrium {
         let mut rounding = vec![0.0; bodies];
         let (mut tension, mut work) = (0.0_f64, 0.0);
         for (e, edge) in mesh.edges.iter().enumerate() {
-            let own = edge_traction(problem, stress, e, 0);
+            let degree = moments.of(e).len() - 1;
+            let own = edge_traction(problem, stress, e, 0, degree);
             let (length, normal) = mesh.edge_frame(e);
             let along = |t: [f64; 2]| {
                 let shear = t[1] * normal[0] - t[0] * normal[1];
                 [-shear * normal[1], shear * normal[0]]
             };
-            let other = edge_traction(problem, stress, e, 1);
-            for end in 0..2 {
-                let left = match problem.conditions[e] {
-                    Condition::Interior => [own[end][0] + other[end][0], own[end][1] + other[end][1]],
-                    Condition::Traction(p) => [own[end][0] - p[end][0], own[end][1] - p[end][1]],
-                    Condition::Clamped(_) => [0.0; 2],
-                    Condition::Roller => along(own[end]),
-                    Condition::Contact { interface, pair, side } => {
-                        let pair = &problem.interfaces[interface].pairs[pair];
-                        let vertices = if side == 0 { pair.first } else { pair.second.unwrap_or(pair.first) };
-                        let at = usize::from(vertices[0] != edge.vertices[end]);
-                        sideways(pair, at, own[end])
-                    }
-                };
-                match problem.conditions[e] {
-                    Condition::Traction(_) => applied = applied.max(relative(norm(left), e)),
-                    _ => jump = jump.max(relative(norm(left), e)),
+            let left: Vec<[f64; 2]> = match problem.conditions[e] {
+                Condition::Interior => {
+                    let other = edge_traction(problem, stress, e, 1, degree);
+                    own.iter().zip(other).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
                 }
-                work += norm(left) * norm(moments[e][end]);
+                Condition::Traction([a, b]) => {
+                    let applied = side::linear([a[0], b[0]], degree).zip(side::linear([a[1], b[1]], degree));
+                    own.iter().zip(applied).map(|(t, p)| [t[0] - p.0, t[1] - p.1]).collect()
+                }
+                Condition::Clamped(_) => Vec::new(),
+                Condition::Roller => own.iter().map(|t| along(*t)).collect(),
+                // Pairs are next.
+                Condition::Contact { .. } => Vec::new(),
+            };
+            for (left, moment) in left.iter().zip(moments.of(e)) {
+                match problem.conditions[e] {
+                    Condition::Traction(_) => applied = applied.max(relative(norm(*left), e)),
+                    _ => jump = jump.max(relative(norm(*left), e)),
+                }
+                work += norm(*left) * norm(*moment);
             }
             let sides = usize::from(!edge.is_boundary()) + 1;
             for (side, triangle) in edge.triangles.iter().take(sides).enumerate() {
@@ -91,43 +96,42 @@ impl Equilibrium {
                 let between =
                     edge.triangles[1].is_some_and(|o| mesh.body[o] != mesh.body[edge.triangles[0].unwrap_or(o)]);
                 if edge.is_boundary() || between {
-                    let t = edge_traction(problem, stress, e, side);
-                    for c in 0..2 {
-                        force[body][c] += 0.5 * length * (t[0][c] + t[1][c]);
+                    let share = length / (degree + 1) as f64;
+                    for t in edge_traction(problem, stress, e, side, degree) {
+                        for c in 0..2 {
+                            force[body][c] += share * t[c];
+                        }
+                        gross[body] += share * norm(t);
                     }
-                    gross[body] += 0.5 * length * (norm(t[0]) + norm(t[1]));
                     rounding[body] += length * scales.stress_round_off(problem, at);
                 }
             }
         }
         for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
             let Some(a) = pair.edges[0] else { continue };
-            let at = |e: usize, v: usize| usize::from(mesh.edges[e].vertices[0] != v);
-            let ta = edge_traction(problem, stress, a, 0);
-            for end in 0..2 {
-                let own = at(a, pair.first[end]);
-                let direction = &pair.direction;
-                let normal = direction.multiplier(end, ta[own]);
-                if !direction.is_constant() {
-                    // A single t holds all along the pair; the other end is known by another value of it.
-                    let other = direction.multiplier(1 - end, ta[1 - own]);
-                    let left = 0.5 * (normal - other).abs();
-                    jump = jump.max(relative(left, a));
-                    work += left * norm(moments[a][own]);
+            let degree = moments.of(a).len() - 1;
+            let along = Along::new(pair, degree);
+            let t = along.multiplier(&along.of_pair(problem, 0, &edge_traction(problem, stress, a, 0, degree)));
+            let own = along.of_pair(problem, 0, moments.of(a));
+            let opposite = pair.edges[1].map(|b| along.of_pair(problem, 1, moments.of(b)));
+            for (side, e) in pair.edges.into_iter().enumerate().filter_map(|(side, e)| Some((side, e?))) {
+                // What is left of the traction of each side where t n̂ of the first is taken away.
+                let carried = along.of_pair(problem, side, &edge_traction(problem, stress, e, 0, degree));
+                let held = along.traction(&t, side);
+                let moments = if side == 0 { Some(&own) } else { opposite.as_ref() };
+                for (k, (carried, held)) in carried.iter().zip(held).enumerate() {
+                    let left = norm([carried[0] - held[0], carried[1] - held[1]]);
+                    let near = pair.edges.iter().flatten().map(|&e| relative(left, e)).fold(f64::INFINITY, f64::min);
+                    jump = jump.max(near);
+                    work += left * moments.map_or(0.0, |m| norm(m[k]));
                 }
-                let mut opening = moments[a][own];
-                if let (Some(b), Some(second)) = (pair.edges[1], pair.second) {
-                    let tb = edge_traction(problem, stress, b, 0);
-                    let other = at(b, second[end]);
-                    let [c, d] = direction.shares;
-                    let left = norm([0, 1].map(|k| ta[own][k] / c + tb[other][k] / d)) * d;
-                    jump = jump.max(relative(left, a).min(relative(left, b)));
-                    work += left * norm(moments[b][other]);
-                    opening = [0, 1].map(|k| c * opening[k] - d * moments[b][other][k]);
-                }
-                tension = tension.max(relative(normal, a));
-                let g = 0.5 * pair.length * pair.gap[end];
-                work += normal.max(0.0) * (norm(opening) + g);
+            }
+            let [c, d] = pair.direction.shares;
+            let openings = along.along(&own, opposite.as_deref(), [c, d]);
+            let gaps = side::moments(&pair.gap, t.len() - 1);
+            for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
+                tension = tension.max(relative(*t, a));
+                work += t.max(0.0) * (opening + pair.length * gap);
             }
         }
         for t in 0..mesh.triangles.len() {
@@ -151,38 +155,99 @@ impl Equilibrium {
     }
 }
 
-/// The part of a traction across the direction of contact at an end of `pair`.
-fn sideways(pair: &ContactPair, end: usize, t: [f64; 2]) -> [f64; 2] {
-    let n = pair.direction.unit(end);
-    let shear = t[1] * n[0] - t[0] * n[1];
-    [-shear * n[1], shear * n[0]]
+/// t n̂ along a contact pair.
+struct Along<'a> {
+    pair: &'a ContactPair,
+    degree: usize,
+    /// The coefficients of t n̂, where n̂ turns.
+    turning: Option<DMatrix<f64>>,
 }
 
-/// t at the two ends of `pair`, from the traction t n̂ of its first side.
-pub fn contact_traction(problem: &Problem, stress: &StressField, pair: &ContactPair) -> [f64; 2] {
-    let Some(e) = pair.edges[0] else { return [0.0; 2] };
-    let t = edge_traction(problem, stress, e, 0);
-    [0, 1].map(|end| {
-        let at = usize::from(problem.mesh.edges[e].vertices[0] != pair.first[end]);
-        pair.direction.multiplier(end, t[at])
-    })
+impl<'a> Along<'a> {
+    fn new(pair: &'a ContactPair, degree: usize) -> Self {
+        let turning = (!pair.direction.is_constant()).then(|| columns(&pair.direction, degree));
+        Along { pair, degree, turning }
+    }
+
+    /// Values of the edge on side `side`, from end to end of the pair.
+    fn of_pair(&self, problem: &Problem, side: usize, values: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let start = if side == 0 { self.pair.first } else { self.pair.second.unwrap_or(self.pair.first) }[0];
+        let along = self.pair.edges[side].is_none_or(|e| problem.mesh.edges[e].vertices[0] == start);
+        if along { values.to_vec() } else { values.iter().rev().copied().collect() }
+    }
+
+    /// The coefficients of t, from those of the traction of the first side.
+    fn multiplier(&self, traction: &[[f64; 2]]) -> Vec<f64> {
+        let share = self.pair.direction.shares[0];
+        let Some(columns) = &self.turning else {
+            let n = self.pair.direction.ends[0];
+            return traction.iter().map(|t| (t[0] * n[0] + t[1] * n[1]) / share).collect();
+        };
+        let traction = DMatrix::from_column_slice(2 * (self.degree + 1), 1, traction.as_flattened());
+        let normal = columns.transpose() * columns;
+        // Independent columns: the direction vanishes nowhere.
+        let t = normal.lu().solve(&(columns.transpose() * traction));
+        t.map_or_else(|| vec![0.0; self.degree], |t| t.iter().map(|t| t / share).collect())
+    }
+
+    /// The coefficients of the traction ± t n̂ of a side, per unit length of its edge.
+    fn traction(&self, t: &[f64], side: usize) -> Vec<[f64; 2]> {
+        let share = if side == 0 { self.pair.direction.shares[0] } else { -self.pair.direction.shares[1] };
+        let Some(columns) = &self.turning else {
+            let n = self.pair.direction.ends[0];
+            return t.iter().map(|t| [share * t * n[0], share * t * n[1]]).collect();
+        };
+        let all = columns * DMatrix::from_column_slice(t.len(), 1, t) * share;
+        all.as_slice().as_chunks::<2>().0.to_vec()
+    }
+
+    /// Bounds of the jump moments conjugate to t: of the part of the moments of both sides along n̂ where that is constant
+    /// or turns.
+    fn along(&self, own: &[[f64; 2]], opposite: Option<&[[f64; 2]]>, [c, d]: [f64; 2]) -> Vec<f64> {
+        let difference = |k: usize| {
+            let other = opposite.map_or([0.0; 2], |m| m[k]);
+            norm([0, 1].map(|i| c * own[k][i] - d * other[i]))
+        };
+        let count = if self.turning.is_some() { self.degree } else { self.degree + 1 };
+        (0..count)
+            .map(|k| if self.turning.is_some() { difference(k) + difference(k + 1) } else { difference(k) })
+            .collect()
+    }
 }
 
-/// Traction of the stress on edge `e` at its two ends, as seen from its first or second triangle (outward normal of
-/// that triangle).
-pub fn edge_traction(problem: &Problem, stress: &StressField, e: usize, side: usize) -> [[f64; 2]; 2] {
+/// The coefficients of t on `pair`, from the traction t n̂ of its first side.
+pub fn contact_traction(problem: &Problem, stress: &StressField, pair: &ContactPair) -> Vec<f64> {
+    let Some(e) = pair.edges[0] else { return Vec::new() };
+    let degree = pair_degree(problem, stress, pair);
+    let along = Along::new(pair, degree);
+    along.multiplier(&along.of_pair(problem, 0, &edge_traction(problem, stress, e, 0, degree)))
+}
+
+/// The degree of the traction on a pair: the larger one of its sides.
+pub fn pair_degree(problem: &Problem, stress: &StressField, pair: &ContactPair) -> usize {
+    let of = |e: usize| problem.mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
+    pair.edges.iter().flatten().map(|&e| of(e)).max().unwrap_or(1)
+}
+
+/// Bernstein coefficients of degree `degree` of the traction of the stress on edge `e` from its first vertex to its second,
+/// as seen from its first or second triangle (outward normal of that triangle); no less than the degree of the stress there.
+pub fn edge_traction(problem: &Problem, stress: &StressField, e: usize, side: usize, degree: usize) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let edge = &mesh.edges[e];
-    let Some(t) = edge.triangles[side] else { return [[0.0; 2]; 2] };
+    let Some(t) = edge.triangles[side] else { return vec![[0.0; 2]; degree + 1] };
     let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
     let (_, n) = mesh.edge_frame(e);
     let sign = if side == 0 { 1.0 } else { -1.0 };
-    let start = mesh.triangles[t][(sub + 1) % 3];
-    [0, 1].map(|end| {
-        let first = edge.vertices[end] == start;
-        let tau = stress.at(t, sub, if first { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
-        [sign * (tau[0] * n[0] + tau[2] * n[1]), sign * (tau[2] * n[0] + tau[1] * n[1])]
-    })
+    let traction = |tau: [f64; 3]| [sign * (tau[0] * n[0] + tau[2] * n[1]), sign * (tau[2] * n[0] + tau[1] * n[1])];
+    let mut values: Vec<[f64; 2]> = stress.on_side(t, sub).map(traction).collect();
+    if mesh.triangles[t][(sub + 1) % 3] != edge.vertices[0] {
+        values.reverse();
+    }
+    if values.len() == degree + 1 {
+        return values;
+    }
+    let rows = side::elevation_matrix(values.len() - 1, degree).chunks_exact(values.len());
+    rows.map(|row| [0, 1].map(|c| row.iter().zip(&values).map(|(e, t)| e * t[c]).sum())).collect()
 }
 
 /// Stresses, relative to what prescribed displacements and gaps could cause, that are as good as none.

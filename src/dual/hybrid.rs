@@ -4,10 +4,11 @@ use rayon::prelude::*;
 
 use super::dissection::nested_dissection;
 use super::factor::{Breakdown, SymbolicFactor};
-use super::rows::{FreeEdge, SideEnd, free_edges, rows, side_ends};
+use super::rows::Sides;
 use super::system::System;
 use super::unknowns::EdgeMoments;
 use super::{DualError, Options};
+use crate::element::{SideValues, side};
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.
@@ -80,11 +81,12 @@ pub fn held_unknowns(problem: &Problem, system: &System, motions: &[Motion]) -> 
     let mesh = &problem.mesh;
     let mut pivots: Vec<Pivot> = Vec::with_capacity(motions.len());
     for u in motions {
-        let mut z = system.unknowns.project(problem, |e, end| {
+        let mut z = system.unknowns.project(problem, |e, k| {
             let (length, _) = mesh.edge_frame(e);
             let [a, b] = mesh.edges[e].vertices;
-            let (near, far) = if end == 0 { (u[a], u[b]) } else { (u[b], u[a]) };
-            [0, 1].map(|c| length * (2.0 * near[c] + far[c]) / 6.0)
+            let p = system.unknowns.degree(e);
+            let [near, far] = [0, 1].map(|end| length * side::product(p, k, 1, end));
+            [0, 1].map(|c| near * u[a][c] + far * u[b][c])
         });
         // Gaussian elimination: what the unknowns held so far leave of the motion, and where it is largest. Motions of few
         // bodies have few entries, and meet few of the others.
@@ -112,22 +114,45 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
     let mesh = &problem.mesh;
     let mut moments = system.unknowns.moments(problem, x);
     if !given {
-        for (m, edge) in moments.iter_mut().zip(&system.unknowns.edges) {
+        for (e, edge) in system.unknowns.edges.iter().enumerate() {
             if let EdgeMoments::Given(_) = edge {
-                *m = [[0.0; 2]; 2];
+                moments.of_mut(e).fill([0.0; 2]);
             }
         }
     }
-    let n = system.modes.of(0).parameters();
-    let mut out = vec![0.0; n * mesh.triangles.len()];
-    out.par_chunks_exact_mut(n).enumerate().with_min_len(256).for_each(|(t, s)| {
-        let mut m = [0.0; 12];
-        for SideEnd { at, edge, end } in side_ends(mesh, t) {
-            m[at..at + 2].copy_from_slice(&moments[edge][end]);
+    let mut out = vec![0.0; system.modes.parameters()];
+    let parts = system.modes.split_parameters(&mut out);
+    parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, s)| {
+        let sides = Sides::new(mesh, &system.unknowns, t, system.modes.degree(t));
+        let (mut small, mut large) = ([0.0; SMALL], Vec::new());
+        let m = room(&mut small, &mut large, 2 * sides.len());
+        let (own, lowered) = m.split_at_mut(sides.len());
+        for (i, e) in sides.edges.into_iter().enumerate() {
+            for (k, m) in moments.of(e).iter().enumerate() {
+                own[sides.at(i, k)..][..2].copy_from_slice(m);
+            }
         }
-        system.modes.of(t).parameters_from_moments(&m, s);
+        let modes = system.modes.of(t);
+        if sides.are_even() {
+            return modes.parameters_from_moments(own, s);
+        }
+        let lowered = &mut lowered[..6 * (sides.degree + 1)];
+        sides.lower(own, lowered);
+        modes.parameters_from_moments(lowered, s);
     });
     out
+}
+
+/// Numbers on the boundary of a triangle, twice, up to degree 4: as many as fit without an allocation.
+const SMALL: usize = 60;
+
+/// `len` zeros, in `small` where they fit.
+fn room<'a>(small: &'a mut [f64; SMALL], large: &'a mut Vec<f64>, len: usize) -> &'a mut [f64] {
+    if len <= SMALL {
+        return &mut small[..len];
+    }
+    large.resize(len, 0.0);
+    large
 }
 
 /// What the stresses with mode parameters `s` leave of the loads: f − Σ(T S + T̄) for every unknown.
@@ -135,25 +160,40 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
 /// On free unknowns this is the jump of traction across the edge, on closed jumps minus the normal traction.
 pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
     let mesh = &problem.mesh;
-    let n = system.modes.of(0).parameters();
-    let tractions: Vec<[f64; 12]> = (0..mesh.triangles.len())
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|t| {
-            let mut values = [0.0; 12];
-            system.modes.of(t).tractions_from_parameters(&s[t * n..(t + 1) * n], 1.0, &mut values);
-            values
-        })
-        .collect();
+    let sides = |t: usize| Sides::new(mesh, &system.unknowns, t, system.modes.degree(t));
+    let mut tractions = SideValues::filled((0..mesh.triangles.len()).map(|t| sides(t).len()), 0.0);
+    let mut rest = tractions.values_mut();
+    let mut parts = Vec::with_capacity(mesh.triangles.len());
+    for t in 0..mesh.triangles.len() {
+        let (part, behind) = rest.split_at_mut(sides(t).len());
+        parts.push(part);
+        rest = behind;
+    }
+    parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, values)| {
+        let sides = sides(t);
+        let (modes, own) = (system.modes.of(t), &s[system.modes.parameters_of(t)]);
+        if sides.are_even() {
+            return modes.tractions_from_parameters(own, 1.0, values);
+        }
+        let (mut small, mut large) = ([0.0; SMALL], Vec::new());
+        let lower = room(&mut small, &mut large, 6 * (sides.degree + 1));
+        modes.tractions_from_parameters(own, 1.0, lower);
+        sides.raise(lower, values);
+    });
     let mut r = system.external.clone();
     for (t, values) in tractions.iter().enumerate() {
-        if let Some(edges) = free_edges(mesh, &system.unknowns, t) {
-            for (unknown, at) in edges.iter().flat_map(FreeEdge::unknowns) {
-                r[unknown] -= values[at];
+        let sides = sides(t);
+        if let Some(first) = sides.free(&system.unknowns) {
+            for (i, first) in first.into_iter().enumerate() {
+                for k in 0..=sides.degrees[i] {
+                    let at = sides.at(i, k);
+                    r[first + 2 * k] -= values[at];
+                    r[first + 2 * k + 1] -= values[at + 1];
+                }
             }
             continue;
         }
-        for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
+        for (at, components) in sides.rows(mesh, &system.unknowns) {
             for component in components {
                 let value = component.direction[0] * values[at] + component.direction[1] * values[at + 1];
                 for &(dof, c) in component.terms() {

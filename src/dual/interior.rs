@@ -15,7 +15,7 @@ use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
 use super::hybrid::{Motion, parameters, residual};
-use super::rows::{SideEnd, rows};
+use super::rows::Sides;
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::{Problem, Scales};
@@ -104,7 +104,7 @@ impl DualMethod for Clarabel {
         let beyond = BEYOND_MEASURE * longest * Scales::new(problem).data.displacement;
         x.iter_mut().filter(|m| !m.is_finite() || m.abs() > beyond).for_each(|m| *m = 0.0);
         let contact = solution.s[first_jump..].iter().zip(&solution.z[first_jump..]);
-        let closed = system.unknowns.by_end(&contact.map(|(s, z)| s >= z).collect::<Vec<bool>>());
+        let closed = system.unknowns.by_pair(contact.map(|(s, z)| s >= z).collect());
         let stress = system.modes.stresses(problem, &s);
         let moments = system.unknowns.moments(problem, &x);
         seconds.recover = start.elapsed().as_secs_f64();
@@ -144,24 +144,29 @@ struct ConicProgram {
 impl ConicProgram {
     fn new(problem: &Problem, system: &System) -> Self {
         let mesh = &problem.mesh;
-        let n = system.modes.of(0).parameters();
         let count = system.unknowns.count;
-        let columns = n * mesh.triangles.len();
+        let columns = system.modes.parameters();
         let mut entries: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
         for t in 0..mesh.triangles.len() {
             let modes = system.modes.of(t);
-            for (SideEnd { at, .. }, components) in rows(mesh, &system.unknowns, t) {
+            let sides = Sides::new(mesh, &system.unknowns, t, system.modes.degree(t));
+            let mut raised = vec![0.0; sides.len() * modes.parameters()];
+            for (out, mode) in raised.chunks_exact_mut(sides.len()).zip(modes.tractions()) {
+                sides.raise(mode, out);
+            }
+            for (at, components) in sides.rows(mesh, &system.unknowns) {
                 for component in components {
                     let [dx, dy] = component.direction;
                     for &(dof, c) in component.terms() {
-                        for (column, mode) in entries[n * t..n * (t + 1)].iter_mut().zip(modes.tractions()) {
+                        let own = &mut entries[system.modes.parameters_of(t)];
+                        for (column, mode) in own.iter_mut().zip(raised.chunks_exact(sides.len())) {
                             column.push((dof, c * (dx * mode[at] + dy * mode[at + 1])));
                         }
                     }
                 }
             }
         }
-        // Both ends of an edge contribute to the same row where the direction of contact turns.
+        // All coefficients of an edge contribute to the same row where the direction of contact turns.
         for column in &mut entries {
             column.sort_unstable_by_key(|entry| entry.0);
             column.dedup_by(|next, kept| {
@@ -210,9 +215,8 @@ impl ConicProgram {
         // Moments of u0 are no part of the motion.
         let mut motion = system.unknowns.moments(problem, &x);
         let given = system.unknowns.moments(problem, &vec![0.0; x.len()]);
-        for (m, g) in motion.as_flattened_mut().as_flattened_mut().iter_mut().zip(given.as_flattened().as_flattened()) {
-            *m -= g;
-        }
+        let values = motion.values_mut().as_flattened_mut().iter_mut();
+        values.zip(given.values().as_flattened()).for_each(|(m, g)| *m -= g);
         DualError::infeasible(problem, motion, work)
     }
 }

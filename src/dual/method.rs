@@ -6,7 +6,7 @@ use faer::Par;
 
 use super::{Motion, Phases, Size};
 use crate::budget::Budget;
-use crate::element::{Block, EquilibriumElement, StressField};
+use crate::element::{Block, Elements, SideValues, StressField};
 use crate::problem::Problem;
 
 /// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
@@ -36,9 +36,9 @@ pub struct Found {
     /// λ_h.
     pub stress: StressField,
     /// Edge moments, as in [`super::DualSolution::moments`].
-    pub moments: Vec<[[f64; 2]; 2]>,
-    /// Closed contact ends: two per pair, interface by interface.
-    pub closed: Vec<bool>,
+    pub moments: SideValues<[f64; 2]>,
+    /// Closed coefficients of contact, as in [`super::DualSolution::closed`].
+    pub closed: SideValues<bool>,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Steps of the contact iteration.
@@ -52,12 +52,12 @@ pub struct Found {
 /// Choices of a dual solve.
 #[derive(Clone)]
 pub struct Options {
-    /// The element.
-    pub element: &'static dyn EquilibriumElement,
+    /// The element of each triangle.
+    pub elements: Elements,
     /// Threads; one gives bit-identical results.
     pub threads: usize,
-    /// First guess of the closed contact ends, from a similar problem.
-    pub closed: Option<Vec<bool>>,
+    /// First guess of the closed coefficients, from a similar problem.
+    pub closed: Option<SideValues<bool>>,
     /// Memory that the process may hold.
     pub budget: Budget,
     /// Told now and then how many iterations an iterative method has made and what residual it has reached.
@@ -69,7 +69,13 @@ pub type Progress = Arc<dyn Fn(usize, f64) + Send + Sync>;
 
 impl Default for Options {
     fn default() -> Self {
-        Options { element: &Block, threads: 1, closed: None, budget: Budget::UNLIMITED, progress: None }
+        Options {
+            elements: Elements::Uniform(&Block),
+            threads: 1,
+            closed: None,
+            budget: Budget::UNLIMITED,
+            progress: None,
+        }
     }
 }
 
@@ -134,9 +140,8 @@ pub enum DualError {
          edge displacement of one; add a support or change the loads"
     )]
     Infeasible {
-        /// The motion, as mean displacement moments ∫ u q_p ds at the two ends of every edge, scaled so that the largest
-        /// mean displacement of an edge is one.
-        certificate: Vec<[[f64; 2]; 2]>,
+        /// The motion, as moments ∫ u B_k ds of every edge, scaled so that the largest mean displacement of an edge is one.
+        certificate: SideValues<[f64; 2]>,
         /// Work of the loads on it, positive.
         work: f64,
     },
@@ -144,13 +149,14 @@ pub enum DualError {
 
 impl DualError {
     /// [`DualError::Infeasible`] from moments of any size and the work of the loads on them.
-    pub(super) fn infeasible(problem: &Problem, mut certificate: Vec<[[f64; 2]; 2]>, work: f64) -> Self {
+    pub(super) fn infeasible(problem: &Problem, mut certificate: SideValues<[f64; 2]>, work: f64) -> Self {
         let mut largest = 0.0_f64;
-        for (e, [a, b]) in certificate.iter().enumerate() {
-            largest = largest.max((a[0] + b[0]).hypot(a[1] + b[1]) / problem.mesh.edge_frame(e).0);
+        for (e, moments) in certificate.iter().enumerate() {
+            let [x, y] = moments.iter().fold([0.0; 2], |sum, m| [sum[0] + m[0], sum[1] + m[1]]);
+            largest = largest.max(x.hypot(y) / problem.mesh.edge_frame(e).0);
         }
         if largest > 0.0 {
-            certificate.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|m| *m /= largest);
+            certificate.values_mut().as_flattened_mut().iter_mut().for_each(|m| *m /= largest);
             return DualError::Infeasible { certificate, work: work / largest };
         }
         DualError::Infeasible { certificate, work }

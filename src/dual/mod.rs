@@ -37,8 +37,9 @@ pub use hybrid::Motion;
 pub use interior::Clarabel;
 pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
+pub use unknowns::contact_coefficients;
 
-use crate::element::StressField;
+use crate::element::{SideValues, StressField};
 use crate::problem::{ContactPair, Problem};
 
 /// An equilibrated stress field λ_h that minimises Π, and what is known about how well it does so.
@@ -48,14 +49,14 @@ pub struct DualSolution {
     pub method: &'static str,
     /// λ_h.
     pub stress: StressField,
-    /// Moments m_{e,p} = ∫_e u q_p ds of the edge displacement, conjugate to the traction end values: for each edge of
-    /// the mesh and each of its two end vertices a vector in Cartesian components.
-    pub moments: Vec<[[f64; 2]; 2]>,
-    /// t ≤ 0 of the traction T' = t n̂ at the two ends of every contact pair (ends as in [`ContactPair::first`]): T_n where n̂
-    /// is the normal.
-    pub contact_traction: Vec<Vec<[f64; 2]>>,
-    /// Which contact ends are closed: two per pair, interface by interface.
-    pub closed: Vec<bool>,
+    /// Moments m_{e,k} = ∫_e u B_k ds of the edge displacement, conjugate to the Bernstein coefficients of the traction: for
+    /// each edge of the mesh of degree p, from its first vertex to its second, p + 1 vectors in Cartesian components.
+    pub moments: SideValues<[f64; 2]>,
+    /// Bernstein coefficients, none of them positive, of t of the traction T' = t n̂ on every contact pair (from end to end as
+    /// in [`ContactPair::first`]), interface by interface: T_n where n̂ is the normal.
+    pub contact_traction: Vec<SideValues<f64>>,
+    /// Which of these coefficients belong to closed contact: pair by pair, one interface after the other.
+    pub closed: SideValues<bool>,
     /// Number of unknowns solved for.
     pub unknowns: usize,
     /// Steps of the contact iteration.
@@ -123,8 +124,8 @@ pub fn solve(
     })
 }
 
-/// t at the two ends of every pair.
-fn contact_traction(problem: &Problem, stress: &StressField) -> Vec<Vec<[f64; 2]>> {
+/// The coefficients of t on every pair.
+fn contact_traction(problem: &Problem, stress: &StressField) -> Vec<SideValues<f64>> {
     let value = |pair: &ContactPair| equilibrium::contact_traction(problem, stress, pair);
     problem.interfaces.iter().map(|i| i.pairs.iter().map(value).collect()).collect()
 }

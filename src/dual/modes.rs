@@ -1,22 +1,33 @@
 //! Element matrices of all triangles, congruent ones computed once.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::element::{Compliance, EquilibriumElement, Layout, Modes, StressField};
+use crate::element::{Compliance, Elements, Layout, Modes, StressField};
 use crate::problem::Problem;
 
 /// The modes of every triangle.
 #[derive(Clone)]
 pub struct ModeTable {
-    element: &'static dyn EquilibriumElement,
-    layout: Layout,
+    elements: Elements,
     class: Vec<u32>,
-    /// The first triangle of each class.
-    representatives: Vec<usize>,
+    classes: Vec<Class>,
     data: Vec<f64>,
+    /// The first mode parameter of each triangle, and the end.
+    first_parameter: Vec<usize>,
     materials: Vec<Compliance>,
+}
+
+/// Congruent triangles of one degree.
+#[derive(Debug, Clone, Copy)]
+struct Class {
+    /// The first of them.
+    triangle: usize,
+    layout: Layout,
+    /// Where its data begin.
+    start: usize,
 }
 
 /// Two triangles are congruent when their edge vectors agree to this fraction of their size: well above what rounding
@@ -25,58 +36,106 @@ const CONGRUENT: f64 = 1.0 / (1_u64 << 42) as f64;
 
 impl std::fmt::Debug for ModeTable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ModeTable").field("element", &self.element.name()).field("classes", &self.classes()).finish()
+        f.debug_struct("ModeTable").field("elements", &self.elements).field("classes", &self.classes()).finish()
     }
 }
 
 impl ModeTable {
-    /// Computes the modes of `element` on every triangle of `problem`.
-    pub fn new(problem: &Problem, element: &'static dyn EquilibriumElement) -> Self {
+    /// Computes the modes of `elements` on every triangle of `problem`.
+    pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = materials(problem);
         let mesh = &problem.mesh;
-        let mut seen: HashMap<[i64; 6], u32> = HashMap::new();
-        let mut representatives: Vec<usize> = Vec::new();
-        let class = (0..mesh.triangles.len())
+        let mut seen: HashMap<[i64; 7], u32> = HashMap::new();
+        let mut classes: Vec<Class> = Vec::new();
+        let mut end = 0;
+        let class: Vec<u32> = (0..mesh.triangles.len())
             .map(|t| {
-                let next = representatives.len() as u32;
-                *seen.entry(key(mesh.corners(t), mesh.body[t])).or_insert_with(|| {
-                    representatives.push(t);
+                let next = classes.len() as u32;
+                let key = key(mesh.corners(t), mesh.body[t], elements.degree(t));
+                *seen.entry(key).or_insert_with(|| {
+                    let layout = elements.of(t).layout();
+                    classes.push(Class { triangle: t, layout, start: end });
+                    end += layout.len();
                     next
                 })
             })
             .collect();
-        let layout = element.layout();
-        let mut data = vec![0.0; layout.len() * representatives.len()];
-        data.par_chunks_exact_mut(layout.len()).zip(&representatives).with_min_len(64).for_each(|(out, &t)| {
+        let mut data = vec![0.0; end];
+        let mut parts = Vec::with_capacity(classes.len());
+        let mut rest = &mut data[..];
+        for class in &classes {
+            let (part, behind) = rest.split_at_mut(class.layout.len());
+            parts.push(part);
+            rest = behind;
+        }
+        parts.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
+            let t = class.triangle;
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
-            element.compute(mesh.corners(t), &materials[body], force, layout.split(out));
+            elements.of(t).compute(mesh.corners(t), &materials[body], force, class.layout.split(out));
         });
-        ModeTable { element, layout, class, representatives, data, materials }
+        let mut first_parameter = Vec::with_capacity(class.len() + 1);
+        first_parameter.push(0);
+        let mut count = 0;
+        first_parameter.extend(class.iter().map(|&c| {
+            count += classes[c as usize].layout.parameters;
+            count
+        }));
+        ModeTable { elements, class, classes, data, first_parameter, materials }
     }
 
     /// Modes of triangle `t`.
     pub fn of(&self, t: usize) -> Modes<'_> {
-        let start = self.class[t] as usize * self.layout.len();
-        Modes::view(self.layout, &self.data[start..start + self.layout.len()])
+        let Class { layout, start, .. } = self.classes[self.class[t] as usize];
+        Modes::view(layout, &self.data[start..start + layout.len()])
     }
 
-    /// Number of triangles that are not congruent to an earlier one.
+    /// The degree of triangle `t`.
+    pub fn degree(&self, t: usize) -> usize {
+        self.elements.degree(t)
+    }
+
+    /// The elements.
+    pub fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// Where the mode parameters of triangle `t` are among those of all triangles.
+    pub fn parameters_of(&self, t: usize) -> Range<usize> {
+        self.first_parameter[t]..self.first_parameter[t + 1]
+    }
+
+    /// Number of mode parameters of all triangles.
+    pub fn parameters(&self) -> usize {
+        self.first_parameter.last().copied().unwrap_or(0)
+    }
+
+    /// The parts of `values`, one number for each mode parameter, that belong to each triangle.
+    pub fn split_parameters<'a>(&self, values: &'a mut [f64]) -> Vec<&'a mut [f64]> {
+        let mut rest = values;
+        let mut parts = Vec::with_capacity(self.class.len());
+        for ends in self.first_parameter.windows(2) {
+            let (part, behind) = rest.split_at_mut(ends[1] - ends[0]);
+            parts.push(part);
+            rest = behind;
+        }
+        parts
+    }
+
+    /// Number of triangles that are not congruent to an earlier one of their degree.
     pub fn classes(&self) -> usize {
-        self.representatives.len()
+        self.classes.len()
     }
 
     /// The stress field λ̄ + Σ S_k τ_k with mode parameters `s`, triangle by triangle.
     pub fn stresses(&self, problem: &Problem, s: &[f64]) -> StressField {
         let mesh = &problem.mesh;
-        let mut field = StressField::zeros(self.element.degree(), mesh.triangles.len());
-        let (n, stride) = (self.element.parameters(), field.stride());
-        let blocks = field.values_mut().par_chunks_exact_mut(stride).zip(s.par_chunks_exact(n));
-        blocks.enumerate().with_min_len(256).for_each(|(t, (block, s))| {
+        let mut field = StressField::of_degrees((0..mesh.triangles.len()).map(|t| self.degree(t)));
+        field.blocks_mut().into_par_iter().enumerate().with_min_len(256).for_each(|(t, block)| {
             // What was kept belongs to the triangle that it was computed on.
-            let corners = mesh.corners(self.representatives[self.class[t] as usize]);
+            let corners = mesh.corners(self.classes[self.class[t] as usize].triangle);
             let force = problem.scene.bodies[mesh.body[t]].body_force;
-            self.element.stresses(corners, force, &self.of(t), s, 1.0, block);
+            self.elements.of(t).stresses(corners, force, &self.of(t), &s[self.parameters_of(t)], 1.0, block);
         });
         field
     }
@@ -93,12 +152,12 @@ pub fn materials(problem: &Problem) -> Vec<Compliance> {
     scene.bodies.iter().map(|b| Compliance::new(scene.kinematics, b.young, b.poisson)).collect()
 }
 
-/// Edge vectors in units of the triangle's size (rounded up to a power of two), that size, and the body.
-fn key([a, b, c]: [[f64; 2]; 3], body: usize) -> [i64; 6] {
+/// Edge vectors in units of the triangle's size (rounded up to a power of two), that size, the body, and the degree.
+fn key([a, b, c]: [[f64; 2]; 3], body: usize, degree: usize) -> [i64; 7] {
     let sides = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
     let largest = sides.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
     let exponent = largest.log2().ceil();
     let unit = exponent.exp2() * CONGRUENT;
     let [p, q, r, s] = sides.map(|v| (v / unit).round() as i64);
-    [p, q, r, s, exponent as i64, body as i64]
+    [p, q, r, s, exponent as i64, body as i64, degree as i64]
 }

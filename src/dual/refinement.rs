@@ -122,13 +122,15 @@ impl Refinement<'_> {
             let Some(t) = edge.triangles[0] else { continue };
             let (length, normal) = problem.mesh.edge_frame(e);
             let force = &mut force[problem.mesh.body[t]];
-            for component in [0, 1].into_iter().flat_map(|end| system.unknowns.components(e, end, normal)) {
+            let degree = system.unknowns.degree(e);
+            let share = length / (degree + 1) as f64;
+            for component in (0..=degree).flat_map(|k| system.unknowns.components(e, k, normal)) {
                 // A jump belongs to both sides, which balance it between them.
-                for &(unknown, sign) in component.own_terms() {
-                    gross += 0.5 * length * system.external[unknown].abs();
+                for &(unknown, share_of) in component.own_terms() {
+                    gross += share * system.external[unknown].abs();
                     if !fixed[unknown] {
                         largest = largest.max(r[unknown].abs());
-                        let part = 0.5 * length * r[unknown] * sign.signum();
+                        let part = share * r[unknown] * share_of.clamp(-1.0, 1.0);
                         force[0] += part * component.direction[0];
                         force[1] += part * component.direction[1];
                     }

@@ -5,6 +5,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::unknowns::Unknowns;
+use crate::element::side;
 use crate::problem::{Condition, Problem};
 use crate::statics::Components;
 
@@ -13,7 +15,7 @@ const UNRESISTED: f64 = 1e-15;
 
 /// The jumps of a basis of the motions that supports leave to the pieces when contact does not hold them; none where
 /// these are more than `most`.
-pub fn unsupported(problem: &Problem, most: usize) -> Vec<Vec<f64>> {
+pub fn unsupported(problem: &Problem, unknowns: &Unknowns, most: usize) -> Vec<Vec<f64>> {
     let mesh = &problem.mesh;
     let mut clamped = vec![false; problem.scene.bodies.len()];
     for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
@@ -31,7 +33,7 @@ pub fn unsupported(problem: &Problem, most: usize) -> Vec<Vec<f64>> {
         return all;
     }
     for (piece, motions) in free.iter().enumerate() {
-        all.extend(motions.iter().map(|motion| jumps(problem, &pieces, piece, motion)));
+        all.extend(motions.iter().map(|motion| jumps(problem, unknowns, &pieces, piece, motion)));
     }
     all
 }
@@ -74,12 +76,13 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
 }
 
 /// The jump moments of a motion of one piece.
-fn jumps(problem: &Problem, pieces: &Components, piece: usize, motion: &Vector3<f64>) -> Vec<f64> {
+fn jumps(problem: &Problem, unknowns: &Unknowns, pieces: &Components, piece: usize, motion: &Vector3<f64>) -> Vec<f64> {
     let mesh = &problem.mesh;
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs
-        .flat_map(|pair| {
-            let mut jump = vec![0.0; pair.direction.columns(1)];
+        .zip(unknowns.jump_blocks())
+        .flat_map(|(pair, block)| {
+            let mut jump = vec![0.0; block.len];
             for (edge, sign) in pair.edges.into_iter().zip([1.0, -1.0]) {
                 let t = edge.and_then(|e| mesh.edges[e].triangles[0]);
                 if t.is_none_or(|t| pieces.of_triangle[t] != piece) {
@@ -91,14 +94,13 @@ fn jumps(problem: &Problem, pieces: &Components, piece: usize, motion: &Vector3<
                     let n = pair.direction.ends[other];
                     sign * (u[end][0] * n[0] + u[end][1] * n[1])
                 };
-                let across = [along(0, 0), along(1, 1)];
-                if let [first, second] = &mut jump[..] {
-                    *first += pair.length * (2.0 * across[0] + across[1]) / 6.0;
-                    *second += pair.length * (across[0] + 2.0 * across[1]) / 6.0;
+                let (first, last) = (along(0, 0), along(1, 1));
+                let moments = if pair.direction.is_constant() {
+                    side::moments(&[first, last], block.len - 1)
                 } else {
-                    let mixed = along(0, 1) + along(1, 0);
-                    jump[0] += pair.length * (2.0 * (across[0] + across[1]) + mixed) / 6.0;
-                }
+                    side::moments(&[first, 0.5 * (along(0, 1) + along(1, 0)), last], block.len - 1)
+                };
+                jump.iter_mut().zip(moments).for_each(|(j, m)| *j += pair.length * m);
             }
             jump
         })

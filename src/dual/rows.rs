@@ -1,66 +1,118 @@
 //! The boundary of a triangle in terms of unknowns.
 //!
-//! A triangle has twelve traction values (see [`crate::element::Modes`]): x and y at both ends of each side. An edge has
-//! ends and a normal of its own, and its second triangle runs along it the other way round.
+//! A triangle has on each side the coefficients of its traction (see [`crate::element::Modes`]), x and y of one after the
+//! other, raised to the degree of the edge where its neighbour has a larger one. An edge has an order and a normal of its
+//! own, and its second triangle runs along it the other way round.
 
 use super::unknowns::{Component, EdgeMoments, Unknowns};
+use crate::element::side;
 use crate::mesh::Triangulation;
 
-/// One end of one side of a triangle.
+/// The sides of a triangle with the degrees of their edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SideEnd {
-    /// Place of its x value among the traction values; y follows.
-    pub at: usize,
-    /// The edge.
-    pub edge: usize,
-    /// Which end of the edge.
-    pub end: usize,
+pub struct Sides {
+    /// Degree of the triangle.
+    pub degree: usize,
+    /// The edges.
+    pub edges: [usize; 3],
+    /// Their degrees.
+    pub degrees: [usize; 3],
+    /// Whether the triangle runs along them the other way round.
+    flipped: [bool; 3],
+    /// Where the coefficients of each side begin, and the end of them all.
+    pub start: [usize; 4],
 }
 
-/// The ends of the sides of triangle `t`, in the order of its traction values.
-pub fn side_ends(mesh: &Triangulation, t: usize) -> impl Iterator<Item = SideEnd> {
-    mesh.triangle_edges[t].into_iter().enumerate().flat_map(move |(side, edge)| {
-        let flipped = usize::from(mesh.edges[edge].triangles[0] != Some(t));
-        [0, 1].map(|node| SideEnd { at: 4 * side + 2 * node, edge, end: node ^ flipped })
-    })
-}
-
-/// The ends of the sides of triangle `t` with the components that their moments, and so their tractions, are taken in.
-pub fn rows(mesh: &Triangulation, unknowns: &Unknowns, t: usize) -> impl Iterator<Item = (SideEnd, [Component; 2])> {
-    side_ends(mesh, t).map(|side| {
-        let normal = match unknowns.edges[side.edge] {
-            // Their components are along the axes, or along the direction of contact.
-            EdgeMoments::Free(_) | EdgeMoments::Given(_) | EdgeMoments::Contact(_) => [0.0; 2],
-            EdgeMoments::Tangential(_) => mesh.edge_frame(side.edge).1,
-        };
-        (side, unknowns.components(side.edge, side.end, normal))
-    })
-}
-
-/// An edge whose four moments are unknowns, as a side of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FreeEdge {
-    /// Its first unknown.
-    pub first: usize,
-    /// Places among the traction values of the triangle, unknown by unknown.
-    pub at: [usize; 4],
-}
-
-impl FreeEdge {
-    /// Its unknowns with their places.
-    pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        (self.first..).zip(self.at)
+impl Sides {
+    /// The sides of triangle `t`, itself of the given degree.
+    pub fn new(mesh: &Triangulation, unknowns: &Unknowns, t: usize, degree: usize) -> Self {
+        let edges = mesh.triangle_edges[t];
+        let degrees = edges.map(|e| unknowns.degree(e));
+        let flipped = edges.map(|e| mesh.edges[e].triangles[0] != Some(t));
+        let mut start = [0; 4];
+        (0..3).for_each(|i| start[i + 1] = start[i] + 2 * (degrees[i] + 1));
+        Sides { degree, edges, degrees, flipped, start }
     }
-}
 
-/// The sides of triangle `t` if all are such edges, as those of most triangles are: what [`rows`] says, in less time.
-pub fn free_edges(mesh: &Triangulation, unknowns: &Unknowns, t: usize) -> Option<[FreeEdge; 3]> {
-    let mut out = [FreeEdge { first: 0, at: [0; 4] }; 3];
-    for (side, edge) in mesh.triangle_edges[t].into_iter().enumerate() {
-        let EdgeMoments::Free(first) = unknowns.edges[edge] else { return None };
-        let flipped = mesh.edges[edge].triangles[0] != Some(t);
-        let order = if flipped { [2, 3, 0, 1] } else { [0, 1, 2, 3] };
-        out[side] = FreeEdge { first, at: order.map(|i| 4 * side + i) };
+    /// Number of coefficients, x and y counted.
+    pub fn len(&self) -> usize {
+        self.start[3]
     }
-    Some(out)
+
+    /// Whether all sides have the degree of the triangle.
+    pub fn are_even(&self) -> bool {
+        self.degrees == [self.degree; 3]
+    }
+
+    /// Place of the x value of coefficient `k`, in the order of the edge, on side `side`; y follows.
+    pub fn at(&self, side: usize, k: usize) -> usize {
+        let k = if self.flipped[side] { self.degrees[side] - k } else { k };
+        self.start[side] + 2 * k
+    }
+
+    /// The coefficients `own` of the degree of the triangle, raised to the degrees of its edges.
+    pub fn raise(&self, own: &[f64], out: &mut [f64]) {
+        let p = self.degree;
+        for (i, own) in own.chunks_exact(2 * (p + 1)).enumerate() {
+            let q = self.degrees[i];
+            let out = &mut out[self.start[i]..self.start[i + 1]];
+            if p == q {
+                out.copy_from_slice(own);
+                continue;
+            }
+            let rows = side::elevation_matrix(p, q).chunks_exact(p + 1);
+            for (out, row) in out.chunks_exact_mut(2).zip(rows) {
+                for c in 0..2 {
+                    out[c] = row.iter().zip(own.chunks_exact(2)).map(|(e, t)| e * t[c]).sum();
+                }
+            }
+        }
+    }
+
+    /// Moments `own` of the degrees of the edges, lowered to those of the triangle: the transpose of [`Self::raise`].
+    pub fn lower(&self, own: &[f64], out: &mut [f64]) {
+        let p = self.degree;
+        for (i, out) in out.chunks_exact_mut(2 * (p + 1)).enumerate() {
+            let q = self.degrees[i];
+            let own = &own[self.start[i]..self.start[i + 1]];
+            if p == q {
+                out.copy_from_slice(own);
+                continue;
+            }
+            out.fill(0.0);
+            for (own, row) in own.chunks_exact(2).zip(side::elevation_matrix(p, q).chunks_exact(p + 1)) {
+                for (out, e) in out.chunks_exact_mut(2).zip(row) {
+                    (0..2).for_each(|c| out[c] += e * own[c]);
+                }
+            }
+        }
+    }
+
+    /// The coefficients of all sides with the components that their moments, and so their tractions, are taken in.
+    pub fn rows<'a>(
+        &self,
+        mesh: &'a Triangulation,
+        unknowns: &'a Unknowns,
+    ) -> impl Iterator<Item = (usize, [Component; 2])> + use<'a> {
+        let sides = *self;
+        (0..3).flat_map(move |i| {
+            let e = sides.edges[i];
+            let normal = match &unknowns.edges[e] {
+                // Their components are along the axes, or along the direction of contact.
+                EdgeMoments::Free(_) | EdgeMoments::Given(_) | EdgeMoments::Contact(_) => [0.0; 2],
+                EdgeMoments::Tangential(_) => mesh.edge_frame(e).1,
+            };
+            (0..=sides.degrees[i]).map(move |k| (sides.at(i, k), unknowns.components(e, k, normal)))
+        })
+    }
+
+    /// The first unknown of each side, if all moments of all sides are unknowns, as they are for most triangles.
+    pub fn free(&self, unknowns: &Unknowns) -> Option<[usize; 3]> {
+        let mut first = [0; 3];
+        for (first, e) in first.iter_mut().zip(self.edges) {
+            let EdgeMoments::Free(own) = &unknowns.edges[e] else { return None };
+            *first = *own;
+        }
+        Some(first)
+    }
 }

@@ -13,7 +13,7 @@ use super::qp::ContactState;
 use super::reduced::{Contact, Reduced};
 use super::refinement::{Refined, Refinement};
 use super::system::System;
-use crate::element::StressField;
+use crate::element::{SideValues, StressField};
 use crate::problem::{Problem, Scales};
 
 /// Changes of the contact state at most.
@@ -81,7 +81,7 @@ impl Settling<'_> {
         &self,
         now: &Refined,
         stress: &StressField,
-        moments: &[[[f64; 2]; 2]],
+        moments: &SideValues<[f64; 2]>,
         state: &ContactState,
         allowed: f64,
     ) -> Result<(), DualError> {

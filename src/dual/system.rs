@@ -2,7 +2,7 @@
 //!
 //! Eliminating the stresses element by element from the saddle-point problem leaves
 //!
-//! min ½ mᵀKm − fᵀm over moments m with jumps at most ∫ g q_p, K = Σ T Tᵀ, f = ∫P·(…) − T̄,
+//! min ½ mᵀKm − fᵀm over moments m with jumps at most ∫ g B_k, K = Σ T Tᵀ, f = ∫P·(…) − T̄,
 //!
 //! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
 
@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 use super::Options;
 use super::modes::ModeTable;
-use super::rows::{FreeEdge, SideEnd, free_edges, rows};
+use super::rows::Sides;
 use super::unknowns::{Component, Unknowns};
+use crate::element::side;
 use crate::problem::{Condition, Problem};
 
 /// The assembled problem.
@@ -28,22 +29,15 @@ pub struct System {
     pub rhs: Vec<f64>,
     /// The part of f that comes from applied tractions.
     pub external: Vec<f64>,
-    /// Upper bound ∫ g q_p of each jump, ∫ g where the direction of contact turns.
+    /// Upper bound ∫ g B_k of each jump.
     pub jump_bound: Vec<f64>,
-}
-
-/// Stiffness and load of a triangle, in the components of its side ends (see [`rows`]).
-struct Local {
-    /// Its sides, if all are free.
-    edges: Option<[FreeEdge; 3]>,
-    stiffness: [[f64; 12]; 12],
-    load: [f64; 12],
 }
 
 impl System {
     /// Numbers the unknowns of `problem` and assembles K and f.
     pub fn new(problem: &Problem, options: &Options) -> Self {
-        Self::assemble(problem, Unknowns::new(problem), ModeTable::new(problem, options.element))
+        let modes = ModeTable::new(problem, options.elements.clone());
+        Self::assemble(problem, Unknowns::new(problem, modes.elements()), modes)
     }
 
     fn assemble(problem: &Problem, unknowns: Unknowns, modes: ModeTable) -> Self {
@@ -55,17 +49,25 @@ impl System {
         // the number of threads.
         const CHUNK: usize = 1024;
         let count = mesh.triangles.len();
+        let sides = |t: usize| Sides::new(mesh, &unknowns, t, modes.degree(t));
+        let mut memory = Vec::new();
         for start in (0..count).step_by(CHUNK) {
-            let locals: Vec<Local> = (start..(start + CHUNK).min(count))
-                .into_par_iter()
-                .with_min_len(64)
-                .map(|t| local(problem, &unknowns, &modes, t))
-                .collect();
-            for (local, t) in locals.iter().zip(start..) {
-                match &local.edges {
-                    Some(edges) => pattern.add_blocks(edges, local, &mut values, &mut rhs),
-                    None => pattern.add_terms(problem, &unknowns, t, local, &mut values, &mut rhs),
+            let chunk: Vec<Sides> = (start..(start + CHUNK).min(count)).map(sides).collect();
+            let room = chunk.iter().map(|sides| sides.len() * (sides.len() + 1)).max().unwrap_or(0);
+            memory.resize(chunk.len() * room, 0.0);
+            let locals = memory.par_chunks_exact_mut(room).zip(&chunk).zip(start..start + chunk.len());
+            locals.with_min_len(64).for_each(|((out, sides), t)| local(problem, &unknowns, &modes, sides, t, out));
+            for ((local, sides), t) in memory.chunks_exact(room).zip(&chunk).zip(start..) {
+                let (load, rest) = local.split_at(sides.len());
+                let stiffness = &rest[..sides.len() * sides.len()];
+                match sides.free(&unknowns) {
+                    Some(first) => pattern.add_blocks(sides, first, stiffness, load, &mut values, &mut rhs),
+                    None => {
+                        let terms = terms(problem, &unknowns, sides);
+                        pattern.add_terms(&terms, stiffness, load, &mut values, &mut rhs);
+                    }
                 }
+                debug_assert_eq!(mesh.triangle_edges[t], sides.edges);
             }
         }
         let external = external_load(problem, &unknowns);
@@ -74,12 +76,10 @@ impl System {
             .interfaces
             .iter()
             .flat_map(|i| &i.pairs)
-            .flat_map(|pair| {
-                let [a, b] = pair.gap;
-                match pair.direction.columns(1) {
-                    2 => vec![pair.length * (2.0 * a + b) / 6.0, pair.length * (a + 2.0 * b) / 6.0],
-                    _ => vec![pair.length * (a + b) / 2.0],
-                }
+            .zip(unknowns.jump_blocks())
+            .flat_map(|(pair, jumps)| {
+                let moments = side::moments(&pair.gap, jumps.len - 1);
+                moments.into_iter().map(|moment| pair.length * moment)
             })
             .collect();
         let symbolic =
@@ -107,15 +107,17 @@ pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> b
     }
 }
 
-/// ∫P q_p on every unknown of Γ_τ: the end values P_p themselves, by the choice of the moments.
+/// The coefficients of P on every unknown of Γ_τ, by the choice of the moments.
 fn external_load(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
     let mut load = vec![0.0; unknowns.count];
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let Condition::Traction(p) = condition else { continue };
-        for (end, value) in p.iter().enumerate() {
-            for component in unknowns.components(e, end, [0.0; 2]) {
+        let Condition::Traction([a, b]) = condition else { continue };
+        let degree = unknowns.degree(e);
+        let along = |c: usize| side::linear([a[c], b[c]], degree);
+        for (k, value) in along(0).zip(along(1)).enumerate() {
+            for component in unknowns.components(e, k, [0.0; 2]) {
                 for &(dof, c) in component.terms() {
-                    load[dof] += c * (component.direction[0] * value[0] + component.direction[1] * value[1]);
+                    load[dof] += c * (component.direction[0] * value.0 + component.direction[1] * value.1);
                 }
             }
         }
@@ -141,36 +143,78 @@ pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<
     y
 }
 
-/// T Tᵀ in the components of the numbering, and minus the load of the particular field and of given moments.
-fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, t: usize) -> Local {
+/// Minus the load of the particular field and of given moments, then T Tᵀ row by row, in the components of the numbering.
+fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, sides: &Sides, t: usize, out: &mut [f64]) {
     let element = modes.of(t);
-    let mut modes = [[0.0; 12]; 9];
-    modes.as_flattened_mut().copy_from_slice(element.traction());
-    let edges = free_edges(&problem.mesh, unknowns, t);
-    let mut local = Local { edges, stiffness: [[0.0; 12]; 12], load: [0.0; 12] };
-    local.load.iter_mut().zip(element.particular_traction()).for_each(|(l, p)| *l = -p);
-    if local.edges.is_none() {
-        let mut fixed = [0.0; 9];
-        for (SideEnd { at, .. }, components) in rows(&problem.mesh, unknowns, t) {
-            let turn = |[x, y]: [f64; 2]| components.map(|c| c.direction[0] * x + c.direction[1] * y);
-            for (mode, fixed) in modes.iter_mut().zip(&mut fixed) {
-                let turned = turn([mode[at], mode[at + 1]]);
-                mode[at..at + 2].copy_from_slice(&turned);
-                *fixed += components[0].fixed * turned[0] + components[1].fixed * turned[1];
-            }
-            let turned = turn([local.load[at], local.load[at + 1]]);
-            local.load[at..at + 2].copy_from_slice(&turned);
+    let m = sides.len();
+    let (load, rest) = out.split_at_mut(m);
+    let stiffness = &mut rest[..m * m];
+    let mut raised = Vec::new();
+    let mut turned = Vec::new();
+    let mut tractions = element.traction();
+    sides.raise(element.particular_traction(), load);
+    load.iter_mut().for_each(|l| *l = -*l);
+    if !sides.are_even() {
+        raised.resize(m * element.parameters(), 0.0);
+        for (out, mode) in raised.chunks_exact_mut(m).zip(element.tractions()) {
+            sides.raise(mode, out);
         }
-        for (mode, fixed) in modes.iter().zip(fixed) {
-            local.load.iter_mut().zip(mode).for_each(|(l, t)| *l -= fixed * t);
+        tractions = &raised;
+    }
+    if sides.free(unknowns).is_none() {
+        turned.extend_from_slice(tractions);
+        let mut fixed = vec![0.0; element.parameters()];
+        for (at, components) in sides.rows(&problem.mesh, unknowns) {
+            let directions = [components[0].direction, components[1].direction];
+            let turn = |[x, y]: [f64; 2]| directions.map(|d| d[0] * x + d[1] * y);
+            for (mode, fixed) in turned.chunks_exact_mut(m).zip(&mut fixed) {
+                let own = turn([mode[at], mode[at + 1]]);
+                mode[at..at + 2].copy_from_slice(&own);
+                *fixed += components[0].fixed * own[0] + components[1].fixed * own[1];
+            }
+            let own = turn([load[at], load[at + 1]]);
+            load[at..at + 2].copy_from_slice(&own);
+        }
+        for (mode, fixed) in turned.chunks_exact(m).zip(fixed) {
+            load.iter_mut().zip(mode).for_each(|(l, t)| *l -= fixed * t);
+        }
+        tractions = &turned;
+    }
+    match m {
+        12 => gram::<12>(tractions, stiffness),
+        18 => gram::<18>(tractions, stiffness),
+        24 => gram::<24>(tractions, stiffness),
+        30 => gram::<30>(tractions, stiffness),
+        _ => {
+            stiffness.fill(0.0);
+            for mode in tractions.chunks_exact(m) {
+                for (row, a) in stiffness.chunks_exact_mut(m).zip(mode) {
+                    row.iter_mut().zip(mode).for_each(|(k, b)| *k += a * b);
+                }
+            }
         }
     }
-    for mode in &modes {
-        for (row, a) in local.stiffness.iter_mut().zip(mode) {
+}
+
+/// Σ t tᵀ over rows t of length M, a length that the compiler knows.
+fn gram<const M: usize>(tractions: &[f64], out: &mut [f64]) {
+    let (rows, _) = out.as_chunks_mut::<M>();
+    rows.iter_mut().for_each(|row| *row = [0.0; M]);
+    for mode in tractions.as_chunks::<M>().0 {
+        for (row, a) in rows.iter_mut().zip(mode) {
             row.iter_mut().zip(mode).for_each(|(k, b)| *k += a * b);
         }
     }
-    local
+}
+
+/// The components of all coefficients of a triangle, each at its place.
+fn terms(problem: &Problem, unknowns: &Unknowns, sides: &Sides) -> Vec<Component> {
+    let mut terms: Vec<Option<Component>> = vec![None; sides.len()];
+    for (at, [along, across]) in sides.rows(&problem.mesh, unknowns) {
+        terms[at] = Some(along);
+        terms[at + 1] = Some(across);
+    }
+    terms.into_iter().flatten().collect()
 }
 
 /// Sparsity pattern of the lower triangle, block by block.
@@ -237,52 +281,51 @@ impl Pattern {
         Pattern { columns, rows, block_of, blocks, neighbours, neighbour_start }
     }
 
-    /// Adds a triangle whose sides are all free, block by block.
-    fn add_blocks(&self, edges: &[FreeEdge; 3], local: &Local, values: &mut [f64], rhs: &mut [f64]) {
-        for (p, edge) in edges.iter().enumerate() {
-            for (i, (unknown, at)) in edge.unknowns().enumerate() {
-                rhs[unknown] += local.load[at];
-                for (value, row) in values[self.columns[unknown]..].iter_mut().zip(&edge.at[i..]) {
-                    *value += local.stiffness[at][*row];
-                }
+    /// Adds a triangle whose sides are all free, with unknowns from `first` on, block by block.
+    fn add_blocks(
+        &self,
+        sides: &Sides,
+        first: [usize; 3],
+        stiffness: &[f64],
+        load: &[f64],
+        values: &mut [f64],
+        rhs: &mut [f64],
+    ) {
+        let m = sides.len();
+        // The place of each unknown of a side.
+        let at = |side: usize| (0..=sides.degrees[side]).flat_map(move |k| [0, 1].map(|c| sides.at(side, k) + c));
+        for p in 0..3 {
+            for (i, own) in at(p).enumerate() {
+                let unknown = first[p] + i;
+                rhs[unknown] += load[own];
+                let row = &stiffness[m * own..][..m];
+                values[self.columns[unknown]..].iter_mut().zip(at(p).skip(i)).for_each(|(v, at)| *v += row[at]);
             }
-            for other in &edges[..p] {
-                let (low, high) = if edge.first < other.first { (edge, other) } else { (other, edge) };
+            for q in 0..p {
+                let (low, high) = if first[p] < first[q] { (p, q) } else { (q, p) };
                 // Blocks are whole: the first entry of each column tells where its others are.
-                let start = self.position(high.first, low.first);
-                for (column, at) in low.at.into_iter().enumerate() {
-                    let from = start - self.columns[low.first] + self.columns[low.first + column] - column;
-                    for (value, row) in values[from..from + 4].iter_mut().zip(high.at) {
-                        *value += local.stiffness[at][row];
-                    }
+                let start = self.position(first[high], first[low]);
+                for (column, own) in at(low).enumerate() {
+                    let from = start - self.columns[first[low]] + self.columns[first[low] + column] - column;
+                    let row = &stiffness[m * own..][..m];
+                    values[from..].iter_mut().zip(at(high)).for_each(|(v, at)| *v += row[at]);
                 }
             }
         }
     }
 
     /// Adds any triangle, term by term.
-    fn add_terms(
-        &self,
-        problem: &Problem,
-        unknowns: &Unknowns,
-        t: usize,
-        local: &Local,
-        values: &mut [f64],
-        rhs: &mut [f64],
-    ) {
-        let mut terms: [Component; 12] = [Component::default(); 12];
-        for (SideEnd { at, .. }, components) in rows(&problem.mesh, unknowns, t) {
-            terms[at..at + 2].copy_from_slice(&components);
-        }
+    fn add_terms(&self, terms: &[Component], stiffness: &[f64], load: &[f64], values: &mut [f64], rhs: &mut [f64]) {
+        let m = load.len();
         for (a, own) in terms.iter().enumerate() {
             for &(i, ci) in own.terms() {
-                rhs[i] += ci * local.load[a];
+                rhs[i] += ci * load[a];
                 for (b, other) in terms.iter().enumerate().take(a + 1) {
                     for &(j, cj) in other.terms() {
                         // (a, b) stands for (b, a) too: twice on the diagonal, once below it.
                         let twice = if i == j && a != b { 2.0 } else { 1.0 };
                         if a != b || i >= j {
-                            values[self.position(i.max(j), i.min(j))] += twice * ci * cj * local.stiffness[a][b];
+                            values[self.position(i.max(j), i.min(j))] += twice * ci * cj * stiffness[m * a + b];
                         }
                     }
                 }

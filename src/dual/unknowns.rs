@@ -1,11 +1,13 @@
 //! Numbering of the edge moments.
 //!
-//! The unknowns of the hybrid form are the moments m_{e,p} = ∫_e u q_p ds of the edge displacement against the two hat
-//! functions of each edge, conjugate to the traction end values. Moments given by a support drop out; on Γ_K the moments
-//! of the first side along the direction of contact are replaced by the jumps j_p = ∫(v' − v'')·n̂ q_p ds (see
+//! The unknowns of the hybrid form are the moments m_{e,k} = ∫_e u B_k ds of the edge displacement against the Bernstein
+//! polynomials of each edge, conjugate to the coefficients of its traction. An edge has the larger degree of its two
+//! triangles, a contact pair the larger one of both sides. Moments given by a support drop out; on Γ_K the moments of the
+//! first side along the direction of contact are replaced by the jumps j_k = ∫(v' − v'')·n̂ B_k ds (see
 //! [`super::contact_moments`]), and all jumps are numbered last.
 
 use super::contact_moments::ContactEdge;
+use crate::element::{Elements, SideValues};
 use crate::problem::{Condition, ContactPair, Problem};
 
 /// Unknowns that belong together: consecutive numbers that share one sparsity pattern.
@@ -13,44 +15,51 @@ use crate::problem::{Condition, ContactPair, Problem};
 pub struct Block {
     /// First unknown.
     pub start: usize,
-    /// Number of unknowns, at most four.
+    /// Number of unknowns.
     pub len: usize,
 }
 
 /// What the moments of one edge are made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum EdgeMoments {
-    /// Four unknowns: x and y at the first end, x and y at the second.
+    /// x and y of one moment after the other.
     Free(usize),
-    /// Γ_u: the moments of u0, the same for both ends.
+    /// Γ_u: the moments of u0, all the same.
     Given([f64; 2]),
-    /// Γ_0: the tangential moments at the two ends are unknown, the normal ones zero.
+    /// Γ_0: the tangential moments are unknown, the normal ones zero.
     Tangential(usize),
     /// Γ_K.
-    Contact(ContactEdge),
+    Contact(Box<ContactEdge>),
 }
 
-/// A moment component at one end of an edge, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
-#[derive(Debug, Clone, Copy, Default)]
+/// The part of a moment along an axis, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
+#[derive(Debug, Clone)]
 pub struct Component {
     /// Unit vector.
     pub direction: [f64; 2],
-    /// Contributing unknowns.
-    pub terms: [(usize, f64); 3],
-    /// How many of `terms` count.
-    pub len: usize,
-    /// How many of these, from the first on, the edges of other bodies have no part in.
-    pub own: usize,
+    terms: Terms,
+    /// How many of the terms, from the first on, the edges of other bodies have no part in.
+    own: usize,
     /// Part that is given.
     pub fixed: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Terms {
+    Few([(usize, f64); 2], usize),
+    Many(Vec<(usize, f64)>),
 }
 
 impl Component {
     /// Σ coefficient · x over `terms`, the first `own` of which belong to this edge alone.
     pub(super) fn sum(direction: [f64; 2], terms: &[(usize, f64)], own: usize) -> Self {
-        let mut all = [(0, 0.0); 3];
-        all[..terms.len()].copy_from_slice(terms);
-        Component { direction, terms: all, len: terms.len(), own, fixed: 0.0 }
+        let terms = match *terms {
+            [] => Terms::Few([(0, 0.0); 2], 0),
+            [a] => Terms::Few([a, (0, 0.0)], 1),
+            [a, b] => Terms::Few([a, b], 2),
+            _ => Terms::Many(terms.to_vec()),
+        };
+        Component { direction, terms, own, fixed: 0.0 }
     }
 
     fn unknown(direction: [f64; 2], dof: usize) -> Self {
@@ -63,12 +72,15 @@ impl Component {
 
     /// The contributing unknowns with their coefficients.
     pub fn terms(&self) -> &[(usize, f64)] {
-        &self.terms[..self.len]
+        match &self.terms {
+            Terms::Few(terms, len) => &terms[..*len],
+            Terms::Many(terms) => terms,
+        }
     }
 
     /// Those that the edges of other bodies have no part in.
     pub fn own_terms(&self) -> &[(usize, f64)] {
-        &self.terms[..self.own]
+        &self.terms()[..self.own]
     }
 }
 
@@ -79,6 +91,8 @@ pub struct Unknowns {
     pub blocks: Vec<Block>,
     /// Moments of each edge of the mesh.
     pub edges: Vec<EdgeMoments>,
+    /// Degree of each edge.
+    degree: Vec<u8>,
     /// Number of unknowns.
     pub count: usize,
     /// First jump; all unknowns from here on are jumps.
@@ -87,7 +101,9 @@ pub struct Unknowns {
 
 impl Unknowns {
     /// Numbers the unknowns of `problem`.
-    pub fn new(problem: &Problem) -> Self {
+    pub fn new(problem: &Problem, elements: &Elements) -> Self {
+        let degree = edge_degrees(problem, elements);
+        let of_pair = |pair: &ContactPair| pair.edges[0].map_or(1, |e| usize::from(degree[e]));
         let mut blocks = Vec::with_capacity(problem.mesh.edges.len());
         let mut next = 0;
         let mut push = |len: usize| {
@@ -100,13 +116,15 @@ impl Unknowns {
             problem.interfaces.iter().map(|i| vec![None; i.pairs.len()]).collect();
         let mut first_block = vec![usize::MAX; problem.mesh.edges.len()];
         for (e, condition) in problem.conditions.iter().enumerate() {
+            let coefficients = usize::from(degree[e]) + 1;
             match *condition {
-                Condition::Interior | Condition::Traction(_) => first_block[e] = push(4),
-                Condition::Roller => first_block[e] = push(2),
+                Condition::Interior | Condition::Traction(_) => first_block[e] = push(2 * coefficients),
+                Condition::Roller => first_block[e] = push(coefficients),
                 Condition::Clamped(_) => {}
                 Condition::Contact { interface, pair, side } => {
-                    let jumps = jumps(&problem.interfaces[interface].pairs[pair]);
-                    first_block[e] = push(4 - jumps);
+                    let matched = &problem.interfaces[interface].pairs[pair];
+                    let jumps = matched.direction.columns(of_pair(matched));
+                    first_block[e] = push(2 * coefficients - jumps);
                     if side == 1 {
                         second[interface][pair] = Some(push(jumps));
                     }
@@ -114,7 +132,8 @@ impl Unknowns {
             }
         }
         let pairs = problem.interfaces.iter().map(|i| i.pairs.iter());
-        let jump_blocks: Vec<Vec<usize>> = pairs.map(|pairs| pairs.map(|p| push(jumps(p))).collect()).collect();
+        let jump_blocks: Vec<Vec<usize>> =
+            pairs.map(|pairs| pairs.map(|p| push(p.direction.columns(of_pair(p)))).collect()).collect();
         let first_jump = jump_blocks.iter().flatten().next().map_or(next, |&b| blocks[b].start);
         let edges = problem
             .conditions
@@ -124,39 +143,45 @@ impl Unknowns {
                 Condition::Interior | Condition::Traction(_) => EdgeMoments::Free(blocks[first_block[e]].start),
                 Condition::Roller => EdgeMoments::Tangential(blocks[first_block[e]].start),
                 Condition::Clamped(u0) => {
-                    let half = 0.5 * problem.mesh.edge_frame(e).0;
-                    EdgeMoments::Given([u0[0] * half, u0[1] * half])
+                    let part = problem.mesh.edge_frame(e).0 / f64::from(degree[e] + 1);
+                    EdgeMoments::Given([u0[0] * part, u0[1] * part])
                 }
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let own = if side == 0 { matched.first } else { matched.second.unwrap_or(matched.first) };
-                    EdgeMoments::Contact(ContactEdge {
-                        across: first_block[e],
-                        jump: jump_blocks[interface][pair],
-                        second: second[interface][pair],
+                    EdgeMoments::Contact(Box::new(ContactEdge::new(
+                        &matched.direction,
+                        degree[e].into(),
                         side,
-                        reversed: own[0] != problem.mesh.edges[e].vertices[0],
-                        direction: matched.direction,
-                    })
+                        own[0] != problem.mesh.edges[e].vertices[0],
+                        blocks[first_block[e]].start,
+                        blocks[jump_blocks[interface][pair]].start,
+                        second[interface][pair].map(|b| blocks[b].start),
+                    )))
                 }
             })
             .collect();
-        Unknowns { blocks, edges, count: next, first_jump }
+        Unknowns { blocks, edges, degree, count: next, first_jump }
     }
 
-    /// The two components, at right angles, of the moment at end `end` (0 or 1, in the order of the edge's vertices) of
-    /// an edge with outward unit normal `normal`.
-    pub fn components(&self, e: usize, end: usize, normal: [f64; 2]) -> [Component; 2] {
+    /// Degree of the traction on edge `e`.
+    pub fn degree(&self, e: usize) -> usize {
+        self.degree[e].into()
+    }
+
+    /// The two components, at right angles, of moment `k` (in the order of the edge's vertices) of an edge with outward unit
+    /// normal `normal`.
+    pub fn components(&self, e: usize, k: usize, normal: [f64; 2]) -> [Component; 2] {
         const X: [f64; 2] = [1.0, 0.0];
         const Y: [f64; 2] = [0.0, 1.0];
         let tangent = [-normal[1], normal[0]];
-        match self.edges[e] {
+        match &self.edges[e] {
             EdgeMoments::Free(first) => {
-                [Component::unknown(X, first + 2 * end), Component::unknown(Y, first + 2 * end + 1)]
+                [Component::unknown(X, first + 2 * k), Component::unknown(Y, first + 2 * k + 1)]
             }
             EdgeMoments::Given(m) => [Component::given(X, m[0]), Component::given(Y, m[1])],
-            EdgeMoments::Tangential(first) => [Component::given(normal, 0.0), Component::unknown(tangent, first + end)],
-            EdgeMoments::Contact(edge) => edge.components(&self.blocks, end),
+            EdgeMoments::Tangential(first) => [Component::given(normal, 0.0), Component::unknown(tangent, first + k)],
+            EdgeMoments::Contact(edge) => edge.components(k),
         }
     }
 
@@ -171,48 +196,58 @@ impl Unknowns {
 
     /// Blocks that the moments of edge `e` depend on, and how many.
     pub fn blocks_of_edge(&self, e: usize, block_of: &[u32]) -> ([usize; 3], usize) {
-        match self.edges[e] {
+        let block = |first: usize| block_of[first] as usize;
+        match &self.edges[e] {
             EdgeMoments::Given(_) => ([0; 3], 0),
-            EdgeMoments::Free(first) | EdgeMoments::Tangential(first) => ([block_of[first] as usize, 0, 0], 1),
-            EdgeMoments::Contact(ContactEdge { across, jump, second, side, .. }) => match (side, second) {
-                (0, Some(other)) => ([across, jump, other], 3),
-                (1, Some(own)) => ([across, own, 0], 2),
-                _ => ([across, jump, 0], 2),
+            EdgeMoments::Free(first) | EdgeMoments::Tangential(first) => ([block(*first), 0, 0], 1),
+            EdgeMoments::Contact(edge) => match (edge.side, edge.second) {
+                (0, Some(other)) => ([block(edge.across), block(edge.jump), block(other)], 3),
+                (1, Some(own)) => ([block(edge.across), block(own), 0], 2),
+                _ => ([block(edge.across), block(edge.jump), 0], 2),
             },
         }
     }
 
-    /// The Cartesian moments at both ends of every edge, from the values of the unknowns.
-    pub fn moments(&self, problem: &Problem, x: &[f64]) -> Vec<[[f64; 2]; 2]> {
-        (0..self.edges.len())
-            .map(|e| {
-                let (_, normal) = problem.mesh.edge_frame(e);
-                [0, 1].map(|end| {
-                    let mut m = [0.0; 2];
-                    for component in self.components(e, end, normal) {
-                        let value = component.fixed + component.terms().iter().map(|&(dof, c)| c * x[dof]).sum::<f64>();
-                        m[0] += value * component.direction[0];
-                        m[1] += value * component.direction[1];
+    /// The Cartesian moments of every edge, from the values of the unknowns.
+    pub fn moments(&self, problem: &Problem, x: &[f64]) -> SideValues<[f64; 2]> {
+        let counts = self.degree.iter().map(|&p| usize::from(p) + 1);
+        let mut moments = SideValues::filled(counts, [0.0; 2]);
+        for (e, edge) in self.edges.iter().enumerate() {
+            let own = moments.of_mut(e);
+            match edge {
+                EdgeMoments::Free(first) => {
+                    let values = x[*first..].chunks_exact(2);
+                    own.iter_mut().zip(values).for_each(|(m, x)| *m = [x[0], x[1]]);
+                }
+                EdgeMoments::Given(given) => own.fill(*given),
+                EdgeMoments::Tangential(_) | EdgeMoments::Contact(_) => {
+                    let (_, normal) = problem.mesh.edge_frame(e);
+                    for (k, m) in own.iter_mut().enumerate() {
+                        for component in self.components(e, k, normal) {
+                            let value: f64 = component.terms().iter().map(|&(dof, c)| c * x[dof]).sum();
+                            m[0] += value * component.direction[0];
+                            m[1] += value * component.direction[1];
+                        }
                     }
-                    m
-                })
-            })
-            .collect()
+                }
+            }
+        }
+        moments
     }
 
-    /// Values of the unknowns of a displacement: `at(e, end)` gives the vector moment at an end. Jumps and rollers take the
-    /// components they stand for.
+    /// Values of the unknowns of a displacement: `at(e, k)` gives moment k of an edge. Jumps and rollers take the components
+    /// they stand for.
     pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
         let mut x = vec![0.0; self.count];
         for e in 0..self.edges.len() {
             let (_, normal) = problem.mesh.edge_frame(e);
-            for end in 0..2 {
-                let m = at(e, end);
+            for k in 0..=self.degree(e) {
+                let m = at(e, k);
                 if let EdgeMoments::Contact(edge) = &self.edges[e] {
-                    edge.project(&self.blocks, end, m, &mut x);
+                    edge.project(k, m, &mut x);
                     continue;
                 }
-                for component in self.components(e, end, normal) {
+                for component in self.components(e, k, normal) {
                     if let [(dof, _)] = component.terms() {
                         x[*dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
                     }
@@ -222,27 +257,31 @@ impl Unknowns {
         x
     }
 
-    /// For every jump the other one of its pair, or itself where the pair has only one.
-    pub fn partners(&self) -> Vec<usize> {
-        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
-        jumps.flat_map(|b| (0..b.len).rev().map(|k| b.start + k - self.first_jump)).collect()
+    /// The blocks of jumps, one for each pair.
+    pub fn jump_blocks(&self) -> impl Iterator<Item = &Block> {
+        self.blocks.iter().filter(|b| b.start >= self.first_jump)
     }
 
-    /// Which jumps are closed, from the two ends of every pair.
-    pub fn by_jump(&self, ends: &[bool]) -> Vec<bool> {
-        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
-        let each = jumps.zip(ends.chunks_exact(2));
-        each.flat_map(|(b, ends)| if b.len == 2 { ends.to_vec() } else { vec![ends[0] || ends[1]] }).collect()
-    }
-
-    /// Which of the two ends of every pair are closed, from the jumps.
-    pub fn by_end(&self, closed: &[bool]) -> Vec<bool> {
-        let jumps = self.blocks.iter().filter(|b| b.start >= self.first_jump);
-        jumps.flat_map(|b| [0, b.len - 1].map(|k| closed[b.start + k - self.first_jump])).collect()
+    /// Flags of all jumps, pair by pair.
+    pub fn by_pair(&self, flags: Vec<bool>) -> SideValues<bool> {
+        SideValues::new(self.jump_blocks().map(|b| b.len), flags)
     }
 }
 
-/// The number of jumps of a pair.
-fn jumps(pair: &ContactPair) -> usize {
-    pair.direction.columns(1)
+/// The number of coefficients of t on each contact pair, one interface after the other.
+pub fn contact_coefficients(problem: &Problem, elements: &Elements) -> Vec<usize> {
+    let degree = edge_degrees(problem, elements);
+    let of = |pair: &ContactPair| pair.direction.columns(pair.edges[0].map_or(1, |e| degree[e].into()));
+    problem.interfaces.iter().flat_map(|i| &i.pairs).map(of).collect()
+}
+
+/// The degree of the traction on every edge: the larger one of its triangles, on a contact pair that of both sides.
+pub fn edge_degrees(problem: &Problem, elements: &Elements) -> Vec<u8> {
+    let largest = |edge: &crate::mesh::Edge| edge.triangles.iter().flatten().map(|&t| elements.degree(t)).max();
+    let mut degree: Vec<u8> = problem.mesh.edges.iter().map(|e| largest(e).unwrap_or(1) as u8).collect();
+    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        let both = pair.edges.iter().flatten().map(|&e| degree[e]).max().unwrap_or(1);
+        pair.edges.iter().flatten().for_each(|&e| degree[e] = both);
+    }
+    degree
 }

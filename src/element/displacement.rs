@@ -2,11 +2,11 @@
 
 use std::sync::OnceLock;
 
-use super::{side, triangle};
+use super::{MAX_DEGREE, side, triangle};
 use crate::mesh::{Edge, Triangulation};
 
 /// The highest degree of a displacement: one above that of stresses.
-pub const MOST: usize = 9;
+pub const MOST: usize = MAX_DEGREE + 1;
 
 /// A displacement, polynomial on every subtriangle, with a degree for each triangle: the space that carries P1, P2 and the
 /// free upper bound alike.

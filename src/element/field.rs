@@ -3,27 +3,53 @@
 //! Every triangle a_0 a_1 a_2 is split at its centroid 0 into three subtriangles; subtriangle i is opposite vertex i
 //! and has the corners (a_{i+1}, a_{i+2}, 0). Barycentric coordinates on a subtriangle follow that order.
 
-/// A stress or traction-like field of degree p on every subtriangle.
+use std::sync::OnceLock;
+
+use nalgebra::DMatrix;
+
+use super::side;
+
+/// A stress, on each triangle of a degree of its own on every subtriangle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressField {
-    degree: usize,
+    degree: Vec<u8>,
+    /// First value of each triangle, and the end.
+    start: Vec<usize>,
     values: Vec<[f64; 3]>,
 }
 
 impl StressField {
     /// A zero field of the given degree on `triangles` triangles.
     pub fn zeros(degree: usize, triangles: usize) -> Self {
-        StressField { degree, values: vec![[0.0; 3]; triangles * 3 * lattice_len(degree)] }
+        Self::of_degrees(std::iter::repeat_n(degree, triangles))
     }
 
-    /// Polynomial degree p on each subtriangle.
-    pub fn degree(&self) -> usize {
-        self.degree
+    /// A zero field with a degree for each triangle.
+    pub fn of_degrees(degrees: impl IntoIterator<Item = usize>) -> Self {
+        let degree: Vec<u8> = degrees.into_iter().map(|p| p as u8).collect();
+        let mut start = Vec::with_capacity(degree.len() + 1);
+        start.push(0);
+        let mut end = 0;
+        start.extend(degree.iter().map(|&p| {
+            end += 3 * lattice_len(p.into());
+            end
+        }));
+        StressField { degree, start, values: vec![[0.0; 3]; end] }
+    }
+
+    /// Polynomial degree p on each subtriangle of triangle `t`.
+    pub fn degree(&self, t: usize) -> usize {
+        self.degree[t].into()
+    }
+
+    /// The largest degree; zero where there are no triangles.
+    pub fn largest_degree(&self) -> usize {
+        self.degree.iter().copied().max().unwrap_or(0).into()
     }
 
     /// Number of triangles.
     pub fn len(&self) -> usize {
-        self.values.len() / self.stride()
+        self.degree.len()
     }
 
     /// Whether there are no triangles.
@@ -34,31 +60,38 @@ impl StressField {
     /// Values (xx, yy, xy) at the lattice nodes of triangle `t`, subtriangle by subtriangle; for degree 1 the nodes
     /// are the corners (a_{i+1}, a_{i+2}, 0).
     pub fn block(&self, t: usize) -> &[[f64; 3]] {
-        &self.values[t * self.stride()..(t + 1) * self.stride()]
+        &self.values[self.start[t]..self.start[t + 1]]
     }
 
     /// Mutable access to [`Self::block`].
     pub fn block_mut(&mut self, t: usize) -> &mut [[f64; 3]] {
-        let stride = self.stride();
-        &mut self.values[t * stride..(t + 1) * stride]
+        &mut self.values[self.start[t]..self.start[t + 1]]
     }
 
-    /// All blocks, for filling in parallel: chunks of [`Self::stride`].
+    /// The blocks of all triangles, for filling in parallel.
+    pub fn blocks_mut(&mut self) -> Vec<&mut [[f64; 3]]> {
+        let mut rest = &mut self.values[..];
+        let mut blocks = Vec::with_capacity(self.degree.len());
+        for ends in self.start.windows(2) {
+            let (block, behind) = rest.split_at_mut(ends[1] - ends[0]);
+            blocks.push(block);
+            rest = behind;
+        }
+        blocks
+    }
+
+    /// All values, triangle by triangle.
     pub fn values_mut(&mut self) -> &mut [[f64; 3]] {
         &mut self.values
     }
 
-    /// Values per triangle.
-    pub fn stride(&self) -> usize {
-        3 * lattice_len(self.degree)
-    }
-
     /// Stress (xx, yy, xy) at barycentric coordinates `bary` of subtriangle `sub` of triangle `t`.
     pub fn at(&self, t: usize, sub: usize, bary: [f64; 3]) -> [f64; 3] {
-        let nodes = lattice_len(self.degree);
+        let degree = self.degree(t);
+        let nodes = lattice_len(degree);
         let block = &self.block(t)[sub * nodes..(sub + 1) * nodes];
         let mut stress = [0.0; 3];
-        for (value, (k, weight)) in block.iter().zip(lattice_shape(self.degree, bary)) {
+        for (value, (k, weight)) in block.iter().zip(lattice_shape(degree, bary)) {
             debug_assert!(k < nodes);
             for c in 0..3 {
                 stress[c] += weight * value[c];
@@ -72,7 +105,7 @@ impl StressField {
         // Exact for degree 1; for higher degree the centroid rule of the lattice would not be, so integrate.
         let mut mean = [0.0; 3];
         for sub in 0..3 {
-            for (bary, weight) in crate::element::quadrature::triangle_rule(self.degree) {
+            for (bary, weight) in crate::element::quadrature::triangle_rule(self.degree(t)) {
                 let value = self.at(t, sub, *bary);
                 for c in 0..3 {
                     mean[c] += weight * value[c] / 3.0;
@@ -81,6 +114,36 @@ impl StressField {
         }
         mean
     }
+
+    /// Values (xx, yy, xy) on side `side` of triangle `t` as Bernstein coefficients of the degree there, from corner
+    /// side + 1 to corner side + 2.
+    pub fn on_side(&self, t: usize, side: usize) -> impl Iterator<Item = [f64; 3]> + use<'_> {
+        let degree = self.degree(t);
+        let nodes = &self.block(t)[side * lattice_len(degree)..][..lattice_len(degree)];
+        let matrix = from_equispaced(degree);
+        // Nodes of the side are those without a part of the centroid: the first in each row of the lattice.
+        let first = move |j: usize| j * (j + 1) / 2;
+        (0..=degree).map(move |k| {
+            let mut value = [0.0; 3];
+            for j in 0..=degree {
+                let weight = matrix[k * (degree + 1) + j];
+                (0..3).for_each(|c| value[c] += weight * nodes[first(j)][c]);
+            }
+            value
+        })
+    }
+}
+
+/// The matrix that gives Bernstein coefficients of degree p, row by row, from values at p + 1 equally spaced points.
+fn from_equispaced(p: usize) -> &'static [f64] {
+    static MATRICES: [OnceLock<Vec<f64>>; 16] = [const { OnceLock::new() }; 16];
+    MATRICES[p].get_or_init(|| {
+        let at = |j: usize| if p == 0 { 0.5 } else { j as f64 / p as f64 };
+        let values = DMatrix::from_fn(p + 1, p + 1, |j, k| side::bernstein(p, k, at(j)));
+        // Regular, the points being different.
+        let inverse = values.try_inverse().unwrap_or_else(|| DMatrix::identity(p + 1, p + 1));
+        inverse.transpose().as_slice().to_vec()
+    })
 }
 
 /// Number of nodes of the principal lattice of degree p on a triangle.

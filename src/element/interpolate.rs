@@ -25,7 +25,7 @@ pub fn side_projection(a: [f64; 2], b: [f64; 2], traction: impl Fn([f64; 2]) -> 
     ends
 }
 
-/// The parameters of the field of N(K) whose traction values come nearest to `tractions`, in the order of
+/// The parameters of the field of N(K) whose traction coefficients come nearest to `tractions`, in the order of
 /// [`EquilibriumElement`], and what is left of them: the largest difference, which is round-off for tractions in
 /// equilibrium. `None` where the triangle is degenerate.
 pub fn parameters_from_tractions(modes: &Modes<'_>, tractions: &[f64]) -> Option<(Vec<f64>, f64)> {

@@ -3,36 +3,64 @@
 //! An equilibrium element is a space N(K) of stress fields on a triangle with div τ = 0, in which the traction on the
 //! boundary of the triangle is a polynomial of degree p on each side. The dual problem needs to know three things of
 //! it, all contained in [`Modes`]: a basis of N(K), the tractions of each basis field on the sides, and a particular
-//! field that balances a constant body force. The basis is orthonormal in complementary energy, so that
+//! field λ̄ that balances a constant body force. The basis is orthonormal in complementary energy, so that
 //!
 //! ½∫ a λ:λ = ½|S|² + ½∫ a λ̄:λ̄ for λ = Σ S_k τ_k + λ̄, and the element's stiffness is K = T Tᵀ,
 //!
-//! where T holds the traction values of the modes (theory in `docs/theory.md`).
+//! where T holds the traction coefficients of the modes (theory in `docs/theory.md`).
 
 mod block;
 mod compliance;
 pub mod displacement;
+mod elements;
 mod field;
 mod frame;
 mod interpolate;
 pub mod quadrature;
 pub mod side;
+mod side_values;
+mod split;
 pub mod subtriangle;
 pub mod triangle;
 
 pub use block::Block;
 pub use compliance::Compliance;
 pub use displacement::Displacement;
+pub use elements::Elements;
 pub use field::{StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use side_values::SideValues;
 
 use std::borrow::Cow;
 
+use self::split::Split;
+
+/// The largest degree of [`block`].
+pub const MAX_DEGREE: usize = 8;
+
+/// The equilibrium block of degree `degree`: stresses of that degree on the three subtriangles, dim N(K) = 6(p + 1) − 3.
+///
+/// For p = 1 this is [`Block`], the element of the paper. From p = 2 on some self-equilibrated fields have no traction; N(K) is then the space
+/// of those that have the least energy among the fields with their tractions, and λ̄ is orthogonal to fields without traction too.
+///
+/// # Panics
+///
+/// If the degree is not one of 1, …, [`MAX_DEGREE`].
+pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
+    static SPLIT: [Split; MAX_DEGREE - 1] =
+        [Split::new(2), Split::new(3), Split::new(4), Split::new(5), Split::new(6), Split::new(7), Split::new(8)];
+    assert!((1..=MAX_DEGREE).contains(&degree), "no equilibrium block of degree {degree}");
+    match degree {
+        1 => &Block,
+        p => &SPLIT[p - 2],
+    }
+}
+
 /// A space of self-equilibrated stresses on a triangle.
 ///
-/// Traction values are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
-/// the p + 1 values from its first to its second end, each with its x and y component. They are values of the outward
-/// traction at the nodes of degree p on the side, conjugate to the moments ∫ u q_j ds against the nodal basis q_j.
+/// Traction coefficients are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
+/// the p + 1 Bernstein coefficients of the outward traction ([`side`]) from its first to its second end, each with its x and y
+/// component. They are conjugate to the moments ∫ u B_k ds. For p = 1 they are the values at the ends.
 pub trait EquilibriumElement: Sync {
     /// Name for reports.
     fn name(&self) -> &'static str;
@@ -43,7 +71,7 @@ pub trait EquilibriumElement: Sync {
     /// Dimension of N(K).
     fn parameters(&self) -> usize;
 
-    /// Number of traction values, 6(p + 1).
+    /// Number of traction coefficients, 6(p + 1).
     fn tractions(&self) -> usize {
         6 * (self.degree() + 1)
     }
@@ -100,7 +128,7 @@ pub trait EquilibriumElement: Sync {
 pub struct Layout {
     /// Dimension of N(K).
     pub parameters: usize,
-    /// Number of traction values.
+    /// Number of traction coefficients.
     pub tractions: usize,
     /// Number of values that the element keeps.
     pub kept: usize,
@@ -158,17 +186,17 @@ impl<'a> Modes<'a> {
         self.layout.parameters
     }
 
-    /// Traction values of the modes, mode by mode: `traction()[k * tractions + i]` is value i of mode k.
+    /// Traction coefficients of the modes, mode by mode: `traction()[k * tractions + i]` is coefficient i of mode k.
     pub fn traction(&self) -> &[f64] {
         &self.data[..self.layout.parameters * self.layout.tractions]
     }
 
-    /// Traction values of every mode.
+    /// Traction coefficients of every mode.
     pub fn tractions(&self) -> impl Iterator<Item = &[f64]> {
         self.traction().chunks_exact(self.layout.tractions)
     }
 
-    /// Traction values of the particular field λ̄, which is energy-orthogonal to all modes.
+    /// Traction coefficients of the particular field λ̄, which is energy-orthogonal to all modes.
     pub fn particular_traction(&self) -> &[f64] {
         let start = self.layout.parameters * self.layout.tractions;
         &self.data[start..start + self.layout.tractions]
@@ -192,7 +220,7 @@ impl<'a> Modes<'a> {
         }
     }
 
-    /// Traction values `particular` · T̄ + T S.
+    /// Traction coefficients `particular` · T̄ + T S.
     pub fn tractions_from_parameters(&self, s: &[f64], particular: f64, out: &mut [f64]) {
         out.iter_mut().zip(self.particular_traction()).for_each(|(o, t)| *o = particular * t);
         for (s, mode) in s.iter().zip(self.tractions()) {

@@ -9,6 +9,8 @@
 //! moments of one degree are conjugate. Where two degrees meet, coefficients of the lower one are elevated
 //! ([`elevate`]) and moments of the higher one lowered by the transpose of the same matrix ([`lower_moments`]).
 
+use std::sync::OnceLock;
+
 /// C(n, k).
 pub fn binomial(n: usize, k: usize) -> f64 {
     (0..k.min(n - k)).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
@@ -48,6 +50,12 @@ pub fn elevation(p: usize, q: usize, j: usize, k: usize) -> f64 {
     binomial(p, k) * binomial(q - p, j - k) / binomial(q, j)
 }
 
+/// The matrix of [`elevation`], row by row: q + 1 rows of p + 1 entries.
+pub fn elevation_matrix(p: usize, q: usize) -> &'static [f64] {
+    static MATRICES: [OnceLock<Vec<f64>>; 16 * 16] = [const { OnceLock::new() }; 16 * 16];
+    MATRICES[16 * p + q].get_or_init(|| (0..=q).flat_map(|j| (0..=p).map(move |k| elevation(p, q, j, k))).collect())
+}
+
 /// Coefficients of degree q of the polynomial with the given ones, q no less than its degree.
 pub fn elevate(coefficients: &[f64], q: usize) -> Vec<f64> {
     let p = coefficients.len() - 1;
@@ -66,9 +74,9 @@ pub fn moments(g: &[f64], p: usize) -> Vec<f64> {
     (0..=p).map(|k| g.iter().enumerate().map(|(j, c)| c * product(p, k, q, j)).sum()).collect()
 }
 
-/// ∫₀¹ f g ds of the polynomials with the given coefficients.
+/// ∫₀¹ f g ds of the polynomials with the given coefficients; no coefficients stand for zero.
 pub fn integral(f: &[f64], g: &[f64]) -> f64 {
-    let (p, q) = (f.len() - 1, g.len() - 1);
+    let (Some(p), Some(q)) = (f.len().checked_sub(1), g.len().checked_sub(1)) else { return 0.0 };
     let row = |(i, f): (usize, &f64)| f * g.iter().enumerate().map(|(j, g)| g * product(p, i, q, j)).sum::<f64>();
     f.iter().enumerate().map(row).sum()
 }

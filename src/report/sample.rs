@@ -7,7 +7,7 @@ pub(crate) use super::Status as Verdict;
 use super::sample_numbers::report;
 use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
-use crate::element::{Displacement, StressField};
+use crate::element::{Displacement, SideValues, StressField};
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
@@ -230,13 +230,13 @@ fn dual(problem: &Problem) -> DualSolution {
     DualSolution {
         method: "condensed",
         stress,
-        moments: vec![[[0.0; 2]; 2]; mesh.edges.len()],
+        moments: SideValues::filled(vec![2; mesh.edges.len()], [0.0; 2]),
         contact_traction: vec![
             problem.interfaces[0].pairs.iter().map(|p| p.arc.map(|s| -contact_pressure(s))).collect(),
         ],
         unknowns: 4 * mesh.edges.len(),
         iterations: 3,
-        closed: vec![true; 2 * problem.interfaces[0].pairs.len()],
+        closed: SideValues::filled(vec![2; problem.interfaces[0].pairs.len()], true),
         equilibrium: Equilibrium { jump: 3e-15, applied: 1e-15, resultant: 0.0, tension: 0.0, scale: 4.0, work: 0.0 },
         accuracy: 1e-9,
         seconds: Phases { read: 0.01, assemble: 0.02, factor: 0.05, contact: 0.01, recover: 0.02, total: 0.11 },

@@ -13,9 +13,9 @@ use super::certified::{Certified, StudyError, balance, solve_balanced};
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::outlook::outlook;
-use super::warm_start::{carried, closed_ends};
+use super::warm_start::{carried, closed_coefficients};
 use crate::compare::{Allowances, Basis, Check, Comparison};
-use crate::dual::{DualMethod, Options, Size};
+use crate::dual::{DualMethod, Options, Size, contact_coefficients};
 use crate::mesh::bisect::RefinementEdges;
 use crate::problem::Problem;
 use crate::report::HistoryRow;
@@ -190,7 +190,8 @@ impl Stage {
         let mut options = options.clone();
         let mut start = None;
         if let Some(Certified { problem, dual, bracket, .. }) = before {
-            options.closed = Some(closed_ends(problem, &dual.closed, &stage.problem));
+            let counts = contact_coefficients(&stage.problem, &options.elements);
+            options.closed = Some(closed_coefficients(problem, &dual.closed, &stage.problem, &counts));
             let free = bracket.free.as_ref().ok();
             start = free.map(|free| carried(problem, &free.displacement, &stage.problem, &stage.parent));
         }

@@ -25,10 +25,10 @@ fn interpolated(certified: &Certified) -> Vec<String> {
         let (Gap::Circle(Touching { radius, .. }) | Gap::Parabola(Touching { radius, .. })) = contact.gap else {
             return None;
         };
-        let largest = tractions.as_flattened().iter().fold(0.0_f64, |m, t| m.max(-t));
+        let largest = tractions.values().iter().fold(0.0_f64, |m, t| m.max(-t));
         let closed = || {
-            let pressed = |t: &[f64; 2]| t.iter().any(|t| -t > CLOSED * largest);
-            interface.pairs.iter().zip(tractions).filter(move |(_, t)| pressed(t)).map(|(pair, _)| pair)
+            let pressed = |t: &[f64]| t.iter().any(|t| -t > CLOSED * largest);
+            interface.pairs.iter().zip(tractions.iter()).filter(move |(_, t)| pressed(t)).map(|(pair, _)| pair)
         };
         let away = closed().map(|pair| pair.length * pair.length / (8.0 * radius)).fold(0.0, f64::max);
         let closing = closed().flat_map(|pair| pair.gap).fold(0.0, f64::max);

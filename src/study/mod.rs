@@ -27,4 +27,4 @@ pub use primal::{candidates, pins};
 pub use provenance::provenance;
 pub(crate) use provenance::{hash, hex};
 pub use sharpen::{Sharpened, sharpen};
-pub use warm_start::closed_ends;
+pub use warm_start::closed_coefficients;

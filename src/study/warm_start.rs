@@ -1,42 +1,49 @@
 //! Contact state and displacement of one mesh as a first guess on the next.
 
 use crate::bounds::{NodalValues, Nodes};
-use crate::element::Displacement;
 use crate::element::displacement::through;
+use crate::element::{Displacement, SideValues};
 use crate::problem::Problem;
 
-/// First guess of the closed contact ends of `fine`, from the state `closed` of `coarse` at the same arc length: two
-/// flags per pair, interface by interface.
+/// First guess of the closed coefficients of `fine`, `counts` of them on its pairs, from the state `closed` of `coarse` at the
+/// same arc length.
 ///
 /// The guess decides the path to the contact state, not the state: that is the unique solution of a convex problem.
-pub fn closed_ends(coarse: &Problem, closed: &[bool], fine: &Problem) -> Vec<bool> {
-    let mut guess = Vec::with_capacity(2 * fine.interfaces.iter().map(|i| i.pairs.len()).sum::<usize>());
+pub fn closed_coefficients(
+    coarse: &Problem,
+    closed: &SideValues<bool>,
+    fine: &Problem,
+    counts: &[usize],
+) -> SideValues<bool> {
+    let mut guess = Vec::with_capacity(counts.iter().sum());
+    let mut counted = counts.iter();
     let mut first = 0;
     for (old, new) in coarse.interfaces.iter().zip(&fine.interfaces) {
-        let flags = &closed[first..first + 2 * old.pairs.len()];
-        first += flags.len();
         let mut k = 0;
-        for pair in &new.pairs {
+        for (pair, &count) in new.pairs.iter().zip(&mut counted) {
             let middle = 0.5 * (pair.arc[0] + pair.arc[1]);
             while k + 1 < old.pairs.len() && old.pairs[k].arc[1] <= middle {
                 k += 1;
             }
             let [from, to] = old.pairs[k].arc;
-            guess.extend(pair.arc.map(|s| {
-                let t = (s - from) / (to - from);
-                let [near, far] = [flags[2 * k], flags[2 * k + 1]];
-                // Half-way between an open and a closed end: closed, from where every problem can be solved.
-                if (t - 0.5).abs() < 1e-6 {
-                    near || far
-                } else if t < 0.5 {
-                    near
+            let flags = closed.of(first + k);
+            guess.extend((0..count).map(|i| {
+                // A coefficient speaks for its part of the side.
+                let part = if count == 1 { 0.5 } else { i as f64 / (count - 1) as f64 };
+                let s = pair.arc[0] + part * (pair.arc[1] - pair.arc[0]);
+                let at = ((s - from) / (to - from)).clamp(0.0, 1.0) * (flags.len() - 1) as f64;
+                let (below, above) = (at.floor() as usize, at.ceil() as usize);
+                // Half-way between an open and a closed one: closed, from where every problem can be solved.
+                if (at - below as f64 - 0.5).abs() < 1e-6 {
+                    flags[below] || flags[above]
                 } else {
-                    far
+                    flags[at.round() as usize]
                 }
             }));
         }
+        first += old.pairs.len();
     }
-    guess
+    SideValues::new(counts.iter().copied(), guess)
 }
 
 /// The displacement `v` of `coarse` on the edges of `fine`, whose triangle t lies in triangle `parent[t]` and gets the degree

@@ -1,10 +1,10 @@
 //! Adaptive refinement to a guaranteed tolerance, on the two blocks of which the energy is known to nine digits.
 
 use crate::support::toml::Toml;
-use hypercircle::dual::{Condensed, Options};
+use hypercircle::dual::{Condensed, Options, contact_coefficients};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Adapted, Goal, adapt, certify, closed_ends};
+use hypercircle::study::{Adapted, Goal, adapt, certify, closed_coefficients};
 
 /// Between the bounds of a run to 0.008 %.
 const EXACT: f64 = -1.796413405;
@@ -99,14 +99,14 @@ fn wholly_closed_contact_and_no_contact_take_one_step() {
     let closed = problem(&blocks(0.3, "value = [1.5, 0.0]\ngradient = [[0.0, -1.8], [0.0, 0.0]]"));
     let adapted = run(closed.clone(), 1e-2);
     assert_eq!(adapted.certified.dual.iterations, 1);
-    assert!(adapted.certified.dual.closed.iter().all(|c| *c));
+    assert!(adapted.certified.dual.closed.values().iter().all(|c| *c));
     assert_eq!(certify(closed, &Condensed::default(), &Options::default()).expect("solves").dual.iterations, 1);
     let alone = Toml::default()
         .polygon("plate", &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["", "load", "", "wall"])
         .clamp("wall")
         .traction("load", [1.0, 0.5]);
     let adapted = run(problem(&alone), 1e-2);
-    assert!(adapted.certified.dual.closed.is_empty() && adapted.certified.dual.iterations <= 1);
+    assert!(adapted.certified.dual.closed.values().is_empty() && adapted.certified.dual.iterations <= 1);
 }
 
 #[test]
@@ -154,12 +154,20 @@ fn the_first_guess_of_the_contact_state_does_not_change_the_answer() {
     let coarse = run(problem(&blocks(0.3, LIFT_OFF)), 5e-2).certified;
     let fine = run(problem(&blocks(0.3, LIFT_OFF)), 1e-2).certified.problem;
     let cold = certify(fine.clone(), &Condensed::default(), &Options::default()).expect("solves");
-    let from_coarse = closed_ends(&coarse.problem, &coarse.dual.closed, &fine);
+    let from_coarse = closed_coefficients(
+        &coarse.problem,
+        &coarse.dual.closed,
+        &fine,
+        &contact_coefficients(&fine, &Options::default().elements),
+    );
     assert_eq!(from_coarse.len(), cold.dual.closed.len());
-    let wrong = from_coarse.iter().zip(&cold.dual.closed).filter(|(a, b)| a != b).count();
-    assert!(4 * wrong < from_coarse.len(), "{wrong} of {} ends guessed wrong", from_coarse.len());
-    let opposite = from_coarse.iter().map(|c| !c).collect();
-    let open = vec![false; from_coarse.len()];
+    let (guessed, found) = (from_coarse.values(), cold.dual.closed.values());
+    let wrong = guessed.iter().zip(found).filter(|(a, b)| a != b).count();
+    assert!(4 * wrong < guessed.len(), "{wrong} of {} guessed wrong", guessed.len());
+    let mut opposite = from_coarse.clone();
+    opposite.values_mut().iter_mut().for_each(|c| *c = !*c);
+    let mut open = from_coarse.clone();
+    open.values_mut().fill(false);
     for guess in [from_coarse, opposite, open] {
         let warm = Options { closed: Some(guess), ..Options::default() };
         let warm = certify(fine.clone(), &Condensed::default(), &warm).expect("solves");

@@ -25,7 +25,7 @@ fn foot(gap: &str) -> Problem {
 
 /// The largest pressure relative to p₀ = √(F E* / (π R)), less one.
 fn peak_off(dual: &DualSolution) -> f64 {
-    let pressures = dual.contact_traction[0].as_flattened();
+    let pressures = dual.contact_traction[0].values();
     let modulus = 1.0 / (1.0 - 0.09);
     let exact = (2.0 * FORCE * modulus / (std::f64::consts::PI * RADIUS)).sqrt();
     pressures.iter().fold(0.0_f64, |m, t| m.max(-t)) / exact - 1.0

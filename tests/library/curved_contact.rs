@@ -102,7 +102,7 @@ fn the_traction_on_a_contact_is_along_its_direction() {
     for pair in &problem.interfaces[0].pairs {
         let traction = |side: usize| {
             let e = pair.edges[side].expect("a body on either side");
-            let t = dual::equilibrium::edge_traction(&problem, &dual.stress, e, 0);
+            let t = dual::equilibrium::edge_traction(&problem, &dual.stress, e, 0, 1);
             let vertices = if side == 0 { pair.first } else { pair.second.expect("a body") };
             vertices.map(|v| t[usize::from(problem.mesh.edges[e].vertices[0] != v)])
         };
@@ -150,7 +150,7 @@ fn a_ring_pressed_on_a_ring_has_the_pressure_of_lame() {
         let (text, exact) = ring_on_ring(n);
         let problem = problem(&text);
         let dual = solve(&problem, &Condensed::default());
-        let tractions = dual.contact_traction[0].as_flattened();
+        let tractions = dual.contact_traction[0].values();
         let off = tractions.iter().fold(0.0_f64, |m, t| m.max((-t - exact).abs())) / exact;
         println!("{n} facets: pressure off by {off:.2e}");
         // The pressure is one number on each facet: at least of first order, largest difference.

@@ -14,7 +14,7 @@ fn refined(id: &str, value: f64, most: usize) -> Certified {
 
 /// The force across the only contact, from its tractions.
 fn force(found: &Certified) -> f64 {
-    let pairs = found.problem.interfaces[0].pairs.iter().zip(&found.dual.contact_traction[0]);
+    let pairs = found.problem.interfaces[0].pairs.iter().zip(found.dual.contact_traction[0].iter());
     pairs.map(|(pair, t)| 0.5 * pair.length * (t[0] + t[1])).sum()
 }
 

@@ -1,220 +1,450 @@
-//! Properties that every equilibrium element must have, checked with quadrature and finite differences of their own.
+//! Properties that every equilibrium element must have, checked with quadrature and derivatives of their own.
 
-use hypercircle::element::{Block, Compliance, EquilibriumElement, Modes, StressField};
+use hypercircle::element::{block, parameters_from_tractions, side};
 use hypercircle::scene::Kinematics;
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 
-const ELEMENTS: [&dyn EquilibriumElement; 1] = [&Block];
+use crate::support::element::{Case, Material, Setting, longest_side, setting};
+use crate::support::theory::airy::{self, Jet};
+use crate::support::theory::quadrature::{area, gauss, point, sub_corners};
 
-/// Seven-point rule of degree 5 (Radon): shares no point with the midpoint rule of the library.
-fn radon() -> Vec<([f64; 3], f64)> {
-    let r = 15.0_f64.sqrt();
-    let mut rule = vec![([1.0 / 3.0; 3], 9.0 / 40.0)];
-    for (a, w) in [((6.0 - r) / 21.0, (155.0 - r) / 1200.0), ((6.0 + r) / 21.0, (155.0 + r) / 1200.0)] {
-        let b = 1.0 - 2.0 * a;
-        rule.extend([([b, a, a], w), ([a, b, a], w), ([a, a, b], w)]);
-    }
-    rule
-}
+/// Degrees, and on how many random triangles they are held against each property.
+const SWEEPS: [(std::ops::RangeInclusive<usize>, u32); 3] = [(1..=1, 256), (2..=4, 64), (5..=8, 4)];
 
-/// a λ:μ straight from α, β, γ after (3.2).
-fn product(kinematics: Kinematics, e: f64, nu: f64, l: [f64; 3], m: [f64; 3]) -> f64 {
-    let (alpha, beta) = match kinematics {
-        Kinematics::PlaneStress => (1.0, -nu),
-        Kinematics::PlaneStrain => (1.0 - nu * nu, -nu * (1.0 + nu)),
-    };
-    let gamma = 2.0 * (1.0 + nu);
-    (alpha * (l[0] * m[0] + l[1] * m[1]) + beta * (l[0] * m[1] + l[1] * m[0]) + gamma * l[2] * m[2]) / e
-}
-
-fn sub_corners(p: [[f64; 2]; 3], sub: usize) -> [[f64; 2]; 3] {
-    let g = [(p[0][0] + p[1][0] + p[2][0]) / 3.0, (p[0][1] + p[1][1] + p[2][1]) / 3.0];
-    [p[(sub + 1) % 3], p[(sub + 2) % 3], g]
-}
-
-fn area(p: [[f64; 2]; 3]) -> f64 {
-    0.5 * ((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]))
-}
-
-fn field_of(element: &dyn EquilibriumElement, values: &[[f64; 3]]) -> StressField {
-    let mut field = StressField::zeros(element.degree(), 1);
-    field.block_mut(0).copy_from_slice(values);
-    field
-}
-
-fn mode_fields(element: &dyn EquilibriumElement, p: [[f64; 2]; 3], modes: &Modes<'_>) -> Vec<StressField> {
-    element.mode_stresses(p, modes).iter().map(|values| field_of(element, values)).collect()
-}
-
-fn particular_field(element: &dyn EquilibriumElement, p: [[f64; 2]; 3], f: [f64; 2], modes: &Modes<'_>) -> StressField {
-    let mut field = StressField::zeros(element.degree(), 1);
-    element.stresses(p, f, modes, &vec![0.0; element.parameters()], 1.0, field.block_mut(0));
-    field
-}
-
-/// div τ on subtriangle `sub` from three values of a linear field, or the mean of it for higher degrees.
-fn divergence(field: &StressField, p: [[f64; 2]; 3], sub: usize) -> [f64; 2] {
-    // ∫ div τ = ∮ τ n, with Gauss points on the three sides.
-    let q = sub_corners(p, sub);
-    let mut flux = [0.0; 2];
-    for side in 0..3 {
-        let (i, j) = ((side + 1) % 3, (side + 2) % 3);
-        let (dx, dy) = (q[j][0] - q[i][0], q[j][1] - q[i][1]);
-        for x in [-0.774_596_669_241_483_4, 0.0, 0.774_596_669_241_483_4_f64] {
-            let w = if x == 0.0 { 8.0 / 18.0 } else { 5.0 / 18.0 };
-            let mut bary = [0.0; 3];
-            bary[i] = 0.5 * (1.0 - x);
-            bary[j] = 0.5 * (1.0 + x);
-            let t = field.at(0, sub, bary);
-            flux[0] += w * (t[0] * dy - t[2] * dx);
-            flux[1] += w * (t[2] * dy - t[1] * dx);
+/// Runs a check on random triangles, materials and body forces.
+fn sweep(check: impl Fn(&Case) -> Result<(), TestCaseError>) {
+    for (degrees, cases) in SWEEPS {
+        let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+        let outcome = TestRunner::new(config).run(&setting(), |setting| {
+            degrees.clone().try_for_each(|degree| check(&Case::new(block(degree), setting)))
+        });
+        if let Err(failure) = outcome {
+            panic!("{failure}");
         }
     }
-    [flux[0] / area(q), flux[1] / area(q)]
 }
 
-fn traction_at(field: &StressField, p: [[f64; 2]; 3], sub: usize, at: f64) -> [f64; 2] {
-    let (a, b) = (p[(sub + 1) % 3], p[(sub + 2) % 3]);
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    let l = dx.hypot(dy);
-    let t = field.at(0, sub, [1.0 - at, at, 0.0]);
-    [(t[0] * dy - t[2] * dx) / l, (t[2] * dy - t[1] * dx) / l]
-}
+/// How far a case is from what it should be, every figure relative to the size of the fields.
+mod figures {
+    use super::*;
 
-fn triangle() -> impl Strategy<Value = [[f64; 2]; 3]> {
-    (prop::array::uniform6(-1.0..1.0_f64), -3.0..3.0_f64, 0.0..6.3_f64)
-        .prop_filter_map("too flat", |(v, log_scale, angle)| {
-            let mut p = [[v[0], v[1]], [v[2], v[3]], [v[4], v[5]]];
-            if area(p) < 0.0 {
-                p.swap(1, 2);
-            }
-            let longest =
-                (0..3).map(|i| (p[i][0] - p[(i + 1) % 3][0]).hypot(p[i][1] - p[(i + 1) % 3][1])).fold(0.0, f64::max);
-            let (c, s, f) = (angle.cos(), angle.sin(), 10.0_f64.powf(log_scale));
-            (area(p) > 1e-3 * longest * longest).then(|| p.map(|[x, y]| [f * (c * x - s * y), f * (s * x + c * y)]))
-        })
-        .boxed()
-}
-
-fn material() -> impl Strategy<Value = (Kinematics, f64, f64)> {
-    (prop::bool::ANY, -3.0..11.0_f64, -0.9..0.49_f64).prop_map(|(strain, e, nu)| {
-        (if strain { Kinematics::PlaneStrain } else { Kinematics::PlaneStress }, 10.0_f64.powf(e), nu)
-    })
-}
-
-proptest! {
-    #[test]
-    fn modes_are_energy_orthonormal(p in triangle(), (kin, e, nu) in material(), f in prop::array::uniform2(-1.0..1.0_f64)) {
-        for element in ELEMENTS {
-            let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
-            let n = element.parameters();
-            let fields = mode_fields(element, p, &modes);
-            let particular = particular_field(element, p, f, &modes);
-            let inner = |l: &StressField, m: &StressField| {
-                (0..3).map(|s| radon().iter().map(|&(b, w)| w * area(sub_corners(p, s))
-                    * product(kin, e, nu, l.at(0, s, b), m.at(0, s, b))).sum::<f64>()).sum::<f64>()
-            };
-            for i in 0..n {
-                for j in 0..n {
-                    let expected = if i == j { 1.0 } else { 0.0 };
-                    prop_assert!((inner(&fields[i], &fields[j]) - expected).abs() < 1e-8);
-                }
-                let scale = modes.particular_energy().sqrt().max(1e-300);
-                prop_assert!(inner(&fields[i], &particular).abs() < 1e-8 * scale.max(inner(&particular, &particular).sqrt()));
-            }
-            prop_assert!((inner(&particular, &particular) - modes.particular_energy()).abs() <= 1e-8 * modes.particular_energy());
-        }
+    /// Side s of the triangle: its ends, outward normal and length.
+    pub fn side_of(p: [[f64; 2]; 3], s: usize) -> ([f64; 2], [f64; 2], [f64; 2], f64) {
+        let (a, b) = (p[(s + 1) % 3], p[(s + 2) % 3]);
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        let length = dx.hypot(dy);
+        (a, b, [dy / length, -dx / length], length)
     }
 
-    #[test]
-    fn modes_are_self_equilibrated(p in triangle(), (kin, e, nu) in material(), f in prop::array::uniform2(-1.0..1.0_f64)) {
-        for element in ELEMENTS {
-            let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
-            for field in mode_fields(element, p, &modes) {
-                let largest = field.block(0).iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-                for sub in 0..3 {
-                    let d = divergence(&field, p, sub);
-                    let h = area(p).sqrt();
-                    prop_assert!(d[0].hypot(d[1]) * h < 1e-9 * largest, "div {d:?}");
-                    // Traction is continuous across 0a_j: seen from both subtriangles.
-                    let (i, j) = ((sub + 1) % 3, (sub + 2) % 3);
-                    let q = sub_corners(p, sub);
-                    let (dx, dy) = (q[2][0] - p[j][0], q[2][1] - p[j][1]);
-                    for at in [0.0, 0.3, 1.0] {
-                        // Subtriangle `sub` has a_j as its second corner, subtriangle `i` has it as its first.
-                        let l = field.at(0, sub, [0.0, 1.0 - at, at]);
-                        let m = field.at(0, i, [1.0 - at, 0.0, at]);
-                        let jump = [(l[0] - m[0]) * dy - (l[2] - m[2]) * dx, (l[2] - m[2]) * dy - (l[1] - m[1]) * dx];
-                        prop_assert!(jump[0].hypot(jump[1]) < 1e-10 * largest * dx.hypot(dy), "jump {jump:?}");
-                    }
-                }
-            }
-            let particular = particular_field(element, p, f, &modes);
+    fn traction(tau: [f64; 3], n: [f64; 2]) -> [f64; 2] {
+        [tau[0] * n[0] + tau[2] * n[1], tau[2] * n[0] + tau[1] * n[1]]
+    }
+
+    /// Points of a subtriangle.
+    const POINTS: [[f64; 3]; 5] =
+        [[0.2, 0.3, 0.5], [0.7, 0.1, 0.2], [1.0, 0.0, 0.0], [0.05, 0.05, 0.9], [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]];
+
+    /// |div τ + F| √area at points of every subtriangle.
+    pub fn divergence(case: &Case) -> f64 {
+        let Setting { corners, force, .. } = case.setting;
+        let h = area(corners).sqrt();
+        let mut worst = 0.0_f64;
+        for (k, (field, _)) in case.with_tractions().enumerate() {
+            let force = if k < case.fields.len() { [0.0; 2] } else { force };
+            let size = field.largest() + h * force[0].hypot(force[1]);
             for sub in 0..3 {
-                let d = divergence(&particular, p, sub);
-                prop_assert!((d[0] + f[0]).abs() < 1e-7 && (d[1] + f[1]).abs() < 1e-7, "div {d:?} for {f:?}");
+                let q = sub_corners(corners, sub);
+                // Gradients of the first two barycentric coordinates.
+                let [g, e] = [(1, 2), (2, 0)].map(|(i, j): (usize, usize)| {
+                    [(q[i][1] - q[j][1]) / (2.0 * area(q)), (q[j][0] - q[i][0]) / (2.0 * area(q))]
+                });
+                for l in POINTS {
+                    let [_, d, f] = field.jet(sub, l);
+                    let of = |c: usize, axis: usize| d[c] * g[axis] + f[c] * e[axis];
+                    let div = [of(0, 0) + of(2, 1) + force[0], of(2, 0) + of(1, 1) + force[1]];
+                    worst = worst.max(div[0].hypot(div[1]) * h / size);
+                }
             }
         }
+        worst
     }
 
-    #[test]
-    fn traction_values_belong_to_the_stresses(p in triangle(), (kin, e, nu) in material(), f in prop::array::uniform2(-1.0..1.0_f64)) {
-        for element in ELEMENTS {
-            let modes = element.modes(p, &Compliance::new(kin, e, nu), f);
-            let (n, degree) = (element.parameters(), element.degree());
-            let mut fields = mode_fields(element, p, &modes);
-            fields.push(particular_field(element, p, f, &modes));
-            for (k, field) in fields.iter().enumerate() {
-                let largest = field.block(0).iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-                for sub in 0..3 {
-                    for node in 0..=degree {
-                        let t = traction_at(field, p, sub, node as f64 / degree as f64);
-                        for (c, &value) in t.iter().enumerate() {
-                            let row = 2 * (sub * (degree + 1) + node) + c;
-                            let stored = if k < n { modes.traction()[k * element.tractions() + row] } else { modes.particular_traction()[row] };
-                            prop_assert!((value - stored).abs() <= 1e-10 * largest);
-                        }
+    /// The jump of the traction across inner segments.
+    pub fn jump(case: &Case) -> f64 {
+        let corners = case.setting.corners;
+        let mut worst = 0.0_f64;
+        for (field, _) in case.with_tractions() {
+            for sub in 0..3 {
+                let (j, q) = ((sub + 2) % 3, sub_corners(corners, sub));
+                let (dx, dy) = (q[2][0] - corners[j][0], q[2][1] - corners[j][1]);
+                let n = [dy / dx.hypot(dy), -dx / dx.hypot(dy)];
+                for step in 0..=case.degree() + 1 {
+                    let s = step as f64 / (case.degree() + 1) as f64;
+                    // Subtriangle `sub` has a_j as its second corner, the next one has it as its first.
+                    let l = traction(field.at(sub, [0.0, 1.0 - s, s]), n);
+                    let m = traction(field.at((sub + 1) % 3, [1.0 - s, 0.0, s]), n);
+                    worst = worst.max((l[0] - m[0]).hypot(l[1] - m[1]) / field.largest());
+                }
+            }
+        }
+        worst
+    }
+
+    /// Traction coefficients against the stresses on the sides.
+    pub fn coefficients(case: &Case) -> f64 {
+        let n = case.degree() + 1;
+        let mut worst = 0.0_f64;
+        for (field, tractions) in case.with_tractions() {
+            for s in 0..3 {
+                let (.., normal, _) = side_of(case.setting.corners, s);
+                for step in 0..=n {
+                    let x = step as f64 / n as f64;
+                    let t = traction(field.at(s, [1.0 - x, x, 0.0]), normal);
+                    for (c, t) in t.into_iter().enumerate() {
+                        let own: Vec<f64> = (0..n).map(|k| tractions[2 * (s * n + k) + c]).collect();
+                        worst = worst.max((side::value(&own, x) - t).abs() / field.largest());
                     }
                 }
             }
         }
+        worst
     }
 
-    /// K annihilates rigid motions and nothing else: rank 6(p+1) − 3 (Theorem 2.1: existence and uniqueness).
-    #[test]
-    fn stiffness_has_exactly_the_rigid_null_space(p in triangle(), (kin, e, nu) in material()) {
-        for element in ELEMENTS {
-            let modes = element.modes(p, &Compliance::new(kin, e, nu), [0.0; 2]);
-            let (n, rows) = (element.parameters(), element.tractions());
-            let t = nalgebra::DMatrix::from_column_slice(rows, n, modes.traction());
-            let lengths: Vec<f64> = (0..3).map(|s| {
-                let (a, b) = (p[(s + 1) % 3], p[(s + 2) % 3]);
-                (b[0] - a[0]).hypot(b[1] - a[1])
-            }).collect();
-            // Scale traction values to forces so that rows compare.
-            let force = nalgebra::DMatrix::from_fn(rows, n, |i, k| t[(i, k)] * lengths[i / (rows / 3)]);
-            let s = force.singular_values();
-            let (max, min) = (s.max(), s.min());
-            prop_assert!(min > 1e-7 * max, "spurious mode: {min} of {max}");
-            prop_assert_eq!(n, rows - 3);
-            if element.degree() == 1 {
-                let h = area(p).sqrt();
-                let (gx, gy) = ((p[0][0] + p[1][0] + p[2][0]) / 3.0, (p[0][1] + p[1][1] + p[2][1]) / 3.0);
-                for motion in 0..3 {
-                    let u = |q: [f64; 2]| match motion { 0 => [1.0, 0.0], 1 => [0.0, 1.0], _ => [-(q[1] - gy) / h, (q[0] - gx) / h] };
-                    for k in 0..n {
-                        let mut work = 0.0;
-                        for side in 0..3 {
-                            let (a, b) = (u(p[(side + 1) % 3]), u(p[(side + 2) % 3]));
-                            for c in 0..2 {
-                                let (ta, tb) = (t[(4 * side + c, k)], t[(4 * side + 2 + c, k)]);
-                                work += lengths[side] / 6.0 * (2.0 * ta * a[c] + ta * b[c] + tb * a[c] + 2.0 * tb * b[c]);
-                            }
-                        }
-                        prop_assert!(work.abs() < 1e-11 * max * 10.0);
-                    }
+    /// Force and moment of the tractions, from their coefficients. The particular field balances the body force.
+    pub fn resultant(case: &Case) -> f64 {
+        let Setting { corners, force, .. } = case.setting;
+        let n = case.degree() + 1;
+        let centre = sub_corners(corners, 0)[2];
+        let mut worst = 0.0_f64;
+        for (k, (_, tractions)) in case.with_tractions().enumerate() {
+            let load = if k < case.fields.len() { [0.0; 2] } else { force.map(|f| f * area(corners)) };
+            let (mut sum, mut size) = ([load[0], load[1], 0.0], [load[0].hypot(load[1]), 0.0]);
+            for s in 0..3 {
+                let (a, b, _, length) = side_of(corners, s);
+                for (i, t) in tractions[2 * s * n..2 * (s + 1) * n].chunks_exact(2).enumerate() {
+                    // ∫ B_i ds = ℓ/(p + 1), and its centre divides the side as (i + 1) : (p + 1 − i).
+                    let (weight, x) = (length / n as f64, (i + 1) as f64 / (n + 1) as f64);
+                    let arm = [0, 1].map(|c| a[c] + x * (b[c] - a[c]) - centre[c]);
+                    sum[0] += weight * t[0];
+                    sum[1] += weight * t[1];
+                    sum[2] += weight * (arm[0] * t[1] - arm[1] * t[0]);
+                    size[0] += weight * t[0].hypot(t[1]);
+                    size[1] += weight * t[0].hypot(t[1]) * arm[0].hypot(arm[1]);
+                }
+            }
+            worst = worst.max(sum[0].hypot(sum[1]) / size[0].max(1e-300)).max(sum[2].abs() / size[1].max(1e-300));
+        }
+        worst
+    }
+
+    /// Energies of all modes with each other less the unit matrix.
+    pub fn orthonormality(case: &Case) -> f64 {
+        let (n, rows) = (case.fields.len(), energy_rows(case));
+        let modes = rows.columns(0, n);
+        (modes.tr_mul(&modes) - DMatrix::identity(n, n)).amax()
+    }
+
+    /// λ̄ with the modes, and its energy.
+    pub fn particular(case: &Case) -> f64 {
+        let n = case.fields.len();
+        let rows = energy_rows(case);
+        let own = rows.column(n);
+        let energy = own.norm_squared();
+        if energy == 0.0 {
+            return case.modes.particular_energy();
+        }
+        let overlap = rows.columns(0, n).tr_mul(&own).amax() / energy.sqrt();
+        overlap.max((energy / case.modes.particular_energy() - 1.0).abs())
+    }
+
+    /// Modes and λ̄ column by column, their products being energies.
+    fn energy_rows(case: &Case) -> DMatrix<f64> {
+        energies(case, case.with_tractions().map(|(field, _)| move |sub: usize, l: [f64; 3]| field.at(sub, l)))
+    }
+
+    /// Modes and λ̄ with fields that have no traction: (μ_i² q)'' on subtriangle i, see [`airy::without_traction`].
+    pub fn least_energy(case: &Case) -> f64 {
+        let p = case.degree();
+        if p == 1 {
+            return 0.0;
+        }
+        let corners = case.setting.corners;
+        let others = airy::powers(p - 2).map(|exponents| {
+            move |sub: usize, l: [f64; 3]| {
+                // Barycentric coordinates of the triangle.
+                let mut mu = [l[2] / 3.0; 3];
+                mu[(sub + 1) % 3] += l[0];
+                mu[(sub + 2) % 3] += l[1];
+                airy::stress(airy::without_traction(airy::barycentric(corners, mu), sub, exponents))
+            }
+        });
+        let mut free = energies(case, others);
+        for mut column in free.column_iter_mut() {
+            let norm = column.norm();
+            column /= norm;
+        }
+        let mut own = energy_rows(case);
+        for mut column in own.column_iter_mut() {
+            let norm = column.norm();
+            column /= norm.max(1e-300);
+        }
+        free.tr_mul(&own).amax()
+    }
+
+    /// Fields at quadrature points, as columns whose products are energies.
+    fn energies(case: &Case, fields: impl Iterator<Item = impl Fn(usize, [f64; 3]) -> [f64; 3]>) -> DMatrix<f64> {
+        let roots = case.setting.material.roots();
+        let columns = fields.map(|field| {
+            let mut column = Vec::new();
+            case.visit(|sub, l, w| {
+                let tau = field(sub, l);
+                let parts = [tau[0] + tau[1], tau[0] - tau[1], tau[2]];
+                column.extend((0..3).map(|c| w.sqrt() * roots[c] * parts[c]));
+            });
+            DVector::from_vec(column)
+        });
+        DMatrix::from_columns(&columns.collect::<Vec<_>>())
+    }
+
+    /// Tractions as forces, by mode.
+    pub fn forces(case: &Case) -> DMatrix<f64> {
+        let (rows, n) = (case.element.tractions(), case.fields.len());
+        let mut t = DMatrix::from_column_slice(rows, n, case.modes.traction());
+        for s in 0..3 {
+            t.rows_mut(s * rows / 3, rows / 3).scale_mut(side_of(case.setting.corners, s).3);
+        }
+        t
+    }
+
+    /// Largest over smallest singular value of the tractions of the modes, each in units of its own size.
+    pub fn condition(case: &Case) -> f64 {
+        let mut t = forces(case);
+        for mut column in t.column_iter_mut() {
+            let norm = column.norm();
+            column /= norm;
+        }
+        let s = t.singular_values();
+        s.max() / s.min()
+    }
+
+    /// Tractions of the stress of an Airy function, and what is left of them by the modes; then how far the field that has them
+    /// is from the stress.
+    pub fn patch(case: &Case, phi: impl Fn([Jet; 2]) -> Jet) -> (f64, f64) {
+        let (p, corners) = (case.degree(), case.setting.corners);
+        let (centre, h) = (sub_corners(corners, 0)[2], longest_side(corners));
+        let stress = |x: [f64; 2]| {
+            airy::stress(phi([
+                airy::linear((x[0] - centre[0]) / h, [1.0, 0.0]),
+                airy::linear((x[1] - centre[1]) / h, [0.0, 1.0]),
+            ]))
+        };
+        let mut tractions = vec![0.0; case.element.tractions()];
+        for s in 0..3 {
+            let (a, b, n, _) = side_of(corners, s);
+            let mut moments = [vec![0.0; p + 1], vec![0.0; p + 1]];
+            for (x, w) in gauss(p + 2) {
+                let t = traction(stress([0, 1].map(|c| a[c] + x * (b[c] - a[c]))), n);
+                for (moments, t) in moments.iter_mut().zip(t) {
+                    (0..=p).for_each(|k| moments[k] += w * side::bernstein(p, k, x) * t);
+                }
+            }
+            for (c, moments) in moments.iter().enumerate() {
+                for (k, t) in side::from_moments(moments).into_iter().enumerate() {
+                    tractions[2 * (s * (p + 1) + k) + c] = t;
                 }
             }
         }
+        let (s, left) = parameters_from_tractions(&case.modes, &tractions).expect("regular");
+        let own = case.sum(&s);
+        let (mut apart, mut size) = (0.0_f64, 0.0_f64);
+        for sub in 0..3 {
+            let q = sub_corners(corners, sub);
+            for l in POINTS {
+                let (own, exact) = (own.at(sub, l), stress(point(q, l)));
+                for c in 0..3 {
+                    apart = apart.max((own[c] - exact[c]).abs());
+                    size = size.max(exact[c].abs());
+                }
+            }
+        }
+        if size == 0.0 { (0.0, 0.0) } else { (left / size, apart / size) }
     }
+}
+
+#[test]
+fn stresses_are_in_equilibrium_at_every_point() {
+    sweep(|case| {
+        let found = figures::divergence(case);
+        prop_assert!(found < 1e-10, "p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+#[test]
+fn tractions_are_continuous_inside() {
+    sweep(|case| {
+        let found = figures::jump(case);
+        prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+#[test]
+fn traction_coefficients_belong_to_the_stresses() {
+    sweep(|case| {
+        let found = figures::coefficients(case);
+        prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+/// So K = TTᵀ annihilates rigid motions.
+#[test]
+fn tractions_are_self_equilibrated() {
+    sweep(|case| {
+        let found = figures::resultant(case);
+        prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+#[test]
+fn modes_are_orthonormal_in_energy() {
+    sweep(|case| {
+        let found = figures::orthonormality(case);
+        prop_assert!(found < 1e-9, "p = {}: {found:.1e}", case.degree());
+        let found = figures::particular(case);
+        prop_assert!(found < 1e-9, "λ̄, p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+/// A perturbation without traction raises the energy of every mode and of λ̄.
+#[test]
+fn energy_is_the_least_for_given_tractions() {
+    sweep(|case| {
+        let found = figures::least_energy(case);
+        prop_assert!(found < 1e-9, "p = {}: {found:.1e}", case.degree());
+        Ok(())
+    });
+}
+
+/// Theorem 2.1, in every degree: as many modes as tractions in equilibrium, and independent.
+#[test]
+fn every_traction_in_equilibrium_has_one_field() {
+    sweep(|case| {
+        let (p, found) = (case.degree(), figures::condition(case));
+        prop_assert_eq!(case.fields.len(), 6 * (p + 1) - 3);
+        prop_assert!(found < 1e7, "p = {}: {:.1e}", p, found);
+        Ok(())
+    });
+}
+
+/// N(K) contains every stress of degree p with compatible strain: of all fields with its tractions it has the least energy.
+#[test]
+fn elastic_solutions_are_found() {
+    sweep(|case| {
+        for n in 2..=case.degree() + 2 {
+            for kind in 0..4 {
+                let (left, apart) = figures::patch(case, |x| airy::biharmonic(n, kind, x));
+                prop_assert!(left < 1e-8, "p = {}, left {left:.1e}", case.degree());
+                prop_assert!(apart < 1e-8, "p = {}, apart {apart:.1e}", case.degree());
+            }
+        }
+        Ok(())
+    });
+}
+
+/// Other polynomial stresses share their tractions with a field of N(K).
+#[test]
+fn tractions_of_polynomial_stresses_are_met() {
+    sweep(|case| {
+        let k = case.degree() + 2;
+        for i in 0..=k {
+            let (left, _) = figures::patch(case, |[x, y]| airy::times(airy::power(x, i), airy::power(y, k - i)));
+            prop_assert!(left < 1e-8, "p = {}, left {left:.1e}", case.degree());
+        }
+        Ok(())
+    });
+}
+
+/// Another place, direction and size, and another first corner, give the same stiffness.
+#[test]
+fn stiffness_goes_with_the_triangle() {
+    sweep(|case| {
+        let Setting { corners, material, force } = case.setting;
+        let (p, (sin, cos)) = (case.degree(), 1.1_f64.sin_cos());
+        let moved = corners.map(|[x, y]| [4.0 * (cos * x - sin * y), 4.0 * (sin * x + cos * y)]);
+        let shifted = [moved[1], moved[2], moved[0]];
+        let other = Case::new(case.element, Setting { corners: shifted, material, force });
+        let (own, other) = (figures::forces(case), figures::forces(&other));
+        let per_side = 2 * (p + 1);
+        let turned = DMatrix::from_fn(own.nrows(), own.ncols(), |i, k| {
+            let from = (i + per_side) % own.nrows();
+            let (x, y) = (own[(from - from % 2, k)], own[(from - from % 2 + 1, k)]);
+            if i % 2 == 0 { cos * x - sin * y } else { sin * x + cos * y }
+        });
+        let (own, other) = (&turned * turned.transpose(), &other * other.transpose());
+        let apart = (&own - other).amax() / own.amax();
+        prop_assert!(apart < 1e-9, "p = {p}: {apart:.1e}");
+        Ok(())
+    });
+}
+
+/// What flat triangles, nearly incompressible materials and high degrees cost: rounding grows with the aspect ratio, for a corner moved by rounding
+/// changes a flat triangle by as much. That the field of given tractions is worse by the aspect ratio once more is (2.10): c(α) ~ 1/sin²α.
+#[test]
+fn flat_and_nearly_incompressible_triangles() {
+    const FIGURES: [(&str, Figure); 8] = [
+        ("div", figures::divergence),
+        ("jump", figures::jump),
+        ("coeff", figures::coefficients),
+        ("force", figures::resultant),
+        ("energy", figures::orthonormality),
+        ("λ̄", figures::particular),
+        ("least", figures::least_energy),
+        ("cond", figures::condition),
+    ];
+    println!("p  aspect  ν  {}  patch", FIGURES.map(|(name, _)| name).join("  "));
+    let material = |poisson| Material { kinematics: Kinematics::PlaneStrain, young: 7.0, poisson };
+    for (aspect, poisson) in [1.0, 1e2, 1e4].into_iter().flat_map(|aspect| [(aspect, 0.3), (aspect, 0.499_999_9)]) {
+        for degree in 1..=8 {
+            let cases = [0.1, 0.45, 0.97].map(|apex| {
+                Case::new(
+                    block(degree),
+                    Setting { corners: flat(apex, 1.0 / aspect), material: material(poisson), force: [0.6, -1.0] },
+                )
+            });
+            let of = |figure: &dyn Fn(&Case) -> f64| cases.iter().map(figure).fold(0.0, f64::max);
+            let found = FIGURES.map(|(_, figure)| of(&figure));
+            let patch = of(&elastic_solutions);
+            println!(
+                "{degree}  {aspect:.0e}  {poisson}  {}  {patch:.1e}",
+                found.map(|f| format!("{f:.1e}")).join("  ")
+            );
+            let rounding = 1e-11 + 1e-14 * aspect;
+            // The Gram matrix of the first degree has the square of the condition.
+            let energies = if degree == 1 { 1e-11 + 1e-11 * aspect } else { rounding };
+            assert!(found[..4].iter().all(|f| *f < rounding), "equilibrium");
+            assert!(found[4..7].iter().all(|f| *f < energies), "energies");
+            assert!(found[7] < 1e5 * aspect, "tractions are independent");
+            assert!(patch < 1e-11 * aspect * aspect, "elastic solutions");
+        }
+    }
+}
+
+type Figure = fn(&Case) -> f64;
+
+/// A triangle with a longest side of one, turned and moved.
+fn flat(apex: f64, height: f64) -> [[f64; 2]; 3] {
+    let (sin, cos) = 0.7_f64.sin_cos();
+    [[0.0, 0.0], [1.0, 0.0], [apex, height]].map(|[x, y]: [f64; 2]| [3.0 + cos * x - sin * y, sin * x + cos * y])
+}
+
+/// How far the fields with the tractions of elastic solutions are from these.
+fn elastic_solutions(case: &Case) -> f64 {
+    let kinds = (2..=case.degree() + 2).flat_map(|n| (0..4).map(move |kind| (n, kind)));
+    kinds.map(|(n, kind)| figures::patch(case, |x| airy::biharmonic(n, kind, x)).1).fold(0.0, f64::max)
 }

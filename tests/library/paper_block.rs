@@ -7,36 +7,12 @@ use hypercircle::scene::Kinematics;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-/// Seven-point rule of degree 5 (Radon).
-fn radon() -> Vec<([f64; 3], f64)> {
-    let r = 15.0_f64.sqrt();
-    let mut rule = vec![([1.0 / 3.0; 3], 9.0 / 40.0)];
-    for (a, w) in [((6.0 - r) / 21.0, (155.0 - r) / 1200.0), ((6.0 + r) / 21.0, (155.0 + r) / 1200.0)] {
-        let b = 1.0 - 2.0 * a;
-        rule.extend([([b, a, a], w), ([a, b, a], w), ([a, a, b], w)]);
-    }
-    rule
-}
-
-fn area([a, b, c]: [[f64; 2]; 3]) -> f64 {
-    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
-}
-
-/// Counter-clockwise triangles of every size, with angles not below a few degrees.
-fn triangle() -> impl Strategy<Value = [[f64; 2]; 3]> {
-    (prop::array::uniform6(-1.0..1.0_f64), -3.0..3.0_f64)
-        .prop_map(|(p, size)| {
-            let s = 10.0_f64.powf(size);
-            let t = [[p[0] * s, p[1] * s], [p[2] * s, p[3] * s], [p[4] * s, p[5] * s]];
-            (if area(t) < 0.0 { [t[0], t[2], t[1]] } else { t }, s)
-        })
-        .prop_filter("flat", |(t, s)| area(*t) > 0.05 * s * s)
-        .prop_map(|(t, _)| t)
-}
+use crate::support::element::triangle;
+use crate::support::theory::quadrature::{self, area};
 
 proptest! {
     #[test]
-    fn compensation_separates_the_continuity(corners in triangle()) {
+    fn compensation_separates_the_continuity(corners in triangle(0.05)) {
         let block = BlockMatrices::new(corners, &Compliance::new(Kinematics::PlaneStrain, 2.0, 0.3));
         let product = block.continuity * block.compensation;
         for i in 0..12 {
@@ -54,7 +30,7 @@ proptest! {
     }
 
     #[test]
-    fn q1_spans_the_block_element(corners in triangle()) {
+    fn q1_spans_the_block_element(corners in triangle(0.05)) {
         let material = Compliance::new(Kinematics::PlaneStress, 3.0, 0.2);
         let block = BlockMatrices::new(corners, &material);
         let modes = Block.modes(corners, &material, [0.0; 2]);
@@ -80,7 +56,7 @@ proptest! {
     }
 
     #[test]
-    fn flexibility_is_the_energy(corners in triangle(), nu in -0.9..0.49_f64, strain in any::<bool>()) {
+    fn flexibility_is_the_energy(corners in triangle(0.05), nu in -0.9..0.49_f64, strain in any::<bool>()) {
         let kinematics = if strain { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
         let (alpha, beta) = if strain { (1.0 - nu * nu, -nu * (1.0 + nu)) } else { (1.0, -nu) };
         let gamma = 2.0 * (1.0 + nu);
@@ -91,7 +67,7 @@ proptest! {
         let mut by_quadrature = Matrix::<21, 21>::zeros();
         for sub in 0..3 {
             let q = [corners[(sub + 1) % 3], corners[(sub + 2) % 3], block.centre];
-            for (bary, w) in radon() {
+            for (bary, w) in quadrature::triangle(4) {
                 let x = [0, 1].map(|c| (0..3).map(|i| bary[i] * q[i][c]).sum());
                 let unit = |k: usize| block.stress(sub, x, &Matrix::<21, 1>::from_fn(|i, _| f64::from(i == k)));
                 for i in 7 * sub..7 * sub + 7 {
@@ -105,14 +81,14 @@ proptest! {
     }
 
     #[test]
-    fn printed_flexibility_is_about_the_centre_of_gravity(corners in triangle()) {
+    fn printed_flexibility_is_about_the_centre_of_gravity(corners in triangle(0.05)) {
         // f of (3.2) as printed, against quadrature of M of (3.1) about the centre of the subtriangle.
         let constants = [0.91, -0.39, 2.6];
         let moments = Moments::new(corners);
         let f = flexibility(&moments, constants);
         let mut by_quadrature = Matrix::<7, 7>::zeros();
         let law = nalgebra::Matrix3::new(constants[0], constants[1], 0.0, constants[1], constants[0], 0.0, 0.0, 0.0, constants[2]);
-        for (bary, w) in radon() {
+        for (bary, w) in quadrature::triangle(4) {
             let x = [0, 1].map(|c| (0..3).map(|i| bary[i] * corners[i][c]).sum::<f64>() - moments.centre[c]);
             by_quadrature += stress_map(x).transpose() * law * stress_map(x) * (w * area(corners));
         }

@@ -52,7 +52,7 @@ fn errors(rings: &Rings, n: usize) -> [f64; 5] {
     let dual = dual::solve(&Condensed::default(), &problem, &[], &Options::default()).expect("solves");
     let bracket = Bracket::new(&problem, &dual);
     let exact = rings.pressure();
-    let pressures = dual.contact_traction[0].as_flattened();
+    let pressures = dual.contact_traction[0].values();
     let largest = pressures.iter().fold(0.0_f64, |m, t| m.max((-t / exact - 1.0).abs()));
     let mean = -pressures.iter().sum::<f64>() / pressures.len() as f64;
     let free = bracket.free.as_ref().expect("an upper bound");

@@ -26,7 +26,7 @@ fn bracket(blocks: &Blocks, method: &dyn DualMethod) -> (f64, f64, f64, usize, f
         "gap {} from energies, {local} from local terms",
         upper - c.lower()
     );
-    let open = dual.closed.iter().filter(|c| !**c).count();
+    let open = dual.closed.values().iter().filter(|c| !**c).count();
     println!(
         "{} n={} lower {:.10} upper {:.10} open {open} eq {:.1e} steps {} {:?}",
         dual.method,

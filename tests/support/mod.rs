@@ -3,6 +3,7 @@
 
 pub mod blocks;
 pub mod double_double;
+pub mod element;
 pub mod planted;
 pub mod random;
 pub mod scenes;

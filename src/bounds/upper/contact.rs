@@ -30,7 +30,7 @@ pub fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 pub fn mean_excess(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
     let n = pair.direction.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let lowered = |c: usize| lower_moments(&dual.moments[e].iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
+        let lowered = |c: usize| lower_moments(&dual.moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
         let [x, y] = [0, 1].map(lowered);
         let turned = problem.mesh.edges[e].vertices[0] != start;
         let [a, b] = if turned { [1, 0] } else { [0, 1] }.map(|end| [x[end], y[end]]);

@@ -29,7 +29,7 @@ pub fn vertex_values(problem: &Problem, dual: &DualSolution) -> Vec<[f64; 2]> {
         .with_min_len(256)
         .map(|t| corner_values(problem, dual, &materials[mesh.body[t]], t))
         .collect();
-    let degree = |_: usize| dual.stress.degree();
+    let degree = |t: usize| dual.stress.degree(t);
     let mut highest = vec![0; mesh.points.len()];
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         triangle.iter().for_each(|&v| highest[v] = highest[v].max(degree(t)));
@@ -53,7 +53,7 @@ fn corner_values(problem: &Problem, dual: &DualSolution, material: &Compliance, 
     let origin = corners[0];
     let centre = [0, 1].map(|c| ((corners[1][c] - origin[c]) + (corners[2][c] - origin[c])) / 3.0);
     let p = corners.map(|q| [q[0] - origin[0] - centre[0], q[1] - origin[1] - centre[1]]);
-    let reference = Reference::of(dual.stress.degree());
+    let reference = Reference::of(dual.stress.degree(t));
     let strain = reference.strain(|sub, l| material.strain(dual.stress.at(t, sub, l)));
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
@@ -63,7 +63,7 @@ fn corner_values(problem: &Problem, dual: &DualSolution, material: &Compliance, 
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let e = mesh.triangle_edges[t][side];
         let (length, _) = mesh.edge_frame(e);
-        let mut off = [0, 1].map(|c| dual.moments[e].iter().map(|m| m[c]).sum::<f64>() / length);
+        let mut off = [0, 1].map(|c| dual.moments.of(e).iter().map(|m| m[c]).sum::<f64>() / length);
         for (path, weight) in &reference.sides[side] {
             let u = local.displacement(path);
             off = [0, 1].map(|c| off[c] - weight * u[c]);

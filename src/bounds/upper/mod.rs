@@ -83,7 +83,7 @@ pub fn admissible(
     ends::restrict(problem, &holds.vertices, vertex)?;
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
-        let inside = edges::inside(&dual.moments[e], mesh.edge_frame(e).0, ends);
+        let inside = edges::inside(dual.moments.of(e), mesh.edge_frame(e).0, ends);
         for (value, found) in field.values[nodes.inside(e)].iter_mut().zip(inside) {
             *value = holds.edges[e].impose(found);
         }

@@ -18,11 +18,6 @@ pub struct Condensed {
 }
 
 impl Condensed {
-    /// Number of unknowns.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
     /// A row of K.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.data[i * self.size..(i + 1) * self.size]

@@ -7,6 +7,7 @@
 use std::fmt;
 
 use super::rows::SparseRows;
+use crate::element::SideValues;
 use crate::element::subtriangle::Matrix;
 use crate::problem::{Condition, Problem};
 
@@ -233,14 +234,14 @@ impl Constraints {
     ///
     /// Mean and slope turn into the end values of T by p = ∓1, so that z of a mean is the sum of the two end moments and
     /// z of a slope their difference.
-    pub fn moments(&self, problem: &Problem, z_d: &[f64], z_e: &[f64]) -> Vec<[[f64; 2]; 2]> {
-        let mut moments = vec![[[0.0; 2]; 2]; problem.mesh.edges.len()];
+    pub fn moments(&self, problem: &Problem, z_d: &[f64], z_e: &[f64]) -> SideValues<[f64; 2]> {
+        let mut moments = SideValues::filled(vec![2; problem.mesh.edges.len()], [0.0; 2]);
         for (terms, &z) in self.d_terms.iter().zip(z_d).chain(self.e_terms.iter().zip(z_e)) {
             // The displacement is the same on both sides of an interior edge: the first side speaks for it.
             for term in terms.iter().filter(|t| t.side == 0) {
                 for (end, sign) in [-1.0, 1.0].into_iter().enumerate() {
                     let weight = 0.5 * (term.weights[0] + sign * term.weights[1]) * z;
-                    for (m, direction) in moments[term.edge][end].iter_mut().zip(term.direction) {
+                    for (m, direction) in moments.of_mut(term.edge)[end].iter_mut().zip(term.direction) {
                         *m += weight * direction;
                     }
                 }

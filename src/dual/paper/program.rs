@@ -187,7 +187,7 @@ impl Program {
         let bar = self.stress(problem, &vec![0.0; self.parameters()]);
         let mut scale = 0.0_f64;
         for e in 0..problem.mesh.edges.len() {
-            for value in edge_traction(problem, &bar, e, 0).as_flattened() {
+            for value in edge_traction(problem, &bar, e, 0, 1).as_flattened() {
                 scale = scale.max(value.abs());
             }
         }

@@ -11,6 +11,7 @@ use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
+use crate::element::SideValues;
 use crate::problem::{ContactPair, Problem, Sizes};
 
 /// The paper's method.
@@ -64,7 +65,7 @@ impl DualMethod for Uzawa {
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
-        expressible(problem, self.name())?;
+        expressible(problem, options, self.name())?;
         let program = Program::new(problem)?;
         let mut notes = notes(problem, &program);
         seconds.assemble = start.elapsed().as_secs_f64();
@@ -86,7 +87,9 @@ impl DualMethod for Uzawa {
         let p1 = program.constraints.d.len();
         let stress = program.stress(problem, &end.s);
         let moments = moments(problem, &program, &end.z);
+        let pairs: usize = problem.interfaces.iter().map(|interface| interface.pairs.len()).sum();
         let closed = end.z[p1..].iter().map(|&z| z == 0.0).collect();
+        let closed = SideValues::new(vec![2; pairs], closed);
         // The stopping test sees rows that carry nothing among rows that carry much; what the stresses miss is the answer.
         let residual = Equilibrium::measure(problem, &stress, &moments).residual();
         if !residual.is_finite() || residual > self.accuracy() {
@@ -112,7 +115,15 @@ impl DualMethod for Uzawa {
 }
 
 /// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
-fn expressible(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Result<(), DualError> {
+    let degree = options.elements.largest_degree();
+    if degree != 1 {
+        return Err(DualError::NotExpressible {
+            method,
+            what: format!("stresses of degree {degree}"),
+            remedy: "use another method, or --degree 1",
+        });
+    }
     let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
     let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
     Err(DualError::NotExpressible {
@@ -146,7 +157,7 @@ fn notes(problem: &Problem, program: &Program) -> Vec<String> {
 }
 
 /// Edge moments from multipliers: those of the constraints, u0 on Γ_u, the gap where contact is closed.
-fn moments(problem: &Problem, program: &Program, z: &[f64]) -> Vec<[[f64; 2]; 2]> {
+fn moments(problem: &Problem, program: &Program, z: &[f64]) -> SideValues<[f64; 2]> {
     let p1 = program.constraints.d.len();
     // As + b = −Bᵀz, and the work of the edge displacement is +Σ m·T.
     let z_d: Vec<f64> = z[..p1].iter().map(|v| -v).collect();
@@ -155,7 +166,7 @@ fn moments(problem: &Problem, program: &Program, z: &[f64]) -> Vec<[[f64; 2]; 2]
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let crate::problem::Condition::Clamped(u0) = condition {
             let half = 0.5 * problem.mesh.edge_frame(e).0;
-            moments[e] = [u0.map(|u| half * u); 2];
+            moments.of_mut(e).fill(u0.map(|u| half * u));
         }
     }
     moments

@@ -37,7 +37,7 @@ impl Particular {
         out
     }
 
-    /// Its traction values.
+    /// Its traction coefficients.
     pub fn traction(&self) -> [f64; 12] {
         let stress = self.stress();
         let mut out = [0.0; 12];

@@ -4,6 +4,7 @@
 //! is what is measured. Shared by the tests and by `examples/theory_rates.rs`.
 #![allow(dead_code)]
 
+pub mod airy;
 pub mod constant;
 pub mod contact;
 pub mod fields;

@@ -2,7 +2,7 @@
 
 use hypercircle::bounds::{admissible, complementary, potential};
 use hypercircle::dual::{self, Condensed, Options};
-use hypercircle::element::interpolant;
+use hypercircle::element::{SideValues, interpolant, side};
 use hypercircle::problem::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -131,13 +131,13 @@ pub fn contact_errors(solution: &Solution, n: usize, family: Family) -> (f64, [f
     (diameter(&corners), errors)
 }
 
-fn pressure_error(solution: &Solution, problem: &Problem, traction: &[Vec<[f64; 2]>]) -> f64 {
+fn pressure_error(solution: &Solution, problem: &Problem, traction: &[SideValues<f64>]) -> f64 {
     let mut square = 0.0;
-    for (pair, [ta, tb]) in problem.interfaces[0].pairs.iter().zip(&traction[0]) {
+    for (pair, t) in problem.interfaces[0].pairs.iter().zip(traction[0].iter()) {
         let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
         for (s, w) in gauss(8) {
             let exact = solution.stress(0, [0, 1].map(|c| a[c] + s * (b[c] - a[c])))[0];
-            square += w * pair.length * (ta + s * (tb - ta) - exact).powi(2);
+            square += w * pair.length * (side::value(t, s) - exact).powi(2);
         }
     }
     square.sqrt()
