@@ -61,7 +61,7 @@ impl UpperBound {
     pub fn new(problem: &Problem, dual: &DualSolution, displacement: Displacement) -> Self {
         let potential = potential(problem, &displacement);
         let local = local_gap(problem, &dual.stress, &displacement);
-        let size = |t: usize| displacement.values[t].iter().fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1])));
+        let size = |t: usize| displacement.largest(t);
         let widening = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
         UpperBound { widening, displacement, potential, local }
     }

@@ -8,13 +8,14 @@
 
 use rayon::prelude::*;
 
-use super::strain::{spreads, strains, sub_area};
+use super::jump::{openings, side_coefficients};
+use super::strain::{Samples, Strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::{contact_traction, edge_traction};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Displacement, StressField, side};
-use crate::problem::{Condition, ContactPair, Problem};
+use crate::element::{Displacement, StressField, side, triangle};
+use crate::problem::{Condition, Problem};
 
 /// Complementary energy of a stress field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,17 +49,16 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
-            let (mut sum, mut sensitivity) = (0.0, 0.0);
+            let mut sum = 0.0;
             for sub in 0..3 {
                 for (bary, weight) in triangle_rule(2 * stress.degree(t)) {
                     let value = stress.at(t, sub, *bary);
                     sum += 0.5 * weight * third * material.product(value, value);
                 }
-                for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-                    let value = stress.at(t, sub, corner);
-                    sensitivity += third / 3.0 * absolute(value) * absolute(material.strain(value));
-                }
             }
+            let nodes = stress.block(t);
+            let product = |value: &[f64; 3]| absolute(*value) * absolute(material.strain(*value));
+            let sensitivity = 3.0 * third / nodes.len() as f64 * nodes.iter().map(product).sum::<f64>();
             (sum, sensitivity * shape(mesh.corners(t)))
         })
         .collect();
@@ -69,16 +69,16 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         if let Condition::Clamped(u0) = condition {
             let (length, _) = mesh.edge_frame(e);
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
-            for t in edge_traction(problem, stress, e, 0, degree) {
-                support.add(length / (degree + 1) as f64 * (t[0] * u0[0] + t[1] * u0[1]));
+            let tractions = edge_traction(problem, stress, e, 0, degree);
+            for t in &tractions {
+                support.add(length / tractions.len() as f64 * (t[0] * u0[0] + t[1] * u0[1]));
             }
         }
     }
     let mut gap = Sum::default();
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         let t = contact_traction(problem, stress, pair);
-        let work = t.iter().zip(side::moments(&pair.gap, t.len() - 1)).map(|(t, g)| t * g).sum::<f64>();
-        gap.add(pair.length * work);
+        gap.add(pair.length * side::integral(&t, &pair.gap));
     }
     let t = problem.scene.thickness;
     Complementary {
@@ -121,16 +121,21 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
             let corners = mesh.corners(t);
+            let area = sub_area(corners);
+            let samples = Samples::of(v.degree(t) - 1, 0);
             let (mut strain, mut work, mut sensitivity) = (0.0, 0.0, 0.0);
+            let mut strains = Strains::default();
             for sub in 0..3 {
-                let area = sub_area(corners);
-                let u = v.sub(t, sub);
-                for (e, spread) in strains(corners, sub, &u).into_iter().zip(spreads(corners, sub, &u)) {
-                    strain += 0.5 * area / 3.0 * materials[body].strain_product(e, e);
-                    sensitivity += area / 3.0 * absolute(materials[body].stress(e)) * spread;
+                strains.on(corners, v, t, sub);
+                for (q, (_, weight)) in samples.points.iter().enumerate() {
+                    let e = strains.sample(samples, q);
+                    strain += 0.5 * weight * area * materials[body].strain_product(e, e);
+                    sensitivity += weight * area * absolute(materials[body].stress(e)) * strains.spread(samples, q);
                 }
-                for u in &u[3..] {
-                    work += area / 3.0 * (force[0] * u[0] + force[1] * u[1]);
+                if force != [0.0; 2] {
+                    // Every Bernstein polynomial has the same mean.
+                    let share = area / triangle::len(v.degree(t)) as f64;
+                    work += v.sub(t, sub).map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum::<f64>();
                 }
             }
             [strain, work, sensitivity * shape(corners)]
@@ -144,9 +149,10 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
             && (*pa != [0.0; 2] || *pb != [0.0; 2])
         {
             let (length, _) = mesh.edge_frame(e);
-            let [ua, um, ub] = edge_values(problem, v, e);
+            let u = side_coefficients(problem, v, e);
             for c in 0..2 {
-                work.add(length / 6.0 * (pa[c] * ua[c] + 2.0 * (pa[c] + pb[c]) * um[c] + pb[c] * ub[c]));
+                let u: Vec<f64> = u.iter().map(|u| u[c]).collect();
+                work.add(length * side::integral(&[pa[c], pb[c]], &u));
             }
         }
     }
@@ -170,38 +176,6 @@ fn shape(corners: [[f64; 2]; 3]) -> f64 {
     let [a, b, c] = corners;
     let longest = square(a, b).max(square(b, c)).max(square(c, a));
     (longest / (6.0 * sub_area(corners))).max(1.0)
-}
-
-/// Values of `v` at the first end, the middle and the second end of a boundary edge.
-pub fn edge_values(problem: &Problem, v: &Displacement, e: usize) -> [[f64; 2]; 3] {
-    let mesh = &problem.mesh;
-    let edge = &mesh.edges[e];
-    let t = edge.triangles[0].unwrap_or(0);
-    let side = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
-    let u = &v.values[t];
-    // From triangles[0] the edge runs from corner side + 1 to corner side + 2.
-    [u[(side + 1) % 3], u[3 + side], u[(side + 2) % 3]]
-}
-
-/// (v' − v'')·n̂ at the first end, the middle and the second end of a contact pair.
-pub fn jump_values(problem: &Problem, v: &Displacement, pair: &ContactPair) -> [f64; 3] {
-    let n = [0.0, 0.5, 1.0].map(|t| pair.direction.at(t));
-    let side = |e: usize, start: usize| {
-        let values = edge_values(problem, v, e);
-        let turned = problem.mesh.edges[e].vertices[0] != start;
-        [0, 1, 2].map(|k| {
-            let u = values[if turned { 2 - k } else { k }];
-            u[0] * n[k][0] + u[1] * n[k][1]
-        })
-    };
-    let own = pair.edges[0].map_or([0.0; 3], |e| side(e, pair.first[0]));
-    match (pair.edges[1], pair.second) {
-        (Some(e), Some(second)) => {
-            let other = side(e, second[0]);
-            [own[0] - other[0], own[1] - other[1], own[2] - other[2]]
-        }
-        _ => own,
-    }
 }
 
 /// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.
@@ -228,12 +202,7 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
                 .iter()
                 .map(|pair| {
                     let t = contact_traction(problem, stress, pair);
-                    let (ta, tb) = (t[0], t[t.len() - 1]);
-                    let [ga, gb] = pair.gap;
-                    let j = jump_values(problem, v, pair);
-                    let open = [ga - j[0], 0.5 * (ga + gb) - j[1], gb - j[2]];
-                    // Simpson's rule is exact for the cubic t · (g − jump): t is constant where n̂ turns.
-                    -thickness * pair.length / 6.0 * (ta * open[0] + 2.0 * (ta + tb) * open[1] + tb * open[2])
+                    -thickness * pair.length * side::integral(&t, &openings(problem, v, pair))
                 })
                 .collect()
         })
@@ -253,10 +222,13 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
+            let samples = Samples::of(v.degree(t) - 1, stress.degree(t));
             let mut sum = 0.0;
+            let mut strains = Strains::default();
             for sub in 0..3 {
-                let strain = strains(corners, sub, &v.sub(t, sub));
-                for (e, (bary, weight)) in strain.iter().zip(triangle_rule(2)) {
+                strains.on(corners, v, t, sub);
+                for (q, (bary, weight)) in samples.points.iter().enumerate() {
+                    let e = strains.sample(samples, q);
                     let of_stress = material.strain(stress.at(t, sub, *bary));
                     let d = [e[0] - of_stress[0], e[1] - of_stress[1], e[2] - of_stress[2]];
                     sum += 0.5 * weight * sub_area(corners) * material.strain_product(d, d);

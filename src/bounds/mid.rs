@@ -12,29 +12,30 @@
 //! Synge about m, and the bound is √(gap/2): half of the √(2·gap) that holds for λ and c e(v).
 
 use super::UpperBound;
-use super::strain::strains;
+use super::strain::Strains;
 use crate::dual::modes::materials;
-use crate::element::{Displacement, StressField};
+use crate::element::{Displacement, StressField, triangle};
 use crate::problem::Problem;
 
-/// m = (λ + c e(v))/2, linear on each subtriangle; `None` for stresses of higher degree, which that could not hold.
+/// m = (λ + c e(v))/2, of the higher degree of the two; `None` where they are on different meshes.
 pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> Option<StressField> {
-    if stress.largest_degree() != 1 || stress.len() != v.values.len() {
+    if stress.len() != v.len() {
         return None;
     }
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let mut mid = stress.clone();
-    for t in 0..mesh.triangles.len() {
+    let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
+    let mut mid = StressField::of_degrees((0..v.len()).map(degree));
+    let mut strains = Strains::default();
+    for t in 0..v.len() {
         let corners = mesh.corners(t);
-        for (sub, values) in mid.block_mut(t).chunks_exact_mut(3).enumerate() {
-            let at_midpoints = strains(corners, sub, &v.sub(t, sub)).map(|e| materials[mesh.body[t]].stress(e));
-            for (corner, value) in values.iter_mut().enumerate() {
-                for c in 0..3 {
-                    // A linear function at a corner, from the midpoints of the sides.
-                    let [p, q, r] = [0, 1, 2].map(|k| at_midpoints[(corner + k) % 3][c]);
-                    value[c] = 0.5 * (value[c] + q + r - p);
-                }
+        let (material, degree) = (&materials[mesh.body[t]], degree(t));
+        for (sub, values) in mid.block_mut(t).chunks_exact_mut(triangle::len(degree)).enumerate() {
+            strains.on(corners, v, t, sub);
+            for (value, node) in values.iter_mut().zip(triangle::indices(degree)) {
+                let l = node.map(|i| if degree == 0 { 1.0 / 3.0 } else { i as f64 / degree as f64 });
+                let (own, other) = (stress.at(t, sub, l), material.stress(strains.at(l)));
+                *value = [0, 1, 2].map(|c| 0.5 * (own[c] + other[c]));
             }
         }
     }

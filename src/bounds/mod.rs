@@ -3,6 +3,7 @@
 mod at_rest;
 mod bracket;
 pub mod energy;
+mod jump;
 mod mid;
 pub mod strain;
 mod sum;
@@ -11,8 +12,9 @@ pub mod upper;
 pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound};
 pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+pub use jump::{openings, side_coefficients};
 pub use mid::mid_field;
 pub use sum::Sum;
 pub use upper::{
-    Hold, Holds, NoUpperBound, NodalValues, Violation, admissible, bernstein, holds, repaired, supports_agree,
+    Hold, Holds, NoUpperBound, NodalValues, Nodes, Violation, admissible, bernstein, holds, repaired, supports_agree,
 };

@@ -1,4 +1,10 @@
-//! Strains of a displacement that is quadratic on each subtriangle.
+//! Strains of a displacement that is polynomial on each subtriangle.
+
+use std::sync::OnceLock;
+
+use crate::element::displacement::MOST;
+use crate::element::quadrature::triangle_rule;
+use crate::element::{Displacement, triangle};
 
 /// Area of one of the three equal subtriangles.
 pub fn sub_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
@@ -37,52 +43,164 @@ pub fn shape_gradients(g: &[[f64; 2]; 3], at: usize) -> [[f64; 2]; 6] {
     out
 }
 
-/// Strains (xx, yy, xy) at the three edge midpoints of subtriangle `sub`, in the order of the midpoint rule, from the
-/// nodal values `u` as in [`crate::element::Displacement::sub`].
-pub fn strains(corners: [[f64; 2]; 3], sub: usize, u: &[[f64; 2]; 6]) -> [[f64; 3]; 3] {
-    let g = gradients(sub_corners(corners, sub));
-    [0, 1, 2].map(|at| {
-        let shape = shape_gradients(&g, at);
-        let mut e = [0.0; 3];
-        // Differences from one node: a rigid translation leaves no trace.
-        for (d, value) in shape.iter().zip(u).skip(1) {
-            let (ux, uy) = (value[0] - u[0][0], value[1] - u[0][1]);
-            e[0] += d[0] * ux;
-            e[1] += d[1] * uy;
-            e[2] += 0.5 * (d[1] * ux + d[0] * uy);
-        }
-        e
-    })
+/// Strains (xx, yy, xy) on one subtriangle, by their Bernstein coefficients: of degree k − 1 for a displacement of degree k.
+#[derive(Debug, Clone, Default)]
+pub struct Strains {
+    degree: usize,
+    displacement: Vec<[f64; 2]>,
+    coefficients: Vec<[f64; 3]>,
+    /// For each coefficient the sum of the absolute values of all products that make it.
+    spreads: Vec<f64>,
 }
 
-/// The sums of the absolute values of all products that [`strains`] adds up, at the three midpoints.
-pub fn spreads(corners: [[f64; 2]; 3], sub: usize, u: &[[f64; 2]; 6]) -> [f64; 3] {
-    let g = gradients(sub_corners(corners, sub));
-    [0, 1, 2].map(|at| {
-        let term = |(d, v): (&[f64; 2], &[f64; 2])| {
-            (d[0].abs() + d[1].abs()) * ((v[0] - u[0][0]).abs() + (v[1] - u[0][1]).abs())
-        };
-        shape_gradients(&g, at).iter().zip(u).skip(1).map(term).sum()
-    })
+impl Strains {
+    /// Those of `v` on subtriangle `sub` of triangle `t`, which has these corners; kept until the next call.
+    pub fn on(&mut self, corners: [[f64; 2]; 3], v: &Displacement, t: usize, sub: usize) -> &Self {
+        let k = v.degree(t);
+        self.displacement.clear();
+        self.displacement.extend(v.sub(t, sub));
+        self.coefficients.clear();
+        self.spreads.clear();
+        self.degree = k - 1;
+        let g = gradients(sub_corners(corners, sub));
+        for beta in triangle::indices(k - 1) {
+            let u = [0, 1, 2].map(|i| self.displacement[triangle::number(triangle::raised(beta, i))]);
+            let (mut e, mut spread) = ([0.0; 3], 0.0);
+            for i in 1..3 {
+                // Differences of neighbours: a rigid translation leaves no trace.
+                let (x, y) = (u[i][0] - u[0][0], u[i][1] - u[0][1]);
+                let [gx, gy] = g[i].map(|d| k as f64 * d);
+                e[0] += gx * x;
+                e[1] += gy * y;
+                e[2] += 0.5 * (gy * x + gx * y);
+                spread += (gx.abs() + gy.abs()) * (x.abs() + y.abs());
+            }
+            self.coefficients.push(e);
+            self.spreads.push(spread);
+        }
+        self
+    }
+
+    /// The strain at the point of the subtriangle with barycentric coordinates `l`.
+    pub fn at(&self, l: [f64; 3]) -> [f64; 3] {
+        self.weighed(triangle::basis(self.degree, l))
+    }
+
+    /// The strain at point `q` of `samples`, which are of the degree of these strains.
+    pub fn sample(&self, samples: &Samples, q: usize) -> [f64; 3] {
+        self.weighed(samples.basis(q).iter().copied())
+    }
+
+    /// The sum of the absolute values of all products that [`Self::sample`] adds up.
+    pub fn spread(&self, samples: &Samples, q: usize) -> f64 {
+        samples.basis(q).iter().zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
+    }
+
+    fn weighed(&self, weights: impl Iterator<Item = f64>) -> [f64; 3] {
+        let mut e = [0.0; 3];
+        for (weight, coefficient) in weights.zip(&self.coefficients) {
+            (0..3).for_each(|c| e[c] += weight * coefficient[c]);
+        }
+        e
+    }
+}
+
+/// A quadrature rule on a subtriangle with the Bernstein polynomials of one degree at its points.
+#[derive(Debug)]
+pub struct Samples {
+    /// Barycentric coordinates and weight of every point; the weights sum to one.
+    pub points: &'static [([f64; 3], f64)],
+    basis: Vec<f64>,
+}
+
+impl Samples {
+    /// For strains of degree `strain`, exact to twice the degree `field` or twice that of the strains, whichever is larger.
+    pub fn of(strain: usize, field: usize) -> &'static Samples {
+        const SIZE: usize = MOST + 1;
+        static KNOWN: [[OnceLock<Samples>; SIZE]; SIZE] = [const { [const { OnceLock::new() }; SIZE] }; SIZE];
+        let rule = strain.max(field);
+        KNOWN[strain][rule].get_or_init(|| {
+            let points = triangle_rule(2 * rule);
+            Samples { points, basis: points.iter().flat_map(|(l, _)| triangle::basis(strain, *l)).collect() }
+        })
+    }
+
+    fn basis(&self, q: usize) -> &[f64] {
+        let count = self.basis.len() / self.points.len();
+        &self.basis[q * count..(q + 1) * count]
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{Edge, Triangulation};
+
+    const CORNERS: [[f64; 2]; 3] = [[0.2, -0.1], [1.7, 0.4], [0.5, 1.3]];
+
+    /// Blossoming: the coefficients of Σ_m u_m of products of linear functions, here of (a·x)(b·x)(c·x).
+    fn cubic(x: [[f64; 2]; 3]) -> [f64; 2] {
+        let [p, q, r] = x;
+        let symmetric = |f: fn([f64; 2]) -> f64, g: fn([f64; 2]) -> f64, h: fn([f64; 2]) -> f64| {
+            let orders = [[p, q, r], [p, r, q], [q, p, r], [q, r, p], [r, p, q], [r, q, p]];
+            orders.iter().map(|[a, b, c]| f(*a) * g(*b) * h(*c)).sum::<f64>() / 6.0
+        };
+        [symmetric(|x| x[0], |x| x[0], |x| x[1]), symmetric(|x| x[1], |x| x[1], |x| x[1] - x[0] + 1.0)]
+    }
 
     #[test]
-    fn strains_of_a_quadratic_field() {
-        let corners = [[0.2, -0.1], [1.7, 0.4], [0.5, 1.3]];
-        let u = |p: [f64; 2]| [p[0] * p[0] - 2.0 * p[0] * p[1], 3.0 * p[1] * p[1] + p[0]];
+    fn strains_of_a_cubic_field() {
+        let mut v = Displacement::zeros([3]);
         for sub in 0..3 {
-            let q = sub_corners(corners, sub);
-            let mid = |i: usize, j: usize| [0.5 * (q[i][0] + q[j][0]), 0.5 * (q[i][1] + q[j][1])];
-            let mids = [mid(1, 2), mid(2, 0), mid(0, 1)];
-            let values = [u(q[0]), u(q[1]), u(q[2]), u(mids[0]), u(mids[1]), u(mids[2])];
-            for (e, [x, y]) in strains(corners, sub, &values).into_iter().zip(mids) {
-                let exact = [2.0 * x - 2.0 * y, 6.0 * y, 0.5 * (-2.0 * x + 1.0)];
+            let q = sub_corners(CORNERS, sub);
+            let nodes = crate::element::displacement::SplitNodes::of(3).subs[sub].clone();
+            for (node, alpha) in nodes.into_iter().zip(triangle::indices(3)) {
+                let arguments: Vec<[f64; 2]> = (0..3).flat_map(|i| std::iter::repeat_n(q[i], alpha[i])).collect();
+                v.block_mut(0)[node] = cubic([arguments[0], arguments[1], arguments[2]]);
+            }
+        }
+        for sub in 0..3 {
+            let q = sub_corners(CORNERS, sub);
+            let mut strains = Strains::default();
+            strains.on(CORNERS, &v, 0, sub);
+            for l in [[0.2, 0.3, 0.5], [0.9, 0.1, 0.0], [0.0, 0.0, 1.0]] {
+                let [x, y] = [0, 1].map(|c| (0..3).map(|i| l[i] * q[i][c]).sum::<f64>());
+                // u = (x²y, y³ − xy² + y²)
+                let exact = [2.0 * x * y, 3.0 * y * y - 2.0 * x * y + 2.0 * y, 0.5 * (x * x - y * y)];
+                let found = strains.at(l);
                 for c in 0..3 {
-                    assert!((e[c] - exact[c]).abs() < 1e-13);
+                    assert!((found[c] - exact[c]).abs() < 1e-13, "{found:?} is not {exact:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn strains_of_a_quadratic_field_given_by_its_values() {
+        let mesh = Triangulation {
+            points: CORNERS.to_vec(),
+            triangles: vec![[0, 1, 2]],
+            body: vec![0],
+            edges: [[1, 2], [2, 0], [0, 1]]
+                .map(|vertices| Edge { vertices, triangles: [Some(0), None], name: None })
+                .to_vec(),
+            triangle_edges: vec![[0, 1, 2]],
+            names: Vec::new(),
+        };
+        let u = |p: [f64; 2]| [p[0] * p[0] - 2.0 * p[0] * p[1], 3.0 * p[1] * p[1] + p[0]];
+        let middles = [0, 1, 2].map(|i| [0, 1].map(|c| 0.5 * (CORNERS[(i + 1) % 3][c] + CORNERS[(i + 2) % 3][c])));
+        let v = Displacement::from_p2(&mesh, &CORNERS.map(u), &middles.map(u));
+        let mut strains = Strains::default();
+        for sub in 0..3 {
+            let q = sub_corners(CORNERS, sub);
+            strains.on(CORNERS, &v, 0, sub);
+            let samples = Samples::of(1, 1);
+            for (k, (l, _)) in samples.points.iter().enumerate() {
+                let [x, y] = [0, 1].map(|c| (0..3).map(|i| l[i] * q[i][c]).sum::<f64>());
+                let exact = [2.0 * x - 2.0 * y, 6.0 * y, 0.5 * (-2.0 * x + 1.0)];
+                let found = strains.sample(samples, k);
+                for c in 0..3 {
+                    assert!((found[c] - exact[c]).abs() < 1e-13);
                 }
             }
         }

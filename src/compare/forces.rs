@@ -124,7 +124,7 @@ impl NodalForces {
 
     /// What supports cannot take of `left`.
     pub fn unsupported(&self, holds: &Holds) -> Vec<[f64; 2]> {
-        let all = holds.vertices.iter().chain(&holds.middles);
+        let all = holds.vertices.iter().chain(&holds.edges);
         self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Contact pressure from both sides, along each interface.
 
 use super::candidate::{Judged, Reactions};
-use crate::bounds::strain::strains;
+use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
 use crate::element::side;
@@ -54,18 +54,16 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         let Some(e) = pair.edges[0] else { return [0.0; 3] };
         let t = mesh.edges[e].triangles[0].unwrap_or(0);
         let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
-        let mid = strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub));
-        // The strain is linear: its value at a corner from those at the three midpoints.
-        let corner = |i: usize| [0, 1, 2].map(|c| mid[(i + 1) % 3][c] + mid[(i + 2) % 3][c] - mid[i][c]);
+        let mut strains = Strains::default();
+        strains.on(mesh.corners(t), &judged.field.displacement, t, sub);
         let n = pair.normal;
         let pressure = |e: [f64; 3]| {
             let s = materials[mesh.body[t]].stress(e);
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
-        let (a, b) = (pressure(corner(0)), pressure(corner(1)));
+        let [a, middle, b] = [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 1.0, 0.0]].map(|l| pressure(strains.at(l)));
         let forward = mesh.edges[e].vertices[0] == pair.first[0];
-        let (a, b) = if forward { (a, b) } else { (b, a) };
-        [a, 0.5 * (a + b), b]
+        if forward { [a, middle, b] } else { [b, middle, a] }
     };
     interface.pairs.iter().map(trace).collect()
 }

@@ -5,7 +5,7 @@ use super::contact::Sides;
 use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::bounds::Sum;
-use crate::bounds::strain::strains;
+use crate::bounds::strain::Strains;
 use crate::dual::modes::materials;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
@@ -107,9 +107,10 @@ fn translation_norm(
     }
     let field = Displacement::from_p1(mesh, &w);
     let materials = materials(problem);
+    let mut strains = Strains::default();
     let sum: Sum = (0..mesh.triangles.len())
         .map(|t| {
-            let e = strains(mesh.corners(t), 0, &field.sub(t, 0))[0];
+            let e = strains.on(mesh.corners(t), &field, t, 0).at([1.0, 0.0, 0.0]);
             mesh.area(t) * materials[mesh.body[t]].strain_product(e, e)
         })
         .collect();

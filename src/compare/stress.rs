@@ -2,10 +2,9 @@
 
 use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
-use crate::bounds::strain::strains;
+use crate::bounds::strain::{Samples, Strains};
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
-use crate::element::quadrature::triangle_rule;
 use crate::problem::Problem;
 use crate::scene::Kinematics;
 
@@ -23,13 +22,17 @@ pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
 pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
     let mesh = &problem.mesh;
     let materials = materials(problem);
+    let mut strains = Strains::default();
     (0..mesh.triangles.len())
         .map(|t| {
             let mut mean = [0.0; 3];
+            let field = &judged.field.displacement;
+            let samples = Samples::of(field.degree(t) - 1, 0);
             for sub in 0..3 {
-                for e in strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub)) {
-                    let s = materials[mesh.body[t]].stress(e);
-                    (0..3).for_each(|c| mean[c] += s[c] / 9.0);
+                strains.on(mesh.corners(t), field, t, sub);
+                for (q, (_, weight)) in samples.points.iter().enumerate() {
+                    let s = materials[mesh.body[t]].stress(strains.sample(samples, q));
+                    (0..3).for_each(|c| mean[c] += weight * s[c] / 3.0);
                 }
             }
             mean
@@ -57,13 +60,16 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
     let total: f64 = terms.iter().sum();
     let worst = (0..terms.len()).max_by(|&a, &b| terms[a].total_cmp(&terms[b])).unwrap_or(0);
     let (mut difference, mut norm, mut mises) = ([0.0; 3], 0.0, 0.0);
+    let mut strains = Strains::default();
     for t in 0..mesh.triangles.len() {
         let poisson = scene.bodies[mesh.body[t]].poisson;
+        let field = &judged.field.displacement;
+        let samples = Samples::of(field.degree(t) - 1, dual.stress.degree(t));
         for sub in 0..3 {
-            let strain = strains(mesh.corners(t), sub, &judged.field.displacement.sub(t, sub));
-            for (e, (bary, weight)) in strain.into_iter().zip(triangle_rule(2)) {
+            strains.on(mesh.corners(t), field, t, sub);
+            for (q, (bary, weight)) in samples.points.iter().enumerate() {
                 let l = dual.stress.at(t, sub, *bary);
-                let s = materials[mesh.body[t]].stress(e);
+                let s = materials[mesh.body[t]].stress(strains.sample(samples, q));
                 let w = weight * mesh.area(t) / 3.0;
                 for c in 0..3 {
                     difference[c] += w * (l[c] - s[c]).powi(2);

@@ -1,4 +1,4 @@
-//! Fields on the split triangulation: piecewise polynomial stresses and quadratic displacements.
+//! Stresses on the split triangulation.
 //!
 //! Every triangle a_0 a_1 a_2 is split at its centroid 0 into three subtriangles; subtriangle i is opposite vertex i
 //! and has the corners (a_{i+1}, a_{i+2}, 0). Barycentric coordinates on a subtriangle follow that order.
@@ -163,77 +163,4 @@ fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item = (usize, 
         node += 1;
         (node - 1, value)
     })
-}
-
-/// A displacement, quadratic on every subtriangle: the space that carries P1, P2 and the free upper bound alike.
-///
-/// Nodes of a triangle: corners a_0, a_1, a_2; midpoints of the edges opposite a_0, a_1, a_2; centroid 0; midpoints of
-/// 0a_0, 0a_1, 0a_2.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Displacement {
-    /// Ten nodal values per triangle.
-    pub values: Vec<[[f64; 2]; 10]>,
-}
-
-impl Displacement {
-    /// From values at vertices, linear on each triangle.
-    pub fn from_p1(mesh: &crate::mesh::Triangulation, vertex: &[[f64; 2]]) -> Self {
-        let mid = |e: usize| {
-            let [a, b] = mesh.edges[e].vertices;
-            mean2(vertex[a], vertex[b])
-        };
-        Self::from_p2(mesh, vertex, &(0..mesh.edges.len()).map(mid).collect::<Vec<_>>())
-    }
-
-    /// From values at vertices and edge midpoints, quadratic on each triangle.
-    pub fn from_p2(mesh: &crate::mesh::Triangulation, vertex: &[[f64; 2]], edge: &[[f64; 2]]) -> Self {
-        let values = (0..mesh.triangles.len())
-            .map(|t| {
-                let u = mesh.triangles[t].map(|v| vertex[v]);
-                let m = mesh.triangle_edges[t].map(|e| edge[e]);
-                // Barycentric interpolation: N_i = λ_i (2λ_i − 1), N_{jk} = 4 λ_j λ_k.
-                let at = |l: [f64; 3]| {
-                    let mut w = [0.0; 2];
-                    for c in 0..2 {
-                        for i in 0..3 {
-                            w[c] +=
-                                l[i] * (2.0 * l[i] - 1.0) * u[i][c] + 4.0 * l[(i + 1) % 3] * l[(i + 2) % 3] * m[i][c];
-                        }
-                    }
-                    w
-                };
-                let (t1, t2, s) = (1.0 / 3.0, 2.0 / 3.0, 1.0 / 6.0);
-                [u[0], u[1], u[2], m[0], m[1], m[2], at([t1, t1, t1]), at([t2, s, s]), at([s, t2, s]), at([s, s, t2])]
-            })
-            .collect();
-        Displacement { values }
-    }
-
-    /// The six nodes of subtriangle `sub` of triangle `t`: corners (a_{i+1}, a_{i+2}, 0), then the midpoints opposite them.
-    pub fn sub(&self, t: usize, sub: usize) -> [[f64; 2]; 6] {
-        let u = &self.values[t];
-        let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
-        [u[j], u[k], u[6], u[7 + k], u[7 + j], u[3 + sub]]
-    }
-
-    /// The value at the point of triangle `t` with barycentric coordinates `l`.
-    pub fn at(&self, t: usize, l: [f64; 3]) -> [f64; 2] {
-        // The subtriangle opposite the corner that is farthest away.
-        let sub = (0..3).fold(0, |least, i| if l[i] < l[least] { i } else { least });
-        let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
-        let m = [l[j] - l[sub], l[k] - l[sub], 3.0 * l[sub]];
-        let u = self.sub(t, sub);
-        let mut value = [0.0; 2];
-        for i in 0..3 {
-            let (corner, middle) = (m[i] * (2.0 * m[i] - 1.0), 4.0 * m[(i + 1) % 3] * m[(i + 2) % 3]);
-            for c in 0..2 {
-                value[c] += corner * u[i][c] + middle * u[3 + i][c];
-            }
-        }
-        value
-    }
-}
-
-fn mean2(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }

@@ -11,6 +11,7 @@
 
 mod block;
 mod compliance;
+pub mod displacement;
 mod elements;
 mod field;
 mod frame;
@@ -20,11 +21,13 @@ pub mod side;
 mod side_values;
 mod split;
 pub mod subtriangle;
+pub mod triangle;
 
 pub use block::Block;
 pub use compliance::Compliance;
+pub use displacement::Displacement;
 pub use elements::Elements;
-pub use field::{Displacement, StressField, lattice_len};
+pub use field::{StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use side_values::SideValues;
 

@@ -74,6 +74,13 @@ pub fn moments(g: &[f64], p: usize) -> Vec<f64> {
     (0..=p).map(|k| g.iter().enumerate().map(|(j, c)| c * product(p, k, q, j)).sum()).collect()
 }
 
+/// ∫₀¹ f g ds of the polynomials with the given coefficients; no coefficients stand for zero.
+pub fn integral(f: &[f64], g: &[f64]) -> f64 {
+    let (Some(p), Some(q)) = (f.len().checked_sub(1), g.len().checked_sub(1)) else { return 0.0 };
+    let row = |(i, f): (usize, &f64)| f * g.iter().enumerate().map(|(j, g)| g * product(p, i, q, j)).sum::<f64>();
+    f.iter().enumerate().map(row).sum()
+}
+
 /// Coefficients of the polynomial of degree p whose moments ∫₀¹ g B_k ds are given: the nearest one in L² to every g that
 /// has them.
 ///
@@ -105,7 +112,7 @@ mod tests {
     }
 
     /// ∫₀¹ f ds by Simpson's rule on a thousand intervals.
-    fn integral(f: impl Fn(f64) -> f64) -> f64 {
+    fn by_simpson(f: impl Fn(f64) -> f64) -> f64 {
         let n = 1000;
         let weight = |i: usize| if i == 0 || i == n { 1.0 } else { (2 + 2 * (i % 2)) as f64 };
         (0..=n).map(|i| weight(i) * f(i as f64 / n as f64)).sum::<f64>() / (3 * n) as f64
@@ -144,8 +151,16 @@ mod tests {
         for (p, q) in [(1, 1), (3, 2), (2, 5), (8, 8)] {
             let g = some(q);
             for (k, m) in moments(&g, p).into_iter().enumerate() {
-                assert!((m - integral(|s| value(&g, s) * bernstein(p, k, s))).abs() < 1e-9);
+                assert!((m - by_simpson(|s| value(&g, s) * bernstein(p, k, s))).abs() < 1e-9);
             }
+        }
+    }
+
+    #[test]
+    fn integrals_of_products() {
+        for (p, q) in [(1, 2), (0, 3), (4, 7)] {
+            let (f, g) = (some(p), some(q));
+            assert!((integral(&f, &g) - by_simpson(|s| value(&f, s) * value(&g, s))).abs() < 1e-9);
         }
     }
 

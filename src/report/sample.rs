@@ -36,8 +36,8 @@ impl Sample {
 
     /// Puts numbers that are none into the fields.
     pub fn spoil(&mut self) {
-        self.displacements[0].1.values[0] = [[f64::NAN; 2]; 10];
-        self.displacements[1].1.values[0] = [[f64::INFINITY; 2]; 10];
+        self.displacements[0].1.block_mut(0).fill([f64::NAN; 2]);
+        self.displacements[1].1.block_mut(0).fill([f64::INFINITY; 2]);
         self.dual.stress.block_mut(0).fill([f64::NAN; 3]);
     }
 

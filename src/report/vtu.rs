@@ -75,9 +75,12 @@ fn point_data(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
     }
     let mut names = Vec::new();
     for (name, displacement) in &dossier.displacements {
-        if displacement.values.len() == mesh.triangles.len() {
+        if displacement.len() == mesh.triangles.len() {
             let values = corner_values(mesh, |t, (sub, k)| {
-                let [x, y] = displacement.sub(t, sub)[k];
+                let [x, y] = match k {
+                    2 => displacement.centre(t),
+                    k => displacement.corner(t, (sub + 1 + k) % 3),
+                };
                 [x, y, 0.0]
             });
             out.field(&unique_key(name, &mut names), 3, &values)?;

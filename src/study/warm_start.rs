@@ -1,6 +1,7 @@
 //! Contact state and displacement of one mesh as a first guess on the next.
 
-use crate::bounds::NodalValues;
+use crate::bounds::{NodalValues, Nodes};
+use crate::element::displacement::through;
 use crate::element::{Displacement, SideValues};
 use crate::problem::Problem;
 
@@ -45,24 +46,34 @@ pub fn closed_coefficients(
     SideValues::new(counts.iter().copied(), guess)
 }
 
-/// Values of the displacement `v` of `coarse` at the nodes of `fine`, whose triangle t lies in triangle `parent[t]`.
+/// The displacement `v` of `coarse` on the edges of `fine`, whose triangle t lies in triangle `parent[t]` and gets the degree
+/// that it has there: on every edge the polynomial through its values at equal steps.
 ///
-/// A part of an admissible quadratic jump is admissible, so that the interpolant is as admissible as `v`.
+/// A part of an admissible jump is admissible, so that the interpolant is as admissible as `v`.
 pub fn carried(coarse: &Problem, v: &Displacement, fine: &Problem, parent: &[usize]) -> NodalValues {
     let mesh = &fine.mesh;
-    let mut values =
-        NodalValues { vertex: vec![[0.0; 2]; mesh.points.len()], middle: vec![[0.0; 2]; mesh.edges.len()] };
-    for (t, &old) in parent.iter().enumerate() {
-        let corners = coarse.mesh.corners(old);
-        let at = |p: [f64; 2]| v.at(old, barycentric(corners, p));
-        for side in 0..3 {
-            let [a, b] = [1, 2].map(|i| mesh.triangles[t][(side + i) % 3]);
-            let [p, q] = [a, b].map(|v| mesh.points[v]);
-            values.vertex[a] = at(p);
-            values.middle[mesh.triangle_edges[t][side]] = at([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
-        }
+    let mut degree = vec![1; mesh.edges.len()];
+    for (edges, &old) in mesh.triangle_edges.iter().zip(parent) {
+        edges.iter().for_each(|&e| degree[e] = degree[e].max(v.degree(old)));
     }
-    values
+    let nodes = Nodes::new(mesh.points.len(), degree.iter().copied());
+    let mut field = NodalValues::zeros(nodes.clone());
+    for (e, edge) in mesh.edges.iter().enumerate() {
+        let sides = edge.triangles.iter().flatten();
+        let Some(&old) = sides.map(|t| &parent[*t]).max_by_key(|old| v.degree(**old)) else { continue };
+        let corners = coarse.mesh.corners(old);
+        let [p, q] = edge.vertices.map(|v| mesh.points[v]);
+        let k = degree[e];
+        let at = |i: usize| {
+            let s = i as f64 / k as f64;
+            v.at(old, barycentric(corners, [0, 1].map(|c| if i == k { q[c] } else { p[c] + s * (q[c] - p[c]) })))
+        };
+        let coefficients = through(&(0..=k).map(at).collect::<Vec<_>>());
+        field.values[edge.vertices[0]] = coefficients[0];
+        field.values[edge.vertices[1]] = coefficients[k];
+        field.values[nodes.inside(e)].copy_from_slice(&coefficients[1..k]);
+    }
+    field
 }
 
 /// Barycentric coordinates of `p`; they add up to one.

@@ -77,17 +77,18 @@ fn upper(problem: &Problem, v: &hypercircle::element::Displacement) -> Dd {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
                 [(q[j][1] - q[k][1]) / twice, (q[k][0] - q[j][0]) / twice]
             });
-            let u = v.sub(t, sub).map(point);
+            // The coefficient of l_i l_j of a quadratic, in the order of `element::triangle`.
+            let u: Vec<Point> = v.sub(t, sub).map(point).collect();
+            let of = |i: usize, j: usize| u[[[0, 1, 2], [1, 3, 4], [2, 4, 5]][i][j]];
             for at in 0..3 {
                 let half = |i: usize| dd(if i == at { 0.0 } else { 0.5 });
                 let mut du = [[Dd::default(); 2]; 2];
                 for i in 0..3 {
-                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                    for d in 0..2 {
-                        let corner = (dd(4.0) * half(i) - dd(1.0)) * g[i][d];
-                        let middle = dd(4.0) * (half(j) * g[k][d] + half(k) * g[j][d]);
-                        for c in 0..2 {
-                            du[c][d] = du[c][d] + corner * u[i][c] + middle * u[3 + i][c];
+                    for j in 0..3 {
+                        for d in 0..2 {
+                            for c in 0..2 {
+                                du[c][d] = du[c][d] + dd(2.0) * half(j) * g[i][d] * of(i, j)[c];
+                            }
                         }
                     }
                 }
@@ -104,13 +105,14 @@ fn upper(problem: &Problem, v: &hypercircle::element::Displacement) -> Dd {
         let [a, b] = problem.mesh.edges[e].vertices.map(|v| point(problem.mesh.points[v]));
         let t = problem.mesh.edges[e].triangles[0].expect("a triangle");
         let side = problem.mesh.triangle_edges[t].iter().position(|&x| x == e).expect("its edge");
-        let u = [(side + 1) % 3, 3 + side, (side + 2) % 3].map(|k| point(v.values[t][k]));
+        let u: Vec<Point> = v.side(t, side).map(point).collect();
         // Along an axis, so that one of the two differences is the length and the other zero.
         let length = if a[0].high == b[0].high { b[1] - a[1] } else { b[0] - a[0] };
         let length = if length.high < 0.0 { -length } else { length };
         for c in 0..2 {
             let (p, q) = (dd(pa[c]), dd(pb[c]));
-            work = work + length / dd(6.0) * (p * u[0][c] + dd(2.0) * (p + q) * u[1][c] + q * u[2][c]);
+            let (first, last) = (dd(3.0) * p + q, p + dd(3.0) * q);
+            work = work + length / dd(12.0) * (first * u[0][c] + dd(2.0) * (p + q) * u[1][c] + last * u[2][c]);
         }
     }
     energy - work

@@ -57,15 +57,15 @@ pub fn solve(l: &[f64], x: &mut [f64]) {
     }
 }
 
-/// X = L⁻¹ X, row by row.
-pub fn forward<const C: usize>(l: &[f64], x: &mut [[f64; C]]) {
-    let n = x.len();
+/// X = L⁻¹ X for the `n` rows of X, one after the other.
+pub fn forward(l: &[f64], x: &mut [f64], n: usize) {
+    let columns = x.len() / n.max(1);
     for j in 0..n {
         let own = &l[column(n, j)..][..n - j];
-        let (done, left) = x.split_at_mut(j + 1);
-        let row = &mut done[j];
+        let (done, left) = x.split_at_mut((j + 1) * columns);
+        let row = &mut done[j * columns..];
         row.iter_mut().for_each(|v| *v /= own[0]);
-        for (target, l) in left.iter_mut().zip(&own[1..]) {
+        for (target, l) in left.chunks_exact_mut(columns).zip(&own[1..]) {
             target.iter_mut().zip(row.iter()).for_each(|(t, v)| *t -= l * v);
         }
     }
@@ -94,15 +94,15 @@ mod tests {
     fn half_a_solve_twice_is_the_quadratic_form_of_the_inverse() {
         let mut a = A;
         assert!(factorise(&mut a, 3, 1e-15));
-        let mut y = [[1.0, 0.0], [-2.0, 1.0], [3.0, 0.0]];
-        let mut x = y.map(|row| row[0]);
+        let mut y = [1.0, 0.0, -2.0, 1.0, 3.0, 0.0];
+        let mut x = [y[0], y[2], y[4]];
         let b = x;
-        forward(&a, &mut y);
+        forward(&a, &mut y, 3);
         solve(&a, &mut x);
-        let square: f64 = y.iter().map(|row| row[0] * row[0]).sum();
+        let square: f64 = y.chunks_exact(2).map(|row| row[0] * row[0]).sum();
         let form: f64 = b.iter().zip(&x).map(|(b, x)| b * x).sum();
         assert!((square - form).abs() < 1e-14);
-        let mixed: f64 = y.iter().map(|row| row[0] * row[1]).sum();
+        let mixed: f64 = y.chunks_exact(2).map(|row| row[0] * row[1]).sum();
         assert!((mixed - x[1]).abs() < 1e-14);
     }
 

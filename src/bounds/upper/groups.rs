@@ -9,9 +9,6 @@ use crate::problem::Problem;
 /// Triangles whose height is below this part of their longest side are flat.
 const FLAT: f64 = 0.15;
 
-/// Flat triangles add no more vertices to a group than this: patches grow with the square of it.
-const MOST_VERTICES: usize = 12;
-
 /// One patch: the vertices that move, and every triangle at one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
@@ -21,8 +18,9 @@ pub struct Group {
     pub triangles: Vec<usize>,
 }
 
-/// Divides the vertices into groups, ordered by place so that the numbering of the mesh has no part in what follows.
-pub fn groups(problem: &Problem) -> Vec<Group> {
+/// Divides the vertices into groups, ordered by place so that the numbering of the mesh has no part in what follows. Flat
+/// triangles add no more vertices to a group than `most`.
+pub fn groups(problem: &Problem, most: usize) -> Vec<Group> {
     let mesh = &problem.mesh;
     let mut sets = Sets::new(mesh.points.len());
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
@@ -31,7 +29,7 @@ pub fn groups(problem: &Problem) -> Vec<Group> {
         }
     }
     for (v, w) in tied(problem) {
-        sets.unite(v, w, MOST_VERTICES);
+        sets.unite(v, w, most);
     }
     let mut number = vec![usize::MAX; mesh.points.len()];
     let mut groups: Vec<Group> = Vec::new();

@@ -1,8 +1,9 @@
-//! What the supports leave free at each vertex and edge midpoint.
+//! What the supports leave free at each vertex and inside each edge.
 
 use std::collections::HashMap;
 
 use super::NoUpperBound;
+use super::nodes::Nodes;
 use super::sets::Sets;
 use crate::problem::{Condition, Problem};
 
@@ -81,8 +82,16 @@ const PARALLEL: f64 = 1e-10;
 pub struct Holds {
     /// Of every vertex.
     pub vertices: Vec<Hold>,
-    /// Of every edge midpoint.
-    pub middles: Vec<Hold>,
+    /// Of every edge: of its midpoint and of every coefficient inside.
+    pub edges: Vec<Hold>,
+}
+
+impl Holds {
+    /// The holds of all nodes.
+    pub fn of_nodes<'a>(&'a self, nodes: &'a Nodes) -> impl Iterator<Item = &'a Hold> {
+        let inside = |(e, hold)| std::iter::repeat_n(hold, nodes.inside(e).len());
+        self.vertices.iter().chain(self.edges.iter().enumerate().flat_map(inside))
+    }
 }
 
 /// The hold of every node.
@@ -98,15 +107,14 @@ pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
         .filter_map(|c| if let Condition::Clamped(u) = c { Some(u[0].abs().max(u[1].abs())) } else { None })
         .fold(0.0, f64::max);
     let normals = roller_normals(problem);
-    let mut holds =
-        Holds { vertices: vec![Hold::Free; mesh.points.len()], middles: vec![Hold::Free; mesh.edges.len()] };
+    let mut holds = Holds { vertices: vec![Hold::Free; mesh.points.len()], edges: vec![Hold::Free; mesh.edges.len()] };
     for (e, condition) in problem.conditions.iter().enumerate() {
         let own = match (condition, normals.get(&e)) {
             (Condition::Clamped(u0), _) => Hold::Fixed(*u0),
             (Condition::Roller, Some(normal)) => Hold::Line { normal: *normal, value: 0.0 },
             _ => continue,
         };
-        holds.middles[e] = own;
+        holds.edges[e] = own;
         for v in mesh.edges[e].vertices {
             let next = match own {
                 Hold::Fixed(u0) => holds.vertices[v].with_point(u0, size),

@@ -1,76 +1,83 @@
-//! The inside of each triangle: four nodes that minimise the local energy with the boundary values fixed.
+//! The inside of each triangle: the coefficients that minimise the local energy with the boundary fixed.
 
 use rayon::prelude::*;
 
 use super::cholesky;
-use super::split::{BOUNDARY, INSIDE, Split};
+use super::nodes::{NodalValues, elevated};
+use super::split::Split;
 use crate::dual::modes::materials;
-use crate::element::{Compliance, Displacement};
+use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
+use crate::element::{Compliance, Displacement, side, triangle};
 use crate::problem::Problem;
 
-/// Completes vertex and edge values to a displacement on the split triangles.
-pub fn fill(problem: &Problem, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Displacement {
+/// Newton's steps. The energy is quadratic and the first one arrives; the second takes away what rounding left, which near
+/// ν = ½ is not little.
+const STEPS: usize = 2;
+
+/// Completes values at the nodes to a displacement on the split triangles.
+pub fn fill(problem: &Problem, field: &NodalValues) -> Displacement {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let values = (0..mesh.triangles.len())
-        .into_par_iter()
-        .with_min_len(128)
-        .map(|t| {
-            let body = mesh.body[t];
-            let u = mesh.triangles[t].map(|v| vertex[v]);
-            let m = mesh.triangle_edges[t].map(|e| middle[e]);
-            inside(mesh.corners(t), &materials[body], problem.scene.bodies[body].body_force, u, m)
-        })
-        .collect();
-    Displacement { values }
-}
-
-/// Ten nodal values from the six on the boundary.
-fn inside(
-    corners: [[f64; 2]; 3],
-    material: &Compliance,
-    force: [f64; 2],
-    u: [[f64; 2]; 3],
-    m: [[f64; 2]; 3],
-) -> [[f64; 2]; 10] {
-    // Start from the plain quadratic, about the value at the first corner: the correction is small and rigid
-    // translations cost no digits.
-    let base = u[0];
-    let off = |v: [f64; 2]| [v[0] - base[0], v[1] - base[1]];
-    let mut values = [[0.0; 2]; 10];
-    for i in 0..3 {
-        values[i] = off(u[i]);
-        values[3 + i] = off(m[i]);
-    }
-    let plain = |l: [f64; 3], values: &[[f64; 2]; 10]| {
-        let mut w = [0.0; 2];
+    let degree = |t: usize| field.nodes.triangle_degree(mesh, t);
+    let mut displacement = Displacement::zeros((0..mesh.triangles.len()).map(degree));
+    displacement.blocks_mut().into_par_iter().enumerate().with_min_len(32).for_each(|(t, block)| {
+        let k = degree(t);
         for i in 0..3 {
-            let (a, b) = (l[i] * (2.0 * l[i] - 1.0), 4.0 * l[(i + 1) % 3] * l[(i + 2) % 3]);
-            for c in 0..2 {
-                w[c] += a * values[i][c] + b * values[3 + i][c];
+            let from = mesh.triangles[t][(i + 1) % 3];
+            let nodes = field.nodes.along(mesh, mesh.triangle_edges[t][i], from);
+            let own: Vec<[f64; 2]> = nodes.into_iter().map(|n| field.values[n]).collect();
+            for (n, value) in side_nodes(k, i).zip(elevated(&own, k)) {
+                block[n] = value;
             }
         }
-        w
-    };
-    values[6] = plain([1.0 / 3.0; 3], &values);
-    for i in 0..3 {
-        let mut l = [1.0 / 6.0; 3];
-        l[i] = 2.0 / 3.0;
-        values[7 + i] = plain(l, &values);
-    }
-    // Newton's step from there: exact, the energy being quadratic.
-    let split = Split::new(corners, material, force);
-    let mut load = [0.0; INSIDE];
-    for (i, value) in load.iter_mut().enumerate() {
-        let forces = split.matrix[BOUNDARY + i].iter().zip(values.as_flattened()).map(|(k, u)| k * u);
-        *value = split.load[BOUNDARY + i] - forces.sum::<f64>();
-    }
+        let body = mesh.body[t];
+        inside(k, mesh.corners(t), &materials[body], problem.scene.bodies[body].body_force, block);
+    });
+    displacement
+}
+
+/// Sets the inner coefficients, those on the boundary being given.
+fn inside(k: usize, corners: [[f64; 2]; 3], material: &Compliance, force: [f64; 2], block: &mut [[f64; 2]]) {
+    // About the value at the first corner: rigid translations cost no digits.
+    let base = block[0];
+    block.iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
+    begin(k, block);
+    let split = Split::new(k, corners, material, force);
     let mut stiffness = split.inside();
-    if cholesky::factorise(&mut stiffness, INSIDE, 0.0) {
-        cholesky::solve(&stiffness, &mut load);
-        for (value, step) in values.as_flattened_mut()[BOUNDARY..].iter_mut().zip(load) {
-            *value += step;
+    if cholesky::factorise(&mut stiffness, split.inside, 0.0) {
+        let mut load = vec![0.0; split.inside];
+        for _ in 0..STEPS {
+            for (i, value) in load.iter_mut().enumerate() {
+                let row = split.boundary + i;
+                let forces = split.row(row).iter().zip(block.as_flattened()).map(|(k, u)| k * u);
+                *value = split.load[row] - forces.sum::<f64>();
+            }
+            cholesky::solve(&stiffness, &mut load);
+            let inner = &mut block.as_flattened_mut()[split.boundary..];
+            inner.iter_mut().zip(&load).for_each(|(value, step)| *value += step);
         }
     }
-    values.map(|v| [v[0] + base[0], v[1] + base[1]])
+    block.iter_mut().for_each(|v| *v = [v[0] + base[0], v[1] + base[1]]);
+}
+
+/// Sets the inner coefficients to those of the quadratic with the values of the boundary at corners and midpoints.
+fn begin(k: usize, block: &mut [[f64; 2]]) {
+    let inner = [0, 1, 2].map(|i| {
+        let weights = (0..=k).map(|j| side::bernstein(k, j, 0.5));
+        let side = side_nodes(k, i).map(|n| block[n]);
+        let middle = weights.zip(side).fold([0.0; 2], |sum, (w, u)| [sum[0] + w * u[0], sum[1] + w * u[1]]);
+        inner_coefficient(block[(i + 1) % 3], middle, block[(i + 2) % 3])
+    });
+    let (towards, centre) = divided([block[0], block[1], block[2]], inner);
+    for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        let (a, b) = ((sub + 1) % 3, (sub + 2) % 3);
+        let quadratic = [block[a], inner[sub], towards[a], block[b], towards[b], centre];
+        for (&node, alpha) in nodes.iter().zip(triangle::indices(k)) {
+            if node >= 3 * k {
+                let weights = triangle::indices(2).map(|beta| triangle::elevation(beta, alpha));
+                block[node] =
+                    weights.zip(quadratic).fold([0.0; 2], |sum, (w, u)| [sum[0] + w * u[0], sum[1] + w * u[1]]);
+            }
+        }
+    }
 }

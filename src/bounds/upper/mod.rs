@@ -1,28 +1,34 @@
-//! The free upper bound: an admissible displacement from the dual solve alone.
+//! The free upper bound: an admissible displacement from the dual solve alone, of one degree more than its stresses.
 //!
 //! The edge moments of the dual solve say how every edge moves on average, its stresses how every triangle strains.
-//! From these: vertex values by a local fit ([`fit`]); edge midpoints such that ∫_e u ds is the dual one, so that every
-//! triangle changes its volume as the dual solution says and nothing locks; vertex jumps on Γ_K restricted so that the
-//! quadratic jump stays admissible between its nodes too ([`contact`]); relaxation, patch by patch
-//! ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles ([`interior`]). Quadratics on that split can follow an incompressible field
-//! (Arnold & Qin 1992), which keeps the bound uniform as ν → ½.
+//! From these: vertex values by a local fit ([`fit`]); the inside of every edge such that it has the moments of the dual
+//! solution, so that every triangle changes its volume as the dual solution says and nothing locks ([`edges`]); jumps on Γ_K
+//! restricted by their Bernstein coefficients, so that they are admissible between the nodes too ([`ends`], [`contact`]);
+//! relaxation, patch by patch ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles
+//! ([`interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
+//! keeps the bound uniform as ν → ½.
 
 mod cholesky;
 mod contact;
+mod edges;
+mod ends;
 mod fit;
 mod groups;
 mod holds;
 mod interior;
 mod model;
 mod momentum;
+mod nodes;
 mod patch;
 mod relax;
+mod rows;
 mod sets;
 mod split;
 mod stiffness;
 
-pub use self::contact::{Row, bernstein};
 pub use self::holds::{Hold, Holds, holds, supports_agree};
+pub use self::nodes::{NodalValues, Nodes};
+pub use self::rows::{Row, bernstein};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -53,15 +59,6 @@ pub enum NoUpperBound {
     },
 }
 
-/// Values at the vertices and edge midpoints of a mesh.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NodalValues {
-    /// At the vertices.
-    pub vertex: Vec<[f64; 2]>,
-    /// At the midpoints.
-    pub middle: Vec<[f64; 2]>,
-}
-
 /// Builds the displacement; `floor`, a lower bound of its energy, says when relaxing it further is not worth the time,
 /// and `start` gives another displacement to begin from where its energy is lower than that of the local fit.
 ///
@@ -75,47 +72,45 @@ pub fn admissible(
 ) -> Result<Displacement, NoUpperBound> {
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
-    let mut vertex = fit::vertex_values(problem, dual);
+    let nodes = Nodes::new(mesh.points.len(), dual.moments.iter().map(|moments| moments.len()));
+    let mut field = NodalValues::zeros(nodes.clone());
+    let vertex = field.vertices_mut();
+    vertex.copy_from_slice(&fit::vertex_values(problem, dual));
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
     }
-    contact::draw(&contact::ends_near(problem, dual), &holds.vertices, &mut vertex);
-    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
-    let mut middle: Vec<[f64; 2]> = (0..mesh.edges.len())
-        .map(|e| {
-            let (length, _) = mesh.edge_frame(e);
-            let [a, b] = mesh.edges[e].vertices.map(|v| vertex[v]);
-            let (ma, mb) = (dual.moments.of(e)[0], dual.moments.of(e)[1]);
-            // Simpson: l/6 (u_a + 4 u_mid + u_b) = m_a + m_b.
-            holds.middles[e].impose([0, 1].map(|c| 1.5 * (ma[c] + mb[c]) / length - 0.25 * (a[c] + b[c])))
-        })
-        .collect();
-    contact::match_means(problem, dual, &vertex, &mut middle);
-    contact::restrict_middles(problem, &vertex, &mut middle);
+    ends::draw(&ends::ends_near(problem, dual, &nodes), &holds.vertices, vertex);
+    ends::restrict(problem, &holds.vertices, vertex)?;
+    for e in 0..mesh.edges.len() {
+        let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
+        let inside = edges::inside(dual.moments.of(e), mesh.edge_frame(e).0, ends);
+        for (value, found) in field.values[nodes.inside(e)].iter_mut().zip(inside) {
+            *value = holds.edges[e].impose(found);
+        }
+    }
+    contact::match_means(problem, dual, &mut field);
+    contact::restrict_inside(problem, &mut field);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
-    let at_rest = NodalValues { vertex: vec![[0.0; 2]; vertex.len()], middle: vec![[0.0; 2]; middle.len()] };
-    let at_rest = restricted(problem, &holds, at_rest)?.0;
-    let mut candidates = vec![NodalValues { vertex, middle }];
+    let at_rest = restricted(problem, &holds, NodalValues::zeros(nodes.clone()))?.0;
+    let mut candidates = vec![field];
     if let Some(start) = start {
-        candidates.push(restricted(problem, &holds, start)?.0);
+        candidates.push(restricted(problem, &holds, start.on(mesh, &nodes))?.0);
     }
     let relaxed = relax::relax(problem, &holds, floor / problem.scene.thickness, candidates, at_rest);
-    let NodalValues { vertex, middle } = restricted(problem, &holds, relaxed)?.0;
-    Ok(interior::fill(problem, &vertex, &middle))
+    Ok(interior::fill(problem, &restricted(problem, &holds, relaxed)?.0))
 }
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
-fn restricted(problem: &Problem, holds: &Holds, start: NodalValues) -> Result<(NodalValues, f64), NoUpperBound> {
-    let NodalValues { mut vertex, mut middle } = start;
+fn restricted(problem: &Problem, holds: &Holds, mut field: NodalValues) -> Result<(NodalValues, f64), NoUpperBound> {
     let mut farthest = 0.0_f64;
-    for (value, hold) in vertex.iter_mut().zip(&holds.vertices).chain(middle.iter_mut().zip(&holds.middles)) {
+    for (value, hold) in field.values.iter_mut().zip(holds.of_nodes(&field.nodes)) {
         let held = hold.impose(*value);
         farthest = farthest.max((held[0] - value[0]).hypot(held[1] - value[1]));
         *value = held;
     }
-    contact::restrict_vertices(problem, &holds.vertices, &mut vertex)?;
-    contact::restrict_middles(problem, &vertex, &mut middle);
-    Ok((NodalValues { vertex, middle }, farthest))
+    ends::restrict(problem, &holds.vertices, field.vertices_mut())?;
+    contact::restrict_inside(problem, &mut field);
+    Ok((field, farthest))
 }
 
 /// By how much a displacement misses admissibility, relative to its size.
@@ -148,9 +143,10 @@ pub fn repaired(
 ) -> Result<(Displacement, Violation), NoUpperBound> {
     let holds = holds(problem)?;
     let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let [penetration, at_vertices] = contact::penetration(problem, vertex, middle).map(|depth| depth / size);
-    let start = NodalValues { vertex: vertex.to_vec(), middle: middle.to_vec() };
-    let (NodalValues { vertex, middle }, farthest) = restricted(problem, &holds, start)?;
+    let start = NodalValues::quadratic(&problem.mesh, vertex, middle);
+    let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
+    let (field, farthest) = restricted(problem, &holds, start)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
-    Ok((Displacement::from_p2(&problem.mesh, &vertex, &middle), violation))
+    let (vertex, inner) = field.values.split_at(field.nodes.vertices());
+    Ok((Displacement::quadratic(&problem.mesh, vertex, inner), violation))
 }

@@ -1,11 +1,9 @@
-//! The energy of a continuous quadratic displacement as a function of its nodes, with what holds them.
-//!
-//! Nodes are the vertices, then the edge midpoints.
+//! The energy of a continuous displacement as a function of its nodes, with what holds them.
 
-use super::contact::{Row, rows};
 use super::groups::Group;
 use super::holds::{Hold, Holds};
-use super::split::BOUNDARY;
+use super::nodes::Nodes;
+use super::rows::{Row, rows};
 use super::stiffness::{Condensed, condensed};
 use crate::problem::Problem;
 
@@ -19,71 +17,83 @@ pub struct Model<'a> {
     pub free: Vec<Directions>,
     /// Bernstein coefficients of the jumps: at most zero.
     pub rows: Vec<Row>,
-    /// Which of them have a part at each vertex.
-    pub touching: Vec<Vec<usize>>,
+    /// Which of them have a part at each vertex or on the edges of its contact pairs.
+    pub rows_at: Vec<Vec<usize>>,
+    /// The nodes on the boundaries of the triangles, one after the other, and where each triangle begins.
+    of_triangles: (Vec<usize>, Vec<usize>),
+    /// The edge of each node beyond the vertices.
+    edge: Vec<usize>,
 }
 
 impl<'a> Model<'a> {
     /// Prepares the energy of all triangles and the conditions on all nodes.
-    pub fn new(problem: &'a Problem, holds: &Holds) -> Self {
+    pub fn new(problem: &'a Problem, holds: &Holds, nodes: &Nodes) -> Self {
+        let mesh = &problem.mesh;
+        let (mut of_triangles, mut start) = (Vec::new(), vec![0]);
+        for t in 0..mesh.triangles.len() {
+            of_triangles.extend(nodes.of_triangle(mesh, t));
+            start.push(of_triangles.len());
+        }
+        let groups = rows(problem, nodes);
+        let rows_at = rows_at(problem, &groups);
         Model {
             problem,
-            elements: condensed(problem),
-            free: directions(holds),
-            rows: rows(problem),
-            touching: touching(problem),
+            elements: condensed(problem, nodes),
+            free: directions(holds, nodes),
+            rows: groups.into_iter().flatten().collect(),
+            rows_at,
+            of_triangles: (of_triangles, start),
+            edge: (0..nodes.edges()).flat_map(|e| std::iter::repeat_n(e, nodes.inside(e).len())).collect(),
         }
     }
 
     /// 𝓛 of the values per unit thickness, without the triangles that have no unique minimum inside.
     pub fn energy(&self, values: &[[f64; 2]]) -> f64 {
-        let of = |(t, element): (usize, &Condensed)| {
-            let u = self.bent(t, values);
-            let nodes = self.nodes(t);
-            let work: f64 = (0..BOUNDARY).map(|i| element.load[i] * values[nodes[i / 2]][i % 2]).sum();
-            0.5 * dot(&u, &element.times(&u)) - work
+        let mut u = Vec::new();
+        let mut of = |(t, element): (usize, &Condensed)| {
+            self.about_corner(t, values, &mut u);
+            let at = self.nodes(t).iter().flat_map(|&node| values[node]);
+            let work: f64 = element.load().iter().zip(at).map(|(f, u)| f * u).sum();
+            0.5 * element.form(&u, &u) - work
         };
         self.elements.iter().enumerate().filter_map(|(t, e)| Some(of((t, e.as_ref()?)))).sum()
     }
 
     /// Values on the boundary of triangle `t` about its first corner: translations carry no energy and should cost no
     /// digits.
-    pub fn bent(&self, t: usize, values: &[[f64; 2]]) -> [f64; BOUNDARY] {
+    pub fn about_corner(&self, t: usize, values: &[[f64; 2]], out: &mut Vec<f64>) {
         let nodes = self.nodes(t);
         let base = values[nodes[0]];
-        std::array::from_fn(|i| values[nodes[i / 2]][i % 2] - base[i % 2])
+        out.clear();
+        out.extend(nodes.iter().flat_map(|&node| [values[node][0] - base[0], values[node][1] - base[1]]));
     }
 
-    /// The six nodes on the boundary of triangle `t`: corners, then edges.
-    pub fn nodes(&self, t: usize) -> [usize; 6] {
-        let mesh = &self.problem.mesh;
-        let ([a, b, c], [p, q, r]) = (mesh.triangles[t], mesh.triangle_edges[t]);
-        let first = mesh.points.len();
-        [a, b, c, first + p, first + q, first + r]
+    /// The nodes on the boundary of triangle `t`, as [`Nodes::of_triangle`] gives them.
+    pub fn nodes(&self, t: usize) -> &[usize] {
+        let (nodes, start) = &self.of_triangles;
+        &nodes[start[t]..start[t + 1]]
     }
 
     /// Whether a node moves with the vertices of a group.
     pub fn moves(&self, node: usize, group: &Group) -> bool {
         match node.checked_sub(self.problem.mesh.points.len()) {
             None => group.vertices.contains(&node),
-            Some(e) => self.problem.mesh.edges[e].vertices.iter().any(|v| group.vertices.contains(v)),
+            Some(inside) => {
+                let e = self.edge[inside];
+                self.problem.mesh.edges[e].vertices.iter().any(|v| group.vertices.contains(v))
+            }
         }
     }
 }
 
-/// uᵀv.
-pub fn dot(u: &[f64; BOUNDARY], v: &[f64; BOUNDARY]) -> f64 {
-    u.iter().zip(v).map(|(u, v)| u * v).sum()
-}
-
-/// The directions in which each node may move: vertices, then edges.
-fn directions(holds: &Holds) -> Vec<Directions> {
+/// The directions in which each node may move.
+fn directions(holds: &Holds, nodes: &Nodes) -> Vec<Directions> {
     let of = |hold: &Hold| match hold {
         Hold::Free => Directions { count: 2, unit: [[1.0, 0.0], [0.0, 1.0]] },
         Hold::Line { normal: [x, y], .. } => Directions { count: 1, unit: [[-y, *x]; 2] },
         Hold::Fixed(_) => Directions { count: 0, unit: [[0.0; 2]; 2] },
     };
-    holds.vertices.iter().chain(&holds.middles).map(of).collect()
+    holds.of_nodes(nodes).map(of).collect()
 }
 
 /// Up to two unit vectors.
@@ -91,7 +101,7 @@ fn directions(holds: &Holds) -> Vec<Directions> {
 pub struct Directions {
     /// How many.
     pub count: usize,
-    /// Them; those beyond the count are not used.
+    /// The unit vectors; any numbers beyond the count.
     pub unit: [[f64; 2]; 2],
 }
 
@@ -111,15 +121,15 @@ impl Directions {
 }
 
 /// The rows of contact at each vertex: all of each pair that ends there.
-fn touching(problem: &Problem) -> Vec<Vec<usize>> {
-    let mut touching = vec![Vec::new(); problem.mesh.points.len()];
+fn rows_at(problem: &Problem, groups: &[Vec<Row>]) -> Vec<Vec<usize>> {
+    let mut at = vec![Vec::new(); problem.mesh.points.len()];
     let mut next = 0;
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
-        let rows = next..next + if pair.direction.is_constant() { 3 } else { 4 };
+    for (pair, rows) in problem.interfaces.iter().flat_map(|i| &i.pairs).zip(groups) {
+        let rows = next..next + rows.len();
         next = rows.end;
         for &v in pair.first.iter().chain(pair.second.iter().flatten()) {
-            touching[v].extend(rows.clone());
+            at[v].extend(rows.clone());
         }
     }
-    touching
+    at
 }

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::model::{Model, dot};
+use super::model::Model;
 
 /// The last step.
 #[derive(Debug, Default)]
@@ -25,20 +25,22 @@ impl Momentum {
         }
         let mut stiffness = Matrix2::zeros();
         let mut force = Vector2::zeros();
+        let (mut u, mut residual) = (Vec::new(), Vec::new());
+        let mut steps = [Vec::new(), Vec::new()];
         for (t, element) in model.elements.iter().enumerate() {
             let Some(element) = element else { continue };
-            let residual = element.residual(&model.bent(t, values));
-            let nodes = model.nodes(t);
-            let moves = [&sweep, &self.step];
-            let bent = moves.map(|m| model.bent(t, m));
-            let answer = bent.map(|m| element.times(&m));
-            for i in 0..2 {
-                force[i] += (0..residual.len()).map(|k| residual[k] * moves[i][nodes[k / 2]][k % 2]).sum::<f64>();
-                for j in 0..2 {
-                    stiffness[(i, j)] += dot(&bent[i], &answer[j]);
-                }
+            model.about_corner(t, values, &mut u);
+            element.residual(&u, &mut residual);
+            for (i, moves) in [&sweep, &self.step].into_iter().enumerate() {
+                let along = model.nodes(t).iter().flat_map(|&node| moves[node]);
+                force[i] += residual.iter().zip(along).map(|(f, step)| f * step).sum::<f64>();
+                model.about_corner(t, moves, &mut steps[i]);
+            }
+            for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+                stiffness[(i, j)] += element.form(&steps[i], &steps[j]);
             }
         }
+        stiffness[(1, 0)] = stiffness[(0, 1)];
         let best = factors(&stiffness, &force);
         let push = |(s, p): (&[f64; 2], &[f64; 2])| [0, 1].map(|c| best[0] * s[c] + best[1] * p[c]);
         let mut push: Vec<[f64; 2]> = sweep.iter().zip(&self.step).map(push).collect();

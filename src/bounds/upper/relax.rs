@@ -8,13 +8,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::NodalValues;
 use super::cholesky::{column, packed};
 use super::contact::ROUNDING;
 use super::groups::{Group, groups};
 use super::holds::Holds;
 use super::model::Model;
 use super::momentum::Momentum;
+use super::nodes::{NodalValues, Nodes};
 use super::patch::{Step, factorise, free_minimum, minimum};
 use crate::problem::Problem;
 
@@ -39,12 +39,21 @@ const GOOD: f64 = 1e-3;
 /// displacement. On slivers a good one may have very much.
 const WILD: f64 = 1e30;
 
-/// Patches with more unknowns than this, at vertices with scores of triangles, are left as they are.
+/// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
-/// Numbers of kept factors for each vertex at most: where patches are larger on average, some factors are computed anew
-/// in every sweep.
+/// Flat triangles tie together no more vertices than this over the degree: patches grow with the square of both.
+const MOST_VERTICES_BY_DEGREE: usize = 24;
+
+/// Numbers of kept factors for each vertex at most, for quadratics: where patches are larger on average, some factors are
+/// computed anew in every sweep.
 const KEPT_BY_VERTEX: usize = 512;
+
+/// How many unknowns a patch has, relative to quadratics.
+fn size(nodes: &Nodes) -> f64 {
+    let of_quadratics = nodes.vertices() + nodes.edges();
+    nodes.count() as f64 / of_quadratics.max(1) as f64
+}
 
 /// The factor of the stiffness of a patch, from the first sweep on.
 type Kept = Option<Box<[f64]>>;
@@ -58,20 +67,22 @@ pub fn relax(
     candidates: Vec<NodalValues>,
     at_rest: NodalValues,
 ) -> NodalValues {
-    let model = Model::new(problem, holds);
-    let groups = groups(problem);
+    let nodes = &at_rest.nodes;
+    let model = Model::new(problem, holds, nodes);
+    let size = size(nodes);
+    let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
     let mut kept: Vec<Kept> = vec![None; groups.len()];
     let mut patch = Patch {
         local: vec![usize::MAX; model.free.len()],
-        room: KEPT_BY_VERTEX * problem.mesh.points.len(),
+        room: (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices(),
+        most: (MOST_IN_PATCH as f64 * size) as usize,
         ..Patch::default()
     };
-    let all = |nodal: NodalValues| -> Vec<[f64; 2]> { nodal.vertex.into_iter().chain(nodal.middle).collect() };
-    let fields = candidates.into_iter().map(all).map(|field| (model.energy(&field), field));
+    let fields = candidates.into_iter().map(|field| (model.energy(&field.values), field.values));
     // A displacement that is not a number has no energy to compare.
     let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
     let least = fields.min_by(|(a, _), (b, _)| known(*a).total_cmp(&known(*b)));
-    let rest = all(at_rest);
+    let rest = at_rest.values;
     let tame = WILD * model.energy(&rest).abs().max(floor.abs());
     let mut values = least.filter(|(energy, _)| known(*energy) <= tame).map_or(rest, |(_, field)| field);
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -98,8 +109,7 @@ pub fn relax(
             gained += momentum.push(&model, &before, slack, &mut values);
         }
     }
-    let middle = values.split_off(problem.mesh.points.len().min(values.len()));
-    NodalValues { vertex: values, middle }
+    NodalValues { nodes: at_rest.nodes, values }
 }
 
 /// The patch at hand, in memory that serves one after the other.
@@ -117,6 +127,10 @@ struct Patch {
     load: Vec<f64>,
     /// How many numbers of factors may still be kept.
     room: usize,
+    /// Larger patches are left as they are.
+    most: usize,
+    /// Values on the boundary of a triangle, and the forces there.
+    of_triangle: [Vec<f64>; 2],
 }
 
 impl Patch {
@@ -147,7 +161,7 @@ impl Patch {
         values: &[[f64; 2]],
     ) -> Option<Step> {
         let n = self.unknowns.len();
-        if n == 0 || n > MOST_IN_PATCH {
+        if n == 0 || n > self.most {
             return None;
         }
         self.forces(model, group, values);
@@ -180,7 +194,7 @@ impl Patch {
             return;
         }
         for &t in &group.triangles {
-            for node in model.nodes(t) {
+            for &node in model.nodes(t) {
                 let free = model.free[node];
                 if self.local[node] == usize::MAX && free.count > 0 && model.moves(node, group) {
                     self.local[node] = self.unknowns.len();
@@ -189,15 +203,15 @@ impl Patch {
             }
         }
         for &v in &group.vertices {
-            self.rows.extend(&model.touching[v]);
+            self.rows.extend(&model.rows_at[v]);
         }
         self.rows.sort_unstable();
         self.rows.dedup();
     }
 
-    /// The unknowns of a node and their directions.
-    fn terms(&self, model: &Model<'_>, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> + use<> {
-        let (first, free) = (self.local[node], model.free[node]);
+    /// The unknowns of a node and their directions, with the first unknown of every node in `local`.
+    fn terms(local: &[usize], model: &Model<'_>, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> + use<> {
+        let (first, free) = (local[node], model.free[node]);
         let count = if first == usize::MAX { 0 } else { free.count };
         (0..count).map(move |i| (first + i, free.unit[i]))
     }
@@ -208,9 +222,12 @@ impl Patch {
         self.load.resize(self.unknowns.len(), 0.0);
         for &t in &group.triangles {
             let Some(element) = &model.elements[t] else { continue };
-            let residual = element.residual(&model.bent(t, values));
-            for (a, node) in model.nodes(t).into_iter().enumerate() {
-                for (i, p) in self.terms(model, node) {
+            let [u, residual] = &mut self.of_triangle;
+            model.about_corner(t, values, u);
+            element.residual(u, residual);
+            let residual = &self.of_triangle[1];
+            for (a, &node) in model.nodes(t).iter().enumerate() {
+                for (i, p) in Self::terms(&self.local, model, node) {
                     self.load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
                 }
             }
@@ -225,13 +242,13 @@ impl Patch {
         for &t in &group.triangles {
             let Some(element) = &model.elements[t] else { continue };
             let nodes = model.nodes(t);
-            for a in 0..6 {
-                let (first, second) = (&element.matrix[2 * a], &element.matrix[2 * a + 1]);
-                for (i, p) in self.terms(model, nodes[a]) {
+            for (a, &node) in nodes.iter().enumerate() {
+                let (first, second) = (element.row(2 * a), element.row(2 * a + 1));
+                for (i, p) in Self::terms(&self.local, model, node) {
                     let start = column(n, i);
                     for (b, &other) in nodes.iter().enumerate() {
                         let row = [0, 1].map(|d| p[0] * first[2 * b + d] + p[1] * second[2 * b + d]);
-                        for (j, q) in self.terms(model, other).filter(|(j, _)| *j >= i) {
+                        for (j, q) in Self::terms(&self.local, model, other).filter(|(j, _)| *j >= i) {
                             self.matrix[start + j - i] += row[0] * q[0] + row[1] * q[1];
                         }
                     }
@@ -248,7 +265,7 @@ impl Patch {
             let row = &model.rows[row];
             room[i] = (-row.excess(values)).max(0.0);
             for &(node, factor) in row.terms() {
-                for (j, unit) in self.terms(model, node) {
+                for (j, unit) in Self::terms(&self.local, model, node) {
                     b[(i, j)] += factor[0] * unit[0] + factor[1] * unit[1];
                 }
             }

@@ -1,60 +1,87 @@
-//! The energy of a triangle as a function of the six nodes on its boundary, the inside minimised away.
+//! The energy of a triangle as a function of the nodes on its boundary, the inside minimised away.
 
 use rayon::prelude::*;
 
 use super::cholesky;
-use super::split::{BOUNDARY, INSIDE, Split};
+use super::nodes::Nodes;
+use super::split::Split;
 use crate::dual::modes::materials;
+use crate::element::side::{elevation, product};
 use crate::problem::{Condition, Problem};
 
-/// ½ uᵀKu − fᵀu of one triangle, u being x and y of three corners and of the midpoints opposite them.
+/// ½ uᵀKu − fᵀu of one triangle, u being x and y of the nodes on its boundary ([`Nodes::of_triangle`]).
 #[derive(Debug, Clone)]
 pub struct Condensed {
-    /// K.
-    pub matrix: [[f64; BOUNDARY]; BOUNDARY],
-    /// f: body force and traction.
-    pub load: [f64; BOUNDARY],
+    size: usize,
+    /// K row by row, then f: body force and traction.
+    data: Box<[f64]>,
 }
 
 impl Condensed {
-    /// Ku.
-    pub fn times(&self, u: &[f64; BOUNDARY]) -> [f64; BOUNDARY] {
-        let mut out = [0.0; BOUNDARY];
-        for (row, u) in self.matrix.iter().zip(u) {
-            out.iter_mut().zip(row).for_each(|(o, k)| *o += k * u);
+    /// A row of K.
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.data[i * self.size..(i + 1) * self.size]
+    }
+
+    /// f.
+    pub fn load(&self) -> &[f64] {
+        &self.data[self.size * self.size..]
+    }
+
+    /// Adds Ku, times `factor`, to `out`.
+    pub fn add_times(&self, factor: f64, u: &[f64], out: &mut [f64]) {
+        // K is symmetric: its rows are its columns.
+        for (row, u) in self.data.chunks_exact(self.size).zip(u) {
+            let by = factor * u;
+            out.iter_mut().zip(row).for_each(|(o, k)| *o += by * k);
         }
-        out
+    }
+
+    /// uᵀKv.
+    pub fn form(&self, u: &[f64], v: &[f64]) -> f64 {
+        let row = |(row, u): (&[f64], &f64)| u * row.iter().zip(v).map(|(k, v)| k * v).sum::<f64>();
+        self.data.chunks_exact(self.size).zip(u).map(row).sum()
     }
 
     /// f − Ku.
-    pub fn residual(&self, u: &[f64; BOUNDARY]) -> [f64; BOUNDARY] {
-        let mut out = self.load;
-        out.iter_mut().zip(self.times(u)).for_each(|(o, k)| *o -= k);
-        out
+    pub fn residual(&self, u: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.extend_from_slice(self.load());
+        self.add_times(-1.0, u, out);
     }
 }
 
 /// Of every triangle, per unit thickness. `None` where the inside has no unique minimum in numbers.
-pub fn condensed(problem: &Problem) -> Vec<Option<Condensed>> {
+pub fn condensed(problem: &Problem, nodes: &Nodes) -> Vec<Option<Condensed>> {
     let materials = materials(problem);
     let mesh = &problem.mesh;
     (0..mesh.triangles.len())
         .into_par_iter()
-        .with_min_len(64)
+        .with_min_len(16)
         .map(|t| {
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
-            let mut element = element(&Split::new(mesh.corners(t), &materials[body], force))?;
-            for side in 0..3 {
-                let e = mesh.triangle_edges[t][side];
-                let Condition::Traction([pa, pb]) = problem.conditions[e] else { continue };
-                // A boundary edge runs from corner side + 1 to corner side + 2 of its triangle.
+            let degrees = mesh.triangle_edges[t].map(|e| nodes.degree(e));
+            let k = nodes.triangle_degree(mesh, t);
+            let mut element =
+                lowered(eliminated(&Split::new(k, mesh.corners(t), &materials[body], force))?, k, degrees);
+            for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
+                let Condition::Traction(ends) = problem.conditions[e] else { continue };
+                // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
                 let (length, _) = mesh.edge_frame(e);
-                let nodes = [(side + 1) % 3, 3 + side, (side + 2) % 3];
-                for c in 0..2 {
-                    let weights = [pa[c], 2.0 * (pa[c] + pb[c]), pb[c]];
-                    for (node, weight) in nodes.iter().zip(weights) {
-                        element.load[2 * node + c] += length / 6.0 * weight;
+                let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();
+                let k = degrees[i];
+                let size = element.size;
+                let load = &mut element.data[size * size..];
+                for j in 0..=k {
+                    let node = match j {
+                        0 => (i + 1) % 3,
+                        j if j == k => (i + 2) % 3,
+                        j => first + j - 1,
+                    };
+                    let weights = [0, 1].map(|end| length * product(1, end, k, j));
+                    for c in 0..2 {
+                        load[2 * node + c] += weights[0] * ends[0][c] + weights[1] * ends[1][c];
                     }
                 }
             }
@@ -64,26 +91,76 @@ pub fn condensed(problem: &Problem) -> Vec<Option<Condensed>> {
 }
 
 /// Eliminates the inside: with K_ii = L Lᵀ and Y = L⁻¹ K_ib, what is left is K_bb − YᵀY.
-fn element(split: &Split) -> Option<Condensed> {
-    let mut inside = split.inside();
-    if !cholesky::factorise(&mut inside, INSIDE, 0.0) {
+fn eliminated(split: &Split) -> Option<Condensed> {
+    let (size, inside) = (split.boundary, split.inside);
+    let mut factor = split.inside();
+    if !cholesky::factorise(&mut factor, inside, 0.0) {
         return None;
     }
     // The load is one more column.
-    let mut y = [[0.0; BOUNDARY + 1]; INSIDE];
-    for (i, row) in y.iter_mut().enumerate() {
-        row[..BOUNDARY].copy_from_slice(&split.matrix[BOUNDARY + i][..BOUNDARY]);
-        row[BOUNDARY] = split.load[BOUNDARY + i];
+    let mut y = Vec::with_capacity(inside * (size + 1));
+    for i in size..size + inside {
+        y.extend_from_slice(&split.row(i)[..size]);
+        y.push(split.load[i]);
     }
-    cholesky::forward(&inside, &mut y);
-    let mut out = Condensed { matrix: [[0.0; BOUNDARY]; BOUNDARY], load: [0.0; BOUNDARY] };
-    out.load.copy_from_slice(&split.load[..BOUNDARY]);
-    for (i, row) in out.matrix.iter_mut().enumerate() {
-        row.copy_from_slice(&split.matrix[i][..BOUNDARY]);
-        for y in &y {
-            row.iter_mut().zip(y).for_each(|(k, v)| *k -= y[i] * v);
-            out.load[i] -= y[i] * y[BOUNDARY];
+    cholesky::forward(&factor, &mut y, inside);
+    let mut data = Vec::with_capacity(size * (size + 1));
+    (0..size).for_each(|i| data.extend_from_slice(&split.row(i)[..size]));
+    data.extend_from_slice(&split.load[..size]);
+    let (matrix, load) = data.split_at_mut(size * size);
+    for y in y.chunks_exact(size + 1) {
+        for (i, row) in matrix.chunks_exact_mut(size).enumerate() {
+            let by = y[i];
+            row.iter_mut().zip(y).for_each(|(k, v)| *k -= by * v);
+            load[i] -= by * y[size];
         }
     }
-    Some(out)
+    Some(Condensed { size, data: data.into() })
+}
+
+/// The same energy for sides of the given degrees, from that for sides of degree `k`.
+fn lowered(element: Condensed, k: usize, degrees: [usize; 3]) -> Condensed {
+    if degrees == [k; 3] {
+        return element;
+    }
+    let raising = raising(k, degrees);
+    let count = 3 + degrees.iter().map(|k| k - 1).sum::<usize>();
+    let size = 2 * count;
+    let mut data = vec![0.0; size * (size + 1)];
+    let (matrix, load) = data.split_at_mut(size * size);
+    for (i, a, p) in &raising {
+        for c in 0..2 {
+            load[2 * a + c] += p * element.load()[2 * i + c];
+            let row = element.row(2 * i + c);
+            for (j, b, q) in &raising {
+                for d in 0..2 {
+                    matrix[(2 * a + c) * size + 2 * b + d] += p * q * row[2 * j + d];
+                }
+            }
+        }
+    }
+    Condensed { size, data: data.into() }
+}
+
+/// What coefficient i of the boundary in degree `k` has of node a where the sides have the given degrees: i, a and the factor.
+fn raising(k: usize, degrees: [usize; 3]) -> Vec<(usize, usize, f64)> {
+    let mut entries: Vec<(usize, usize, f64)> = (0..3).map(|corner| (corner, corner, 1.0)).collect();
+    let mut first = 3;
+    for (i, own) in degrees.into_iter().enumerate() {
+        let node = |j: usize| match j {
+            0 => (i + 1) % 3,
+            j if j == own => (i + 2) % 3,
+            j => first + j - 1,
+        };
+        for j in 1..k {
+            for m in 0..=own {
+                let factor = elevation(own, k, j, m);
+                if factor != 0.0 {
+                    entries.push((3 + i * (k - 1) + j - 1, node(m), factor));
+                }
+            }
+        }
+        first += own - 1;
+    }
+    entries
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::outline::{View, loops, outline, polyline};
 use super::svg::{Svg, look, px};
 use super::symbols;
-use crate::element::Displacement;
+use crate::element::{Displacement, displacement, side};
 use crate::problem::Problem;
 
 const WIDTH: f64 = 560.0;
@@ -14,7 +14,7 @@ const MESH_SHOWN: usize = 1500;
 
 /// The factor 1, 2 or 5 times a power of ten that makes the largest of `fields` about an eighth of the size of the scene.
 pub fn deformation_scale(problem: &Problem, fields: &[&Displacement]) -> f64 {
-    let nodes = fields.iter().flat_map(|f| f.values.iter().flatten());
+    let nodes = fields.iter().flat_map(|f| (0..f.len()).flat_map(|t| f.block(t)));
     let largest = nodes.map(|u| u[0].hypot(u[1])).filter(|d| d.is_finite()).fold(0.0, f64::max);
     round_down(0.13 * size(problem) / largest)
 }
@@ -43,21 +43,31 @@ pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Dis
     let mesh = &problem.mesh;
     let bodies = problem.scene.bodies.len();
     let moved = |t: usize, k: usize, f: &Displacement| {
-        let (p, u) = (node(problem, t, k), f.values[t][k]);
+        let (p, u) = (mesh.corners(t)[k], f.corner(t, k));
         [0, 1].map(|c| p[c] + scale * u[c])
     };
-    let fits = |f: &&&Displacement| f.values.len() == mesh.triangles.len();
+    let curved = |e: usize, t: usize| {
+        let i = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+        let [a, b] = [1, 2].map(|n| mesh.corners(t)[(i + n) % 3]);
+        let k = field.degree(t);
+        let at = |(j, u): (usize, [f64; 2])| {
+            let s = j as f64 / k as f64;
+            [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c] + scale * u[c])
+        };
+        pieces(&field.side(t, i).enumerate().map(at).collect::<Vec<_>>())
+    };
+    let fits = |f: &&&Displacement| f.len() == mesh.triangles.len();
     let corners = all
         .iter()
         .filter(fits)
         .flat_map(|f| (0..mesh.triangles.len()).flat_map(move |t| (0..3).map(move |k| moved(t, k, f))));
     let (view, height) = View::fit(mesh.points.iter().copied().chain(corners), WIDTH, 460.0, 14.0);
     let mut svg = Svg::new(WIDTH, height, format!("Deformed shape, {name}, displacements times {scale}"));
-    if field.values.len() != mesh.triangles.len() {
+    if field.len() != mesh.triangles.len() {
         return svg.finish();
     }
     for body in 0..bodies {
-        let d = curved_outline(problem, body, &view, |t, k| moved(t, k, field));
+        let d = curved_outline(problem, body, &view, curved);
         let look = look::BODIES[body % look::BODIES.len()];
         svg.path(look, r#"fill-opacity="0.75" fill-rule="evenodd""#, &d);
     }
@@ -75,15 +85,14 @@ pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Dis
             r#"stroke-width="0.8" stroke-dasharray="3 4" stroke-opacity="0.55""#,
             &outline(mesh, body, &view),
         );
-        let d = curved_outline(problem, body, &view, |t, k| moved(t, k, field));
+        let d = curved_outline(problem, body, &view, curved);
         svg.path(look::LINE, r#"stroke-width="1.1""#, &d);
     }
     for side in 0..2 {
         let mut d = String::new();
         for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
             if let Some((e, t)) = pair.edges[side].and_then(|e| Some((e, mesh.edges[e].triangles[0]?))) {
-                let curve = edge_curve(problem, e, t, &view, &|t, k| moved(t, k, field));
-                let _ = write!(d, "M{} {}{}", px(curve[0][0]), px(curve[0][1]), quadratic(&curve));
+                let _ = write!(d, "{}", curve(&curved(e, t), &view, true));
             }
         }
         let dash = if side == 0 { "" } else { r#" stroke-dasharray="7 3""# };
@@ -129,45 +138,54 @@ pub fn motion(problem: &Problem, motion: &[[f64; 2]]) -> String {
     svg.finish()
 }
 
-/// Position of node `k` of triangle `t`: corners, then midpoints of the edges opposite them.
-fn node(problem: &Problem, t: usize, k: usize) -> [f64; 2] {
-    let a = problem.mesh.corners(t);
-    if k < 3 { a[k] } else { [0, 1].map(|c| 0.5 * (a[(k + 1) % 3][c] + a[(k + 2) % 3][c])) }
-}
-
-/// An edge of `t`, displaced, as a quadratic Bézier curve on the page: exact for a quadratic displacement.
-fn edge_curve(
-    problem: &Problem,
-    e: usize,
-    t: usize,
-    view: &View,
-    at: &dyn Fn(usize, usize) -> [f64; 2],
-) -> [[f64; 2]; 3] {
-    let i = problem.mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
-    let (a, m, b) = (at(t, (i + 1) % 3), at(t, 3 + i), at(t, (i + 2) % 3));
-    let control = [0, 1].map(|c| 2.0 * m[c] - 0.5 * (a[c] + b[c]));
-    [view.at(a), view.at(control), view.at(b)]
-}
-
-/// Path data of a curve from where the pen is; straight where the bow cannot be seen.
-fn quadratic([a, q, b]: &[[f64; 2]; 3]) -> String {
-    let bow = [0, 1].map(|c| q[c] - 0.5 * (a[c] + b[c]));
-    if bow[0].hypot(bow[1]) < 0.2 {
-        format!("L{} {}", px(b[0]), px(b[1]))
-    } else {
-        format!("Q{} {} {} {}", px(q[0]), px(q[1]), px(b[0]), px(b[1]))
+/// A side with the given Bernstein coefficients as quadratic Bézier curves, one after the other: one that is exact for a
+/// quadratic displacement, and k − 1 that meet it at their ends and in their middles for degree k.
+fn pieces(coefficients: &[[f64; 2]]) -> Vec<[[f64; 2]; 3]> {
+    let k = coefficients.len() - 1;
+    if let [a, control, b] = *coefficients {
+        return vec![[a, control, b]];
     }
+    let count = (k - 1).max(1);
+    let at = |half: usize| {
+        let s = half as f64 / (2 * count) as f64;
+        let weights = (0..=k).map(|j| side::bernstein(k, j, s));
+        weights.zip(coefficients).fold([0.0; 2], |sum, (w, c)| [sum[0] + w * c[0], sum[1] + w * c[1]])
+    };
+    let piece = |n: usize| {
+        let [a, middle, b] = [2 * n, 2 * n + 1, 2 * n + 2].map(at);
+        [a, displacement::inner_coefficient(a, middle, b), b]
+    };
+    (0..count).map(piece).collect()
 }
 
-fn curved_outline(problem: &Problem, body: usize, view: &View, at: impl Fn(usize, usize) -> [f64; 2]) -> String {
+/// Path data of a side from where the pen is, or from its beginning; straight where the bow cannot be seen.
+fn curve(pieces: &[[[f64; 2]; 3]], view: &View, begin: bool) -> String {
+    let mut d = String::new();
+    for (n, piece) in pieces.iter().enumerate() {
+        let [a, q, b] = piece.map(|p| view.at(p));
+        if begin && n == 0 {
+            let _ = write!(d, "M{} {}", px(a[0]), px(a[1]));
+        }
+        let bow = [0, 1].map(|c| q[c] - 0.5 * (a[c] + b[c]));
+        if bow[0].hypot(bow[1]) < 0.2 {
+            let _ = write!(d, "L{} {}", px(b[0]), px(b[1]));
+        } else {
+            let _ = write!(d, "Q{} {} {} {}", px(q[0]), px(q[1]), px(b[0]), px(b[1]));
+        }
+    }
+    d
+}
+
+fn curved_outline(
+    problem: &Problem,
+    body: usize,
+    view: &View,
+    side: impl Fn(usize, usize) -> Vec<[[f64; 2]; 3]>,
+) -> String {
     let mut d = String::new();
     for ring in loops(&problem.mesh, body) {
         for (i, &(e, t)) in ring.iter().enumerate() {
-            let curve = edge_curve(problem, e, t, view, &at);
-            if i == 0 {
-                let _ = write!(d, "M{} {}", px(curve[0][0]), px(curve[0][1]));
-            }
-            d.push_str(&quadratic(&curve));
+            d.push_str(&curve(&side(e, t), view, i == 0));
         }
         d.push('z');
     }

@@ -1,0 +1,45 @@
+//! Displacements on edges and the opening of contact pairs, by Bernstein coefficients.
+
+use crate::element::{Displacement, side};
+use crate::problem::{ContactPair, Problem};
+
+/// The coefficients of `v` along edge `e`, from its first vertex to its second, in the degree of its first triangle.
+pub fn side_coefficients(problem: &Problem, v: &Displacement, e: usize) -> Vec<[f64; 2]> {
+    let mesh = &problem.mesh;
+    // From triangles[0] the edge runs from corner i + 1 to corner i + 2.
+    let t = mesh.edges[e].triangles[0].unwrap_or(0);
+    let i = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
+    v.side(t, i).collect()
+}
+
+/// The coefficients of the opening g − (v' − v'')·n̂ along `pair`.
+pub fn openings(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
+    let along = |e: usize, start: usize| {
+        let mut u = side_coefficients(problem, v, e);
+        if problem.mesh.edges[e].vertices[0] != start {
+            u.reverse();
+        }
+        projected(&u, pair)
+    };
+    let own = pair.edges[0].map_or_else(|| vec![0.0; 2], |e| along(e, pair.first[0]));
+    let other = pair.edges[1].zip(pair.second).map_or_else(|| vec![0.0; 2], |(e, second)| along(e, second[0]));
+    let degree = own.len().max(other.len()) - 1;
+    let [own, other] = [own, other].map(|u| side::elevate(&u, degree));
+    side::linear(pair.gap, degree).zip(own.iter().zip(&other)).map(|(gap, (own, other))| gap - (own - other)).collect()
+}
+
+/// The coefficients of u·n̂: of the degree of u, or of one more where n̂ turns.
+fn projected(u: &[[f64; 2]], pair: &ContactPair) -> Vec<f64> {
+    let [first, last] = pair.direction.ends;
+    let dot = |u: &[f64; 2], n: [f64; 2]| u[0] * n[0] + u[1] * n[1];
+    if pair.direction.is_constant() {
+        return u.iter().map(|u| dot(u, first)).collect();
+    }
+    let k = u.len();
+    let term = |j: usize| {
+        let before = if j > 0 { j as f64 * dot(&u[j - 1], last) } else { 0.0 };
+        let after = if j < k { (k - j) as f64 * dot(&u[j], first) } else { 0.0 };
+        (before + after) / k as f64
+    };
+    (0..=k).map(term).collect()
+}
