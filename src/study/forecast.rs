@@ -6,7 +6,6 @@
 //! support, and nearly all of it stays with the piece at the point. A vertex keeps its place on every finer mesh, so γ is
 //! measured vertex by vertex, and rounds then go where the gap stays.
 
-use super::certified::Certified;
 use super::indicators::Indicators;
 use crate::mesh::Triangulation;
 
@@ -42,9 +41,7 @@ impl Default for Forecast {
 
 impl Forecast {
     /// Learns from the terms on a mesh that was solved; meshes are nested, and vertices keep their numbers.
-    pub fn learn(&mut self, certified: &Certified) {
-        let Ok(free) = &certified.bracket.free else { return };
-        let (mesh, terms) = (&certified.problem.mesh, Indicators::new(&certified.problem, free));
+    pub fn learn(&mut self, mesh: &Triangulation, terms: &Indicators) {
         let mut fans = vec![[0.0; 2]; mesh.points.len()];
         for (t, corners) in mesh.triangles.iter().enumerate() {
             for &v in corners {

@@ -12,7 +12,9 @@ mod indicators;
 mod outlook;
 mod primal;
 mod provenance;
+mod rounds;
 mod sharpen;
+mod stage;
 mod warm_start;
 
 pub use adaptive::{Adapted, Goal, adapt, tolerance_check};

@@ -1,0 +1,90 @@
+//! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
+
+use super::certified::{Certified, StudyError, balance, solve_balanced};
+use super::warm_start::{carried, closed_ends};
+use crate::dual::{DualMethod, Options};
+use crate::mesh::bisect::RefinementEdges;
+use crate::problem::Problem;
+use crate::statics::{Equilibrium, Statics};
+
+/// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
+const MOST_AT_ENDS: usize = 60;
+
+/// A mesh to solve on.
+pub struct Stage {
+    pub problem: Problem,
+    pub refinement: RefinementEdges,
+    /// For each triangle, the one of the mesh solved last that it lies in.
+    pub parent: Vec<usize>,
+}
+
+impl Stage {
+    /// The first mesh.
+    pub fn new(problem: Problem, refinement: RefinementEdges) -> Self {
+        Stage { parent: (0..problem.mesh.triangles.len()).collect(), problem, refinement }
+    }
+
+    /// With the marked triangles bisected, and the triangle of this stage that each one lies in.
+    pub fn bisect(&self, marked: &[usize]) -> Result<(Stage, Vec<usize>), StudyError> {
+        let (problem, refinement, within) = self.problem.bisect(&self.refinement, marked)?;
+        let parent = within.iter().map(|&t| self.parent[t]).collect();
+        Ok((Stage { problem, refinement, parent }, within))
+    }
+
+    /// Solves, on a mesh bisected at the ends of contact where the load asks for it, from what was found `before`.
+    pub fn solved(
+        self,
+        method: &dyn DualMethod,
+        options: &Options,
+        before: Option<&Certified>,
+    ) -> Result<(Certified, RefinementEdges), StudyError> {
+        let (stage, statics) = self.expressible()?;
+        let mut options = options.clone();
+        let mut start = None;
+        if let Some(Certified { problem, dual, bracket, .. }) = before {
+            options.closed = Some(closed_ends(problem, &dual.closed, &stage.problem));
+            let free = bracket.free.as_ref().ok();
+            start = free.map(|free| carried(problem, &free.displacement, &stage.problem, &stage.parent));
+        }
+        let certified = solve_balanced(stage.problem, statics, method, &options, start)?;
+        Ok((certified, stage.refinement))
+    }
+
+    /// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
+    fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
+        for _ in 0..MOST_AT_ENDS {
+            let statics = balance(&self.problem)?;
+            if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
+                return Ok((self, statics));
+            }
+            self = self.bisect(&contact_ends(&self.problem))?.0;
+        }
+        let statics = balance(&self.problem)?;
+        Ok((self, statics))
+    }
+}
+
+/// The triangles at the first and last edge of every stretch of contact without a corner.
+fn contact_ends(problem: &Problem) -> Vec<usize> {
+    let mut marked = Vec::new();
+    for interface in &problem.interfaces {
+        let pairs = &interface.pairs;
+        for (k, pair) in pairs.iter().enumerate() {
+            let straight_on = |other: Option<usize>| {
+                other.and_then(|o| pairs.get(o)).is_some_and(|o| {
+                    [[0, 1], [1, 0]].into_iter().any(|[mine, its]| {
+                        let (n, m) = (pair.direction.ends[mine], o.direction.ends[its]);
+                        pair.first[mine] == o.first[its] && (n[0] - m[0]).hypot(n[1] - m[1]) < 1e-9
+                    })
+                })
+            };
+            if straight_on(k.checked_sub(1)) && straight_on(Some(k + 1)) {
+                continue;
+            }
+            marked.extend(pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]));
+        }
+    }
+    marked.sort_unstable();
+    marked.dedup();
+    marked
+}
