@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use super::admission::Admission;
 use super::certified::{Certified, StudyError};
+use super::dossier::in_numbers;
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::outlook::outlook;
@@ -171,7 +172,7 @@ fn row(
     let Certified { problem, dual, bracket, .. } = certified;
     let free = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper());
     let upper = goal.known_upper.map_or(free, |known| free.min(known));
-    let relative_error_bound = bracket.relative_error(upper);
+    let relative_error_bound = in_numbers(bracket.relative_error(upper));
     let rate = before.map(|b| {
         (b.relative_error_bound / relative_error_bound).ln() / (dual.unknowns as f64 / b.unknowns as f64).ln()
     });
