@@ -1,14 +1,41 @@
 //! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
 
-use super::certified::{Certified, StudyError, balance, solve_balanced};
+use super::certified::{Certified, StudyError, balance, certify, solve_balanced};
 use super::warm_start::{carried, closed_ends};
 use crate::dual::{DualMethod, Options};
 use crate::mesh::bisect::RefinementEdges;
-use crate::problem::Problem;
+use crate::problem::{Note, Problem, Refinement};
 use crate::statics::{Equilibrium, Statics};
+
+/// Solves and brackets `problem`, on a mesh that is divided at the ends of contact where the loads press on less than its
+/// own edges there can express. Edges and gaps that stand for a curve stay as they are.
+///
+/// # Errors
+/// [`StudyError`].
+pub fn certify_divided(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
+    let outcome = certify(problem.clone(), method, options);
+    let Err(StudyError::BeyondMesh { .. }) = outcome else { return outcome };
+    let (given, refinement) = (problem.mesh.triangles.len(), problem.refinement);
+    let edges = RefinementEdges::longest(&problem.mesh);
+    let kept = Problem { refinement: Refinement::KeepsEdges, ..problem };
+    let (Stage { mut problem, .. }, statics) = Stage::new(kept, edges).expressible()?;
+    problem.refinement = refinement;
+    problem.notes.push(Note {
+        weakens_guarantee: false,
+        text: format!(
+            "the loads press on so little of a contact that edges of the mesh as given cannot express it: the mesh was \
+             divided at the ends of contact, from {given} to {} triangles",
+            problem.mesh.triangles.len()
+        ),
+    });
+    solve_balanced(problem, statics, method, options, None)
+}
 
 /// Bisections of the ends of contact before giving up on a load that presses on less than the last edges can express.
 const MOST_AT_ENDS: usize = 60;
+
+/// In so many of them edges are divided along which the direction of contact turns, too.
+const MOST_WHERE_IT_TURNS: usize = 6;
 
 /// A mesh to solve on.
 pub struct Stage {
@@ -52,20 +79,21 @@ impl Stage {
 
     /// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
     fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
-        for _ in 0..MOST_AT_ENDS {
+        for round in 0..MOST_AT_ENDS {
             let statics = balance(&self.problem)?;
             if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
                 return Ok((self, statics));
             }
-            self = self.bisect(&contact_ends(&self.problem))?.0;
+            self = self.bisect(&contact_ends(&self.problem, round < MOST_WHERE_IT_TURNS))?.0;
         }
         let statics = balance(&self.problem)?;
         Ok((self, statics))
     }
 }
 
-/// The triangles at the first and last edge of every stretch of contact without a corner.
-fn contact_ends(problem: &Problem) -> Vec<usize> {
+/// The triangles at the first and last edge of every stretch of contact without a corner, and `turning` those at edges
+/// along which the direction of contact turns: the outermost direction acts at one end of such an edge alone.
+fn contact_ends(problem: &Problem, turning: bool) -> Vec<usize> {
     let mut marked = Vec::new();
     for interface in &problem.interfaces {
         let pairs = &interface.pairs;
@@ -78,7 +106,8 @@ fn contact_ends(problem: &Problem) -> Vec<usize> {
                     })
                 })
             };
-            if straight_on(k.checked_sub(1)) && straight_on(Some(k + 1)) {
+            let turns = turning && !pair.direction.is_constant();
+            if !turns && straight_on(k.checked_sub(1)) && straight_on(Some(k + 1)) {
                 continue;
             }
             marked.extend(pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]));

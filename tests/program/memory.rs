@@ -126,7 +126,7 @@ fn no_run_ends_by_a_signal_whatever_the_address_space() {
     let field = folder.path().join("u.vtu");
     let (two_blocks, gmsh) = (case("two_blocks"), case("from_gmsh"));
     std::fs::write(&field, "no field").expect("written");
-    let commands: [&[&str]; 7] = [
+    let commands: [&[&str]; 9] = [
         &["solve", &two_blocks, "--refine", "3"],
         &["solve", &two_blocks, "--refine", "2", "--max-memory", "100G", "--threads", "2"],
         &["solve", &two_blocks, "--tolerance", "2e-3", "--max-memory", "100G"],
@@ -134,6 +134,8 @@ fn no_run_ends_by_a_signal_whatever_the_address_space() {
         &["solve", &gmsh, "--max-memory", "100G"],
         &["certify", &two_blocks, "--displacement", "u.vtu"],
         &["schema", "report"],
+        &["chart", &two_blocks, "--refine", "1", "--repeats", "1", "--quiet", "--out", "chart"],
+        &["stability", "--reduced", "--quiet", "--method", "condensed", "--regime", "numbering", "--out", "matrix"],
     ];
     for kilobytes in [200_000, 100_000, 50_000, 30_000, 20_000, 14_000] {
         // Below some size the system cannot even load the program.
