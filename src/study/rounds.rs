@@ -42,7 +42,7 @@ pub struct Rounds<'a> {
 /// What a round came to.
 enum Round {
     /// A finer mesh, and the terms of the gap to expect on it.
-    Finer(Stage, Indicators),
+    Finer(Box<Stage>, Indicators),
     /// No finer mesh: why, and the factor by which triangles must have grown for the rounds so far to be of use.
     Last(String, f64),
 }
@@ -77,7 +77,7 @@ impl<'a> Rounds<'a> {
         let mut terms = terms.clone();
         loop {
             match self.round(&stage, &terms, enough)? {
-                Round::Finer(next, predicted) => (stage, terms) = (next, predicted),
+                Round::Finer(next, predicted) => (stage, terms) = (*next, predicted),
                 Round::Last(reason, worth) => {
                     let useful = triangles(&stage.problem) >= worth * solved && triangles(&stage.problem) > solved;
                     return Ok(if useful { Ok(stage) } else { Err(reason) });
@@ -112,7 +112,7 @@ impl<'a> Rounds<'a> {
             }
             return Ok(match beyond {
                 Some(reason) => Round::Last(reason, WORTH_A_SOLVE),
-                None if count > triangles(&stage.problem) => Round::Finer(next, predicted),
+                None if count > triangles(&stage.problem) => Round::Finer(Box::new(next), predicted),
                 None => Round::Last("the triangles are as small as numbers can resolve".to_string(), 1.0),
             });
         }
