@@ -9,6 +9,7 @@ use super::{CliError, Exit};
 use crate::budget::{self, Budget};
 use crate::report;
 use crate::scene::Scene;
+use crate::study::Adapt;
 
 /// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
 const MOST_REFINEMENTS: i64 = 12;
@@ -52,6 +53,9 @@ pub struct SolveOptions {
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
     #[arg(long, value_name = "X", value_parser = positive)]
     pub tolerance: Option<f64>,
+    /// What to refine towards the tolerance
+    #[arg(long, value_enum, default_value_t = Adapt::H)]
+    pub adapt: Adapt,
     /// Threads to use, at most one for each processor
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,

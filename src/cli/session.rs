@@ -15,7 +15,7 @@ use crate::mesh;
 use crate::problem::{Note, Problem};
 use crate::process::limit;
 use crate::report::{self, Dossier, HistoryRow, Status};
-use crate::scene::{MeshSource, Scene};
+use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
     self, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
 };
@@ -89,14 +89,18 @@ impl Session {
         phase(problem.mesh.triangles.len());
         let options = self.options(solve);
         let run = match solve.tolerance {
-            None => study::certify(problem, method.as_ref(), &options).map(|certified| DualRun {
-                certified,
-                history: Vec::new(),
-                stopped: None,
-            }),
+            None => {
+                // A displacement that is handed in belongs to the mesh as given.
+                let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
+                certify(problem, method.as_ref(), &options).map(|certified| DualRun {
+                    certified,
+                    history: Vec::new(),
+                    stopped: None,
+                })
+            }
             Some(tolerance) => {
                 let Limits { max_triangles, max_seconds } = *limits;
-                let goal = Goal { max_triangles, max_seconds, ..Goal::new(tolerance) };
+                let goal = Goal { max_triangles, max_seconds, adapt: solve.adapt, ..Goal::new(tolerance) };
                 let first = Size::of(&problem);
                 let (mut rows, mut warned) = (Vec::new(), false);
                 let told = |row: &HistoryRow| {
@@ -171,7 +175,16 @@ impl Session {
                 CliError::stopped(Exit::NoEquilibrium, message, remedy)
             }
             StudyError::BeyondMesh { .. } => {
-                CliError::stopped(Exit::Failed, message, "refine the mesh, for instance with --refine or --tolerance")
+                let finer = "refine the mesh, for instance with --refine or --tolerance";
+                let facets = self.scene.contacts.iter().find(|contact| contact.normals == Normals::Facets);
+                let remedy = facets.map_or(finer.to_string(), |contact| {
+                    format!(
+                        "{finer}; where the facets of {} keep two bodies from turning that a curve would let turn, write \
+                         normals = \"smooth\" there",
+                        contact.name()
+                    )
+                });
+                CliError::stopped(Exit::Failed, message, remedy)
             }
             StudyError::Dual(DualError::Infeasible { .. }) => {
                 CliError::stopped(Exit::NoEquilibrium, message, "hold the body with a support, or change the load")

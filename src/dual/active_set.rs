@@ -59,6 +59,7 @@ impl DualMethod for ActiveSet {
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
         let (mut seen, mut careful) = (HashSet::new(), false);
+        let mut left = f64::INFINITY;
         for step in 1..=self.most_steps + 4 * closed.len() {
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
@@ -93,6 +94,7 @@ impl DualMethod for ActiveSet {
             let depth = now.x[first_jump..].iter().chain(&system.jump_bound).fold(0.0_f64, |m, j| m.max(j.abs()));
             let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
             let mut next = next_state(&closed, &misses);
+            left = misses.iter().fold(0.0, |m, by| by.max(m));
             careful |= !seen.insert(closed.clone());
             if careful && next != closed {
                 // Back in a state it has been in: from here on one end at a time, which cannot cycle.
@@ -135,9 +137,12 @@ impl DualMethod for ActiveSet {
         Err(DualError::NotConverged {
             method: self.name(),
             iterations: self.most_steps + 4 * closed.len(),
-            residual: f64::NAN,
-            wanted: 0.0,
-            advice: "the active set cycles; use the condensed method".to_string(),
+            residual: left,
+            wanted: GRAZING,
+            advice:
+                "ends of contact keep opening and closing, as where next to nothing presses on them; refine the mesh \
+                     there, or leave out a contact that carries no force"
+                    .to_string(),
         })
     }
 }

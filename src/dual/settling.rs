@@ -41,7 +41,7 @@ impl Settling<'_> {
     /// Refines `now` until stresses and contact state agree.
     ///
     /// # Errors
-    /// [`DualError::ContactUndetermined`], [`DualError::NotConverged`], or what the contact problem returns.
+    /// [`DualError::ContactUndetermined`], also where ends keep opening and closing, or what the contact problem returns.
     pub fn run(&self, mut now: Refined, state: &mut ContactState) -> Result<Refined, DualError> {
         now = self.refined(now, &state.closed)?;
         for _ in 0..MOST_CHANGES {
@@ -64,13 +64,7 @@ impl Settling<'_> {
         if left <= UNSETTLED {
             return Ok(now);
         }
-        Err(DualError::NotConverged {
-            method: "contact state",
-            iterations: state.steps,
-            residual: left,
-            wanted: UNSETTLED,
-            advice: "contact ends keep opening and closing; refine the mesh at the ends of the contact".to_string(),
-        })
+        Err(DualError::ContactUndetermined)
     }
 
     /// Refuses stresses that leave more of the loads than `allowed`, relative as in [`Equilibrium`].

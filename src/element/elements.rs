@@ -30,6 +30,14 @@ impl Elements {
         }
     }
 
+    /// Those of a finer mesh whose triangle t lies in triangle `parent[t]`.
+    pub fn within(&self, parent: &[usize]) -> Elements {
+        match self {
+            Elements::Uniform(element) => Elements::Uniform(*element),
+            Elements::Blocks(degrees) => Elements::Blocks(parent.iter().map(|&t| degrees[t]).collect()),
+        }
+    }
+
     /// The largest degree of the triangles.
     pub fn largest_degree(&self) -> usize {
         match self {

@@ -5,6 +5,7 @@ use super::cells::{self, Cells};
 use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::labels::{self, Labels, Pair, pair};
+use super::sets::DisjointSets;
 use super::{Edge, Map, RawMesh, Triangulation, hanging, overlap};
 use crate::scene::Note;
 use crate::scene::Scene;
@@ -82,6 +83,17 @@ impl Triangulation {
     pub fn area(&self, t: usize) -> f64 {
         let [a, b, c] = self.corners(t);
         0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    }
+
+    /// The connected piece of every triangle, and how many pieces there are. Triangles that share an edge belong together.
+    pub(crate) fn pieces(&self) -> (Vec<usize>, usize) {
+        let mut sets = DisjointSets::new(self.triangles.len());
+        for edge in &self.edges {
+            if let [Some(left), Some(right)] = edge.triangles {
+                sets.join(left, right);
+            }
+        }
+        sets.labels()
     }
 }
 

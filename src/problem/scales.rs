@@ -8,7 +8,6 @@
 //! their rounding errors.
 
 use super::{Condition, Problem};
-use crate::mesh::sets::DisjointSets;
 use crate::scene::{Body, Kinematics};
 
 /// Rounding errors that a computed number carries, relative to the largest that it was computed from.
@@ -186,13 +185,7 @@ impl Loads {
 /// The largest prescribed displacement, and the gaps that nothing but contact keeps a piece from crossing.
 fn imposed(problem: &Problem) -> f64 {
     let mesh = &problem.mesh;
-    let mut sets = DisjointSets::new(mesh.triangles.len());
-    for edge in &mesh.edges {
-        if let [Some(left), Some(right)] = edge.triangles {
-            sets.join(left, right);
-        }
-    }
-    let (piece, count) = sets.labels();
+    let (piece, count) = mesh.pieces();
     let mut clamped = vec![false; count];
     let mut prescribed = 0.0_f64;
     for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {

@@ -1,6 +1,5 @@
 //! Connected pieces of the mesh and their rigid motions.
 
-use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
 
 /// One rigid motion of every piece of the mesh.
@@ -57,13 +56,7 @@ impl Components {
     /// Finds the pieces of the mesh of `problem`.
     pub fn new(problem: &Problem) -> Self {
         let mesh = &problem.mesh;
-        let mut sets = DisjointSets::new(mesh.triangles.len());
-        for edge in &mesh.edges {
-            if let [Some(left), Some(right)] = edge.triangles {
-                sets.join(left, right);
-            }
-        }
-        let (of_triangle, count) = sets.labels();
+        let (of_triangle, count) = mesh.pieces();
 
         let mut of_vertex = vec![usize::MAX; mesh.points.len()];
         let mut in_piece: Vec<Vec<usize>> = vec![Vec::new(); count];

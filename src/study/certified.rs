@@ -41,7 +41,7 @@ pub enum StudyError {
     },
     /// There is one, but no stress field of this mesh can express it.
     #[error(
-        "no equilibrated stress exists on this mesh: {sentence}. The loads press on less than the last third of an edge; \
+        "no equilibrated stress exists on this mesh: {sentence} The loads press on less than the last third of an edge; \
          refine the mesh at the end of the contact"
     )]
     BeyondMesh {

@@ -6,8 +6,8 @@
 //! support, and nearly all of it stays with the piece at the point. A vertex keeps its place on every finer mesh, so γ is
 //! measured vertex by vertex, and rounds then go where the gap stays.
 
-use super::certified::Certified;
 use super::indicators::Indicators;
+use crate::element::Elements;
 use crate::mesh::Triangulation;
 
 /// A term of the gap falls like this power of the triangle's area where the solution is smooth: with stresses linear on
@@ -42,9 +42,7 @@ impl Default for Forecast {
 
 impl Forecast {
     /// Learns from the terms on a mesh that was solved; meshes are nested, and vertices keep their numbers.
-    pub fn learn(&mut self, certified: &Certified) {
-        let Ok(free) = &certified.bracket.free else { return };
-        let (mesh, terms) = (&certified.problem.mesh, Indicators::new(&certified.problem, free));
+    pub fn learn(&mut self, mesh: &Triangulation, terms: &Indicators) {
         let mut fans = vec![[0.0; 2]; mesh.points.len()];
         for (t, corners) in mesh.triangles.iter().enumerate() {
             for &v in corners {
@@ -70,11 +68,12 @@ impl Forecast {
         self.fans = fans;
     }
 
-    /// The terms on `fine`, each from those of the triangle of `coarse` that it lies in, its parent.
+    /// The terms on `fine`, each from those of the triangle of `coarse` that it lies in, its parent; `elements` are those of
+    /// `coarse`.
     pub fn foresee(
         &self,
         terms: &Indicators,
-        coarse: &Triangulation,
+        (coarse, elements): (&Triangulation, &Elements),
         fine: &Triangulation,
         parent: &[usize],
     ) -> Indicators {
@@ -87,7 +86,8 @@ impl Forecast {
                 * match self.singular(coarse.triangles[p]) {
                     Some((v, power)) if fine.triangles[t].contains(&v) => part.powf(power),
                     Some((_, power)) => (1.0 - 0.5_f64.powf(power)) * (2.0 * part).min(1.0),
-                    None => part.powf(self.smooth),
+                    // Each degree more is worth a power of the area.
+                    None => part.powf(self.smooth + (elements.degree(p) - 1) as f64),
                 }
         };
         parent.iter().enumerate().map(term).collect()
@@ -95,7 +95,7 @@ impl Forecast {
 
     /// The singular point among the corners of a triangle, and the power by which the gap around it falls; the least one
     /// where there are several.
-    fn singular(&self, corners: [usize; 3]) -> Option<(usize, f64)> {
+    pub fn singular(&self, corners: [usize; 3]) -> Option<(usize, f64)> {
         let known = corners.into_iter().filter_map(|v| Some((v, (*self.decay.get(v)?)?)));
         known.filter(|(_, power)| *power < SINGULAR).min_by(|(_, a), (_, b)| a.total_cmp(b))
     }

@@ -12,7 +12,8 @@ use hypercircle::study::{Goal, adapt};
 const FORCE: f64 = 0.009;
 const RADIUS: f64 = 50.0;
 
-fn foot(gap: &str) -> Problem {
+/// Half of the block over that gap.
+pub fn foot(gap: &str) -> Problem {
     let text = format!(
         "[model]\nkinematics = \"plane-strain\"\n[mesh]\nfile = \"foot.msh\"\n\
          [bodies.block]\nyoung = 1.0\npoisson = 0.3\n[[supports]]\non = \"axis\"\ntype = \"roller\"\n\

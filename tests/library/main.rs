@@ -8,6 +8,7 @@ mod circular_gap;
 mod comparison;
 mod congruent;
 mod contact_qp;
+mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
 mod dual_limits;

@@ -1,8 +1,9 @@
 //! `certify` on fields that are known: an exact solution, spoilt in known ways, and a solution of FEniCSx.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
+use crate::command::{case, ended, hypercircle, run, said};
 use crate::fields::{Cells, FieldFile};
 use hypercircle::primal::{self, PrimalError};
 use hypercircle::problem::Problem;
@@ -57,15 +58,14 @@ fn load(folder: &Path, text: &str) -> Problem {
 }
 
 fn certify(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
-    command.args(["certify", "scene.toml", "--quiet", "--out", "out"]).args(arguments);
-    command.current_dir(folder).output().expect("the program starts")
+    let usual = ["certify", "scene.toml", "--quiet", "--out", "out"];
+    run(hypercircle(folder, usual.iter().chain(arguments)))
 }
 
 fn report(folder: &Path, field: &FieldFile, exit: i32) -> Value {
     std::fs::write(folder.join("field.vtk"), field.vtk()).expect("writable");
     let output = certify(folder, &["--displacement", "field.vtk"]);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = said(&output);
     let text = std::fs::read(folder.join("out/report.json")).unwrap_or_else(|_| panic!("no report: {message}"));
     let report: Value = serde_json::from_slice(&text).expect("JSON");
     let failed = failed(&report);
@@ -116,7 +116,7 @@ fn the_files_of_dolfinx_are_read() {
         let field = FieldFile::new(&problem, cells, |_, p| exact(p)).reversed();
         std::fs::write(folder.path().join("u.vtu"), field.vtu()).expect("writable");
         let output = certify(folder.path(), &["--displacement", "u.vtu"]);
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        ended("u.vtu", &output, 0, &[]);
     }
 }
 
@@ -177,8 +177,8 @@ fn a_field_that_penetrates_or_leaves_its_support_is_not_admissible_and_its_repai
 #[test]
 fn a_solution_of_fenicsx_keeps_its_energy_through_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml"));
-    let problem = load(folder.path(), &text.expect("the case").replace("size = 0.125", "size = 0.3"));
+    let text = std::fs::read_to_string(case("two_blocks")).expect("the case");
+    let problem = load(folder.path(), &text.replace("size = 0.125", "size = 0.3"));
     let solutions = match primal::run(&problem, &[], &primal::Options::default()) {
         Err(PrimalError::NotInstalled(reason)) => return eprintln!("skipped: {reason}"),
         outcome => outcome.expect("a solution"),
@@ -240,13 +240,8 @@ fn a_file_that_cannot_be_used_is_refused_in_one_message() {
 }
 
 fn refused(folder: &Path, arguments: &[&str], fragments: &[&str]) {
-    let output = certify(folder, arguments);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-    for fragment in fragments {
-        assert!(message.contains(fragment), "{arguments:?}: no `{fragment}` in\n{message}");
-    }
-    assert!(!message.contains("internal error") && !folder.join("out").exists(), "{message}");
+    ended(&arguments.join(" "), &certify(folder, arguments), 2, fragments);
+    assert!(!folder.join("out").exists(), "{arguments:?}");
 }
 
 #[test]

@@ -1,21 +1,17 @@
 //! `hypercircle chart`: what is saved, kept, marked and printed.
 
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::Value;
 
+use crate::command::{case, ended, hypercircle, run};
+
 fn chart(folder: &Path, options: &[&str]) -> Output {
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml");
-    let output = Command::new(env!("CARGO_BIN_EXE_hypercircle"))
-        .arg("chart")
-        .arg(scene)
-        .args(options)
-        .arg("--out")
-        .arg(folder)
-        .output()
-        .expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut command = hypercircle(folder, ["chart"]);
+    command.arg(case("two_blocks")).args(options).arg("--out").arg(folder);
+    let output = run(command);
+    ended("chart", &output, 0, &[]);
     output
 }
 
@@ -142,14 +138,9 @@ fn a_resumed_chart_makes_only_the_runs_that_are_missing() {
 fn a_file_that_is_no_chart_is_not_resumed() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("chart.json"), "{\"schema_version\": 1}").expect("writable");
-    let output = Command::new(env!("CARGO_BIN_EXE_hypercircle"))
-        .args(["chart", "cases/two_blocks.toml", "--resume", "--out"])
-        .arg(folder.path())
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the program starts");
-    assert_eq!(output.status.code(), Some(3));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("--resume"));
+    let mut command = hypercircle(folder.path(), ["chart", "--resume", "--out", "."]);
+    command.arg(case("two_blocks"));
+    ended("a folder with another file", &run(command), 3, &["--resume"]);
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! The program as a user meets it: exit codes, one message, nothing written on an error.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
+use crate::command::{self, run};
 use crate::malformed::MALFORMED;
 
 fn scenes() -> PathBuf {
@@ -10,8 +11,7 @@ fn scenes() -> PathBuf {
 }
 
 fn hypercircle(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
-    command.args(arguments).current_dir(folder).env_remove("RUST_BACKTRACE").output().expect("the program starts")
+    run(command::hypercircle(folder, arguments))
 }
 
 fn text(bytes: &[u8]) -> String {

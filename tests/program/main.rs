@@ -2,6 +2,8 @@
 
 mod certify;
 mod chart;
+#[path = "../support/command.rs"]
+mod command;
 mod command_line;
 mod fields;
 mod hostile;

@@ -5,19 +5,19 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use crate::command::{self, PROGRAM, hypercircle, said as message};
+
 use hypercircle::budget::Budget;
 use hypercircle::dual::{ActiveSet, Condensed, DualError, DualMethod, Options, Size};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_hypercircle");
-
 fn case(name: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(name).display().to_string()
+    command::case(name).display().to_string()
 }
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(PROGRAM).args(arguments).current_dir(folder).output().expect("the program starts")
+    command::run(hypercircle(folder, arguments))
 }
 
 /// Runs with an address space of so many kB.
@@ -25,10 +25,6 @@ fn run_within(kilobytes: u64, folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new("/bin/sh");
     command.args(["-c", &format!("ulimit -v {kilobytes} && exec \"$@\""), "sh", PROGRAM]).args(arguments);
     command.current_dir(folder).output().expect("the shell starts")
-}
-
-fn message(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// A block with the given edge length.
@@ -57,7 +53,7 @@ fn sizes_and_refinements_that_cannot_be_meant_are_refused_with_their_figures() {
         assert_eq!(output.status.code(), Some(2), "{size:e}: {text}");
         assert!(pieces.iter().all(|piece| text.contains(piece)), "{size:e}: {text}");
     }
-    let two_blocks = case("two_blocks.toml");
+    let two_blocks = case("two_blocks");
     let output = run(folder.path(), &["solve", &two_blocks, "--refine", "12"]);
     let text = message(&output);
     assert_eq!(output.status.code(), Some(2), "{text}");
@@ -68,7 +64,7 @@ fn sizes_and_refinements_that_cannot_be_meant_are_refused_with_their_figures() {
 #[test]
 fn a_mesh_file_that_does_not_fit_is_a_solver_that_failed() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = run(folder.path(), &["solve", &case("from_gmsh.toml"), "--max-memory", "20.5M"]);
+    let output = run(folder.path(), &["solve", &case("from_gmsh"), "--max-memory", "20.5M"]);
     let text = message(&output);
     assert_eq!(output.status.code(), Some(3), "{text}");
     assert!(text.contains("652 triangles does not fit") && text.contains("may be used"), "{text}");
@@ -77,7 +73,7 @@ fn a_mesh_file_that_does_not_fit_is_a_solver_that_failed() {
 
 #[test]
 fn the_symbolic_factorisation_refuses_the_numeric_one() {
-    let scene = Scene::read(Path::new(&case("two_blocks.toml"))).expect("a scene");
+    let scene = Scene::read(Path::new(&case("two_blocks"))).expect("a scene");
     let problem = Problem::load(scene).expect("a mesh");
     for method in [&Condensed::default() as &dyn DualMethod, &ActiveSet::default()] {
         let options = Options { budget: Budget::of(1000), ..Options::default() };
@@ -94,7 +90,7 @@ fn the_symbolic_factorisation_refuses_the_numeric_one() {
 #[test]
 fn a_refinement_that_does_not_fit_ends_with_the_best_result() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["solve", &case("two_blocks.toml"), "--tolerance", "1e-5", "--max-memory", "40M", "--out", "o"];
+    let arguments = ["solve", &case("two_blocks"), "--tolerance", "1e-5", "--max-memory", "40M", "--out", "o"];
     let output = run(folder.path(), &arguments);
     let text = message(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
@@ -115,7 +111,7 @@ fn a_refinement_that_does_not_fit_ends_with_the_best_result() {
 #[test]
 fn the_estimate_is_what_a_run_takes_and_little_more() {
     let folder = tempfile::tempdir().expect("a folder");
-    let path = case("two_blocks.toml");
+    let path = case("two_blocks");
     let output = run(folder.path(), &["measure", "scene", &path, "--method", "condensed", "--refine", "3"]);
     let results: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let Some(peak) = results[0]["peak_memory"].as_f64() else { panic!("no peak in {results}") };
@@ -128,9 +124,9 @@ fn the_estimate_is_what_a_run_takes_and_little_more() {
 fn no_run_ends_by_a_signal_whatever_the_address_space() {
     let folder = tempfile::tempdir().expect("a folder");
     let field = folder.path().join("u.vtu");
-    let (two_blocks, gmsh) = (case("two_blocks.toml"), case("from_gmsh.toml"));
+    let (two_blocks, gmsh) = (case("two_blocks"), case("from_gmsh"));
     std::fs::write(&field, "no field").expect("written");
-    let commands: [&[&str]; 7] = [
+    let commands: [&[&str]; 9] = [
         &["solve", &two_blocks, "--refine", "3"],
         &["solve", &two_blocks, "--refine", "2", "--max-memory", "100G", "--threads", "2"],
         &["solve", &two_blocks, "--tolerance", "2e-3", "--max-memory", "100G"],
@@ -138,6 +134,8 @@ fn no_run_ends_by_a_signal_whatever_the_address_space() {
         &["solve", &gmsh, "--max-memory", "100G"],
         &["certify", &two_blocks, "--displacement", "u.vtu"],
         &["schema", "report"],
+        &["chart", &two_blocks, "--refine", "1", "--repeats", "1", "--quiet", "--out", "chart"],
+        &["stability", "--reduced", "--quiet", "--method", "condensed", "--regime", "numbering", "--out", "matrix"],
     ];
     for kilobytes in [200_000, 100_000, 50_000, 30_000, 20_000, 14_000] {
         // Below some size the system cannot even load the program.

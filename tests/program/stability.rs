@@ -1,9 +1,9 @@
 //! `hypercircle stability`: cells say what happened, planted lies are found, and the program's own methods hold.
 
-use std::process::Command;
-
 use hypercircle::measure::{Answer, End, Ended, Machine, Measured, Method, Seconds};
 use hypercircle::stability::{Cell, Claim, Known, Matrix, Outcome, Row, Step, Truth, judge};
+
+use crate::command::{ended, hypercircle, run};
 
 /// An answer that is right: the exact energy −1 inside, the force exact.
 fn good() -> Answer {
@@ -194,20 +194,9 @@ fn an_error_that_grows_along_the_sweep_is_inaccurate_with_and_without_a_bound() 
 fn a_sweep_leaves_its_files_and_is_resumed() {
     let folder = tempfile::tempdir().expect("a folder");
     let sweep = |more: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
-        command.args([
-            "stability",
-            "--reduced",
-            "--quiet",
-            "--method",
-            "condensed",
-            "--regime",
-            "numbering",
-            "--regime",
-        ]);
-        let output = command.args(["poisson-exact", "--out"]).arg(folder.path()).args(more).output();
-        let output = output.expect("the program starts");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let mut command = hypercircle(folder.path(), ["stability", "--reduced", "--quiet", "--method", "condensed"]);
+        command.args(["--regime", "numbering", "--regime", "poisson-exact", "--out", "."]).args(more);
+        ended("a sweep", &run(command), 0, &[]);
         let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect("written");
         let matrix: Matrix = serde_json::from_str(&read("stability.json")).expect("readable");
         (matrix, read("runs.jsonl"))

@@ -4,6 +4,8 @@
 #[path = "../support/arcs.rs"]
 mod arcs;
 mod cases;
+#[path = "../support/command.rs"]
+mod command;
 #[path = "../support/lame.rs"]
 mod lame;
 mod planted;

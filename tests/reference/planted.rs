@@ -4,18 +4,14 @@
 use std::path::Path;
 use std::sync::Mutex;
 
+use crate::command::{PROGRAM, case, with_reference};
 use crate::support::planted::{Fate, Soil, kinds};
-
-/// Set to 1 where FEniCSx is known to be missing; there is no model to plant a bug in then.
-fn with_reference() -> bool {
-    std::env::var_os("HYPERCIRCLE_WITHOUT_REFERENCE").is_none_or(|value| value != "1")
-}
 
 /// The fate of each fault of `names` in the case `scene`.
 fn plant(scene: &str, names: &[&str]) -> Vec<(String, Fate)> {
     let folder = tempfile::tempdir().expect("a folder");
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{scene}.toml"));
-    let soil = Soil::new(Path::new(env!("CARGO_BIN_EXE_hypercircle")), &scene, folder.path()).expect("agreement");
+    let scene = case(scene);
+    let soil = Soil::new(Path::new(PROGRAM), &scene, folder.path()).expect("agreement");
     let known = kinds();
     let kind =
         |name: &&str| known.iter().find(|k| k.name == **name).unwrap_or_else(|| panic!("no fault {name}")).clone();

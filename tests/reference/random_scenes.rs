@@ -5,20 +5,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Duration;
 
+use crate::command::{PROGRAM, with_reference};
 use crate::support::scenes::{Sample, sample};
 use crate::support::trial::{Ended, Program, Trial, Way, faults};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 
-/// Set to 1 where FEniCSx is known to be missing; the dual side is then tried alone.
-fn with_reference() -> bool {
-    std::env::var_os("HYPERCIRCLE_WITHOUT_REFERENCE").is_none_or(|value| value != "1")
-}
-
 /// Tries each sample, two at a time, and fails with all that is wrong.
 fn try_all(samples: Vec<Sample>) {
     let folder = tempfile::tempdir().expect("a folder");
-    let binary = PathBuf::from(env!("CARGO_BIN_EXE_hypercircle"));
+    let binary = PathBuf::from(PROGRAM);
     let program = Program { binary, limit: Duration::from_secs(300), environment: Vec::new() };
     let (queue, wrong) = (Mutex::new(samples), Mutex::new(String::new()));
     std::thread::scope(|scope| {

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::run::{MESH, Place, SQUARE, alive, names, soon};
+use crate::command::said;
 
 /// A scene whose mesh is read by a meshio that does `body`; the folder to name in PYTHONPATH.
 fn with_meshio(body: &str) -> (Place, tempfile::TempDir) {
@@ -23,7 +24,7 @@ fn reading_has_a_limit_that_can_be_set() {
     let since = Instant::now();
     let mut command = place.command(&["solve", "scene.toml", "--reading-seconds", "2.5"]);
     let output = command.env("PYTHONPATH", library.path()).output().expect("the program starts");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = said(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("did not finish in 2.5 s") && said.contains("--reading-seconds"), "{said}");
     assert!(since.elapsed() < Duration::from_secs(30));
@@ -71,7 +72,7 @@ fn a_grandchild_and_a_flood_do_not_hold_the_program() {
     let _ = std::process::Command::new("kill")
         .arg(std::fs::read_to_string(library.path().join("pid")).expect("it ran").trim())
         .status();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = said(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("that was all") && said.len() < 10_000, "{} bytes", said.len());
     assert!(since.elapsed() < Duration::from_secs(60), "{:?}", since.elapsed());

@@ -4,6 +4,7 @@ use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
 use super::run::{Place, case};
+use crate::command::{PROGRAM, ended, run};
 
 /// An interpreter that is not there: a run that gets as far as FEniCSx ends with code 4, not 2.
 const NOWHERE: (&str, &str) = ("HYPERCIRCLE_PYTHON", "/nonexistent/python3");
@@ -33,10 +34,8 @@ fn outputs_and_baselines_are_checked_first() {
         (vec!["--allow", "contact/no|where/resultant=1"], vec!["no|where"]),
     ] {
         let mut command = place.command(&[&["verify", "scene.toml"], &arguments[..]].concat());
-        let output = command.env(NOWHERE.0, NOWHERE.1).output().expect("the program starts");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(fragments.iter().all(|f| said.contains(f)), "{arguments:?}: {said}");
+        command.env(NOWHERE.0, NOWHERE.1);
+        ended(&arguments.join(" "), &run(command), 2, &fragments);
         assert!(!place.path("out").exists(), "{arguments:?} was solved first");
     }
     assert!(std::fs::metadata(&fifo).expect("there").file_type().is_fifo());
@@ -152,7 +151,6 @@ fn a_pipe_is_read_and_one_that_nobody_writes_to_is_empty() {
     place.refuses(&["solve", "pipe.toml"], &["pipe.toml", "empty"]);
     let line = "(sleep 0.3; cat scene.toml) | \"$0\" solve /dev/stdin --out out/piped";
     let mut shell = std::process::Command::new("/bin/sh");
-    let program = env!("CARGO_BIN_EXE_hypercircle");
-    let output = shell.args(["-c", line, program]).current_dir(place.folder.path()).output().expect("a shell");
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = shell.args(["-c", line, PROGRAM]).current_dir(place.folder.path()).output().expect("a shell");
+    ended("a pipe", &output, 0, &[]);
 }

@@ -2,7 +2,8 @@
 
 use std::process::Command;
 
-use super::run::{FIELD, MESH, Place, SQUARE, case, with_reference};
+use super::run::{FIELD, MESH, Place, SQUARE, case};
+use crate::command::{said, script, with_reference};
 
 /// Prints the name of every module that can be imported, and of some that Python looks for by itself.
 const LIST: &str = "import pkgutil, sys\n\
@@ -42,9 +43,8 @@ fn no_module_in_the_current_folder_is_run() {
     plain.output().expect("an interpreter");
     assert!(!sprung(&place).is_empty(), "the traps do not work");
     // Before Python 3.11 the variable means nothing.
-    let older = place.temporary.path().join("older");
-    std::fs::write(&older, format!("#!/bin/sh\nunset PYTHONSAFEPATH\nexec {PYTHON} \"$@\"\n")).expect("writable");
-    std::fs::set_permissions(&older, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("ours");
+    let body = format!("unset PYTHONSAFEPATH\nexec {PYTHON} \"$@\"");
+    let older = script(place.temporary.path().join("older"), &body);
     let older = older.to_str().expect("plain path");
     let mut starts = vec![
         vec!["solve", "square.toml", "--out", "out/a"],
@@ -62,7 +62,7 @@ fn no_module_in_the_current_folder_is_run() {
                 command.env("PYTHONPATH", path);
             }
             let output = command.output().expect("the program starts");
-            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            let said = said(&output);
             assert_eq!(sprung(&place), "", "{arguments:?} with {interpreter}, PYTHONPATH {path:?}");
             // A field is judged, and this one may be wrong; that it was read is what counts.
             assert!(matches!(output.status.code(), Some(0 | 1)), "{arguments:?}: {said}");
@@ -80,5 +80,5 @@ fn the_python_path_of_the_user_stays() {
         .expect("writable");
     let mut command = place.command(&["solve", "scene.toml"]);
     let output = command.env("PYTHONPATH", library.path()).output().expect("the program starts");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("this is the user's own"), "{output:?}");
+    assert!(said(&output).contains("this is the user's own"), "{output:?}");
 }

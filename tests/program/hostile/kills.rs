@@ -9,13 +9,14 @@ use std::time::{Duration, Instant};
 use hypercircle::report::{NAMES, run_of};
 
 use super::run::{Place, alive, case, names, soon};
+use crate::command::script;
 use crate::random::Random;
 
 const SIGNALS: [&str; 3] = ["KILL", "TERM", "INT"];
 
 /// Takes the place of the interpreter: tells its number, gives a field to `certify` and no answer to `verify`.
-const STAND_IN: &str = "#!/bin/sh\necho $$ >> \"$PIDS\"\nsleep 0.05\nfor last; do :; done\n\
-    case $last in *.json) cp \"$FIELD\" \"$last\" ;; *) exit 4 ;; esac\n";
+const STAND_IN: &str = "echo $$ >> \"$PIDS\"\nsleep 0.05\nfor last; do :; done\n\
+    case $last in *.json) cp \"$FIELD\" \"$last\" ;; *) exit 4 ;; esac";
 
 /// How many, from the environment.
 fn number(variable: &str, usual: usize) -> usize {
@@ -35,9 +36,7 @@ impl Trial {
         let place = Place::with(&case("patch"));
         std::fs::copy(root.join("fuzz/src/setting.toml"), place.path("small.toml")).expect("a scene");
         std::fs::copy(root.join("tests/program/hostile/linear.vtk"), place.path("field.vtk")).expect("a field");
-        place.write("python3", STAND_IN);
-        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
-        std::fs::set_permissions(place.path("python3"), mode).expect("ours");
+        script(place.path("python3"), STAND_IN);
         let pids = place.path("pids");
         std::fs::write(&pids, "").expect("writable");
         Trial { place, pids, stand_in: std::env::var_os("HYPERCIRCLE_KILL_REFERENCE").is_none() }

@@ -1,6 +1,7 @@
 //! A scene far from the point (0, 0) is solved as well as the same scene there.
 
-use super::run::{Place, case, with_reference};
+use super::run::{Place, case};
+use crate::command::{said, with_reference};
 
 /// `two_blocks` moved by whole numbers, its load with it.
 fn moved(by: [f64; 2]) -> String {
@@ -27,8 +28,8 @@ fn a_scene_far_away_keeps_its_digits() {
     let run = |by: [f64; 2], command: &str| {
         let place = Place::with(&moved(by));
         let output = place.run(&[command, "scene.toml", "--out", "out"]);
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{by:?}: {said}{}", String::from_utf8_lossy(&output.stderr));
+        let told = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{by:?}: {told}{}", said(&output));
         place
     };
     let number = |place: &Place, path: &str| {

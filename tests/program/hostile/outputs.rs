@@ -5,6 +5,7 @@ use std::process::Command;
 use hypercircle::report::{NAMES, run_of};
 
 use super::run::{Place, case, names};
+use crate::command::said;
 
 fn expected() -> Vec<String> {
     let mut names = NAMES.map(String::from).to_vec();
@@ -20,7 +21,7 @@ fn a_full_or_closed_standard_output_changes_nothing() {
         let line = format!("exec \"$0\" solve scene.toml --out out/{folder} {redirection}");
         let mut shell = Command::new("/bin/sh");
         let output = shell.args(["-c", &line, program]).current_dir(place.folder.path()).output().expect("a shell");
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let said = said(&output);
         assert_eq!((output.status.code(), said.as_str()), (Some(0), ""), "{redirection}");
         assert_eq!(names(&place.path("out").join(folder)), expected(), "{redirection}");
     }
@@ -32,13 +33,13 @@ fn seconds_and_threads_beyond_all_measure_are_taken() {
     let mut command =
         place.command(&["verify", "scene.toml", "--primal-seconds", "1e300", "--reading-seconds", "1e300"]);
     let output = command.env("HYPERCIRCLE_PYTHON", "/nonexistent/python3").output().expect("the program starts");
-    assert_eq!(output.status.code(), Some(4), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(4), "{}", said(&output));
     for limit in ["unlimited", "4000000"] {
         let line = format!("ulimit -v {limit}; exec \"$0\" solve scene.toml --threads 1024");
         let mut shell = Command::new("/bin/sh");
         let program = env!("CARGO_BIN_EXE_hypercircle");
         let output = shell.args(["-c", &line, program]).current_dir(place.folder.path()).output().expect("a shell");
-        assert_eq!(output.status.code(), Some(0), "{limit}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(0), "{limit}: {}", said(&output));
     }
 }
 

@@ -1,11 +1,13 @@
 //! Starts the program in a folder of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::command::{self, ended, hypercircle};
 
 /// A folder to work in, and one for temporary files.
 pub struct Place {
@@ -35,27 +37,20 @@ impl Place {
     }
 
     pub fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
-        command.args(arguments).current_dir(self.folder.path()).env("TMPDIR", self.temporary.path());
-        command.env_remove("RUST_BACKTRACE").stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut command = hypercircle(self.folder.path(), arguments);
+        command.env("TMPDIR", self.temporary.path());
         command
     }
 
     pub fn run(&self, arguments: &[&str]) -> Output {
-        self.command(arguments).output().expect("the program starts")
+        command::run(self.command(arguments))
     }
 
     /// Asserts that `arguments` end with exit code 2, saying `fragments` and leaving nothing new; gives the message.
     #[track_caller]
     pub fn refuses(&self, arguments: &[&str], fragments: &[&str]) -> String {
         let before = names(self.folder.path());
-        let output = self.run(arguments);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-        for fragment in fragments {
-            assert!(message.contains(fragment), "{arguments:?}: no `{fragment}` in\n{message}");
-        }
-        assert!(!message.contains("internal error"), "{message}");
+        let message = ended(&arguments.join(" "), &self.run(arguments), 2, fragments);
         assert_eq!(names(self.folder.path()), before, "{arguments:?} left something");
         message
     }
@@ -93,15 +88,9 @@ pub fn alive(process: &str) -> bool {
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
 }
 
-/// The scene `name` of `cases/`.
+/// The text of the scene `name` of `cases/`.
 pub fn case(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{name}.toml"));
-    std::fs::read_to_string(path).expect("a case")
-}
-
-/// Whether FEniCSx is expected.
-pub fn with_reference() -> bool {
-    std::env::var_os("HYPERCIRCLE_WITHOUT_REFERENCE").is_none_or(|value| value != "1")
+    std::fs::read_to_string(command::case(name)).expect("a case")
 }
 
 /// A square that is pressed, on the two triangles of `mesh.mesh`.

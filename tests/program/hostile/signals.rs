@@ -4,6 +4,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use super::run::{Place, alive, case, names, soon};
+use crate::command::script;
 
 fn kill(signal: &str, process: u32) {
     let _ =
@@ -12,11 +13,7 @@ fn kill(signal: &str, process: u32) {
 
 /// An interpreter that waits, told in a file, and ends with what it was started by.
 fn waiting(place: &Place) -> std::path::PathBuf {
-    let path = place.path("python3");
-    let text = format!("#!/bin/sh\necho $$ > {}\nexec sleep 300\n", place.path("pid").display());
-    std::fs::write(&path, text).expect("writable");
-    std::fs::set_permissions(&path, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("ours");
-    path
+    script(place.path("python3"), &format!("echo $$ > {}\nexec sleep 300", place.path("pid").display()))
 }
 
 #[test]

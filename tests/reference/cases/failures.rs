@@ -1,9 +1,9 @@
 //! No equilibrium, no FEniCSx, a FEniCSx that breaks: each has its exit code, and nothing passes for agreement.
 
-use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::run::{Run, case, with_reference};
+use crate::command::script;
 
 /// A block on a block, pushed sideways: nothing but friction could hold it, and there is none.
 const PUSHED_ASIDE: &str = r#"
@@ -63,14 +63,6 @@ fn without_equilibrium() {
     }
 }
 
-/// An executable script in place of the interpreter.
-fn interpreter(folder: &Path, body: &str) -> PathBuf {
-    let path = folder.join("python3");
-    std::fs::write(&path, format!("#!/bin/sh\n{body}\n")).expect("writes");
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("executable");
-    path
-}
-
 #[track_caller]
 fn stopped(python: &Path, more: &[&str], code: i32, said: &str) {
     let run = Run::with("verify", &case("patch"), more, &[("HYPERCIRCLE_PYTHON", python)]);
@@ -97,17 +89,17 @@ fn without_dolfinx() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     // -S leaves out the folder that packages are installed in.
-    let python = interpreter(folder.path(), "exec /usr/bin/python3 -S \"$@\"");
+    let python = script(folder.path().join("python3"), "exec /usr/bin/python3 -S \"$@\"");
     stopped(&python, &[], 4, "not installed");
 }
 
 #[test]
 fn a_reference_that_crashes_or_hangs() {
     let folder = tempfile::tempdir().expect("a folder");
-    let python = interpreter(folder.path(), "echo 'singular matrix in row 7' >&2; kill -SEGV $$");
+    let python = script(folder.path().join("python3"), "echo 'singular matrix in row 7' >&2; kill -SEGV $$");
     stopped(&python, &[], 3, "singular matrix in row 7");
-    let python = interpreter(folder.path(), "echo 'waiting for a licence'; sleep 600");
+    let python = script(folder.path().join("python3"), "echo 'waiting for a licence'; sleep 600");
     stopped(&python, &["--primal-seconds", "1"], 3, "waiting for a licence");
-    let python = interpreter(folder.path(), "exit 0");
+    let python = script(folder.path().join("python3"), "exit 0");
     stopped(&python, &[], 3, "primal-P1.json");
 }

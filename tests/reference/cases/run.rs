@@ -1,23 +1,12 @@
 //! Runs the program on a scene and reads what it leaves.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Set to 1 where FEniCSx is known to be missing; the tests then check the dual side alone.
-const WITHOUT_REFERENCE: &str = "HYPERCIRCLE_WITHOUT_REFERENCE";
-
-/// Whether the displacement models take part.
-pub fn with_reference() -> bool {
-    std::env::var_os(WITHOUT_REFERENCE).is_none_or(|value| value != "1")
-}
-
-/// A scene in `cases/`.
-pub fn case(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{name}.toml"))
-}
+use crate::command;
+pub use crate::command::{case, with_reference};
 
 /// What a run left behind.
 pub struct Run {
@@ -31,15 +20,9 @@ impl Run {
     /// `hypercircle COMMAND SCENE --out FOLDER MORE`, with additional environment.
     pub fn with(command: &str, scene: &Path, more: &[&str], environment: &[(&str, &Path)]) -> Run {
         let folder = tempfile::tempdir().expect("a folder");
-        let output = Command::new(env!("CARGO_BIN_EXE_hypercircle"))
-            .arg(command)
-            .arg(scene)
-            .arg("--out")
-            .arg(folder.path().join("out"))
-            .args(more)
-            .envs(environment.iter().copied())
-            .output()
-            .expect("the program starts");
+        let mut program = command::hypercircle(folder.path(), [command]);
+        program.arg(scene).args(["--out", "out"]).args(more).envs(environment.iter().copied());
+        let output = command::run(program);
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         Run { code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr), folder }
     }

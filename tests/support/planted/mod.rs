@@ -1,8 +1,8 @@
 //! Bugs planted in the displacement model and lies told about its results, and whether `verify` notices.
 //!
-//! `stand_in.py` takes the place of the interpreter and makes one thing wrong. What was handed over is held against what
-//! the honest model hands over: only a fault that changes an energy, a force or a displacement can be noticed at all,
-//! and none has to be noticed that changes less than the guarantee leaves open.
+//! `stand_in.py` takes the place of the interpreter and makes one thing wrong, a bug of `bugs.py` or a lie of `lies.py`.
+//! What was handed over is held against what the honest model hands over: only a fault that changes an energy, a force or
+//! a displacement can be noticed at all, and none has to be noticed that changes less than the guarantee leaves open.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::trial::{Ended, Program, Way};
 
-/// A fault that `stand_in.py` knows.
+/// A fault that can be planted.
 #[derive(Clone)]
 pub struct Kind {
     /// Whether the model is wrong, or only what it reports.
@@ -130,6 +130,7 @@ impl<'a> Soil<'a> {
         let effect = self.effect(&kind.name, seed);
         let fate = match ended.code {
             3 if ended.words.contains("exit code 9") => Fate::NoPlace,
+            3 if ended.words.contains("exit code 8") => panic!("{} is wrong itself: {}", kind.name, ended.words),
             3 => Fate::Caught(vec!["refused".to_owned()]),
             1 => Fate::Caught(ended.failed_checks().iter().map(|c| c["name"].to_string().replace('"', "")).collect()),
             0 => match effect {

@@ -1,0 +1,164 @@
+//! The next mesh and its degrees: rounds of Dörfler marking with predicted terms of the gap, until the work has grown enough
+//! or the predicted bound meets the tolerance.
+
+use super::adaptive::{Adapt, Goal};
+use super::admission::Admission;
+use super::certified::StudyError;
+use super::forecast::Forecast;
+use super::indicators::Indicators;
+use super::stage::{Solved, Stage};
+use super::trend::{EXPECTED, inherited, raised};
+use crate::dual::Size;
+use crate::problem::Problem;
+
+/// Unknowns of the next mesh per unknown of this one: the solves on meshes that grow by g cost g/(g − 1) times the last one,
+/// if a solve costs in proportion to its unknowns, and less where it costs more.
+const GROWTH: f64 = 2.4;
+
+/// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
+const AIM: f64 = 0.9;
+
+/// How far growth and prediction may be off before a round is made smaller.
+const SLACK: f64 = 0.1;
+
+/// Least growth: a mesh with hardly more triangles than the last one costs as much and tells little more.
+const WORTH_A_SOLVE: f64 = 1.1;
+
+/// Part of the area of a triangle of the last mesh that its pieces have on the next one, at least: predictions hold no
+/// farther.
+const DEEPEST: f64 = 1e-6;
+
+/// From a mesh that was solved to the next one.
+pub struct Rounds<'a> {
+    goal: &'a Goal,
+    admission: &'a Admission<'a>,
+    forecast: &'a Forecast,
+    /// On the mesh that was solved.
+    problem: &'a Problem,
+    /// No triangle of less area is refined.
+    smallest: f64,
+}
+
+/// What a round came to.
+enum Round {
+    /// A finer mesh, and the terms of the gap to expect on it.
+    Finer(Box<Stage>, Indicators),
+    /// No finer mesh: why, and the factor by which triangles must have grown for the rounds so far to be of use.
+    Last(String, f64),
+}
+
+impl<'a> Rounds<'a> {
+    /// From the mesh of `problem`; triangles `shortest` across, relative to the farthest corner, are not refined.
+    pub fn new(
+        goal: &'a Goal,
+        admission: &'a Admission<'a>,
+        forecast: &'a Forecast,
+        problem: &'a Problem,
+        shortest: f64,
+    ) -> Self {
+        Rounds { goal, admission, forecast, problem, smallest: smallest_area(problem, shortest) }
+    }
+
+    /// The next mesh, or the reason why there is none; `terms` are those of the gap that makes the guaranteed error
+    /// `bound`.
+    ///
+    /// # Errors
+    /// [`StudyError::Mesh`].
+    pub fn next(
+        &self,
+        solved: &Solved,
+        terms: &Indicators,
+        bound: f64,
+    ) -> Result<Result<Stage, String>, StudyError> {
+        // The part of the gap that may stay: the bound is its root.
+        let enough = terms.total() * (AIM * self.goal.tolerance / bound).powi(2);
+        let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
+        stage.ways.clone_from(&solved.ways);
+        let solved = unknowns(&stage);
+        let mut terms = terms.clone();
+        loop {
+            match self.round(&stage, &terms, enough, solved)? {
+                Round::Finer(next, predicted) => (stage, terms) = (*next, predicted),
+                Round::Last(reason, worth) => {
+                    let useful = unknowns(&stage) >= worth * solved && unknowns(&stage) > solved;
+                    return Ok(if useful { Ok(stage) } else { Err(reason) });
+                }
+            }
+            let count = unknowns(&stage);
+            if count >= (1.0 - SLACK) * GROWTH * solved || (count >= WORTH_A_SOLVE * solved && terms.total() <= enough)
+            {
+                return Ok(Ok(stage));
+            }
+        }
+    }
+
+    /// One round of marking. The last one is tried with smaller parts of the gap, down to a sixteenth, while it would
+    /// overshoot.
+    fn round(&self, stage: &Stage, terms: &Indicators, enough: f64, solved: f64) -> Result<Round, StudyError> {
+        let area = |t: usize| stage.problem.mesh.area(t);
+        let may = |t: usize| area(t) > DEEPEST * self.problem.mesh.area(stage.parent[t]) && area(t) > self.smallest;
+        let mut bulk = self.goal.bulk;
+        loop {
+            let marked = terms.marked(bulk, |t| stage.rises(t) || may(t));
+            let (next, predicted) = self.stepped(stage, terms, &marked)?;
+            let count = unknowns(&next);
+            let beyond = self.beyond(&next.problem);
+            let enough_already =
+                predicted.total() < (1.0 - SLACK) * enough && count > (1.0 + SLACK) * WORTH_A_SOLVE * solved;
+            let too_far = count > (1.0 + SLACK) * GROWTH * solved || enough_already;
+            bulk *= 0.5;
+            if (beyond.is_some() || too_far) && bulk > self.goal.bulk / 20.0 {
+                continue;
+            }
+            return Ok(match beyond {
+                Some(reason) => Round::Last(reason, WORTH_A_SOLVE),
+                None if count > unknowns(stage) => Round::Finer(Box::new(next), predicted),
+                None => Round::Last("the triangles are as small as numbers can resolve".to_string(), 1.0),
+            });
+        }
+    }
+
+    /// With the marked triangles bisected or of higher degree, each its way, and the terms to expect.
+    fn stepped(&self, stage: &Stage, terms: &Indicators, marked: &[usize]) -> Result<(Stage, Indicators), StudyError> {
+        let (rising, falling): (Vec<usize>, Vec<usize>) = marked.iter().partition(|&&t| stage.rises(t));
+        let (mut next, within) = stage.bisect(&falling)?;
+        let (mesh, before) = (&next.problem.mesh, &stage.problem.mesh);
+        let mut predicted = self.forecast.foresee(terms, (before, &stage.elements), mesh, &within);
+        if !rising.is_empty() {
+            let mut rises = vec![false; before.triangles.len()];
+            rising.iter().for_each(|&t| rises[t] = true);
+            let rising: Vec<usize> = (0..within.len()).filter(|&t| rises[within[t]]).collect();
+            let raised = raised(mesh, &next.elements, &rising);
+            let left = |t: usize| EXPECTED.powi((raised.degree(t) - next.elements.degree(t)) as i32);
+            predicted = (0..within.len()).map(|t| predicted.of(t) * left(t)).collect();
+            next.elements = raised;
+        }
+        if self.goal.adapt == Adapt::Hp {
+            next.ways = inherited(self.forecast, &stage.ways, before, &next.problem.mesh, &within);
+        }
+        Ok((next, predicted))
+    }
+
+    /// Why `next` is more than may be solved.
+    fn beyond(&self, next: &Problem) -> Option<String> {
+        let count = next.mesh.triangles.len();
+        match self.goal.max_triangles {
+            Some(most) if count > most => Some(format!("the next mesh would have more than {most} triangles")),
+            _ => self.admission.admit(Size::of(next), Some(Size::of(self.problem))).err().map(|excess| {
+                format!("the next mesh, of {count} triangles, would not fit into memory (about {excess})")
+            }),
+        }
+    }
+}
+
+/// As many as three edges for each triangle, shared by two, have of its degree.
+fn unknowns(stage: &Stage) -> f64 {
+    let of = |t: usize| 3 * (stage.elements.degree(t) + 1);
+    (0..stage.problem.mesh.triangles.len()).map(of).sum::<usize>() as f64
+}
+
+/// The area of triangles that are `shortest` across, relative to the farthest corner.
+fn smallest_area(problem: &Problem, shortest: f64) -> f64 {
+    let farthest = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    (shortest * farthest).powi(2)
+}
