@@ -40,3 +40,4 @@ mod squares;
 #[path = "../support/mod.rs"]
 mod support;
 mod two_blocks;
+mod upper_bound;
