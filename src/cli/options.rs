@@ -43,6 +43,9 @@ pub struct SolveOptions {
     /// Solver of the dual problem
     #[arg(long, value_enum, default_value_t = Method::Condensed)]
     pub method: Method,
+    /// Polynomial degree of the stresses
+    #[arg(long, value_name = "P", default_value_t = 1, value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
+    pub degree: u32,
     /// Refine the mesh uniformly N times before solving
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
     pub refine: u32,
@@ -59,6 +62,9 @@ pub struct SolveOptions {
     #[command(flatten)]
     pub memory: MemoryOptions,
 }
+
+/// The largest degree of stresses.
+const MOST_DEGREE: i64 = crate::element::MAX_DEGREE as i64;
 
 /// How much memory may be taken.
 #[derive(Debug, Clone, Args)]

@@ -10,6 +10,7 @@ use super::{CliError, Exit, say, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
+use crate::element::{Elements, block};
 use crate::mesh;
 use crate::problem::{Note, Problem};
 use crate::process::limit;
@@ -86,7 +87,7 @@ impl Session {
         let read = self.start.elapsed().as_secs_f64();
         let phase = |triangles: usize| self.progress.phase(format!("solving in stresses on {triangles} triangles"));
         phase(problem.mesh.triangles.len());
-        let options = Options { threads: self.threads, budget: self.budget, ..Options::default() };
+        let options = self.options(solve);
         let run = match solve.tolerance {
             None => study::certify(problem, method.as_ref(), &options).map(|certified| DualRun {
                 certified,
@@ -117,6 +118,11 @@ impl Session {
         let mut run = run.map_err(|error| self.refuse(error, folder))?;
         run.certified.dual.seconds.read = read;
         Ok(run)
+    }
+
+    fn options(&self, solve: &SolveOptions) -> Options {
+        let elements = Elements::Uniform(block(solve.degree as usize));
+        Options { elements, threads: self.threads, budget: self.budget, ..Options::default() }
     }
 
     fn problem(&self, solve: &SolveOptions, admission: &Admission<'_>) -> Result<Problem, CliError> {
@@ -200,7 +206,7 @@ impl Session {
                 .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
         };
         let method = method(solve.method);
-        let options = Options { threads: self.threads, budget: self.budget, ..Options::default() };
+        let options = self.options(solve);
         let sharpened = study::sharpen(&run.certified, comparison, method.as_ref(), &options, goal, told)
             .map_err(|error| CliError::stopped(Exit::Failed, format!("{}: {error}", self.scene.path.display()), ""))?;
         if let Some(finer) = &sharpened {

@@ -99,7 +99,7 @@ pub fn from_moments(moments: &[f64]) -> Vec<f64> {
 
 /// Coefficients of degree n of the Legendre polynomial P_n on [0, 1], one at s = 1.
 pub fn legendre(n: usize) -> Vec<f64> {
-    (0..=n).map(|k| if (n - k) % 2 == 0 { binomial(n, k) } else { -binomial(n, k) }).collect()
+    (0..=n).map(|k| if (n - k).is_multiple_of(2) { binomial(n, k) } else { -binomial(n, k) }).collect()
 }
 
 #[cfg(test)]

@@ -104,7 +104,9 @@ fn fill(column: &mut [f64], modes: usize, field: &Field, triangle: &Triangle, ro
 /// Adds to the coefficients of a subtriangle what a value at one point has in them.
 fn scatter(column: &mut [f64], first: usize, weights: &[f64], parts: [f64; 3]) {
     for (own, part) in column[first..].chunks_exact_mut(weights.len()).zip(parts) {
-        own.iter_mut().zip(weights).for_each(|(o, w)| *o += part * w);
+        if part != 0.0 {
+            own.iter_mut().zip(weights).for_each(|(o, w)| *o += part * w);
+        }
     }
 }
 
