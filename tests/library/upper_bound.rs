@@ -145,7 +145,7 @@ fn the_bound_of_every_degree_is_less_than_twice_the_error_on_every_case() {
             }
             let [worst, best] = [least, most].map(|exact| (gap / (exact - lower)).sqrt());
             println!("{name}, p = {p}: between {best:.2} and {worst:.2}");
-            assert!(best >= 1.0 && best < 2.0, "{name}, p = {p}: {best}");
+            assert!((1.0..2.0).contains(&best), "{name}, p = {p}: {best}");
             compared += 1;
         }
     }
