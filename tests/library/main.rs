@@ -41,3 +41,4 @@ mod squares;
 #[path = "../support/mod.rs"]
 mod support;
 mod two_blocks;
+mod upper_bound;

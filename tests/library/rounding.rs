@@ -83,11 +83,11 @@ fn upper(problem: &Problem, v: &hypercircle::element::Displacement) -> Dd {
             for at in 0..3 {
                 let half = |i: usize| dd(if i == at { 0.0 } else { 0.5 });
                 let mut du = [[Dd::default(); 2]; 2];
-                for i in 0..3 {
+                for (i, gradient) in g.iter().enumerate() {
                     for j in 0..3 {
-                        for d in 0..2 {
-                            for c in 0..2 {
-                                du[c][d] = du[c][d] + dd(2.0) * half(j) * g[i][d] * of(i, j)[c];
+                        for (du, u) in du.iter_mut().zip(of(i, j)) {
+                            for d in 0..2 {
+                                du[d] = du[d] + dd(2.0) * half(j) * gradient[d] * u;
                             }
                         }
                     }

@@ -81,3 +81,43 @@ fn begin(k: usize, block: &mut [[f64; 2]]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::strain::sub_corners;
+    use crate::element::displacement::MOST;
+    use crate::scene::Kinematics;
+
+    const CORNERS: [[f64; 2]; 3] = [[0.3, -0.2], [1.1, 0.1], [0.4, 0.7]];
+
+    fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+        [a * c - b * d, a * d + b * c]
+    }
+
+    /// u = (Re z^k, −Im z^k) balances no force in any material. Its coefficients are products of the corners as complex
+    /// numbers.
+    #[test]
+    fn harmonic_polynomials_are_found_from_their_boundary() {
+        for nu in [0.3, 0.499999] {
+            let material = Compliance::new(Kinematics::PlaneStrain, 3.0, nu);
+            for k in 2..=MOST {
+                let mut exact = Displacement::zeros([k]);
+                for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+                    let q = sub_corners(CORNERS, sub);
+                    for (&node, alpha) in nodes.iter().zip(triangle::indices(k)) {
+                        let factors = (0..3).flat_map(|i| std::iter::repeat_n(q[i], alpha[i]));
+                        let [x, y] = factors.fold([1.0, 0.0], times);
+                        exact.block_mut(0)[node] = [x, -y];
+                    }
+                }
+                let mut found = exact.block(0).to_vec();
+                found[3 * k..].fill([7.0, -5.0]);
+                inside(k, CORNERS, &material, [0.0; 2], &mut found);
+                for (a, b) in found.iter().zip(exact.block(0)) {
+                    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8, "degree {k}: {a:?} is not {b:?}");
+                }
+            }
+        }
+    }
+}

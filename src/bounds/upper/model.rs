@@ -47,7 +47,8 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// 𝓛 of the values per unit thickness, without the triangles that have no unique minimum inside.
+    /// 𝓛 of the values per unit thickness less that of zero values, without the triangles that have no unique minimum
+    /// inside. With zero values the body force still moves the inside of the triangles.
     pub fn energy(&self, values: &[[f64; 2]]) -> f64 {
         let mut u = Vec::new();
         let mut of = |(t, element): (usize, &Condensed)| {
@@ -132,4 +133,82 @@ fn rows_at(problem: &Problem, groups: &[Vec<Row>]) -> Vec<Vec<usize>> {
         }
     }
     at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::potential;
+    use crate::bounds::upper::holds::holds;
+    use crate::bounds::upper::interior::fill;
+    use crate::bounds::upper::nodes::NodalValues;
+    use crate::scene::Scene;
+
+    /// A block on an obstacle with a gap, pressed and heavy.
+    const SCENE: &str = r#"
+        [model]
+        kinematics = "plane-strain"
+        [geometry]
+        size = 0.5
+        [[geometry.polygons]]
+        body = "a"
+        points = [[0, 0], [1, 0], [1, 1], [0, 1]]
+        edges = ["foot", "", "top", "axis"]
+        [bodies.a]
+        young = 1.0
+        poisson = 0.3
+        body_force = [0.2, -1.0]
+        [[supports]]
+        on = "axis"
+        type = "roller"
+        [[tractions]]
+        on = "top"
+        pressure = 0.1
+        [[contacts]]
+        on = "foot"
+        gap = { circle = 3, at = 0 }
+    "#;
+
+    fn problem() -> Problem {
+        Problem::load(Scene::parse(SCENE, "block.toml".as_ref()).expect("a scene")).expect("a problem")
+    }
+
+    fn nodes(problem: &Problem, degree: impl Fn(usize) -> usize) -> Nodes {
+        Nodes::new(problem.mesh.points.len(), (0..problem.mesh.edges.len()).map(degree))
+    }
+
+    fn energy(problem: &Problem, field: &NodalValues) -> f64 {
+        Model::new(problem, &holds(problem).expect("supports agree"), &field.nodes).energy(&field.values)
+    }
+
+    /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.
+    #[test]
+    fn the_energy_is_that_of_the_displacement_filled_in() {
+        let problem = problem();
+        let degrees: [&dyn Fn(usize) -> usize; 4] = [&|_| 2, &|_| 5, &|e| 2 + e % 3, &|e| 1 + (3 * e) % 5];
+        for degree in degrees {
+            let mut field = NodalValues::zeros(nodes(&problem, degree));
+            field.values.iter_mut().enumerate().for_each(|(n, v)| *v = [(n as f64).sin(), (3.0 * n as f64).cos()]);
+            let found = potential(&problem, &fill(&problem, &field));
+            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone())));
+            let expected = (found.total() - at_rest.total()) / problem.scene.thickness;
+            let of_model = energy(&problem, &field);
+            assert!((of_model - expected).abs() < 1e-11 * found.magnitude, "{of_model} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn spaces_of_higher_degree_contain_those_of_lower() {
+        let problem = problem();
+        let mut field = NodalValues::zeros(nodes(&problem, |_| 2));
+        field.values.iter_mut().enumerate().for_each(|(n, v)| *v = [(n as f64).sin(), (3.0 * n as f64).cos()]);
+        let mut last = energy(&problem, &field);
+        let degrees: [&dyn Fn(usize) -> usize; 3] = [&|e| 2 + e % 3, &|_| 4, &|_| 6];
+        for degree in degrees {
+            let raised = field.clone().on(&problem.mesh, &nodes(&problem, degree));
+            let next = energy(&problem, &raised);
+            assert!(next <= last + 1e-12 * last.abs(), "{next} after {last}");
+            last = next;
+        }
+    }
 }
