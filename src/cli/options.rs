@@ -44,9 +44,9 @@ pub struct SolveOptions {
     /// Solver of the dual problem
     #[arg(long, value_enum, default_value_t = Method::Condensed)]
     pub method: Method,
-    /// Polynomial degree of the stresses
-    #[arg(long, value_name = "P", default_value_t = 1, value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
-    pub degree: u32,
+    /// Polynomial degree of the stresses, 1 where it is missing; with --adapt hp the one to begin with, at first 3
+    #[arg(long, value_name = "P", value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
+    pub degree: Option<u32>,
     /// Refine the mesh uniformly N times before solving
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
     pub refine: u32,

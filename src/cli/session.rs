@@ -17,8 +17,11 @@ use crate::process::limit;
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
-    self, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
+    self, Adapt, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
 };
+
+/// Degree of the stresses that refinement of mesh and degrees begins with: linear ones tell little of where to raise it.
+const FIRST_DEGREE: u32 = 3;
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -125,7 +128,9 @@ impl Session {
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {
-        let elements = Elements::Uniform(block(solve.degree as usize));
+        let adaptive = solve.tolerance.is_some() && solve.adapt == Adapt::Hp;
+        let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
+        let elements = Elements::Uniform(block(degree as usize));
         Options { elements, threads: self.threads, budget: self.budget, ..Options::default() }
     }
 

@@ -63,7 +63,15 @@ pub struct Goal {
 impl Goal {
     /// This tolerance without limits.
     pub fn new(tolerance: f64) -> Self {
-        Goal { tolerance, max_triangles: None, max_seconds: None, known_upper: None, least_rate: None, adapt: Adapt::H, bulk: 0.6 }
+        Goal {
+            tolerance,
+            max_triangles: None,
+            max_seconds: None,
+            known_upper: None,
+            least_rate: None,
+            adapt: Adapt::H,
+            bulk: 0.6,
+        }
     }
 }
 

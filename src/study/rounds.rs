@@ -64,12 +64,7 @@ impl<'a> Rounds<'a> {
     ///
     /// # Errors
     /// [`StudyError::Mesh`].
-    pub fn next(
-        &self,
-        solved: &Solved,
-        terms: &Indicators,
-        bound: f64,
-    ) -> Result<Result<Stage, String>, StudyError> {
+    pub fn next(&self, solved: &Solved, terms: &Indicators, bound: f64) -> Result<Result<Stage, String>, StudyError> {
         // The part of the gap that may stay: the bound is its root.
         let enough = terms.total() * (AIM * self.goal.tolerance / bound).powi(2);
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
