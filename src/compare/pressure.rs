@@ -182,4 +182,3 @@ pub fn profile(interface: &Interface, pieces: &[Piece]) -> Vec<[f64; 2]> {
     };
     interface.pairs.iter().zip(pieces).flat_map(along).collect()
 }
-

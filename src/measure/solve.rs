@@ -10,6 +10,7 @@ use crate::budget::Budget;
 use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
+use crate::element::{Elements, block};
 use crate::problem::Problem;
 use crate::study::{self, Certified, Goal, StudyError};
 
@@ -96,7 +97,12 @@ fn stresses(
             Err(error) => return Measured::without_answer(method.name(), refusal(&StudyError::Dual(error))),
         },
     };
-    let options = Options { threads: settings.threads.max(1), budget: settings.budget, ..Options::default() };
+    let options = Options {
+        elements: Elements::Uniform(block(method.degree())),
+        threads: settings.threads.max(1),
+        budget: settings.budget,
+        ..Options::default()
+    };
     let solved = match goal {
         None => study::certify(problem, solver, &options),
         Some(goal) => study::adapt(problem, solver, &options, &goal, |_| {}).map(|adapted| adapted.certified),
