@@ -115,8 +115,11 @@ mod tests {
         (0..=n).map(|i| weight(i) * f(i as f64 / n as f64)).sum::<f64>() / (3 * n) as f64
     }
 
-    /// p(s), from nothing but values: powers of s, or two straight lines.
-    fn samples() -> Vec<(Piece, fn(f64) -> f64)> {
+    /// p(s).
+    type Curve = fn(f64) -> f64;
+
+    /// Pressures, and the same from nothing but powers of s.
+    fn samples() -> Vec<(Piece, Curve)> {
         vec![
             (Piece::polynomial(vec![1.5]), |_| 1.5),
             (Piece::polynomial(vec![1.0, 3.0]), |s| 1.0 + 2.0 * s),
