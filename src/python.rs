@@ -13,7 +13,7 @@ use crate::cli::options::Method;
 use crate::cli::session::method as solver;
 use crate::dual::Options;
 use crate::element::subtriangle::{self, Moments};
-use crate::element::{Block, Compliance, EquilibriumElement, SideValues};
+use crate::element::{Block, Compliance, Elements, EquilibriumElement, MAX_DEGREE, SideValues, block};
 use crate::problem::{Condition, Interface, Problem};
 use crate::scene::{Kinematics, Scene};
 use crate::study;
@@ -108,18 +108,49 @@ fn load(path: &str) -> PyResult<Problem> {
     Problem::load(Scene::read(Path::new(path)).map_err(fault)?).map_err(fault)
 }
 
-/// The dual solution of a scene: energies, bracket, `contact_traction` (interface, pair, coefficient), `stress` (triangle, node,
-/// component), `moments` (edge, coefficient, component), `closed`.
+/// Stresses of one degree, or of a degree for each of `triangles` triangles.
+fn elements(degree: Option<usize>, degrees: Option<Vec<usize>>, triangles: usize) -> PyResult<Elements> {
+    let known = |p: usize| match p {
+        1..=MAX_DEGREE => Ok(p),
+        _ => Err(fault(format!("degree {p}: stresses have degrees 1 to {MAX_DEGREE}"))),
+    };
+    match (degree, degrees) {
+        (Some(_), Some(_)) => Err(fault("give degree or degrees, not both")),
+        (degree, None) => Ok(Elements::Uniform(block(known(degree.unwrap_or(1))?))),
+        (None, Some(degrees)) if degrees.len() != triangles => {
+            Err(fault(format!("{} degrees for {triangles} triangles", degrees.len())))
+        }
+        (None, Some(degrees)) => {
+            let all: PyResult<Vec<u8>> = degrees.into_iter().map(|p| Ok(known(p)? as u8)).collect();
+            Ok(Elements::Blocks(all?.into()))
+        }
+    }
+}
+
+/// The dual solution of a scene: energies, bracket, `contact_traction` (interface, pair, coefficient), `degrees` (triangle),
+/// `stress` (triangle, node, component), `moments` (edge, coefficient, component), `closed`.
+///
+/// `degree` is the polynomial degree of the stresses, 1 where nothing is said; `degrees` has one for each triangle. A triangle of
+/// degree p has (p + 1)(p + 2)/2 nodes on each of its three parts, an edge p + 1 coefficients with the larger of the degrees at
+/// it.
 ///
 /// # Errors
-/// `ValueError` where the scene is refused or has no solution.
+/// `ValueError` where the scene or a degree is refused, or where there is no solution.
 #[pyfunction]
-#[pyo3(signature = (scene, method = "condensed"))]
-fn solve<'py>(py: Python<'py>, scene: &str, method: &str) -> PyResult<Bound<'py, PyDict>> {
+#[pyo3(signature = (scene, method = "condensed", degree = None, degrees = None))]
+fn solve<'py>(
+    py: Python<'py>,
+    scene: &str,
+    method: &str,
+    degree: Option<usize>,
+    degrees: Option<Vec<usize>>,
+) -> PyResult<Bound<'py, PyDict>> {
     let method = Method::from_str(method, false).map_err(fault)?;
     let problem = load(scene)?;
+    let elements = elements(degree, degrees, problem.mesh.triangles.len())?;
+    let options = Options { elements, ..Options::default() };
     let certified = py
-        .detach(|| study::certify(problem, solver(method).as_ref(), &Options::default()).map_err(|e| e.to_string()))
+        .detach(|| study::certify(problem, solver(method).as_ref(), &options).map_err(|e| e.to_string()))
         .map_err(fault)?;
     let study::Certified { dual, bracket, .. } = &certified;
     let complementary = &bracket.complementary;
@@ -135,6 +166,7 @@ fn solve<'py>(py: Python<'py>, scene: &str, method: &str) -> PyResult<Bound<'py,
     let traction = |t: &SideValues<f64>| t.iter().map(<[f64]>::to_vec).collect::<Vec<_>>();
     out.set_item("contact_traction", dual.contact_traction.iter().map(traction).collect::<Vec<_>>())?;
     out.set_item("closed", dual.closed.values())?;
+    out.set_item("degrees", (0..dual.stress.len()).map(|t| dual.stress.degree(t)).collect::<Vec<_>>())?;
     let stress: Vec<Vec<[f64; 3]>> = (0..dual.stress.len()).map(|t| dual.stress.block(t).to_vec()).collect();
     out.set_item("stress", stress)?;
     out.set_item("moments", dual.moments.iter().map(<[[f64; 2]]>::to_vec).collect::<Vec<_>>())?;

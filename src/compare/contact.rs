@@ -72,7 +72,7 @@ impl Sides<'_> {
             contact_ends: contact_ends(interface, own, threshold),
             pressure_l2_difference: None,
             length,
-            profiles: vec![Profile { model: "dual".to_string(), points: profile(interface, own, false) }],
+            profiles: vec![Profile { model: "dual".to_string(), points: profile(interface, own) }],
         }
     }
 
@@ -81,13 +81,10 @@ impl Sides<'_> {
         let name = &judged.candidate.name;
         let reactions = judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).map(|reactions| {
             let pieces = reaction_pressure(self.problem, interface, reactions);
-            Profile {
-                model: format!("{name} reactions"),
-                points: profile(interface, &pieces, reactions.edge.is_some()),
-            }
+            Profile { model: format!("{name} reactions"), points: profile(interface, &pieces) }
         });
         let pieces = trace_pressure(self.problem, interface, judged);
-        let trace = Profile { model: format!("{name} trace"), points: profile(interface, &pieces, false) };
+        let trace = Profile { model: format!("{name} trace"), points: profile(interface, &pieces) };
         reactions.into_iter().chain([trace]).collect()
     }
 
@@ -155,7 +152,7 @@ impl Sides<'_> {
     /// What rounding and the accuracy of a solver leave in a single reaction, thickness included.
     fn reaction_round_off(&self, best: &Judged, (index, interface): (usize, &Interface), own: &[Piece]) -> f64 {
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
-        let largest = own.iter().flatten().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let largest = own.iter().flat_map(Piece::coefficients).fold(0.0_f64, |m, p| m.max(p.abs()));
         let carried = forces(self.problem).max(self.problem.scene.thickness * largest * length);
         let of_displacements = best.balance.as_ref().map(|b| b.reaction_tolerance(index));
         REACTION * carried + of_displacements.unwrap_or(0.0) + self.scales.round_off.force

@@ -8,6 +8,7 @@ mod energy;
 mod forces;
 mod nodal;
 mod outcome;
+mod piece;
 pub mod pressure;
 mod resultant;
 mod stress;

@@ -78,26 +78,28 @@ pub fn nodal_pressures(
         }
     }
     for (k, (pair, p)) in interface.pairs.iter().zip(own).enumerate() {
-        for (end, (near, far)) in [(p[0], p[2]), (p[2], p[0])].into_iter().enumerate() {
+        for end in 0..2 {
             let v = pair.first[end];
             let n = pair.direction.ends[end];
-            let [own, other] = [dot(n, n), dot(n, pair.direction.ends[1 - end])];
+            let turns = !pair.direction.is_constant();
+            let [own, other] = if turns { [dot(n, n), dot(n, pair.direction.ends[1 - end])] } else { [1.0; 2] };
             let sum = sums.entry(v).or_default();
             sum[0] += 0.5 * pair.length;
-            let inner = reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice);
-            let force = force.entry(v).or_default();
-            if pair.direction.is_constant() {
-                sum[1] += pair.length / 6.0 * (2.0 * near + far);
-                // The middle Bernstein coefficient of a hat function is one half.
-                *force += 0.5 * inner.and_then(|r| r.first()).copied().unwrap_or(0.0);
-                continue;
+            // φ n·n̂, both linear, from this end to the other.
+            let mut weight = [own, 0.5 * other, 0.0];
+            if end == 1 {
+                weight.reverse();
             }
-            // ∫ φ (n·n̂) p with all three linear.
-            let product = near * (3.0 * own + other) + far * (own + other);
-            sum[1] += pair.length / 12.0 * product;
-            if let Some(&[first, last]) = inner {
-                let (near, far) = if end == 0 { (first, last) } else { (last, first) };
-                *force += (near * (own + other) + far * other) / 3.0;
+            sum[1] += pair.length * p.integral(&weight);
+            let force = force.entry(v).or_default();
+            match reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice) {
+                // The middle Bernstein coefficient of a hat function is one half.
+                Some(&[middle]) if !turns => *force += 0.5 * middle,
+                Some(&[first, last]) if turns => {
+                    let (near, far) = if end == 0 { (first, last) } else { (last, first) };
+                    *force += (near * (own + other) + far * other) / 3.0;
+                }
+                _ => {}
             }
         }
     }

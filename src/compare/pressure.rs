@@ -1,18 +1,16 @@
 //! Contact pressure from both sides, along each interface.
 
 use super::candidate::{Judged, Reactions};
+pub use super::piece::Piece;
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
-use crate::element::side;
 use crate::problem::{ContactPair, Interface, Problem};
 
-/// Pressure on one pair: values at the first end, the middle and the second end; linear in each half.
-pub type Piece = [f64; 3];
-
-/// −T_n of the dual solution.
+/// −t of the dual solution.
 pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
-    dual.contact_traction[interface].iter().map(|t| [0.0, 0.5, 1.0].map(|s| -side::value(t, s))).collect()
+    let pressure = |t: &[f64]| Piece::polynomial(t.iter().map(|t| -t).collect());
+    dual.contact_traction[interface].iter().map(pressure).collect()
 }
 
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
@@ -41,7 +39,7 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
             let (a, b) = (at(pair.first[0]), at(pair.first[1]));
             let inner = reactions.edge.as_ref().and_then(|e| e.get(k));
             let mean = |r: &Vec<f64>| r.iter().sum::<f64>() / r.len() as f64 / (share(pair) * pair.length * thickness);
-            [a, inner.map_or(0.5 * (a + b), mean), b]
+            inner.map_or_else(|| Piece::polynomial(vec![a, b]), |r| Piece::broken([a, mean(r), b]))
         })
         .collect()
 }
@@ -51,7 +49,7 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
     let mesh = &problem.mesh;
     let materials = materials(problem);
     let trace = |pair: &ContactPair| {
-        let Some(e) = pair.edges[0] else { return [0.0; 3] };
+        let Some(e) = pair.edges[0] else { return Piece::polynomial(vec![0.0]) };
         let t = mesh.edges[e].triangles[0].unwrap_or(0);
         let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
         let mut strains = Strains::default();
@@ -61,36 +59,26 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
             let s = materials[mesh.body[t]].stress(e);
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
-        let [a, middle, b] = [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 1.0, 0.0]].map(|l| pressure(strains.at(l)));
+        let [a, b] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|l| pressure(strains.at(l)));
         let forward = mesh.edges[e].vertices[0] == pair.first[0];
-        if forward { [a, middle, b] } else { [b, middle, a] }
+        Piece::polynomial(if forward { vec![a, b] } else { vec![b, a] })
     };
     interface.pairs.iter().map(trace).collect()
 }
 
 /// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included.
 pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
+    let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for (pair, p) in interface.pairs.iter().zip(pieces) {
         let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
-        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        let half = 0.5 * pair.length * problem.scene.thickness;
-        let n = [0.0, 0.5, 1.0].map(|t| pair.direction.at(t));
-        for (x, y, k) in [(a, middle, 0), (middle, b, 1)] {
-            let (p, q) = (p[k], p[k + 1]);
-            // ∫ of a linear pressure over a half, at the two ends.
-            let (wx, wy) = (half / 6.0 * (2.0 * p + q), half / 6.0 * (p + 2.0 * q));
-            for (at, w, n) in [(x, wx, n[k]), (y, wy, n[k + 1])] {
-                let f = [-w * n[0], -w * n[1]];
-                force[0] += f[0];
-                force[1] += f[1];
-                moment += at[0] * f[1] - at[1] * f[0];
-            }
-            // Where the direction turns, the arm of the force is quadratic; the rest is p (y − x) × (n_y − n_x) t (t − 1).
-            let d = [y[0] - x[0], y[1] - x[1]];
-            let turn = [n[k + 1][0] - n[k][0], n[k + 1][1] - n[k][1]];
-            moment += half * 0.5 * (p + q) / 6.0 * (d[0] * turn[1] - d[1] * turn[0]);
+        let [m, n] = pair.direction.ends;
+        let size = pair.length * problem.scene.thickness;
+        for c in 0..2 {
+            force[c] -= size * p.integral(&[m[c], n[c]]);
         }
+        // The arm of a force along a direction that turns is quadratic.
+        moment -= size * p.integral(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);
     }
     (force, moment)
 }
@@ -127,11 +115,10 @@ pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Rea
 pub fn maximum(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> (f64, [f64; 2]) {
     let mut best = (0.0, interface.pairs.first().map_or([0.0; 2], |p| problem.mesh.points[p.first[0]]));
     for (pair, p) in interface.pairs.iter().zip(pieces) {
-        let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
-        for (value, at) in [(p[0], a), (p[1], [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]), (p[2], b)] {
-            if value > best.0 {
-                best = (value, at);
-            }
+        let (value, s) = p.largest();
+        if value > best.0 {
+            let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
+            best = (value, [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c]));
         }
     }
     best
@@ -139,21 +126,22 @@ pub fn maximum(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> (f
 
 /// L² norms of p and of p − q.
 pub fn l2(interface: &Interface, p: &[Piece], q: &[Piece]) -> (f64, f64) {
-    let square = |half: f64, a: f64, b: f64| half / 3.0 * (a * a + a * b + b * b);
     let (mut norm, mut difference) = (0.0, 0.0);
     for ((pair, p), q) in interface.pairs.iter().zip(p).zip(q) {
-        let half = 0.5 * pair.length;
-        for (i, j) in [(0, 1), (1, 2)] {
-            norm += square(half, p[i], p[j]);
-            difference += square(half, p[i] - q[i], p[j] - q[j]);
-        }
+        norm += pair.length * p.square();
+        difference += pair.length * p.squared_difference(q);
     }
     (norm.sqrt(), difference.sqrt())
 }
 
+/// Whether no more than `threshold` of pressure is anywhere on a pair.
+fn is_open(piece: &Piece, threshold: f64) -> bool {
+    piece.largest().0 <= threshold
+}
+
 /// Length that carries less than `threshold` of pressure throughout an edge.
 pub fn open_length(interface: &Interface, pieces: &[Piece], threshold: f64) -> f64 {
-    let open = |p: &Piece| p.iter().all(|&v| v <= threshold);
+    let open = |p: &Piece| is_open(p, threshold);
     interface.pairs.iter().zip(pieces).filter(|(_, p)| open(p)).map(|(pair, _)| pair.length).sum()
 }
 
@@ -167,7 +155,7 @@ pub struct Disagreement {
 
 /// Compares which edges carry more than a threshold of pressure in two models.
 pub fn disagreement(interface: &Interface, p: (&[Piece], f64), q: (&[Piece], f64)) -> Disagreement {
-    let open = |pieces: &[Piece], threshold: f64, k: usize| pieces[k].iter().all(|&v| v <= threshold);
+    let open = |pieces: &[Piece], threshold: f64, k: usize| is_open(&pieces[k], threshold);
     let lengths = interface.pairs.iter().enumerate().filter(|(k, _)| open(p.0, p.1, *k) != open(q.0, q.1, *k));
     let mut found = Disagreement { length: 0.0, longest: 0.0 };
     for (_, pair) in lengths {
@@ -177,31 +165,19 @@ pub fn disagreement(interface: &Interface, p: (&[Piece], f64), q: (&[Piece], f64
     found
 }
 
-/// Arc lengths at which contact begins or ends.
+/// Arc lengths at which contact begins or ends: where a pair that carries more than `threshold` somewhere meets one that does
+/// not. A polynomial without negative coefficients that is zero between the ends of its pair is zero on all of it.
 pub fn contact_ends(interface: &Interface, pieces: &[Piece], threshold: f64) -> Vec<f64> {
-    let mut ends = Vec::new();
-    let mut last: Option<bool> = None;
-    for (pair, p) in interface.pairs.iter().zip(pieces) {
-        for (arc, value) in [(pair.arc[0], p[0]), (pair.arc[1], p[2])] {
-            let closed = value > threshold;
-            if last.is_some_and(|l| l != closed) && ends.last() != Some(&arc) {
-                ends.push(arc);
-            }
-            last = Some(closed);
-        }
-    }
-    ends
+    let open: Vec<bool> = pieces.iter().map(|p| is_open(p, threshold)).collect();
+    let changes = interface.pairs.iter().zip(open.windows(2)).filter(|(_, open)| open[0] != open[1]);
+    changes.map(|(pair, _)| pair.arc[1]).collect()
 }
 
 /// Points (arc length, pressure) for a plot.
-pub fn profile(interface: &Interface, pieces: &[Piece], with_middle: bool) -> Vec<[f64; 2]> {
-    let mut points = Vec::with_capacity(3 * pieces.len());
-    for (pair, p) in interface.pairs.iter().zip(pieces) {
-        points.push([pair.arc[0], p[0]]);
-        if with_middle {
-            points.push([0.5 * (pair.arc[0] + pair.arc[1]), p[1]]);
-        }
-        points.push([pair.arc[1], p[2]]);
-    }
-    points
+pub fn profile(interface: &Interface, pieces: &[Piece]) -> Vec<[f64; 2]> {
+    let along = |(pair, p): (&ContactPair, &Piece)| {
+        let [from, to] = pair.arc;
+        p.points().into_iter().map(move |[s, value]| [(1.0 - s) * from + s * to, value])
+    };
+    interface.pairs.iter().zip(pieces).flat_map(along).collect()
 }

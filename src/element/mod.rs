@@ -20,6 +20,7 @@ pub mod quadrature;
 pub mod side;
 mod side_values;
 mod split;
+pub mod subdivision;
 pub mod subtriangle;
 pub mod triangle;
 

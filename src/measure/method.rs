@@ -10,7 +10,13 @@ use crate::dual::{self, DualMethod};
 pub enum Method {
     /// One sparse factorisation, contact on its Schur complement.
     Condensed,
-    /// The same on meshes refined where the gap is.
+    /// The same with stresses of degree 2.
+    CondensedP2,
+    /// The same with stresses of degree 3.
+    CondensedP3,
+    /// The same with stresses of degree 4.
+    CondensedP4,
+    /// Linear stresses on meshes refined where the gap is.
     Adaptive,
     /// Active set, refactorising at each step.
     ActiveSet,
@@ -36,8 +42,11 @@ pub enum Family {
 
 impl Method {
     /// All of them, in the order of tables.
-    pub const ALL: [Method; 7] = [
+    pub const ALL: [Method; 10] = [
         Method::Condensed,
+        Method::CondensedP2,
+        Method::CondensedP3,
+        Method::CondensedP4,
         Method::Adaptive,
         Method::ActiveSet,
         Method::Clarabel,
@@ -50,6 +59,9 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Method::Condensed => "condensed",
+            Method::CondensedP2 => "condensed-p2",
+            Method::CondensedP3 => "condensed-p3",
+            Method::CondensedP4 => "condensed-p4",
             Method::Adaptive => "adaptive",
             Method::ActiveSet => "active-set",
             Method::Clarabel => "clarabel",
@@ -72,7 +84,9 @@ impl Method {
     /// What it is made of.
     pub fn family(self) -> Family {
         match self {
-            Method::Condensed => Family::Dual(Box::new(dual::Condensed::default())),
+            Method::Condensed | Method::CondensedP2 | Method::CondensedP3 | Method::CondensedP4 => {
+                Family::Dual(Box::new(dual::Condensed::default()))
+            }
             Method::Adaptive => Family::Adaptive(Box::new(dual::Condensed::default())),
             Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
             Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
@@ -80,6 +94,22 @@ impl Method {
             Method::FenicsP1 => Family::Primal(1),
             Method::FenicsP2 => Family::Primal(2),
         }
+    }
+
+    /// Polynomial degree of its stresses, or of its displacements where it is the displacement model.
+    pub fn degree(self) -> usize {
+        match self {
+            Method::Condensed | Method::Adaptive | Method::ActiveSet | Method::Clarabel | Method::Uzawa => 1,
+            Method::CondensedP2 | Method::FenicsP2 => 2,
+            Method::CondensedP3 => 3,
+            Method::CondensedP4 => 4,
+            Method::FenicsP1 => 1,
+        }
+    }
+
+    /// Whether its stresses are of a higher degree than those of the paper.
+    pub fn is_higher(self) -> bool {
+        !self.is_primal() && self.degree() > 1
     }
 
     /// Whether it delivers a two-sided bracket of its own.
@@ -102,6 +132,9 @@ mod tests {
         for (i, method) in Method::ALL.into_iter().enumerate() {
             assert_eq!(Method::of_name(method.name()), Some(method));
             assert_eq!(method.index(), i);
+            if method.is_higher() || method.is_primal() {
+                assert!(method.name().ends_with(&method.degree().to_string()));
+            }
         }
         assert_eq!(Method::of_name("newton"), None);
     }

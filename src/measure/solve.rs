@@ -10,6 +10,7 @@ use crate::budget::Budget;
 use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
+use crate::element::{Elements, block};
 use crate::problem::Problem;
 use crate::study::{self, Certified, Goal, StudyError};
 
@@ -96,7 +97,12 @@ fn stresses(
             Err(error) => return Measured::without_answer(method.name(), refusal(&StudyError::Dual(error))),
         },
     };
-    let options = Options { threads: settings.threads.max(1), budget: settings.budget, ..Options::default() };
+    let options = Options {
+        elements: Elements::Uniform(block(method.degree())),
+        threads: settings.threads.max(1),
+        budget: settings.budget,
+        ..Options::default()
+    };
     let solved = match goal {
         None => study::certify(problem, solver, &options),
         Some(goal) => study::adapt(problem, solver, &options, &goal, |_| {}).map(|adapted| adapted.certified),
@@ -177,8 +183,8 @@ fn answer(certified: &Certified) -> Answer {
 
 /// ∫ |dp| along a contact, jumps between edges included.
 pub(super) fn variation(pieces: &[Piece]) -> f64 {
-    let values: Vec<f64> = pieces.iter().flatten().copied().collect();
-    values.windows(2).map(|w| (w[1] - w[0]).abs()).sum()
+    let jumps = pieces.windows(2).map(|w| (w[1].ends()[0] - w[0].ends()[1]).abs());
+    pieces.iter().map(Piece::variation).chain(jumps).sum()
 }
 
 #[cfg(test)]
@@ -187,8 +193,10 @@ mod tests {
 
     #[test]
     fn variation_counts_every_way_up_and_down() {
-        assert_eq!(variation(&[[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]]), 4.0);
-        assert_eq!(variation(&[[0.0, 0.5, 1.0], [3.0, 3.0, 3.0]]), 3.0);
+        let up_and_down = [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]].map(Piece::broken);
+        assert_eq!(variation(&up_and_down), 4.0);
+        let with_a_jump = [Piece::polynomial(vec![0.0, 1.0]), Piece::polynomial(vec![3.0])];
+        assert_eq!(variation(&with_a_jump), 3.0);
         assert_eq!(variation(&[]), 0.0);
     }
 }

@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 /// How series number i is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ink {
-    /// Colour after Okabe and Ito.
+    /// Colour after Okabe and Ito, the last three after Tol.
     pub colour: RGBColor,
     /// Length of dashes and of the space between them, in pixels; `None` is a solid line.
     pub dash: Option<[i32; 2]>,
@@ -22,11 +22,17 @@ const DOWN: &[(i32, i32)] = &[(0, 6), (5, -4), (-5, -4)];
 const PLUS: &[(i32, i32)] =
     &[(-2, -6), (2, -6), (2, -2), (6, -2), (6, 2), (2, 2), (2, 6), (-2, 6), (-2, 2), (-6, 2), (-6, -2), (-2, -2)];
 const STAR: &[(i32, i32)] = &[(0, -7), (2, -2), (7, 0), (2, 2), (0, 7), (-2, 2), (-7, 0), (-2, -2)];
+const LEFT: &[(i32, i32)] = &[(-6, 0), (4, -5), (4, 5)];
+const RIGHT: &[(i32, i32)] = &[(6, 0), (-4, 5), (-4, -5)];
+const HOURGLASS: &[(i32, i32)] = &[(-5, -5), (5, -5), (-5, 5), (5, 5)];
+
+/// Number of series that look different.
+const COUNT: usize = 10;
 
 /// The markers in the order of the series.
-pub const MARKERS: [&[(i32, i32)]; 7] = [CIRCLE, STAR, SQUARE, DIAMOND, PLUS, UP, DOWN];
+pub const MARKERS: [&[(i32, i32)]; COUNT] = [CIRCLE, STAR, SQUARE, DIAMOND, PLUS, UP, DOWN, LEFT, RIGHT, HOURGLASS];
 
-const COLOURS: [RGBColor; 7] = [
+const COLOURS: [RGBColor; COUNT] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -34,13 +40,26 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(230, 159, 0),
     RGBColor(0, 0, 0),
+    RGBColor(136, 34, 85),
+    RGBColor(153, 153, 51),
+    RGBColor(51, 34, 136),
 ];
 
-const DASHES: [Option<[i32; 2]>; 7] =
-    [None, Some([14, 4]), Some([8, 4]), Some([3, 4]), Some([18, 8]), Some([6, 8]), Some([10, 3])];
+const DASHES: [Option<[i32; 2]>; COUNT] = [
+    None,
+    Some([14, 4]),
+    Some([8, 4]),
+    Some([3, 4]),
+    Some([18, 8]),
+    Some([6, 8]),
+    Some([10, 3]),
+    Some([5, 2]),
+    Some([12, 9]),
+    Some([2, 2]),
+];
 
 impl Ink {
-    /// The ink of series `i`; after seven they repeat.
+    /// The ink of series `i`; after ten they repeat.
     pub fn of(i: usize) -> Ink {
         let i = i % MARKERS.len();
         Ink { colour: COLOURS[i], dash: DASHES[i], marker: MARKERS[i] }
@@ -53,7 +72,7 @@ mod tests {
 
     #[test]
     fn no_two_series_share_colour_marker_or_dash() {
-        for i in 0..7 {
+        for i in 0..COUNT {
             for j in 0..i {
                 let (a, b) = (Ink::of(i), Ink::of(j));
                 assert!(a.colour != b.colour && a.marker != b.marker && a.dash != b.dash);

@@ -105,6 +105,10 @@ pub struct Energy {
 pub struct DualSummary {
     /// `condensed`, `clarabel`, `uzawa` or `active-set`.
     pub method: String,
+    /// Lowest polynomial degree of the stress on a triangle.
+    pub degree_min: usize,
+    /// Highest polynomial degree of the stress on a triangle.
+    pub degree_max: usize,
     /// Number of triangles.
     pub triangles: usize,
     /// Number of unknowns.

@@ -48,6 +48,8 @@ mod tests {
             "energy.upper",
             "energy.gap",
             "energy.relative_error_bound",
+            "dual.degree_min",
+            "dual.degree_max",
             "dual.triangles",
             "dual.unknowns",
             "dual.iterations",

@@ -9,6 +9,7 @@ pub mod folder;
 mod html;
 mod json;
 mod junit;
+mod lattice;
 mod markdown;
 pub(crate) mod number;
 mod run;

@@ -41,6 +41,27 @@ impl Sample {
         self.dual.stress.block_mut(0).fill([f64::NAN; 3]);
     }
 
+    /// Stresses of degree 1, 2 and 3 in turn: xx = (x + 2y)^p, yy = p, xy = 0.
+    pub fn raise(&mut self) {
+        let mesh = &self.problem.mesh;
+        let degree = |t: usize| 1 + t % 3;
+        let mut stress = StressField::of_degrees((0..mesh.triangles.len()).map(degree));
+        for t in 0..mesh.triangles.len() {
+            let (p, a) = (degree(t), mesh.corners(t));
+            let centre = [0, 1].map(|c| (a[0][c] + a[1][c] + a[2][c]) / 3.0);
+            let at = |sub: usize, i: usize, j: usize| {
+                let weights = [i, j, p - i - j].map(|n| n as f64 / p as f64);
+                let corners = [a[(sub + 1) % 3], a[(sub + 2) % 3], centre];
+                let [x, y] = [0, 1].map(|c| (0..3).map(|k| weights[k] * corners[k][c]).sum::<f64>());
+                [(x + 2.0 * y).powi(p as i32), p as f64, 0.0]
+            };
+            let nodes =
+                (0..3).flat_map(|sub| (0..=p).rev().flat_map(move |i| (0..=p - i).rev().map(move |j| (sub, i, j))));
+            stress.block_mut(t).iter_mut().zip(nodes).for_each(|(value, (sub, i, j))| *value = at(sub, i, j));
+        }
+        self.dual.stress = stress;
+    }
+
     /// The dossier, with a rigid motion if infeasible.
     pub fn dossier(&self) -> Dossier<'_> {
         let mesh = &self.problem.mesh;

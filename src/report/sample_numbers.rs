@@ -60,6 +60,8 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         energy: solved.then_some(energy),
         dual: solved.then(|| DualSummary {
             method: "condensed".into(),
+            degree_min: 1,
+            degree_max: 1,
             triangles: problem.mesh.triangles.len(),
             unknowns: 4 * problem.mesh.edges.len(),
             iterations: 3,

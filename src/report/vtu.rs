@@ -1,7 +1,8 @@
 //! `fields.vtu`: the fields for ParaView, discontinuities kept.
 //!
-//! Every subtriangle of every triangle is a cell with three points of its own, so that a field that jumps between
-//! triangles, or is linear with kinks at the inner segments, is drawn as it is.
+//! Every subtriangle of every triangle has points of its own, so that a field that jumps between triangles, or has kinks at the
+//! inner segments, is drawn as it is. Where stresses have degree p these are the nodes of the lattice of degree p, and p² plain
+//! triangles between them: every program reads them, and what they show is exact at the nodes.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -9,26 +10,29 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
 use super::Dossier;
-use crate::mesh::Triangulation;
+use super::lattice::Lattice;
 use crate::problem::Problem;
 use crate::scene::Kinematics;
-
-/// Corners of a subtriangle in its barycentric coordinates.
-const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// From this many triangles on, fields are stored in single precision: the file would otherwise be several hundred
 /// megabytes, and is for looking at.
 const SINGLE_PRECISION_FROM: usize = 100_000;
 
-/// The VTK unstructured grid: for every triangle three cells with three points each.
+/// The VTK unstructured grid: for every triangle of degree p three times p² cells.
 ///
 /// Point data: `dual_stress` (xx, yy, xy), `von_mises` and `pressure` of λ_h, `mid_stress` (xx, yy, xy), `displacement_…` of every model and the
-/// rigid `motion` where there is one (three components, the last zero). Cell data: `triangle`, `body` and the maps.
+/// rigid `motion` where there is one (three components, the last zero). Cell data: `triangle`, `body`, `degree` of the stresses where it is not
+/// one everywhere, and the maps.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
     let run = format!(" run {} ", dossier.report.run);
     let single = mesh.triangles.len() >= SINGLE_PRECISION_FROM;
-    let cells = 3 * mesh.triangles.len();
+    let lattice = Lattice::new(dossier);
+    let cells: usize = (0..mesh.triangles.len()).map(|t| lattice.cells(t)).sum();
+    let points = lattice.values(|t, sub, l| {
+        let [x, y] = dossier.problem.scene.as_written(within(mesh.corners(t), sub, l));
+        [x, y, 0.0]
+    });
     let mut out = Sheet { xml: Writer::new_with_indent(Vec::new(), b' ', 1), single };
     out.xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     out.xml.write_event(Event::Comment(BytesText::new(&run)))?;
@@ -37,18 +41,14 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
         &[("type", "UnstructuredGrid"), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")],
     )?;
     out.open("UnstructuredGrid", &[])?;
-    out.open("Piece", &[("NumberOfPoints", &(3 * cells).to_string()), ("NumberOfCells", &cells.to_string())])?;
-    point_data(&mut out, dossier)?;
-    cell_data(&mut out, dossier)?;
+    out.open("Piece", &[("NumberOfPoints", &(points.len() / 3).to_string()), ("NumberOfCells", &cells.to_string())])?;
+    point_data(&mut out, dossier, &lattice)?;
+    cell_data(&mut out, dossier, &lattice)?;
     out.open("Points", &[])?;
-    let points = corner_values(mesh, |t, i| {
-        let [x, y] = dossier.problem.scene.as_written(corner(mesh, t, i));
-        [x, y, 0.0]
-    });
     out.array("Points", "Float64", 3, points.iter().flat_map(|x| x.to_le_bytes()))?;
     out.close("Points")?;
     out.open("Cells", &[])?;
-    out.array("connectivity", "Int64", 1, (0..3 * cells as i64).flat_map(i64::to_le_bytes))?;
+    out.array("connectivity", "Int64", 1, lattice.connectivity().flat_map(i64::to_le_bytes))?;
     out.array("offsets", "Int64", 1, (1..=cells as i64).flat_map(|k| (3 * k).to_le_bytes()))?;
     const VTK_TRIANGLE: u8 = 5;
     out.array("types", "UInt8", 1, std::iter::repeat_n(VTK_TRIANGLE, cells))?;
@@ -60,37 +60,32 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn point_data(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
+fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::Result<()> {
     let problem = dossier.problem;
     let mesh = &problem.mesh;
     out.open("PointData", &[])?;
     if let Some(dual) = dossier.dual.filter(|dual| dual.stress.len() == mesh.triangles.len()) {
-        let stress = |t, (sub, k): (usize, usize)| dual.stress.at(t, sub, CORNERS[k]);
-        out.field("dual_stress", 3, &corner_values(mesh, stress))?;
-        out.field("von_mises", 1, &corner_values(mesh, |t, i| [von_mises(problem, t, stress(t, i))]))?;
-        out.field("pressure", 1, &corner_values(mesh, |t, i| [mean_pressure(problem, t, stress(t, i))]))?;
+        let stress = |t, sub, l| dual.stress.at(t, sub, l);
+        out.field("dual_stress", 3, &lattice.values(stress))?;
+        out.field("von_mises", 1, &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]))?;
+        out.field("pressure", 1, &lattice.values(|t, sub, l| [mean_pressure(problem, t, stress(t, sub, l))]))?;
     }
     if let Some(mid) = dossier.mid.filter(|mid| mid.len() == mesh.triangles.len()) {
-        out.field("mid_stress", 3, &corner_values(mesh, |t, (sub, k)| mid.at(t, sub, CORNERS[k])))?;
+        out.field("mid_stress", 3, &lattice.values(|t, sub, l| mid.at(t, sub, l)))?;
     }
     let mut names = Vec::new();
     for (name, displacement) in &dossier.displacements {
         if displacement.len() == mesh.triangles.len() {
-            let values = corner_values(mesh, |t, (sub, k)| {
-                let [x, y] = match k {
-                    2 => displacement.centre(t),
-                    k => displacement.corner(t, (sub + 1 + k) % 3),
-                };
+            let values = lattice.values(|t, sub, l| {
+                let [x, y] = displacement.at(t, on_triangle(sub, l));
                 [x, y, 0.0]
             });
             out.field(&unique_key(name, &mut names), 3, &values)?;
         }
     }
     if let Some(motion) = dossier.motion.as_ref().filter(|motion| motion.len() == mesh.points.len()) {
-        let values = corner_values(mesh, |t, (sub, k)| {
-            let u = mesh.triangles[t].map(|v| motion[v]);
-            let centre = [0, 1].map(|c| (u[0][c] + u[1][c] + u[2][c]) / 3.0);
-            let [x, y] = [u[(sub + 1) % 3], u[(sub + 2) % 3], centre][k];
+        let values = lattice.values(|t, sub, l| {
+            let [x, y] = within(mesh.triangles[t].map(|v| motion[v]), sub, l);
             [x, y, 0.0]
         });
         out.field("motion", 3, &values)?;
@@ -98,16 +93,21 @@ fn point_data(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
     out.close("PointData")
 }
 
-fn cell_data(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
+fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::Result<()> {
     let mesh = &dossier.problem.mesh;
-    let thrice = |values: &mut dyn Iterator<Item = i64>| -> Vec<u8> {
-        values.flat_map(|v| std::iter::repeat_n(v, 3)).flat_map(i64::to_le_bytes).collect()
+    let on_cells = |value: &dyn Fn(usize) -> i64| -> Vec<u8> {
+        let of = |t: usize| std::iter::repeat_n(value(t), lattice.cells(t));
+        (0..mesh.triangles.len()).flat_map(of).flat_map(i64::to_le_bytes).collect()
     };
     out.open("CellData", &[])?;
-    out.array("triangle", "Int64", 1, thrice(&mut (0..mesh.triangles.len() as i64)))?;
-    out.array("body", "Int64", 1, thrice(&mut mesh.body.iter().map(|&b| b as i64)))?;
+    out.array("triangle", "Int64", 1, on_cells(&|t| t as i64))?;
+    out.array("body", "Int64", 1, on_cells(&|t| mesh.body[t] as i64))?;
+    if lattice.degrees.iter().any(|p| *p != 1) {
+        out.array("degree", "Int64", 1, on_cells(&|t| lattice.degrees[t] as i64))?;
+    }
     for map in dossier.maps.iter().filter(|map| map.values.len() == mesh.triangles.len()) {
-        let values: Vec<f64> = map.values.iter().flat_map(|&v| [v; 3]).collect();
+        let of = |(t, v): (usize, &f64)| std::iter::repeat_n(*v, lattice.cells(t));
+        let values: Vec<f64> = map.values.iter().enumerate().flat_map(of).collect();
         out.field(map.key, 1, &values)?;
     }
     out.close("CellData")
@@ -161,26 +161,19 @@ impl Sheet {
     }
 }
 
-/// One value per own point: triangle by triangle, subtriangle by subtriangle, corner by corner.
-fn corner_values<const N: usize>(mesh: &Triangulation, value: impl Fn(usize, (usize, usize)) -> [f64; N]) -> Vec<f64> {
-    let mut values = Vec::with_capacity(9 * N * mesh.triangles.len());
-    for t in 0..mesh.triangles.len() {
-        for sub in 0..3 {
-            for k in 0..3 {
-                values.extend(value(t, (sub, k)));
-            }
-        }
-    }
-    values
+/// What is linear on subtriangle `sub`, from its values at the corners of the triangle, with their mean at the centroid.
+fn within(a: [[f64; 2]; 3], sub: usize, l: [f64; 3]) -> [f64; 2] {
+    let centre = [0, 1].map(|c| (a[0][c] + a[1][c] + a[2][c]) / 3.0);
+    let corners = [a[(sub + 1) % 3], a[(sub + 2) % 3], centre];
+    [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum())
 }
 
-fn corner(mesh: &Triangulation, t: usize, (sub, k): (usize, usize)) -> [f64; 2] {
-    let a = mesh.corners(t);
-    match k {
-        0 => a[(sub + 1) % 3],
-        1 => a[(sub + 2) % 3],
-        _ => [0, 1].map(|c| (a[0][c] + a[1][c] + a[2][c]) / 3.0),
-    }
+/// Barycentric coordinates on the triangle, from those on subtriangle `sub`.
+fn on_triangle(sub: usize, l: [f64; 3]) -> [f64; 3] {
+    let mut all = [l[2] / 3.0; 3];
+    all[(sub + 1) % 3] += l[0];
+    all[(sub + 2) % 3] += l[1];
+    all
 }
 
 /// σ_33: ν (σ_11 + σ_22) in plane strain, zero in plane stress.

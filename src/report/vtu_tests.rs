@@ -112,6 +112,48 @@ fn points_cells_and_fields_fit_together() {
 }
 
 #[test]
+fn stresses_of_a_degree_for_each_triangle_are_exact_at_all_points() {
+    let mut sample = Sample::new(3, Verdict::Agree);
+    sample.raise();
+    let arrays = arrays(&String::from_utf8(vtu(&sample.dossier()).unwrap()).unwrap());
+    let triangles = sample.problem.mesh.triangles.len();
+    let degree = |t: usize| 1 + t % 3;
+    let counts: Vec<usize> = (0..triangles).map(|t| 3 * (degree(t) + 1) * (degree(t) + 2) / 2).collect();
+    let cells: usize = (0..triangles).map(|t| 3 * degree(t) * degree(t)).sum();
+    let points = floats(&arrays["Points"].2);
+    assert_eq!(points.len(), 3 * counts.iter().sum::<usize>());
+    let stress = floats(&arrays["dual_stress"].2);
+    let of_point = (0..triangles).flat_map(|t| std::iter::repeat_n(degree(t), counts[t]));
+    for (k, p) in of_point.enumerate() {
+        let exact = (points[3 * k] + 2.0 * points[3 * k + 1]).powi(p as i32);
+        assert!((stress[3 * k] - exact).abs() < 1e-12, "{} is not {exact}", stress[3 * k]);
+        assert_eq!(stress[3 * k + 1], p as f64);
+    }
+    // Cells have the degree of the points that they join, and together they are the two squares.
+    let degrees = ints(&arrays["degree"].2);
+    assert_eq!((degrees.len(), arrays["types"].2.len()), (cells, cells));
+    let mut area = 0.0;
+    for (cell, p) in ints(&arrays["connectivity"].2).chunks(3).zip(degrees) {
+        let [a, b, c] = [0, 1, 2].map(|i| {
+            let k = cell[i] as usize;
+            assert_eq!(stress[3 * k + 1], p as f64);
+            [points[3 * k], points[3 * k + 1]]
+        });
+        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        assert!(twice > 0.0);
+        area += 0.5 * twice;
+    }
+    assert!((area - 2.0).abs() < 1e-12);
+    // The displacement is linear on subtriangles: at the middle of two corners it is the mean of theirs.
+    let u = floats(&arrays["displacement_free"].2);
+    for c in 0..2 {
+        // Triangle 1 has degree 2; its first six points are (2,0,0), (1,1,0), (1,0,1), (0,2,0), (0,1,1), (0,0,2) halves.
+        let at = |k: usize| u[3 * (counts[0] + k) + c];
+        assert!((at(1) - 0.5 * (at(0) + at(3))).abs() < 1e-14 && (at(4) - 0.5 * (at(3) + at(5))).abs() < 1e-14);
+    }
+}
+
+#[test]
 fn von_mises_of_known_states() {
     let mut sample = Sample::new(1, Verdict::Agree);
     // Plane strain, ν = 0.3, uniaxial 1: σ_33 = 0.3, ½(1² + 0.3² + 0.7²) = 0.79.
@@ -142,4 +184,28 @@ fn meshio_reads_the_file_where_it_is_installed() {
     }
     let text = String::from_utf8_lossy(&output.stdout);
     assert_eq!(text.trim(), "144 triangle 48 3", "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn meshio_finds_the_area_and_stresses_of_every_degree() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("fields.vtu");
+    let mut sample = Sample::new(2, Verdict::Agree);
+    sample.raise();
+    std::fs::write(&file, vtu(&sample.dossier()).unwrap()).unwrap();
+    let script = "import sys\ntry:\n import meshio\nexcept ImportError:\n sys.exit(77)\n\
+        m = meshio.read(sys.argv[1])\n(c,) = m.cells\nx = m.points\ns = m.point_data['dual_stress']\n\
+        a, b = x[c.data[:, 1]] - x[c.data[:, 0]], x[c.data[:, 2]] - x[c.data[:, 0]]\n\
+        area = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])\n\
+        off = abs(s[:, 0] - (x[:, 0] + 2 * x[:, 1]) ** s[:, 1]).max()\n\
+        (p,) = m.cell_data['degree']\n\
+        print(c.type, len(c.data), round(area.sum(), 9), off < 1e-12, sorted(set(p.tolist())), len(p))";
+    let Ok(output) = std::process::Command::new("python3").args(["-c", script]).arg(&file).output() else { return };
+    if output.status.code() == Some(77) {
+        return;
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    // Sixteen triangles, of which six have degree 1, five 2 and five 3: 3 (6 + 5 · 4 + 5 · 9) cells.
+    let complaints = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(text.trim(), "triangle 213 2.0 True [1, 2, 3] 213", "{complaints}");
 }

@@ -75,7 +75,7 @@ pub struct Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// The method has nothing to do with the question.
+    /// The method has nothing to do with the question, or is left out of this row of a reduced matrix.
     NotApplicable,
     /// Bounds ordered, the truth inside, resultants exact.
     Correct,

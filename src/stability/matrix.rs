@@ -154,8 +154,18 @@ fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Tas
     if what.methods.iter().any(|m| m.is_primal()) {
         tasks.push(Task::Primal);
     }
-    tasks.extend(what.methods.iter().filter(|m| !m.is_primal()).map(|&m| Task::One(m)));
+    tasks.extend(what.methods.iter().filter(|m| !m.is_primal() && is_run(what, regime, **m)).map(|&m| Task::One(m)));
     tasks
+}
+
+/// Whether a method is run in a regime: not without a step length where that is swept, and those of higher degree in a few
+/// rows only of a reduced matrix.
+fn is_run(what: &Sweep<'_>, regime: &Regime, method: Method) -> bool {
+    if regime.is_step_length {
+        method == Method::Uzawa
+    } else {
+        regime.degrees || !(what.reduced && method.is_higher())
+    }
 }
 
 fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<OsString> {
@@ -220,7 +230,7 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
         .iter()
         .map(|&method| {
             let task = if method.is_primal() { Task::Primal } else { Task::One(method) };
-            if regime.is_step_length && method != Method::Uzawa {
+            if !is_run(what, regime, method) {
                 return Cell { method, worst: Outcome::NotApplicable, steps: Vec::new() };
             }
             let first: Option<Answer> = match of(steps[0], task) {

@@ -162,6 +162,8 @@ fn report(findings: &Findings<'_>) -> Report {
         energy,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
+            degree_min: (0..dual.stress.len()).map(|t| dual.stress.degree(t)).min().unwrap_or(0),
+            degree_max: dual.stress.largest_degree(),
             triangles: problem.mesh.triangles.len(),
             unknowns: dual.unknowns,
             iterations: dual.iterations,

@@ -7,6 +7,7 @@ mod arcs;
 mod circular_gap;
 mod comparison;
 mod congruent;
+mod contact_pressure;
 mod contact_qp;
 mod curve_remarks;
 mod curved_adaptive;

@@ -232,6 +232,10 @@ fn solvers(report: &Report) -> Markup {
 
 fn dual_solver(dual: &DualSummary) -> Markup {
     let s = dual.seconds;
+    let degrees = match (dual.degree_min, dual.degree_max) {
+        (least, most) if least == most => most.to_string(),
+        (least, most) => format!("{least} to {most}"),
+    };
     let names = [
         ("read", s.read),
         ("assemble", s.assemble),
@@ -244,10 +248,10 @@ fn dual_solver(dual: &DualSummary) -> Markup {
         (scroll("dual solver", html! {
             table {
                 caption { "Dual solve" }
-                thead { tr { th { "method" } th.n { "triangles" } th.n { "unknowns" } th.n { "contact steps" }
+                thead { tr { th { "method" } th.n { "degree" } th.n { "triangles" } th.n { "unknowns" } th.n { "contact steps" }
                 th.n { "equilibrium residual" } th.n { "seconds" } } }
                 tbody { tr {
-                    td { (dual.method) } td.n { (grouped(dual.triangles)) } td.n { (grouped(dual.unknowns)) }
+                    td { (dual.method) } td.n { (degrees) } td.n { (grouped(dual.triangles)) } td.n { (grouped(dual.unknowns)) }
                     td.n { (dual.iterations) }
                     td.n { (significant(dual.equilibrium_residual, 3)) } td.n { (significant(s.total, 3)) }
                 } }

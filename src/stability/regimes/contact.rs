@@ -145,6 +145,7 @@ pub(super) const REGIMES: &[Regime] = &[
         reduced: &[0, 6, 10],
         build: rotating,
         known: |b| Known::forces(vec![[-(4.0 - 0.5 * b), 0.0]], 4.0),
+        degrees: true,
         ..PLAIN
     },
     Regime {

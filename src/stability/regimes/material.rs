@@ -58,6 +58,7 @@ pub(super) const REGIMES: &[Regime] = &[
         build: |nu| lift(nu, 1.0).one_way().problem(),
         known: |_| lift_known(),
         flat: Some(3.0),
+        degrees: true,
         ..PLAIN
     },
     Regime {
@@ -97,6 +98,7 @@ pub(super) const REGIMES: &[Regime] = &[
         promised: 6,
         build: |ratio| row(0.3, ratio).model().problem(),
         known: |ratio| row(0.3, ratio).known(),
+        degrees: true,
         ..PLAIN
     },
     Regime {

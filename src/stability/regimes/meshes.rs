@@ -117,6 +117,7 @@ pub(super) const REGIMES: &[Regime] = &[
         build: |aspect| Lift::new(4).on(&layered(aspect), [&steps(0.0, 1.0, 4); 2]).problem(),
         known: |_| lift_known(),
         flat: Some(3.0),
+        degrees: true,
         ..PLAIN
     },
     Regime {

@@ -36,6 +36,8 @@ pub struct Regime {
     pub known: fn(f64) -> Known,
     /// The guaranteed error may be at most this many times that at the first value.
     pub flat: Option<f64>,
+    /// Whether a reduced matrix has the methods of higher degree in this row.
+    pub degrees: bool,
     /// Whether the value is a step length of the paper's iteration, relative to the largest that converges.
     pub is_step_length: bool,
 }
@@ -54,6 +56,7 @@ const PLAIN: Regime = Regime {
     build: |_| Err(String::new()),
     known: |_| Known::none(),
     flat: None,
+    degrees: false,
     is_step_length: false,
 };
 

@@ -1,6 +1,8 @@
 //! Cases whose contact forces follow from equilibrium alone.
 
-use super::run::{carries, close, models, sound, turns, with_reference};
+use serde_json::Value;
+
+use super::run::{Run, carries, case, close, models, sound, turns, with_reference};
 
 #[test]
 fn two_blocks() {
@@ -82,5 +84,29 @@ fn from_gmsh() {
     }
     if with_reference() {
         assert!(report.number("/contact/0/pressure_l2_difference") < 0.1);
+    }
+}
+
+/// What is held against FEniCSx on the contact, where the direction is constant and where it turns: above all `reactions`, which
+/// asks that each force at a vertex differ from the dual one by the work of the stresses to round-off.
+#[test]
+fn contact_of_every_degree() {
+    if !with_reference() {
+        return;
+    }
+    for (name, degree) in [("two_blocks", "2"), ("two_blocks", "5"), ("inclined", "3"), ("ring", "2")] {
+        let report = Run::new("verify", &case(name), &["--degree", degree]).report();
+        for end in ["min", "max"] {
+            assert_eq!(report.0["dual"][format!("degree_{end}")].to_string(), degree);
+        }
+        let of_contact = |c: &&Value| c["name"].as_str().is_some_and(|n| n.starts_with("contact/"));
+        let checks: Vec<&Value> = report.0["checks"].as_array().into_iter().flatten().filter(of_contact).collect();
+        assert!(checks.len() >= 3, "{checks:?}");
+        for check in checks {
+            assert_eq!(check["passed"], true, "{name}, degree {degree}: {check}");
+        }
+        if name == "two_blocks" {
+            carries(&report, 0, [-0.5, 0.0]);
+        }
     }
 }
