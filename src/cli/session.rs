@@ -180,7 +180,11 @@ impl Session {
                 CliError::stopped(Exit::NoEquilibrium, message, remedy)
             }
             StudyError::BeyondMesh { .. } => {
-                let finer = "refine the mesh, for instance with --refine or --tolerance";
+                let finer = if self.command == "certify" {
+                    "refine the mesh, and hand in a displacement of the finer one"
+                } else {
+                    "refine the mesh, for instance with --refine or --tolerance"
+                };
                 let facets = self.scene.contacts.iter().find(|contact| contact.normals == Normals::Facets);
                 let remedy = facets.map_or(finer.to_string(), |contact| {
                     format!(

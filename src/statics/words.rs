@@ -181,7 +181,7 @@ pub(super) fn beyond_mesh(components: &Components, moving: &[Moving], borderline
     let place = lead
         .map_or(String::new(), |lead| format!(" ({} {})", name(components, lead.component), clause(components, lead)));
     let remedy = if borderline {
-        "the pressure would have to act in a single point, which no mesh can carry"
+        "refine the ends of the contact, unless the pressure would have to act in a single point, which no mesh can carry"
     } else {
         "refine the ends of the contact"
     };

@@ -239,6 +239,24 @@ fn a_file_that_cannot_be_used_is_refused_in_one_message() {
     refused(folder.path(), &["--displacement", "field.vtk", "--allow", "nonsense=1"], &["nonsense"]);
 }
 
+#[test]
+fn pressure_that_no_edge_can_express_asks_for_another_mesh_and_another_field() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let hard = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/pressed_at_the_end_of_a_contact.toml");
+    let text = std::fs::read_to_string(hard).expect("a scene");
+    let faceted = text.replace("gap = 0.0\n", "gap = 0.0\nnormals = \"facets\"\n");
+    let problem = load(folder.path(), &faceted);
+    let field = FieldFile::new(&problem, Cells::Linear, |_, _| [0.0; 2]);
+    std::fs::write(folder.path().join("field.vtk"), field.vtk()).expect("writable");
+    let output = certify(folder.path(), &["--displacement", "field.vtk"]);
+    ended("certify", &output, 3, &["less than the last third of an edge", "of the finer one", "normals = \"smooth\""]);
+    // What brings no field along is solved on a mesh that is divided there.
+    let output = run(hypercircle(folder.path(), ["solve", "scene.toml", "--out", "out"]));
+    ended("solve", &output, 0, &[]);
+    let report = std::fs::read_to_string(folder.path().join("out/report.json")).expect("a report");
+    assert!(report.contains("divided at the ends of contact"), "{report}");
+}
+
 fn refused(folder: &Path, arguments: &[&str], fragments: &[&str]) {
     ended(&arguments.join(" "), &certify(folder, arguments), 2, fragments);
     assert!(!folder.join("out").exists(), "{arguments:?}");

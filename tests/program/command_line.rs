@@ -112,3 +112,19 @@ fn the_scene_schema_names_every_table_and_forbids_others() {
         assert_eq!(schema["$defs"]["Body"]["properties"]["poisson"]["exclusiveMaximum"], 0.5);
     });
 }
+
+#[test]
+fn errors_are_numbers_where_nothing_is_strained() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["moved_rigidly", "nothing_is_loaded", "open_and_not_loaded"] {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenes/{name}.toml"));
+        let output = hypercircle(folder.path(), &["solve", scene.to_str().expect("plain path"), "--out", name]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", text(&output.stderr));
+        let report = std::fs::read(folder.path().join(name).join("report.json")).expect("a report");
+        let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
+        for key in ["relative_error_bound", "mid_error_bound", "gap", "complementary"] {
+            assert!(report["energy"][key].is_number(), "{name}, {key}: {}", report["energy"]);
+        }
+        assert_eq!(report["energy"]["relative_error_bound"], 0.0, "{name}");
+    }
+}

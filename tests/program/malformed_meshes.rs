@@ -6,7 +6,8 @@ use std::process::Output;
 
 use crate::command::{ended, hypercircle, run};
 
-const SCENE: &str = r#"
+/// Two bodies of `blocks.msh`, one pressed against the other.
+pub const SCENE: &str = r#"
 [model]
 kinematics = "plane-strain"
 [mesh]
@@ -28,7 +29,7 @@ between = ["left_face", "right_face"]
 "#;
 
 /// Two unit squares that meet on x = 1, two triangles each, in MSH 2.2.
-const BLOCKS: &str = r#"$MeshFormat
+pub const BLOCKS: &str = r#"$MeshFormat
 2.2 0 8
 $EndMeshFormat
 $PhysicalNames

@@ -1,7 +1,8 @@
 //! A scene far from the point (0, 0) is solved as well as the same scene there.
 
 use super::run::{Place, case};
-use crate::command::{said, with_reference};
+use crate::command::{ended, said, with_reference};
+use crate::malformed_meshes::{BLOCKS, SCENE};
 
 /// `two_blocks` moved by whole numbers, its load with it.
 fn moved(by: [f64; 2]) -> String {
@@ -67,4 +68,34 @@ fn messages_name_the_places_of_the_file() {
     let scene = moved([1e8, 0.0]).replace("[100000001.0, 0.0], [100000002.0", "[100000001.5, 0.0], [100000002.0");
     let place = Place::with(&scene);
     place.refuses(&["solve", "scene.toml"], &["(10000000"]);
+}
+
+/// The nodes of [`BLOCKS`] moved.
+fn moved_nodes(by: [f64; 2]) -> String {
+    let (head, rest) = BLOCKS.split_once("$Nodes\n8\n").expect("nodes");
+    let (nodes, tail) = rest.split_once("$EndNodes").expect("nodes");
+    let moved = nodes.lines().map(|line| {
+        let numbers: Vec<f64> = line.split(' ').map(|word| word.parse().expect("a number")).collect();
+        format!("{} {:?} {:?} 0\n", numbers[0], numbers[1] + by[0], numbers[2] + by[1])
+    });
+    format!("{head}$Nodes\n8\n{}$EndNodes{tail}", moved.collect::<String>())
+}
+
+#[test]
+fn a_mesh_file_far_away_keeps_its_digits() {
+    let report = |by: [f64; 2]| {
+        let place = Place::with(SCENE);
+        place.write("blocks.msh", &moved_nodes(by));
+        ended(&format!("{by:?}"), &place.run(&["solve", "scene.toml", "--refine", "2", "--out", "out"]), 0, &[]);
+        place.report("out")
+    };
+    let near = report([0.0, 0.0]);
+    for by in [[2e8, 0.0], [-1e8, 3e8], [4e14, 1e14]] {
+        let far = report(by);
+        for path in ["/energy/lower", "/energy/upper", "/contact/0/resultant/dual/0"] {
+            let number = |report: &serde_json::Value| report.pointer(path).and_then(|n| n.as_f64()).expect("a number");
+            let (a, b) = (number(&near), number(&far));
+            assert!((a - b).abs() < 1e-10 * a.abs(), "{by:?}, {path}: {b} for {a}");
+        }
+    }
 }
