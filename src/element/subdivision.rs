@@ -37,7 +37,9 @@ pub fn largest(coefficients: &[f64]) -> (f64, f64) {
     let mut open = vec![(coefficients.to_vec(), 0.0, 0)];
     while let Some((own, from, halvings)) = open.pop() {
         let bound = own.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if bound <= best.0 + SAME * size || halvings == MOST_HALVINGS {
+        // Coefficients that are no numbers bound nothing.
+        let open_still = bound > best.0 + SAME * size && size.is_finite();
+        if !open_still || halvings == MOST_HALVINGS {
             continue;
         }
         let [left, right] = divide(&own, 0.5);
@@ -54,11 +56,15 @@ pub fn largest(coefficients: &[f64]) -> (f64, f64) {
 /// ∫ |f'| ds of the polynomial f: all its ways up and down.
 pub fn variation(coefficients: &[f64]) -> f64 {
     let mut sum = 0.0;
+    let size = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let mut open = vec![(coefficients.to_vec(), 0)];
     while let Some((own, halvings)) = open.pop() {
         let rises = own.windows(2).all(|w| w[1] >= w[0]);
         let falls = own.windows(2).all(|w| w[1] <= w[0]);
-        if rises || falls || halvings == MOST_HALVINGS {
+        // Ups and downs of rounding are none, and what is no number has no halves worth looking at.
+        let spread = own.iter().fold(0.0_f64, |m, c| m.max((c - own[0]).abs()));
+        let uneven = spread > SAME * size && spread.is_finite();
+        if rises || falls || !uneven || halvings == MOST_HALVINGS {
             sum += (own[own.len() - 1] - own[0]).abs();
         } else {
             open.extend(divide(&own, 0.5).map(|half| (half, halvings + 1)));
@@ -81,6 +87,17 @@ mod tests {
 
     fn sampled(c: &[f64]) -> Vec<f64> {
         (0..=POINTS).map(|i| side::value(c, i as f64 / POINTS as f64)).collect()
+    }
+
+    #[test]
+    fn rounding_and_what_is_no_number_are_not_looked_into() {
+        let e = f64::EPSILON;
+        assert!(variation(&[1.0, 1.0 + e, 1.0 - e, 1.0 + e, 1.0]) < 4.0 * e);
+        for wild in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let c = [1.0, wild, -wild, 2.0];
+            variation(&c);
+            largest(&c);
+        }
     }
 
     #[test]

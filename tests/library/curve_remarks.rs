@@ -33,7 +33,7 @@ fn row(triangles: usize, lower: f64, upper: f64) -> HistoryRow {
 /// Edges of a length l lie l²/8R from the circle; the largest of those that press.
 fn away(certified: &Certified) -> f64 {
     let (pairs, tractions) = (&certified.problem.interfaces[0].pairs, &certified.dual.contact_traction[0]);
-    let pressed = pairs.iter().zip(tractions).filter(|(_, t)| t.iter().any(|t| *t < -1e-7));
+    let pressed = pairs.iter().zip(tractions.iter()).filter(|(_, t)| t.iter().any(|t| *t < -1e-7));
     pressed.map(|(pair, _)| pair.length * pair.length / 400.0).fold(0.0, f64::max)
 }
 

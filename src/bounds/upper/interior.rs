@@ -101,6 +101,8 @@ mod tests {
     fn harmonic_polynomials_are_found_from_their_boundary() {
         for nu in [0.3, 0.499999] {
             let material = Compliance::new(Kinematics::PlaneStrain, 3.0, nu);
+            // Volume changes resist 1/(1 − 2ν) times as much as shear, and digits go by that.
+            let allowed = 1e-12 / (1.0 - 2.0 * nu);
             for k in 2..=MOST {
                 let mut exact = Displacement::zeros([k]);
                 for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
@@ -115,7 +117,7 @@ mod tests {
                 found[3 * k..].fill([7.0, -5.0]);
                 inside(k, CORNERS, &material, [0.0; 2], &mut found);
                 for (a, b) in found.iter().zip(exact.block(0)) {
-                    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-8, "degree {k}: {a:?} is not {b:?}");
+                    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < allowed, "degree {k}: {a:?} is not {b:?}");
                 }
             }
         }
