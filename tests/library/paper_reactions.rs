@@ -148,7 +148,9 @@ proptest! {
     fn a_lying_contact_takes_the_weight(value in -3.0..0.0_f64, slope in -2.0..2.0_f64, weight in -3.0..0.0_f64) {
         let v2 = weight + value + 0.5 * slope;
         let place = (0.5 * weight + 0.5 * value + slope / 3.0) / v2;
-        prop_assume!(v2 < -0.1 && (0.05..0.95).contains(&place));
+        // A linear pressure that does not pull has its resultant a third of an edge inside the contact, or farther.
+        let third = 1.0 / 12.0;
+        prop_assume!(v2 < -0.1 && (third + 0.01..1.0 - third - 0.01).contains(&place));
         let supports = vec![Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }];
         let loads = [("left_west", ([0.0, value], [[0.0, 0.0], [slope, 0.0]]))];
         let (problem, stress) = solve(scene(supports, &loads, [[0.0, weight], [0.3, -0.2]]), |block, [s, t]| {
