@@ -12,6 +12,7 @@ mod contact_qp;
 mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
+mod degrees;
 mod dual_limits;
 mod dual_methods;
 mod effectivity;
