@@ -44,7 +44,7 @@ pub struct SolveOptions {
     /// Solver of the dual problem
     #[arg(long, value_enum, default_value_t = Method::Condensed)]
     pub method: Method,
-    /// Polynomial degree of the stresses, 1 where it is missing; with --adapt hp the one to begin with, at first 3
+    /// Polynomial degree of the stresses, 1 where it is missing; the one to begin with where --tolerance raises it, 3 where it is missing
     #[arg(long, value_name = "P", value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
     pub degree: Option<u32>,
     /// Refine the mesh uniformly N times before solving
@@ -53,9 +53,9 @@ pub struct SolveOptions {
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
     #[arg(long, value_name = "X", value_parser = positive)]
     pub tolerance: Option<f64>,
-    /// What to refine towards the tolerance
-    #[arg(long, value_enum, default_value_t = Adapt::H)]
-    pub adapt: Adapt,
+    /// What to refine towards the tolerance: mesh and degrees where it is missing, the mesh alone with uzawa
+    #[arg(long, value_enum)]
+    pub adapt: Option<Adapt>,
     /// Threads to use, at most one for each processor
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]
     pub threads: u32,
@@ -81,6 +81,14 @@ pub struct MemoryOptions {
         help = "Take at most SIZE of memory, for instance 500M or 2G [default: four fifths of what is available]"
     )]
     pub max_memory: Option<u64>,
+}
+
+impl SolveOptions {
+    /// What is refined towards the tolerance.
+    pub fn adapt(&self) -> Adapt {
+        let linear = self.method == Method::Uzawa;
+        self.adapt.unwrap_or(if linear { Adapt::H } else { Adapt::Hp })
+    }
 }
 
 impl MemoryOptions {

@@ -103,7 +103,7 @@ impl Session {
             }
             Some(tolerance) => {
                 let Limits { max_triangles, max_seconds } = *limits;
-                let goal = Goal { max_triangles, max_seconds, adapt: solve.adapt, ..Goal::new(tolerance) };
+                let goal = Goal { max_triangles, max_seconds, adapt: solve.adapt(), ..Goal::new(tolerance) };
                 let first = Size::of(&problem);
                 let (mut rows, mut warned) = (Vec::new(), false);
                 let told = |row: &HistoryRow| {
@@ -128,7 +128,7 @@ impl Session {
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {
-        let adaptive = solve.tolerance.is_some() && solve.adapt == Adapt::Hp;
+        let adaptive = solve.tolerance.is_some() && solve.adapt() == Adapt::Hp;
         let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
         let elements = Elements::Uniform(block(degree as usize));
         Options { elements, threads: self.threads, budget: self.budget, ..Options::default() }

@@ -3,6 +3,7 @@
 //! The counts of numbers in a factor are those of nested dissection, n log n with a factor that was fitted, and the jumps
 //! of a long contact, ordered last, make their part dense. The symbolic factorisation knows the exact figure later on.
 
+use crate::element::Elements;
 use crate::problem::Problem;
 
 /// What the memory of a solve depends on. Numbers that no mesh has can be asked for, so they are real.
@@ -33,6 +34,19 @@ const SCRATCH: f64 = 190.0;
 const NUMBER: f64 = 8.0;
 
 impl Size {
+    /// That of a problem with these elements, in triangles of linear stresses that take as much: one of degree p has (p + 1)/2
+    /// times the moments, and matrices of their square.
+    pub fn of_degrees(problem: &Problem, elements: &Elements) -> Self {
+        let part = |t: usize| 0.5 * (elements.degree(t) + 1) as f64;
+        let all = 0..problem.mesh.triangles.len();
+        let linear = Size::of(problem);
+        Size {
+            triangles: all.clone().map(|t| part(t).powi(2)).sum(),
+            distinct: all.clone().map(|t| part(t).powf(2.5)).sum(),
+            contact_ends: linear.contact_ends * all.map(part).fold(1.0, f64::max),
+        }
+    }
+
     /// That of a problem, as if no triangles were congruent.
     pub fn of(problem: &Problem) -> Self {
         let triangles = problem.mesh.triangles.len() as f64;

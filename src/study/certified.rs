@@ -64,9 +64,9 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let size = Size::of(&problem);
+    let size = Size::of_degrees(&problem, &options.elements);
     if let Err(excess) = Admission::new(method, options.budget).admit(size, None) {
-        let reason = format!("a solve on {} triangles does not fit: about {excess}", size.triangles);
+        let reason = format!("a solve on {} triangles does not fit: about {excess}", problem.mesh.triangles.len());
         return Err(DualError::TooLarge { reason }.into());
     }
     let statics = balance(&problem)?;

@@ -97,7 +97,7 @@ impl<'a> Rounds<'a> {
             let marked = terms.marked(bulk, |t| stage.rises(t) || may(t));
             let (next, predicted) = self.stepped(stage, terms, &marked)?;
             let count = unknowns(&next);
-            let beyond = self.beyond(&next.problem);
+            let beyond = self.beyond(&next);
             let enough_already =
                 predicted.total() < (1.0 - SLACK) * enough && count > (1.0 + SLACK) * WORTH_A_SOLVE * solved;
             let too_far = count > (1.0 + SLACK) * GROWTH * solved || enough_already;
@@ -135,11 +135,11 @@ impl<'a> Rounds<'a> {
     }
 
     /// Why `next` is more than may be solved.
-    fn beyond(&self, next: &Problem) -> Option<String> {
-        let count = next.mesh.triangles.len();
+    fn beyond(&self, next: &Stage) -> Option<String> {
+        let count = next.problem.mesh.triangles.len();
         match self.goal.max_triangles {
             Some(most) if count > most => Some(format!("the next mesh would have more than {most} triangles")),
-            _ => self.admission.admit(Size::of(next), Some(Size::of(self.problem))).err().map(|excess| {
+            _ => self.admission.admit(next.size(), Some(Size::of(self.problem))).err().map(|excess| {
                 format!("the next mesh, of {count} triangles, would not fit into memory (about {excess})")
             }),
         }

@@ -3,7 +3,7 @@
 use super::certified::{Certified, StudyError, balance, certify, solve_balanced};
 use super::trend::Way;
 use super::warm_start::{carried, closed_coefficients};
-use crate::dual::{DualMethod, Options, contact_coefficients};
+use crate::dual::{DualMethod, Options, Size, contact_coefficients};
 use crate::element::{Elements, MAX_DEGREE};
 use crate::mesh::bisect::RefinementEdges;
 use crate::problem::{Note, Problem, Refinement};
@@ -67,6 +67,11 @@ impl Stage {
     pub fn new(problem: Problem, refinement: RefinementEdges, elements: Elements) -> Self {
         let count = problem.mesh.triangles.len();
         Stage { parent: (0..count).collect(), problem, refinement, elements, ways: vec![Way::Bisect; count] }
+    }
+
+    /// How large it is.
+    pub fn size(&self) -> Size {
+        Size::of_degrees(&self.problem, &self.elements)
     }
 
     /// Whether triangle `t` is to have a higher degree, and may have one.

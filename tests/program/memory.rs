@@ -90,7 +90,8 @@ fn the_symbolic_factorisation_refuses_the_numeric_one() {
 #[test]
 fn a_refinement_that_does_not_fit_ends_with_the_best_result() {
     let folder = tempfile::tempdir().expect("a folder");
-    let arguments = ["solve", &case("two_blocks"), "--tolerance", "1e-5", "--max-memory", "40M", "--out", "o"];
+    let arguments =
+        ["solve", &case("two_blocks"), "--tolerance", "1e-5", "--adapt", "h", "--max-memory", "40M", "--out", "o"];
     let output = run(folder.path(), &arguments);
     let text = message(&output);
     assert_eq!(output.status.code(), Some(1), "{text}");
