@@ -162,14 +162,7 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
     let mesh = &problem.mesh;
     let sides = |t: usize| Sides::new(mesh, &system.unknowns, t, system.modes.degree(t));
     let mut tractions = SideValues::filled((0..mesh.triangles.len()).map(|t| sides(t).len()), 0.0);
-    let mut rest = tractions.values_mut();
-    let mut parts = Vec::with_capacity(mesh.triangles.len());
-    for t in 0..mesh.triangles.len() {
-        let (part, behind) = rest.split_at_mut(sides(t).len());
-        parts.push(part);
-        rest = behind;
-    }
-    parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, values)| {
+    tractions.parts_mut().into_par_iter().enumerate().with_min_len(256).for_each(|(t, values)| {
         let sides = sides(t);
         let (modes, own) = (system.modes.of(t), &s[system.modes.parameters_of(t)]);
         if sides.are_even() {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::element::{Compliance, Elements, Layout, Modes, StressField};
+use crate::element::{Compliance, Elements, Layout, Modes, StressField, parts, starts};
 use crate::problem::Problem;
 
 /// The modes of every triangle.
@@ -61,26 +61,14 @@ impl ModeTable {
             })
             .collect();
         let mut data = vec![0.0; end];
-        let mut parts = Vec::with_capacity(classes.len());
-        let mut rest = &mut data[..];
-        for class in &classes {
-            let (part, behind) = rest.split_at_mut(class.layout.len());
-            parts.push(part);
-            rest = behind;
-        }
-        parts.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
+        let of_classes = parts(&mut data, &starts(classes.iter().map(|class| class.layout.len())));
+        of_classes.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
             let t = class.triangle;
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
             elements.of(t).compute(mesh.corners(t), &materials[body], force, class.layout.split(out));
         });
-        let mut first_parameter = Vec::with_capacity(class.len() + 1);
-        first_parameter.push(0);
-        let mut count = 0;
-        first_parameter.extend(class.iter().map(|&c| {
-            count += classes[c as usize].layout.parameters;
-            count
-        }));
+        let first_parameter = starts(class.iter().map(|&c| classes[c as usize].layout.parameters));
         ModeTable { elements, class, classes, data, first_parameter, materials }
     }
 
@@ -112,14 +100,7 @@ impl ModeTable {
 
     /// The parts of `values`, one number for each mode parameter, that belong to each triangle.
     pub fn split_parameters<'a>(&self, values: &'a mut [f64]) -> Vec<&'a mut [f64]> {
-        let mut rest = values;
-        let mut parts = Vec::with_capacity(self.class.len());
-        for ends in self.first_parameter.windows(2) {
-            let (part, behind) = rest.split_at_mut(ends[1] - ends[0]);
-            parts.push(part);
-            rest = behind;
-        }
-        parts
+        parts(values, &self.first_parameter)
     }
 
     /// Number of triangles that are not congruent to an earlier one of their degree.

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::{MAX_DEGREE, side, triangle};
+use super::{MAX_DEGREE, parts, side, starts, triangle};
 use crate::mesh::{Edge, Triangulation};
 
 /// The highest degree of a displacement: one above that of stresses.
@@ -25,14 +25,9 @@ impl Displacement {
     /// No displacement, of the given degree on each triangle.
     pub fn zeros(degrees: impl IntoIterator<Item = usize>) -> Self {
         let degree: Vec<u8> = degrees.into_iter().map(|k| k as u8).collect();
-        let mut start = Vec::with_capacity(degree.len() + 1);
-        start.push(0);
-        let mut end = 0;
-        for &k in &degree {
-            end += split_len(k.into());
-            start.push(end);
-        }
-        Displacement { degree, start, values: vec![[0.0; 2]; end] }
+        let start = starts(degree.iter().map(|&k| split_len(k.into())));
+        let values = vec![[0.0; 2]; start[degree.len()]];
+        Displacement { degree, start, values }
     }
 
     /// From values at vertices, linear on each triangle and stored as a quadratic one.
@@ -94,14 +89,7 @@ impl Displacement {
 
     /// All blocks, to be filled in parallel.
     pub fn blocks_mut(&mut self) -> Vec<&mut [[f64; 2]]> {
-        let mut rest = &mut self.values[..];
-        let mut blocks = Vec::with_capacity(self.degree.len());
-        for &k in &self.degree {
-            let (block, next) = rest.split_at_mut(split_len(k.into()));
-            blocks.push(block);
-            rest = next;
-        }
-        blocks
+        parts(&mut self.values, &self.start)
     }
 
     /// The Bernstein coefficients of subtriangle `sub` of triangle `t`, in the order of [`triangle::indices`].

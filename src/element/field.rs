@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use nalgebra::DMatrix;
 
 use super::side;
+use super::side_values::{parts, starts};
 
 /// A stress, on each triangle of a degree of its own on every subtriangle.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,14 +28,9 @@ impl StressField {
     /// A zero field with a degree for each triangle.
     pub fn of_degrees(degrees: impl IntoIterator<Item = usize>) -> Self {
         let degree: Vec<u8> = degrees.into_iter().map(|p| p as u8).collect();
-        let mut start = Vec::with_capacity(degree.len() + 1);
-        start.push(0);
-        let mut end = 0;
-        start.extend(degree.iter().map(|&p| {
-            end += 3 * lattice_len(p.into());
-            end
-        }));
-        StressField { degree, start, values: vec![[0.0; 3]; end] }
+        let start = starts(degree.iter().map(|&p| 3 * lattice_len(p.into())));
+        let values = vec![[0.0; 3]; start[degree.len()]];
+        StressField { degree, start, values }
     }
 
     /// Polynomial degree p on each subtriangle of triangle `t`.
@@ -70,14 +66,7 @@ impl StressField {
 
     /// The blocks of all triangles, for filling in parallel.
     pub fn blocks_mut(&mut self) -> Vec<&mut [[f64; 3]]> {
-        let mut rest = &mut self.values[..];
-        let mut blocks = Vec::with_capacity(self.degree.len());
-        for ends in self.start.windows(2) {
-            let (block, behind) = rest.split_at_mut(ends[1] - ends[0]);
-            blocks.push(block);
-            rest = behind;
-        }
-        blocks
+        parts(&mut self.values, &self.start)
     }
 
     /// All values, triangle by triangle.

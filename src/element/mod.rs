@@ -30,7 +30,7 @@ pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
-pub use side_values::SideValues;
+pub use side_values::{SideValues, parts, starts};
 
 use std::borrow::Cow;
 

@@ -10,11 +10,7 @@ pub struct SideValues<T> {
 impl<T: Copy> SideValues<T> {
     /// `counts` values on each side, all equal to `value`.
     pub fn filled(counts: impl IntoIterator<Item = usize>, value: T) -> Self {
-        let mut start = vec![0];
-        start.extend(counts.into_iter().scan(0, |end, count| {
-            *end += count;
-            Some(*end)
-        }));
+        let start = starts(counts);
         let values = vec![value; start.last().copied().unwrap_or(0)];
         SideValues { start, values }
     }
@@ -24,11 +20,7 @@ impl<T: Copy> SideValues<T> {
     /// # Panics
     /// Where there are not as many values as that.
     pub fn new(counts: impl IntoIterator<Item = usize>, values: Vec<T>) -> Self {
-        let mut start = vec![0];
-        start.extend(counts.into_iter().scan(0, |end, count| {
-            *end += count;
-            Some(*end)
-        }));
+        let start = starts(counts);
         assert_eq!(start.last(), Some(&values.len()), "one value for each that was counted");
         SideValues { start, values }
     }
@@ -58,6 +50,11 @@ impl<T: Copy> SideValues<T> {
         self.start.windows(2).map(|w| &self.values[w[0]..w[1]])
     }
 
+    /// The values of all sides, for filling in parallel.
+    pub fn parts_mut(&mut self) -> Vec<&mut [T]> {
+        parts(&mut self.values, &self.start)
+    }
+
     /// All values, side by side.
     pub fn values(&self) -> &[T] {
         &self.values
@@ -67,6 +64,28 @@ impl<T: Copy> SideValues<T> {
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
+}
+
+/// Where each of a row of lists begins that have so many values, and the end of the last one.
+pub fn starts(counts: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut start = vec![0];
+    start.extend(counts.into_iter().scan(0, |end, count| {
+        *end += count;
+        Some(*end)
+    }));
+    start
+}
+
+/// The lists of `values` that begin where `start` says, as [`starts`] gives it.
+pub fn parts<'a, T>(values: &'a mut [T], start: &[usize]) -> Vec<&'a mut [T]> {
+    let mut rest = values;
+    let mut parts = Vec::with_capacity(start.len().saturating_sub(1));
+    for ends in start.windows(2) {
+        let (part, behind) = rest.split_at_mut(ends[1] - ends[0]);
+        parts.push(part);
+        rest = behind;
+    }
+    parts
 }
 
 impl<T, L: AsRef<[T]>> FromIterator<L> for SideValues<T>
