@@ -129,6 +129,7 @@ impl DualMethod for ActiveSet {
                     iterations: step,
                     seconds,
                     notes: Vec::new(),
+                    factorised: None,
                 });
             }
             closed = next;
@@ -167,7 +168,7 @@ fn constrained(system: &System, held: &[usize], closed: &[bool]) -> (SparseColMa
             fixed[system.unknowns.first_jump + i] = Some(system.jump_bound[i]);
         }
     }
-    let mut matrix = system.matrix.clone();
+    let mut matrix = (*system.matrix).clone();
     isolate(&mut matrix, |d| fixed[d].is_some());
     (matrix, fixed)
 }

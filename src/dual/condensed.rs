@@ -7,6 +7,7 @@
 //! load, solved with the same factor, and the stress of that small correction is added. The contact state is held against
 //! the refined stresses, and mended where it does not fit them.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::ends::Ends;
@@ -16,7 +17,7 @@ use super::refinement::Refined;
 use super::rigid::unsupported;
 use super::settling::Settling;
 use super::system::System;
-use super::{ActiveSet, DualError, DualMethod, Found, Options, Phases, Size};
+use super::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::problem::Problem;
 
@@ -103,14 +104,18 @@ impl Condensed {
             settling.accept(&now, &stress, &moments, &state, self.accuracy())?;
         }
         seconds.recover = start.elapsed().as_secs_f64();
+        let (notes, unknowns) = (contact.notes(state.steps), system.unknowns.count);
+        let closed = system.unknowns.by_pair(state.closed);
+        drop(contact);
         Ok(Found {
             stress,
             moments,
-            closed: system.unknowns.by_pair(state.closed),
-            unknowns: system.unknowns.count,
+            closed,
+            unknowns,
             iterations: state.steps,
             seconds,
-            notes: contact.notes(state.steps),
+            notes,
+            factorised: options.keep_factor.then(|| Arc::new(Factorised::of(system, reduced))),
         })
     }
 }

@@ -6,7 +6,6 @@ use super::dissection::nested_dissection;
 use super::factor::{Breakdown, SymbolicFactor};
 use super::rows::Sides;
 use super::system::System;
-use super::unknowns::EdgeMoments;
 use super::{DualError, Options};
 use crate::element::{SideValues, side};
 use crate::problem::Problem;
@@ -112,14 +111,8 @@ pub fn held_unknowns(problem: &Problem, system: &System, motions: &[Motion]) -> 
 /// answer to a correction of the unknowns alone.
 pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) -> Vec<f64> {
     let mesh = &problem.mesh;
-    let mut moments = system.unknowns.moments(problem, x);
-    if !given {
-        for (e, edge) in system.unknowns.edges.iter().enumerate() {
-            if let EdgeMoments::Given(_) = edge {
-                moments.of_mut(e).fill([0.0; 2]);
-            }
-        }
-    }
+    let unknowns = &system.unknowns;
+    let moments = if given { unknowns.moments(problem, x) } else { unknowns.moments_of_change(problem, x) };
     let mut out = vec![0.0; system.modes.parameters()];
     let parts = system.modes.split_parameters(&mut out);
     parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, s)| {

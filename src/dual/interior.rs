@@ -120,7 +120,7 @@ impl DualMethod for Clarabel {
             });
         }
         seconds.recover = start.elapsed().as_secs_f64();
-        Ok(Found { stress, moments, closed, unknowns: n, iterations, seconds, notes: Vec::new() })
+        Ok(Found { stress, moments, closed, unknowns: n, iterations, seconds, notes: Vec::new(), factorised: None })
     }
 }
 

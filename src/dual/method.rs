@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use faer::Par;
 
-use super::{Motion, Phases, Size};
+use super::{Factorised, Motion, Phases, Size};
 use crate::budget::Budget;
 use crate::element::{Block, Elements, SideValues, StressField};
 use crate::problem::Problem;
@@ -47,6 +47,8 @@ pub struct Found {
     pub seconds: Phases,
     /// What the reader should know.
     pub notes: Vec<String>,
+    /// K and its factor for further loads, where [`Options::keep_factor`] asks for it and the method has one.
+    pub factorised: Option<Arc<Factorised>>,
 }
 
 /// Choices of a dual solve.
@@ -58,6 +60,8 @@ pub struct Options {
     pub threads: usize,
     /// First guess of the closed coefficients, from a similar problem.
     pub closed: Option<SideValues<bool>>,
+    /// Whether the factor is to be kept with the solution.
+    pub keep_factor: bool,
     /// Memory that the process may hold.
     pub budget: Budget,
     /// Told now and then how many iterations an iterative method has made and what residual it has reached.
@@ -73,6 +77,7 @@ impl Default for Options {
             elements: Elements::Uniform(&Block),
             threads: 1,
             closed: None,
+            keep_factor: false,
             budget: Budget::UNLIMITED,
             progress: None,
         }

@@ -20,6 +20,7 @@ pub mod paper;
 pub mod qp;
 mod reduced;
 mod refinement;
+mod response;
 mod rigid;
 mod rows;
 mod settling;
@@ -27,6 +28,7 @@ mod system;
 mod unknowns;
 pub mod yardstick;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 pub use active_set::ActiveSet;
@@ -37,6 +39,7 @@ pub use hybrid::Motion;
 pub use interior::Clarabel;
 pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
+pub use response::{Bounds, Factorised, Load, Loaded, Response, Responses};
 pub use unknowns::contact_coefficients;
 
 use crate::element::{SideValues, StressField};
@@ -69,6 +72,8 @@ pub struct DualSolution {
     pub seconds: Phases,
     /// What the method wants the reader to know.
     pub notes: Vec<String>,
+    /// K and its factor for further loads, where they were asked for and the method has them.
+    pub factorised: Option<Arc<Factorised>>,
 }
 
 /// Wall-clock seconds by phase of the dual solve.
@@ -121,6 +126,7 @@ pub fn solve(
         accuracy: method.accuracy(),
         seconds,
         notes: found.notes,
+        factorised: found.factorised,
     })
 }
 

@@ -1,5 +1,7 @@
 //! The factorised hybrid form with its jumps last, and the contact problem it leaves on Γ_K.
 
+use std::sync::Arc;
+
 use faer::Mat;
 
 use super::factor::{Breakdown, Factor, power_of_two_near};
@@ -29,6 +31,7 @@ fn largest(r: &[f64]) -> f64 {
 }
 
 /// The factorised system with its jumps last.
+#[derive(Debug)]
 pub struct Reduced {
     factor: Factor,
     held: Vec<usize>,
@@ -49,7 +52,7 @@ impl Reduced {
         let held = held_unknowns(problem, system, motions);
         let shift = make_definite(system, &held);
         let structure = structure(problem, system, options)?;
-        let factor = Factor::of_semidefinite(structure, system.matrix.as_ref(), options.par())
+        let factor = Factor::of_semidefinite(structure, (*system.matrix).as_ref(), options.par())
             .map_err(|breakdown| explain(problem, system, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
     }
@@ -274,7 +277,7 @@ fn over(a: &[f64], unit: &[f64]) -> Vec<f64> {
 /// On a graded mesh the entries differ by many orders of magnitude, and a common shift would drown those of long edges.
 pub fn make_definite(system: &mut System, held: &[usize]) -> Vec<f64> {
     let jumps = system.unknowns.first_jump..system.unknowns.count;
-    let (symbolic, values) = system.matrix.parts_mut();
+    let (symbolic, values) = Arc::make_mut(&mut system.matrix).parts_mut();
     let columns = symbolic.col_ptr();
     let shift: Vec<f64> = jumps.clone().map(|j| values[columns[j]]).collect();
     for (j, shift) in jumps.zip(&shift) {
@@ -285,7 +288,7 @@ pub fn make_definite(system: &mut System, held: &[usize]) -> Vec<f64> {
         for &d in held {
             is_held[d] = true;
         }
-        isolate(&mut system.matrix, |d| is_held[d]);
+        isolate(Arc::make_mut(&mut system.matrix), |d| is_held[d]);
     }
     shift
 }

@@ -6,6 +6,8 @@
 //!
 //! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
 
+use std::sync::Arc;
+
 use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMat};
 use rayon::prelude::*;
 
@@ -16,15 +18,15 @@ use super::unknowns::{Component, Unknowns};
 use crate::element::side;
 use crate::problem::{Condition, Problem};
 
-/// The assembled problem.
-#[derive(Debug)]
+/// The assembled problem. Copies share what does not depend on the loads.
+#[derive(Debug, Clone)]
 pub struct System {
     /// Numbering.
-    pub unknowns: Unknowns,
+    pub unknowns: Arc<Unknowns>,
     /// Element matrices.
-    pub modes: ModeTable,
+    pub modes: Arc<ModeTable>,
     /// Lower triangle of K.
-    pub matrix: SparseColMat<usize, f64>,
+    pub matrix: Arc<SparseColMat<usize, f64>>,
     /// f, given moments included.
     pub rhs: Vec<f64>,
     /// The part of f that comes from applied tractions.
@@ -84,12 +86,13 @@ impl System {
             .collect();
         let symbolic =
             SymbolicSparseColMat::new_checked(unknowns.count, unknowns.count, pattern.columns, None, pattern.rows);
-        System { unknowns, modes, matrix: SparseColMat::new(symbolic, values), rhs, external, jump_bound }
+        let matrix = Arc::new(SparseColMat::new(symbolic, values));
+        System { unknowns: Arc::new(unknowns), modes: Arc::new(modes), matrix, rhs, external, jump_bound }
     }
 
     /// y = K x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        symmetric_multiply(self.matrix.as_ref(), x)
+        symmetric_multiply((*self.matrix).as_ref(), x)
     }
 }
 
@@ -109,13 +112,26 @@ pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> b
 
 /// The coefficients of P on every unknown of Γ_τ, by the choice of the moments.
 fn external_load(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
+    let applied = |(e, condition): (usize, &Condition)| match condition {
+        Condition::Traction(ends) => Some((e, *ends)),
+        _ => None,
+    };
+    load_of_tractions(problem, unknowns, problem.conditions.iter().enumerate().filter_map(applied))
+}
+
+/// The coefficients, on every unknown, of tractions given by their values at the ends of edges.
+pub fn load_of_tractions(
+    problem: &Problem,
+    unknowns: &Unknowns,
+    tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
+) -> Vec<f64> {
     let mut load = vec![0.0; unknowns.count];
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        let Condition::Traction([a, b]) = condition else { continue };
+    for (e, [a, b]) in tractions {
         let degree = unknowns.degree(e);
+        let (_, normal) = problem.mesh.edge_frame(e);
         let along = |c: usize| side::linear([a[c], b[c]], degree);
         for (k, value) in along(0).zip(along(1)).enumerate() {
-            for component in unknowns.components(e, k, [0.0; 2]) {
+            for component in unknowns.components(e, k, normal) {
                 for &(dof, c) in component.terms() {
                     load[dof] += c * (component.direction[0] * value.0 + component.direction[1] * value.1);
                 }

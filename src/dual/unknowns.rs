@@ -235,6 +235,17 @@ impl Unknowns {
         moments
     }
 
+    /// The same of a change: what supports give does not change.
+    pub fn moments_of_change(&self, problem: &Problem, x: &[f64]) -> SideValues<[f64; 2]> {
+        let mut moments = self.moments(problem, x);
+        for (e, edge) in self.edges.iter().enumerate() {
+            if let EdgeMoments::Given(_) = edge {
+                moments.of_mut(e).fill([0.0; 2]);
+            }
+        }
+        moments
+    }
+
     /// Values of the unknowns of a displacement: `at(e, k)` gives moment k of an edge. Jumps and rollers take the components
     /// they stand for.
     pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {

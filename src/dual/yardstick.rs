@@ -57,7 +57,7 @@ pub fn plain_factorisation(
     symbolic
         .factorize_numeric_llt(
             &mut values,
-            system.matrix.as_ref(),
+            (*system.matrix).as_ref(),
             Side::Lower,
             LltRegularization::default(),
             par,

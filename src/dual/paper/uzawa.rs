@@ -110,6 +110,7 @@ impl DualMethod for Uzawa {
             iterations: end.iterations,
             seconds,
             notes,
+            factorised: None,
         })
     }
 }

@@ -1,0 +1,255 @@
+//! Stresses in equilibrium with other loads, from the factor of the problem that was solved.
+//!
+//! A quantity of interest has an adjoint stress σ_z: in equilibrium with a load of its own, without shear on Γ_0 and Γ_K, its
+//! normal traction s on Γ_K of either sign where the contact presses, zero where it is open. The one of least energy solves
+//! the hybrid form with the same K and the jumps of closed contact held at zero; where s would fall below a given bound the
+//! jump is let go instead and s takes the value of the bound: a bound-constrained problem in the Schur complement of the
+//! contact, solved by primal–dual steps. What rounding has cost is won back on the stresses, as for λ_h.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::hybrid::{Motion, parameters, residual};
+use super::modes::ModeTable;
+use super::reduced::{Contact, Reduced};
+use super::refinement::{Refined, Refinement};
+use super::system::{System, load_of_tractions};
+use super::{DualError, Options};
+use crate::element::{SideValues, StressField, side};
+use crate::problem::Problem;
+
+/// Primal–dual steps at most; what does not settle by then is taken as it is, and costs width.
+const MOST_STEPS: usize = 30;
+
+/// Refinements on the stresses at most.
+const MOST_REFINEMENTS: usize = 30;
+
+/// Remainders of equilibrium, relative to the largest of load and traction, beyond which a stress balances something else.
+const UNBALANCED: f64 = 1e-8;
+
+/// K and its factor, ready for further loads.
+#[derive(Debug)]
+pub struct Factorised {
+    system: System,
+    reduced: Reduced,
+}
+
+impl Factorised {
+    /// What a solve has at its end.
+    pub(super) fn of(system: System, reduced: Reduced) -> Self {
+        Factorised { system, reduced }
+    }
+
+    /// Assembles and factorises; `motions` as in [`super::solve`].
+    ///
+    /// # Errors
+    /// [`DualError::Factorisation`], [`DualError::TooLarge`].
+    pub fn new(problem: &Problem, motions: &[Motion], options: &Options) -> Result<Self, DualError> {
+        let mut system = System::new(problem, options);
+        let reduced = Reduced::new(problem, &mut system, motions, options)?;
+        Ok(Factorised { system, reduced })
+    }
+
+    /// The responses to other loads on `problem`, which K belongs to, per unit thickness. Contacts of up to `longest_dense`
+    /// jumps have a dense Schur complement.
+    pub fn responses<'a>(&'a self, problem: &'a Problem, longest_dense: usize, options: &Options) -> Responses<'a> {
+        let contact = Contact::new(&self.reduced, longest_dense, options.budget, |_| Vec::new());
+        Responses { problem, factorised: self, contact }
+    }
+}
+
+/// A load beside that of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// Body force of each body.
+    pub force: Vec<[f64; 2]>,
+    /// Tractions at the two ends of boundary edges, in the order of their vertices, whatever condition holds there.
+    pub tractions: Vec<(usize, [[f64; 2]; 2])>,
+    /// Initial strains χ (xx, yy, xy), constant on the triangles that have one: the stress wanted is σ̂ + cχ with σ̂ in
+    /// equilibrium with the rest of the load.
+    pub strains: Vec<(usize, [f64; 3])>,
+}
+
+/// Answers loads.
+pub struct Responses<'a> {
+    problem: &'a Problem,
+    factorised: &'a Factorised,
+    contact: Contact<'a>,
+}
+
+/// A stress in equilibrium with a load.
+#[derive(Debug, Clone)]
+pub struct Response {
+    /// σ̂, without cχ.
+    pub stress: StressField,
+    /// Moments of the displacement that belongs to it, as [`super::DualSolution::moments`].
+    pub moments: SideValues<[f64; 2]>,
+    /// The coefficients of s on every contact pair, one interface after the other.
+    pub contact: SideValues<f64>,
+    /// What is left of equilibrium, as work on the displacement that was given, per unit thickness: Σ |remainder · moment|.
+    pub remainder: f64,
+}
+
+impl<'a> Responses<'a> {
+    /// Prepares the answers to `load`.
+    pub fn to(&'a self, load: &Load) -> Loaded<'a> {
+        let Factorised { system, reduced } = self.factorised;
+        let own = || self.problem.scene.bodies.iter().map(|body| body.body_force);
+        let (problem, modes) = if own().eq(load.force.iter().copied()) {
+            (Cow::Borrowed(self.problem), system.modes.clone())
+        } else {
+            let mut other = self.problem.clone();
+            other.scene.bodies.iter_mut().zip(&load.force).for_each(|(body, force)| body.body_force = *force);
+            let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
+            (Cow::Owned(other), modes)
+        };
+        let external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
+        let mut system = System { modes, rhs: Vec::new(), external, ..system.clone() };
+        let start = system.strained(&problem, &load.strains);
+        let r = residual(&problem, &system, &start);
+        system.rhs.clone_from(&r);
+        let (y, c) = reduced.condense(&r);
+        Loaded { responses: self, problem, system, start, y, c }
+    }
+}
+
+impl System {
+    /// Mode parameters −∫ N_k : χ of the given constant strains: minus those of the moments of χx on the boundary.
+    fn strained(&self, problem: &Problem, strains: &[(usize, [f64; 3])]) -> Vec<f64> {
+        let mut out = vec![0.0; self.modes.parameters()];
+        for (t, [xx, yy, xy]) in strains {
+            let corners = problem.mesh.corners(*t);
+            let at = |i: usize| {
+                let [x, y] = [0, 1].map(|c| corners[i % 3][c] - corners[0][c]);
+                [xx * x + xy * y, xy * x + yy * y]
+            };
+            let p = self.modes.degree(*t);
+            let mut moments = vec![0.0; 6 * (p + 1)];
+            for (i, own) in moments.chunks_exact_mut(2 * (p + 1)).enumerate() {
+                let [a, b] = [i + 1, i + 2].map(|j| corners[j % 3]);
+                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let ends = [at(i + 1), at(i + 2)];
+                for c in 0..2 {
+                    let along = side::moments(&[ends[0][c], ends[1][c]], p);
+                    own.iter_mut().skip(c).step_by(2).zip(along).for_each(|(m, v)| *m = -length * v);
+                }
+            }
+            self.modes.of(*t).parameters_from_moments(&moments, &mut out[self.modes.parameters_of(*t)]);
+        }
+        out
+    }
+}
+
+/// A load, reduced to the contact.
+pub struct Loaded<'a> {
+    responses: &'a Responses<'a>,
+    problem: Cow<'a, Problem>,
+    system: System,
+    /// Mode parameters without any displacement.
+    start: Vec<f64>,
+    /// What [`Reduced::condense`] makes of their residual.
+    y: Vec<f64>,
+    c: Vec<f64>,
+}
+
+/// What the normal traction s on Γ_K is held to.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds<'a> {
+    /// Coefficients of contact that are closed; s is zero at the others.
+    pub closed: &'a [bool],
+    /// `sign` · s is at least this at closed coefficients, not positive.
+    pub floor: &'a [f64],
+    /// 1 or −1.
+    pub sign: f64,
+}
+
+impl Loaded<'_> {
+    /// The stress of least energy that balances the load within `bounds`; remainders are weighed with the displacement whose
+    /// edge moments are `moments`.
+    ///
+    /// # Errors
+    /// [`DualError::ContactUndetermined`] where the contact that is held leaves a body loose, [`DualError::NotConverged`]
+    /// where what was found does not balance the load.
+    pub fn respond(&self, bounds: Bounds<'_>, moments: &SideValues<[f64; 2]>) -> Result<Response, DualError> {
+        let Loaded { responses: Responses { factorised, contact, .. }, problem, system, .. } = self;
+        let reduced = &factorised.reduced;
+        let first = system.unknowns.first_jump;
+        let (released, jumps) = self.released(bounds)?;
+        let held: Vec<bool> = bounds.closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
+        let mut system = system.clone();
+        let set = |i: usize| if released[i] { bounds.sign * bounds.floor[i] } else { 0.0 };
+        (0..held.len()).for_each(|i| system.external[first + i] += set(i));
+        let x = reduced.expand(self.y.clone(), &jumps);
+        let moved = parameters(problem, &system, &x, false);
+        let s: Vec<f64> = self.start.iter().zip(moved).map(|(a, b)| a + b).collect();
+        let r = residual(problem, &system, &s);
+        let no_move = vec![0.0; held.len()];
+        let correction = |r: &[f64]| {
+            let (y, c) = reduced.condense(r);
+            let jumps = contact.with_closed(&c, &no_move, &held).ok_or(DualError::ContactUndetermined)?;
+            Ok(reduced.expand(y, &jumps))
+        };
+        let fixed = reduced.fixed(&held);
+        let refinement =
+            Refinement { problem, system: &system, fixed: &fixed, solve: &correction, most_steps: MOST_REFINEMENTS };
+        let now = refinement.run(Refined { x, s, r })?;
+
+        // Where a jump is held its residual is minus the traction; all others are remainders, those of motions that nothing
+        // resists among them: a load that does work on these is balanced by nothing.
+        let mut traction: Vec<f64> = (0..held.len()).map(set).collect();
+        let displaced = system.unknowns.project(problem, |e, k| moments.of(e)[k]);
+        let (mut remainder, mut largest) = (0.0, 0.0_f64);
+        let scale =
+            now.r[first..].iter().chain(&system.rhs).chain(&system.external).fold(0.0_f64, |m, v| m.max(v.abs()));
+        for (i, r) in now.r.iter().enumerate() {
+            let mut left = *r;
+            let mut weight = displaced[i].abs();
+            if i >= first && held[i - first] {
+                let (own, floor) = (-r, bounds.floor[i - first]);
+                let kept = if bounds.sign * own < floor { bounds.sign * floor } else { own };
+                traction[i - first] = kept;
+                left = own - kept;
+                weight += system.jump_bound[i - first].abs();
+            }
+            remainder += left.abs() * weight;
+            largest = largest.max(left.abs());
+        }
+        if !largest.is_finite() || largest > UNBALANCED * scale {
+            return Err(DualError::NotConverged {
+                method: "response to another load",
+                iterations: MOST_REFINEMENTS,
+                residual: largest / scale,
+                wanted: UNBALANCED,
+                advice: "nothing that is held balances the load, or triangles are too flat".to_string(),
+            });
+        }
+        Ok(Response {
+            stress: system.modes.stresses(problem, &now.s),
+            moments: system.unknowns.moments_of_change(problem, &now.x),
+            contact: SideValues::new(system.unknowns.jump_blocks().map(|b| b.len), traction),
+            remainder,
+        })
+    }
+
+    /// Which closed coefficients are at the floor, and the jumps of all.
+    fn released(&self, Bounds { closed, floor, sign }: Bounds<'_>) -> Result<(Vec<bool>, Vec<f64>), DualError> {
+        let contact = &self.responses.contact;
+        let none = vec![0.0; closed.len()];
+        let mut released = vec![false; closed.len()];
+        for step in 1.. {
+            let load = |(i, c): (usize, &f64)| if released[i] { c + sign * floor[i] } else { *c };
+            let loaded: Vec<f64> = self.c.iter().enumerate().map(load).collect();
+            let held: Vec<bool> = closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
+            let jumps = contact.with_closed(&loaded, &none, &held).ok_or(DualError::ContactUndetermined)?;
+            let traction = contact.gradient(&self.c, &jumps);
+            let next: Vec<bool> = (0..closed.len())
+                .map(|i| closed[i] && if released[i] { sign * jumps[i] >= 0.0 } else { sign * traction[i] < floor[i] })
+                .collect();
+            if next == released || step == MOST_STEPS {
+                return Ok((released, jumps));
+            }
+            released = next;
+        }
+        unreachable!("the last step returns")
+    }
+}
