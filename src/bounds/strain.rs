@@ -125,7 +125,8 @@ impl Samples {
         })
     }
 
-    fn basis(&self, q: usize) -> &[f64] {
+    /// The Bernstein polynomials at point `q`.
+    pub fn basis(&self, q: usize) -> &[f64] {
         let count = self.basis.len() / self.points.len();
         &self.basis[q * count..(q + 1) * count]
     }

@@ -261,6 +261,7 @@ fn dual(problem: &Problem) -> DualSolution {
         equilibrium: Equilibrium { jump: 3e-15, applied: 1e-15, resultant: 0.0, tension: 0.0, scale: 4.0, work: 0.0 },
         accuracy: 1e-9,
         seconds: Phases { read: 0.01, assemble: 0.02, factor: 0.05, contact: 0.01, recover: 0.02, total: 0.11 },
+        factorised: None,
         notes: Vec::new(),
     }
 }

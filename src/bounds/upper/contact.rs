@@ -4,7 +4,7 @@
 //! their sum is kept with the mean of the jump: what is above zero is taken from those below.
 
 use super::nodes::{NodalValues, Nodes};
-use super::rows::{of_pair, sides};
+use super::rows::{Row, of_pair, sides};
 use crate::dual::DualSolution;
 use crate::element::side::lower_moments;
 use crate::problem::{ContactPair, Problem};
@@ -54,14 +54,16 @@ struct Jump<'a> {
 }
 
 impl<'a> Jump<'a> {
-    /// All pairs with a body on their first side.
+    /// That of a pair with a body on its first side.
+    fn new(problem: &Problem, pair: &'a ContactPair, nodes: &Nodes) -> Option<Self> {
+        let sides = sides(pair, &problem.mesh, nodes);
+        let degree = sides[0].as_ref()?.len() - 1;
+        Some(Jump { pair, sides, give: give(problem, pair), degree })
+    }
+
+    /// All of them.
     fn all(problem: &'a Problem, nodes: &'a Nodes) -> impl Iterator<Item = Jump<'a>> {
-        let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
-        pairs.filter_map(move |pair| {
-            let sides = sides(pair, &problem.mesh, nodes);
-            let degree = sides[0].as_ref()?.len() - 1;
-            Some(Jump { pair, sides, give: give(problem, pair), degree })
-        })
+        problem.interfaces.iter().flat_map(|i| &i.pairs).filter_map(move |pair| Jump::new(problem, pair, nodes))
     }
 
     /// The coefficients of the jump less the gap.
@@ -155,12 +157,12 @@ fn match_mean(jump: &Jump<'_>, mean: f64, values: &mut [[f64; 2]]) {
     (1..k).for_each(|j| jump.shift(values, j, jump.direction(j), more / all));
 }
 
-/// Draws inner coefficients that are above zero down to it.
-pub fn restrict_inside(problem: &Problem, field: &mut NodalValues) {
+/// Draws inner coefficients that are above zero down to it; `groups` are the rows of every pair.
+pub fn restrict_inside(problem: &Problem, groups: &[Vec<Row>], field: &mut NodalValues) {
     let size = field.vertices().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    for jump in Jump::all(problem, &field.nodes) {
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs).zip(groups);
+    for (jump, rows) in pairs.filter_map(|(pair, rows)| Some((Jump::new(problem, pair, &field.nodes)?, rows))) {
         let k = jump.degree;
-        let rows = of_pair(jump.pair, &jump.sides);
         for (j, row) in rows.iter().enumerate().take(rows.len() - 1).skip(1) {
             let off = row.excess(&field.values);
             if off <= ROUNDING * size {

@@ -9,6 +9,7 @@ use super::NoUpperBound;
 use super::contact::{ROUNDING, dot, give, mean_excess, shift};
 use super::holds::Hold;
 use super::nodes::Nodes;
+use super::rows::Row;
 use crate::dual::DualSolution;
 use crate::problem::{ContactPair, Problem};
 
@@ -28,12 +29,17 @@ const MOST_SWEEPS: usize = 200;
 /// How far inside a bound a jump is moved, relative to the size of the displacement.
 const MARGIN: f64 = 1e-14;
 
-/// Moves vertex values so that no vertex jump exceeds the gap.
+/// Moves vertex values so that no vertex jump exceeds the bound of its row; `groups` are the rows of every pair.
 ///
 /// # Errors
 /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for that.
-pub fn restrict(problem: &Problem, holds: &[Hold], vertex: &mut [[f64; 2]]) -> Result<(), NoUpperBound> {
-    let ends = ends_below_gap(problem);
+pub fn restrict(
+    problem: &Problem,
+    groups: &[Vec<Row>],
+    holds: &[Hold],
+    vertex: &mut [[f64; 2]],
+) -> Result<(), NoUpperBound> {
+    let ends = ends_below(problem, groups);
     draw(&ends, holds, vertex);
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     for end in &ends {
@@ -89,17 +95,19 @@ fn excess(end: &End, vertex: &[[f64; 2]]) -> f64 {
     if jump > end.high { jump - end.high } else { (jump - end.low).min(0.0) }
 }
 
-/// Both ends of all pairs, bounded by the gap alone.
-fn ends_below_gap(problem: &Problem) -> Vec<End> {
+/// Both ends of all pairs, bounded by their rows alone.
+fn ends_below(problem: &Problem, groups: &[Vec<Row>]) -> Vec<End> {
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs
-        .flat_map(|pair| {
+        .zip(groups)
+        .filter_map(|(pair, rows)| Some((pair, [rows.first()?.bound(), rows.last()?.bound()])))
+        .flat_map(|(pair, bounds)| {
             [0, 1].map(|end| End {
                 first: pair.first[end],
                 second: pair.second.map(|s| s[end]),
                 normal: pair.direction.ends[end],
                 low: f64::NEG_INFINITY,
-                high: pair.gap[end],
+                high: bounds[end],
                 give: give(problem, pair),
             })
         })

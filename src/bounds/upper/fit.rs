@@ -13,23 +13,24 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::bounds::strain::gradients;
-use crate::dual::DualSolution;
 use crate::dual::modes::materials;
 use crate::element::displacement::MOST;
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, triangle};
+use crate::element::{Compliance, SideValues, StressField, triangle};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
-pub fn vertex_values(problem: &Problem, dual: &DualSolution) -> Vec<[f64; 2]> {
+///
+/// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place.
+pub fn vertex_values(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let materials = materials(problem);
     let local: Vec<[[f64; 2]; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
-        .map(|t| corner_values(problem, dual, &materials[mesh.body[t]], t))
+        .map(|t| corner_values(problem, stress, moments, &materials[mesh.body[t]], t))
         .collect();
-    let degree = |t: usize| dual.stress.degree(t);
+    let degree = |t: usize| stress.degree(t);
     let mut highest = vec![0; mesh.points.len()];
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         triangle.iter().for_each(|&v| highest[v] = highest[v].max(degree(t)));
@@ -47,14 +48,20 @@ pub fn vertex_values(problem: &Problem, dual: &DualSolution) -> Vec<[f64; 2]> {
 }
 
 /// Values of the fit on triangle `t` at its corners.
-fn corner_values(problem: &Problem, dual: &DualSolution, material: &Compliance, t: usize) -> [[f64; 2]; 3] {
+fn corner_values(
+    problem: &Problem,
+    stress: &StressField,
+    moments: &SideValues<[f64; 2]>,
+    material: &Compliance,
+    t: usize,
+) -> [[f64; 2]; 3] {
     let mesh = &problem.mesh;
     let corners = mesh.corners(t);
     let origin = corners[0];
     let centre = [0, 1].map(|c| ((corners[1][c] - origin[c]) + (corners[2][c] - origin[c])) / 3.0);
     let p = corners.map(|q| [q[0] - origin[0] - centre[0], q[1] - origin[1] - centre[1]]);
-    let reference = Reference::of(dual.stress.degree(t));
-    let strain = reference.strain(|sub, l| material.strain(dual.stress.at(t, sub, l)));
+    let reference = Reference::of(stress.degree(t));
+    let strain = reference.strain(|sub, l| material.strain(stress.at(t, sub, l)));
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
     let (mut shift, mut turn, mut inertia) = ([0.0; 2], 0.0, 0.0);
@@ -63,7 +70,7 @@ fn corner_values(problem: &Problem, dual: &DualSolution, material: &Compliance, 
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let e = mesh.triangle_edges[t][side];
         let (length, _) = mesh.edge_frame(e);
-        let mut off = [0, 1].map(|c| dual.moments.of(e).iter().map(|m| m[c]).sum::<f64>() / length);
+        let mut off = [0, 1].map(|c| moments.of(e).iter().map(|m| m[c]).sum::<f64>() / length);
         for (path, weight) in &reference.sides[side] {
             let u = local.displacement(path);
             off = [0, 1].map(|c| off[c] - weight * u[c]);

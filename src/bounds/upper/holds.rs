@@ -99,24 +99,39 @@ impl Holds {
 /// # Errors
 /// [`NoUpperBound::SupportsDisagree`].
 pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
+    holds_at(problem, |e, _| match problem.conditions[e] {
+        Condition::Clamped(u0) => u0,
+        _ => [0.0; 2],
+    })
+}
+
+/// The hold of every node where supports prescribe other displacements: `prescribed` gives them by edge and vertex, of
+/// which rollers take the part along their normal. Inside an edge it is the one at the first vertex.
+///
+/// # Errors
+/// [`NoUpperBound::SupportsDisagree`].
+pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]) -> Result<Holds, NoUpperBound> {
     let mesh = &problem.mesh;
-    // Prescribed displacements are compared with each other, on the scale of the largest.
-    let size = problem
-        .conditions
-        .iter()
-        .filter_map(|c| if let Condition::Clamped(u) = c { Some(u[0].abs().max(u[1].abs())) } else { None })
-        .fold(0.0, f64::max);
     let normals = roller_normals(problem);
+    let of = |e: usize, v: usize| match (problem.conditions[e], normals.get(&e)) {
+        (Condition::Clamped(_), _) => Hold::Fixed(prescribed(e, v)),
+        (Condition::Roller, Some(normal)) => {
+            let u = prescribed(e, v);
+            Hold::Line { normal: *normal, value: u[0] * normal[0] + u[1] * normal[1] }
+        }
+        _ => Hold::Free,
+    };
+    // Prescribed displacements are compared with each other, on the scale of the largest.
+    let supported =
+        problem.conditions.iter().enumerate().filter(|(_, c)| matches!(c, Condition::Clamped(_) | Condition::Roller));
+    let size = supported
+        .flat_map(|(e, _)| mesh.edges[e].vertices.map(|v| prescribed(e, v)))
+        .fold(0.0_f64, |m, u| m.max(u[0].abs()).max(u[1].abs()));
     let mut holds = Holds { vertices: vec![Hold::Free; mesh.points.len()], edges: vec![Hold::Free; mesh.edges.len()] };
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        let own = match (condition, normals.get(&e)) {
-            (Condition::Clamped(u0), _) => Hold::Fixed(*u0),
-            (Condition::Roller, Some(normal)) => Hold::Line { normal: *normal, value: 0.0 },
-            _ => continue,
-        };
-        holds.edges[e] = own;
-        for v in mesh.edges[e].vertices {
-            let next = match own {
+    for (e, edge) in mesh.edges.iter().enumerate() {
+        holds.edges[e] = of(e, edge.vertices[0]);
+        for v in edge.vertices {
+            let next = match of(e, v) {
                 Hold::Fixed(u0) => holds.vertices[v].with_point(u0, size),
                 Hold::Line { normal, value } => holds.vertices[v].with_line(normal, value, size),
                 Hold::Free => continue,

@@ -5,9 +5,10 @@ use rayon::prelude::*;
 use super::cholesky;
 use super::nodes::{NodalValues, elevated};
 use super::split::Split;
+use super::stiffness::Pull;
 use crate::dual::modes::materials;
 use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
-use crate::element::{Compliance, Displacement, side, triangle};
+use crate::element::{Displacement, side, triangle};
 use crate::problem::Problem;
 
 /// Newton's steps. The energy is quadratic and the first one arrives; the second takes away what rounding left, which near
@@ -15,7 +16,7 @@ use crate::problem::Problem;
 const STEPS: usize = 2;
 
 /// Completes values at the nodes to a displacement on the split triangles.
-pub fn fill(problem: &Problem, field: &NodalValues) -> Displacement {
+pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacement {
     let mesh = &problem.mesh;
     let materials = materials(problem);
     let degree = |t: usize| field.nodes.triangle_degree(mesh, t);
@@ -30,19 +31,17 @@ pub fn fill(problem: &Problem, field: &NodalValues) -> Displacement {
                 block[n] = value;
             }
         }
-        let body = mesh.body[t];
-        inside(k, mesh.corners(t), &materials[body], problem.scene.bodies[body].body_force, block);
+        inside(k, &pull.split(problem, t, k, &materials[mesh.body[t]]), block);
     });
     displacement
 }
 
 /// Sets the inner coefficients, those on the boundary being given.
-fn inside(k: usize, corners: [[f64; 2]; 3], material: &Compliance, force: [f64; 2], block: &mut [[f64; 2]]) {
+fn inside(k: usize, split: &Split, block: &mut [[f64; 2]]) {
     // About the value at the first corner: rigid translations cost no digits.
     let base = block[0];
     block.iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
     begin(k, block);
-    let split = Split::new(k, corners, material, force);
     let mut stiffness = split.inside();
     if cholesky::factorise(&mut stiffness, split.inside, 0.0) {
         let mut load = vec![0.0; split.inside];
@@ -86,6 +85,7 @@ fn begin(k: usize, block: &mut [[f64; 2]]) {
 mod tests {
     use super::*;
     use crate::bounds::strain::sub_corners;
+    use crate::element::Compliance;
     use crate::element::displacement::MOST;
     use crate::scene::Kinematics;
 
@@ -115,7 +115,7 @@ mod tests {
                 }
                 let mut found = exact.block(0).to_vec();
                 found[3 * k..].fill([7.0, -5.0]);
-                inside(k, CORNERS, &material, [0.0; 2], &mut found);
+                inside(k, &Split::new(k, CORNERS, &material, [0.0; 2]), &mut found);
                 for (a, b) in found.iter().zip(exact.block(0)) {
                     assert!((a[0] - b[0]).hypot(a[1] - b[1]) < allowed, "degree {k}: {a:?} is not {b:?}");
                 }

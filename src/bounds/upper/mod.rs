@@ -18,6 +18,7 @@ mod holds;
 mod interior;
 mod model;
 mod momentum;
+mod nearest;
 mod nodes;
 mod patch;
 mod relax;
@@ -26,9 +27,12 @@ mod sets;
 mod split;
 mod stiffness;
 
-pub use self::holds::{Hold, Holds, holds, supports_agree};
+pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
+use self::model::Model;
+pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
 pub use self::rows::{Row, bernstein};
+use self::stiffness::Pull;
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -73,14 +77,15 @@ pub fn admissible(
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let nodes = Nodes::new(mesh.points.len(), dual.moments.iter().map(|moments| moments.len()));
+    let rows = rows::rows(problem, &nodes);
     let mut field = NodalValues::zeros(nodes.clone());
     let vertex = field.vertices_mut();
-    vertex.copy_from_slice(&fit::vertex_values(problem, dual));
+    vertex.copy_from_slice(&fit::vertex_values(problem, &dual.stress, &dual.moments));
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
     }
     ends::draw(&ends::ends_near(problem, dual, &nodes), &holds.vertices, vertex);
-    ends::restrict(problem, &holds.vertices, vertex)?;
+    ends::restrict(problem, &rows, &holds.vertices, vertex)?;
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
         let inside = edges::inside(dual.moments.of(e), mesh.edge_frame(e).0, ends);
@@ -89,27 +94,33 @@ pub fn admissible(
         }
     }
     contact::match_means(problem, dual, &mut field);
-    contact::restrict_inside(problem, &mut field);
+    contact::restrict_inside(problem, &rows, &mut field);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
-    let at_rest = restricted(problem, &holds, NodalValues::zeros(nodes.clone()))?.0;
+    let at_rest = restricted(problem, &holds, &rows, NodalValues::zeros(nodes.clone()))?.0;
     let mut candidates = vec![field];
     if let Some(start) = start {
-        candidates.push(restricted(problem, &holds, start.on(mesh, &nodes))?.0);
+        candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
     }
-    let relaxed = relax::relax(problem, &holds, floor / problem.scene.thickness, candidates, at_rest);
-    Ok(interior::fill(problem, &restricted(problem, &holds, relaxed)?.0))
+    let model = Model::new(problem, &holds, &nodes, &rows, Pull::Scene);
+    let relaxed = relax::relax(problem, &model, floor / problem.scene.thickness, candidates, at_rest);
+    Ok(interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::Scene))
 }
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
-fn restricted(problem: &Problem, holds: &Holds, mut field: NodalValues) -> Result<(NodalValues, f64), NoUpperBound> {
+fn restricted(
+    problem: &Problem,
+    holds: &Holds,
+    rows: &[Vec<Row>],
+    mut field: NodalValues,
+) -> Result<(NodalValues, f64), NoUpperBound> {
     let mut farthest = 0.0_f64;
     for (value, hold) in field.values.iter_mut().zip(holds.of_nodes(&field.nodes)) {
         let held = hold.impose(*value);
         farthest = farthest.max((held[0] - value[0]).hypot(held[1] - value[1]));
         *value = held;
     }
-    ends::restrict(problem, &holds.vertices, field.vertices_mut())?;
-    contact::restrict_inside(problem, &mut field);
+    ends::restrict(problem, rows, &holds.vertices, field.vertices_mut())?;
+    contact::restrict_inside(problem, rows, &mut field);
     Ok((field, farthest))
 }
 
@@ -145,7 +156,8 @@ pub fn repaired(
     let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
     let start = NodalValues::quadratic(&problem.mesh, vertex, middle);
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
-    let (field, farthest) = restricted(problem, &holds, start)?;
+    let rows = rows::rows(problem, &start.nodes);
+    let (field, farthest) = restricted(problem, &holds, &rows, start)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
     let (vertex, inner) = field.values.split_at(field.nodes.vertices());
     Ok((Displacement::quadratic(&problem.mesh, vertex, inner), violation))

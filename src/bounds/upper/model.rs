@@ -3,8 +3,8 @@
 use super::groups::Group;
 use super::holds::{Hold, Holds};
 use super::nodes::Nodes;
-use super::rows::{Row, rows};
-use super::stiffness::{Condensed, condensed};
+use super::rows::Row;
+use super::stiffness::{Condensed, Pull, condensed};
 use crate::problem::Problem;
 
 /// What does not change while patches move.
@@ -27,20 +27,21 @@ pub struct Model<'a> {
 
 impl<'a> Model<'a> {
     /// Prepares the energy of all triangles and the conditions on all nodes.
-    pub fn new(problem: &'a Problem, holds: &Holds, nodes: &Nodes) -> Self {
+    ///
+    /// `groups` are the rows of every pair, `pull` what the energy has beside that of the strains.
+    pub fn new(problem: &'a Problem, holds: &Holds, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) -> Self {
         let mesh = &problem.mesh;
         let (mut of_triangles, mut start) = (Vec::new(), vec![0]);
         for t in 0..mesh.triangles.len() {
             of_triangles.extend(nodes.of_triangle(mesh, t));
             start.push(of_triangles.len());
         }
-        let groups = rows(problem, nodes);
-        let rows_at = rows_at(problem, &groups);
+        let rows_at = rows_at(problem, groups);
         Model {
             problem,
-            elements: condensed(problem, nodes),
+            elements: condensed(problem, nodes, pull),
             free: directions(holds, nodes),
-            rows: groups.into_iter().flatten().collect(),
+            rows: groups.iter().flatten().cloned().collect(),
             rows_at,
             of_triangles: (of_triangles, start),
             edge: (0..nodes.edges()).flat_map(|e| std::iter::repeat_n(e, nodes.inside(e).len())).collect(),
@@ -142,6 +143,7 @@ mod tests {
     use crate::bounds::upper::holds::holds;
     use crate::bounds::upper::interior::fill;
     use crate::bounds::upper::nodes::NodalValues;
+    use crate::bounds::upper::rows::rows;
     use crate::scene::Scene;
 
     /// A block on an obstacle with a gap, pressed and heavy.
@@ -178,7 +180,9 @@ mod tests {
     }
 
     fn energy(problem: &Problem, field: &NodalValues) -> f64 {
-        Model::new(problem, &holds(problem).expect("supports agree"), &field.nodes).energy(&field.values)
+        let rows = rows(problem, &field.nodes);
+        let holds = holds(problem).expect("supports agree");
+        Model::new(problem, &holds, &field.nodes, &rows, Pull::Scene).energy(&field.values)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.
@@ -189,8 +193,8 @@ mod tests {
         for degree in degrees {
             let mut field = NodalValues::zeros(nodes(&problem, degree));
             field.values.iter_mut().enumerate().for_each(|(n, v)| *v = [(n as f64).sin(), (3.0 * n as f64).cos()]);
-            let found = potential(&problem, &fill(&problem, &field));
-            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone())));
+            let found = potential(&problem, &fill(&problem, &field, Pull::Scene));
+            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone()), Pull::Scene));
             let expected = (found.total() - at_rest.total()) / problem.scene.thickness;
             let of_model = energy(&problem, &field);
             assert!((of_model - expected).abs() < 1e-11 * found.magnitude, "{of_model} is not {expected}");

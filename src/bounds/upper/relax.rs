@@ -11,7 +11,6 @@ use nalgebra::{DMatrix, DVector};
 use super::cholesky::{column, packed};
 use super::contact::ROUNDING;
 use super::groups::{Group, groups};
-use super::holds::Holds;
 use super::model::Model;
 use super::momentum::Momentum;
 use super::nodes::{NodalValues, Nodes};
@@ -58,17 +57,16 @@ fn size(nodes: &Nodes) -> f64 {
 /// The factor of the stiffness of a patch, from the first sweep on.
 type Kept = Option<Box<[f64]>>;
 
-/// Lowers the energy of the best of several admissible fields, or of the one `at_rest` where these are wild; `floor` is a
+/// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are wild; `floor` is a
 /// lower bound of it, per unit thickness.
 pub fn relax(
     problem: &Problem,
-    holds: &Holds,
+    model: &Model<'_>,
     floor: f64,
     candidates: Vec<NodalValues>,
     at_rest: NodalValues,
 ) -> NodalValues {
     let nodes = &at_rest.nodes;
-    let model = Model::new(problem, holds, nodes);
     let size = size(nodes);
     let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
     let mut kept: Vec<Kept> = vec![None; groups.len()];
@@ -103,10 +101,10 @@ pub fn relax(
             // Back and forth: what one direction pushes ahead of it the other brings back.
             let k = if sweep % 2 == 0 { k } else { groups.len() - 1 - k };
             let (group, kept) = (&groups[k], &mut kept[k]);
-            gained += patch.relax(&model, group, kept, slack, &mut values);
+            gained += patch.relax(model, group, kept, slack, &mut values);
         }
         if let Some(before) = before {
-            gained += momentum.push(&model, &before, slack, &mut values);
+            gained += momentum.push(model, &before, slack, &mut values);
         }
     }
     NodalValues { nodes: at_rest.nodes, values }

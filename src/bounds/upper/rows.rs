@@ -20,6 +20,16 @@ impl Row {
         &self.terms
     }
 
+    /// What the jump may be at most.
+    pub fn bound(&self) -> f64 {
+        self.gap
+    }
+
+    /// The same jump with another bound.
+    pub fn bounded(self, bound: f64) -> Self {
+        Row { gap: bound, ..self }
+    }
+
     /// The coefficient for the given values: admissible where it is not positive.
     pub fn excess(&self, values: &[[f64; 2]]) -> f64 {
         self.excess_at(|node| values[node])

@@ -11,9 +11,9 @@
 use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
-use crate::bounds::strain::{gradients, sub_area, sub_corners};
+use crate::bounds::strain::{Samples, gradients, sub_area, sub_corners};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
-use crate::element::{Compliance, triangle};
+use crate::element::{Compliance, StressField, triangle};
 
 /// ½ uᵀKu − fᵀu, per unit thickness, without the tractions on the boundary.
 #[derive(Debug, Clone)]
@@ -53,6 +53,27 @@ impl Split {
             }
         }
         split
+    }
+
+    /// Adds the forces ∫ σ : e(φ) of a stress on triangle `t`, which has these corners.
+    pub fn pull(&mut self, k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize) {
+        let area = sub_area(corners);
+        let samples = Samples::of(k - 1, stress.degree(t));
+        for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+            let g = gradients(sub_corners(corners, sub));
+            for (q, (l, weight)) in samples.points.iter().enumerate() {
+                let s = stress.at(t, sub, *l);
+                let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);
+                for (beta, b) in triangle::indices(k - 1).zip(samples.basis(q)) {
+                    let by = k as f64 * area * weight * b;
+                    for (i, force) in forces.iter().enumerate() {
+                        let node = nodes[triangle::number(triangle::raised(beta, i))];
+                        self.load[2 * node] += by * force[0];
+                        self.load[2 * node + 1] += by * force[1];
+                    }
+                }
+            }
+        }
     }
 
     /// A row of K.
@@ -141,7 +162,7 @@ fn pairs(g: [[f64; 2]; 3], area: f64, material: &Compliance) -> [[Pair; 3]; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::strain::{Samples, Strains};
+    use crate::bounds::strain::Strains;
     use crate::element::Displacement;
     use crate::scene::Kinematics;
 

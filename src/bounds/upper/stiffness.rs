@@ -7,6 +7,7 @@ use super::nodes::Nodes;
 use super::split::Split;
 use crate::dual::modes::materials;
 use crate::element::side::{elevation, product};
+use crate::element::{Compliance, StressField};
 use crate::problem::{Condition, Problem};
 
 /// ½ uᵀKu − fᵀu of one triangle, u being x and y of the nodes on its boundary ([`Nodes::of_triangle`]).
@@ -51,22 +52,52 @@ impl Condensed {
     }
 }
 
+/// What pulls at a displacement.
+#[derive(Debug, Clone, Copy)]
+pub enum Pull<'a> {
+    /// Body forces and tractions of the scene: the energy is 𝓛.
+    Scene,
+    /// A stress σ on every triangle: the energy is ½‖σ(v) − σ‖²_a less ½‖σ‖²_a.
+    Stress(&'a StressField),
+}
+
+impl Pull<'_> {
+    /// The energy of triangle `t` for displacements of degree `k`, but for tractions.
+    pub fn split(&self, problem: &Problem, t: usize, k: usize, material: &Compliance) -> Split {
+        let corners = problem.mesh.corners(t);
+        match self {
+            Pull::Scene => Split::new(k, corners, material, problem.scene.bodies[problem.mesh.body[t]].body_force),
+            Pull::Stress(stress) => {
+                let mut split = Split::new(k, corners, material, [0.0; 2]);
+                split.pull(k, corners, stress, t);
+                split
+            }
+        }
+    }
+
+    /// The traction of the scene at the ends of edge `e`, where it pulls.
+    fn traction(&self, problem: &Problem, e: usize) -> Option<[[f64; 2]; 2]> {
+        match (self, problem.conditions[e]) {
+            (Pull::Scene, Condition::Traction(ends)) => Some(ends),
+            _ => None,
+        }
+    }
+}
+
 /// Of every triangle, per unit thickness. `None` where the inside has no unique minimum in numbers.
-pub fn condensed(problem: &Problem, nodes: &Nodes) -> Vec<Option<Condensed>> {
+pub fn condensed(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Vec<Option<Condensed>> {
     let materials = materials(problem);
     let mesh = &problem.mesh;
     (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(16)
         .map(|t| {
-            let body = mesh.body[t];
-            let force = problem.scene.bodies[body].body_force;
             let degrees = mesh.triangle_edges[t].map(|e| nodes.degree(e));
             let k = nodes.triangle_degree(mesh, t);
-            let mut element =
-                lowered(eliminated(&Split::new(k, mesh.corners(t), &materials[body], force))?, k, degrees);
+            let split = pull.split(problem, t, k, &materials[mesh.body[t]]);
+            let mut element = lowered(eliminated(&split)?, k, degrees);
             for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
-                let Condition::Traction(ends) = problem.conditions[e] else { continue };
+                let Some(ends) = pull.traction(problem, e) else { continue };
                 // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
                 let (length, _) = mesh.edge_frame(e);
                 let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();

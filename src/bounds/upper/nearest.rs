@@ -1,0 +1,76 @@
+//! The displacement nearest to a stress: z with homogeneous supports and jumps at most given bounds that makes
+//! ‖σ_z − σ(z)‖_a small.
+//!
+//! It is built as the free upper bound is: fit, edge moments, bounds by coefficients, relaxation over patches, inside last.
+
+use super::model::Model;
+use super::nodes::{NodalValues, Nodes};
+use super::rows::{Row, rows};
+use super::stiffness::Pull;
+use super::{Holds, NoUpperBound, edges, fit, holds_at, interior, relax, restricted};
+use crate::bounds::complementary;
+use crate::element::{Displacement, SideValues, StressField};
+use crate::problem::Problem;
+
+/// What all displacements near stresses on one mesh share.
+pub struct Nearest<'a> {
+    problem: &'a Problem,
+    holds: Holds,
+    nodes: Nodes,
+    rows: Vec<Vec<Row>>,
+}
+
+impl<'a> Nearest<'a> {
+    /// For displacements of one degree more than edge moments `like` these.
+    ///
+    /// # Errors
+    /// None: supports that hold nothing in place agree.
+    pub fn new(problem: &'a Problem, like: &SideValues<[f64; 2]>) -> Result<Self, NoUpperBound> {
+        let nodes = Nodes::new(problem.mesh.points.len(), like.iter().map(|moments| moments.len()));
+        let rows = rows(problem, &nodes);
+        Ok(Nearest { problem, holds: holds_at(problem, |_, _| [0.0; 2])?, nodes, rows })
+    }
+
+    /// The displacement that has edge moments `moments` and the strain of `stress` nearly, in values at nodes: what
+    /// [`Self::to`] begins with.
+    pub fn start(&self, stress: &StressField, moments: &SideValues<[f64; 2]>) -> NodalValues {
+        let mut field = NodalValues::zeros(self.nodes.clone());
+        field.vertices_mut().copy_from_slice(&fit::vertex_values(self.problem, stress, moments));
+        for (value, hold) in field.vertices_mut().iter_mut().zip(&self.holds.vertices) {
+            *value = hold.impose(*value);
+        }
+        for e in 0..self.problem.mesh.edges.len() {
+            let ends = self.problem.mesh.edges[e].vertices.map(|v| field.values[v]);
+            let inside = edges::inside(moments.of(e), self.problem.mesh.edge_frame(e).0, ends);
+            for (value, found) in field.values[self.nodes.inside(e)].iter_mut().zip(inside) {
+                *value = self.holds.edges[e].impose(found);
+            }
+        }
+        field
+    }
+
+    /// The displacement nearest to `stress` whose jumps (v' − v'')·n̂ have coefficients of at most `bounds` on every pair, and
+    /// its values at nodes; it begins with the best of `starts`.
+    ///
+    /// # Errors
+    /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for the bounds.
+    pub fn to(
+        &self,
+        stress: &StressField,
+        bounds: &[Vec<f64>],
+        starts: Vec<NodalValues>,
+    ) -> Result<(Displacement, NodalValues), NoUpperBound> {
+        let bounded = |(rows, bounds): (&Vec<Row>, &Vec<f64>)| {
+            rows.iter().cloned().zip(bounds).map(|(row, bound)| row.bounded(*bound)).collect()
+        };
+        let rows: Vec<Vec<Row>> = self.rows.iter().zip(bounds).map(bounded).collect();
+        let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
+        let candidates = starts.into_iter().map(admissible).collect::<Result<Vec<_>, NoUpperBound>>()?;
+        let at_rest = admissible(NodalValues::zeros(self.nodes.clone()))?;
+        let pull = Pull::Stress(stress);
+        let model = Model::new(self.problem, &self.holds, &self.nodes, &rows, pull);
+        let floor = -complementary(self.problem, stress).strain / self.problem.scene.thickness;
+        let relaxed = admissible(relax::relax(self.problem, &model, floor, candidates, at_rest))?;
+        Ok((interior::fill(self.problem, &relaxed, pull), relaxed))
+    }
+}
