@@ -196,6 +196,7 @@ mod tests {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            quantities: Vec::new(),
         };
         let (mesh, notes) = Triangulation::new(raw, &scene).expect("a strip");
         let problem = Problem::new(scene, mesh, notes).expect("a problem");

@@ -22,6 +22,7 @@ pub(crate) fn scene(bodies: &[&str]) -> Scene {
         supports: Vec::new(),
         tractions: Vec::new(),
         contacts: Vec::new(),
+        quantities: Vec::new(),
     }
 }
 

@@ -48,6 +48,7 @@ pub(crate) fn pressed_square() -> Problem {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            quantities: Vec::new(),
         },
         mesh,
         conditions: vec![

@@ -227,6 +227,7 @@ fn scene() -> Scene {
         supports: Vec::new(),
         tractions: Vec::new(),
         contacts: Vec::new(),
+        quantities: Vec::new(),
     }
 }
 

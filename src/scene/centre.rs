@@ -16,7 +16,8 @@ impl Scene {
     /// The same scene with coordinates counted from a point in the middle of `points`, in each direction in which they lie
     /// far from zero, and that point. `points` themselves are to be moved by it.
     ///
-    /// P(x) = value + gradient · x of a traction becomes the same function of the new coordinates.
+    /// P(x) = value + gradient · x of a traction becomes the same function of the new coordinates; regions and points of
+    /// quantities move along.
     pub(crate) fn about_middle<'a>(mut self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
         let [x, y] = [0, 1].map(|c| range(points.clone().map(|p| p[c])));
         let size = (x[1] - x[0]).max(y[1] - y[0]);
@@ -41,6 +42,7 @@ impl Scene {
                 *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
             }
         }
+        self.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
         self.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
         (self, middle)
     }

@@ -35,6 +35,16 @@ fn each<R, T>(
     list.iter().enumerate().map(|(i, raw)| check(raw, &format!("[[{key}]] number {}", i + 1))).collect()
 }
 
+/// The names of the polygon edges, sorted; `None` where only a mesh file knows them.
+pub(super) fn edge_names(mesh: &MeshSource) -> Option<Vec<String>> {
+    match mesh {
+        MeshSource::File(_) => None,
+        MeshSource::Geometry { polygons, .. } => {
+            Some(names(polygons.iter().flat_map(|p| p.edges.iter().map(String::as_str))))
+        }
+    }
+}
+
 /// The boundaries that have a condition already.
 struct Taken<'a> {
     source: &'a Source<'a>,
@@ -45,13 +55,7 @@ struct Taken<'a> {
 
 impl<'a> Taken<'a> {
     fn new(mesh: &MeshSource, source: &'a Source<'a>) -> Self {
-        let known = match mesh {
-            MeshSource::File(_) => None,
-            MeshSource::Geometry { polygons, .. } => {
-                Some(names(polygons.iter().flat_map(|p| p.edges.iter().map(String::as_str))))
-            }
-        };
-        Self { source, known, by: HashMap::new() }
+        Self { source, known: edge_names(mesh), by: HashMap::new() }
     }
 
     /// The name, if it exists and is free; from now on it belongs to `table`.
@@ -166,7 +170,8 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
 
 /// A unit vector for a contact between two sides.
 fn direction(d: &At<Vec<f64>>, contact: &RawContact, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
-    let vector = source.vector(d, (table, "direction"))?;
+    let remedy = "write the direction from the first side to the second, like [0.0, -1.0]";
+    let unit = source.unit(d, (table, "direction"), remedy)?;
     let remedy =
         "delete `direction`; a rigid obstacle has the shape of the boundary, and `gap` says how far away it is";
     let misplaced = |other| Fault::Misplaced { key: "direction", table: table.to_owned(), other, remedy };
@@ -178,10 +183,7 @@ fn direction(d: &At<Vec<f64>>, contact: &RawContact, table: &str, source: &Sourc
         let fault = Fault::Misplaced { key: "normals", table: table.to_owned(), other: "`direction`", remedy };
         return Err(source.error(normals.span(), fault));
     }
-    let length = vector[0].hypot(vector[1]);
-    let words = ("a direction has a length", "write the direction from the first side to the second, like [0.0, -1.0]");
-    source.number(&At { value: length, start: d.start, end: d.end }, (table, "direction"), |l| l > 0.0, words)?;
-    Ok(vector.map(|x| x / length))
+    Ok(unit)
 }
 
 fn normals(contact: &RawContact, table: &str, source: &Source) -> Result<Normals, SceneError> {

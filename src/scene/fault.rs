@@ -1,6 +1,7 @@
 //! The faults a scene text can have, with their words.
 
 use super::nearest::suggestion;
+use super::quantity::QuantityFault;
 
 /// What is wrong inside a scene file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -205,6 +206,9 @@ pub enum Fault {
         /// `the same as` or `less than`.
         relation: &'static str,
     },
+    /// A quantity that is none.
+    #[error(transparent)]
+    Quantity(#[from] QuantityFault),
 }
 
 impl Fault {
@@ -213,6 +217,9 @@ impl Fault {
         match self {
             Fault::Empty => "a scene needs at least [model], [bodies.NAME] and [mesh] or [geometry]".into(),
             Fault::Syntax { message } => syntax_remedy(message).into(),
+            Fault::UnknownKey { key, table, .. } if key == "at" && table.starts_with("[[quantities]]") => {
+                "no interval can be guaranteed for a value at a point; take the mean over a short boundary or a small `box`".into()
+            }
             Fault::UnknownKey { key, known, .. } => suggestion(key, known, "keys known here", '`'),
             Fault::MissingKey { remedy, .. } => remedy.clone(),
             Fault::WrongType { expected, .. } => format!("write {expected}"),
@@ -241,6 +248,7 @@ impl Fault {
                 "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle".into()
             }
             Fault::GapOrder { .. } => "sort the rows so that the arc length s increases strictly".into(),
+            Fault::Quantity(fault) => fault.remedy(),
         }
     }
 
@@ -264,6 +272,7 @@ impl Fault {
             Fault::TwoConditions { .. } => "the second condition",
             Fault::SelfContact { .. } => "twice the same",
             Fault::GapOrder { .. } => "out of order",
+            Fault::Quantity(fault) => return fault.label(),
         }
         .into()
     }

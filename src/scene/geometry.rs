@@ -2,7 +2,7 @@
 
 use super::error::{Fault, SceneError};
 use super::fault::names;
-use super::polygon::{Defect, EXTENT, defect};
+use super::polygon::{Defect, defect};
 use super::raw::{At, RawArc, RawGeometry, RawPolygon, RawScene, Table};
 use super::validate::{Source, counted};
 use super::{Arc, Body, Circle, MeshSource, Polygon};
@@ -84,51 +84,13 @@ fn arc(raw: &At<Table<RawArc>>, table: &str, points: &[[f64; 2]], source: &Sourc
 }
 
 fn shape_error(raw: &RawPolygon, number: usize, points: &[[f64; 2]], defect: Defect, source: &Source) -> SceneError {
-    let corner = |i: usize| format!("[{:?}, {:?}]", points[i][0], points[i][1]);
     let edge = |i: usize| match raw.edges.value.get(i) {
         Some(name) if !name.value.is_empty() => format!("{} (\"{}\")", i + 1, name.value),
         _ => (i + 1).to_string(),
     };
-    let at_corner = |i: usize| raw.points.value[i].span();
-    let (span, problem, remedy) = match defect {
-        Defect::TooFew => (
-            raw.points.span(),
-            format!("has {}, but a region needs at least 3", counted(points.len(), "corner")),
-            "add the missing corners",
-        ),
-        Defect::Repeated(0, j) if j + 1 == points.len() => (
-            at_corner(j),
-            format!("repeats its first corner {} at the end", corner(0)),
-            "delete the last corner; a polygon closes by itself",
-        ),
-        Defect::Repeated(i, j) => (
-            at_corner(j),
-            format!("has corner {} twice, as number {} and number {}", corner(i), i + 1, j + 1),
-            "delete one of the two, or split the polygon where it touches itself",
-        ),
-        Defect::Extent => (
-            raw.points.span(),
-            format!("leaves the range of lengths from {:?} to {EXTENT:?}", 1.0 / EXTENT),
-            "choose another unit of length",
-        ),
-        Defect::NoArea => (
-            raw.points.span(),
-            "has no area: its corners lie on one line".to_owned(),
-            "correct the corners; listed in order they must go round a region",
-        ),
-        Defect::Spike(i) => (
-            at_corner(i),
-            format!("turns back on itself at corner {} {}", i + 1, corner(i)),
-            "delete the corner, or move it off the line of its neighbours",
-        ),
-        Defect::Crossing(i, j) => (
-            at_corner(j),
-            format!("crosses or touches itself: edges {} and {} meet", edge(i), edge(j)),
-            "list the corners in order round the region, or split it into several polygons of the same body",
-        ),
-    };
-    let fault = Fault::Polygon { polygon: number, body: raw.body.value.clone(), problem, remedy };
-    source.error(span, fault)
+    let span = defect.corner().map_or(raw.points.span(), |i| raw.points.value[i].span());
+    let (problem, remedy) = (defect.problem(points, edge), defect.remedy(points));
+    source.error(span, Fault::Polygon { polygon: number, body: raw.body.value.clone(), problem, remedy })
 }
 
 fn every_body_has_a_polygon(scene: &RawScene, polygons: &[Polygon], source: &Source) -> Result<(), SceneError> {

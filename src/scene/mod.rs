@@ -14,6 +14,7 @@ mod geometry;
 mod nearest;
 mod parse;
 mod polygon;
+pub mod quantity;
 mod raw;
 mod read;
 pub(crate) mod text;
@@ -23,6 +24,7 @@ use std::path::PathBuf;
 
 pub use circle::Circle;
 pub use error::{Fault, SceneError};
+pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
 
@@ -55,6 +57,8 @@ pub struct Scene {
     pub tractions: Vec<Traction>,
     /// Γ_K.
     pub contacts: Vec<Contact>,
+    /// What the scene is solved for, in the order of the file.
+    pub quantities: Vec<Quantity>,
 }
 
 /// The plane state, which fixes the compliance constants α, β, γ after (3.2).

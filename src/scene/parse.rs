@@ -154,6 +154,7 @@ fn what_to_add(key: &str) -> &'static str {
         "points" => "add the corners, points = [[x, y], ...]",
         "edges" => "add one name for each edge, edges = [\"NAME\", ...]; \"\" leaves an edge free",
         "on" => "add on = \"NAME\", the boundary that is meant",
+        "name" => "add name = \"NAME\", what the report is to call the quantity",
         "type" => "add type = \"clamped\" or \"roller\"",
         _ => "add it",
     }

@@ -5,6 +5,8 @@ use std::collections::HashMap;
 
 use robust::{Coord, orient2d};
 
+use super::validate::counted;
+
 /// Largest extent, and reciprocal of the smallest, that double precision and the mesher handle without loss.
 pub(super) const EXTENT: f64 = 1e30;
 
@@ -23,6 +25,51 @@ pub(super) enum Defect {
     Spike(usize),
     /// Edges i < j cross or touch.
     Crossing(usize, usize),
+}
+
+impl Defect {
+    /// The corner to point at, where there is one.
+    pub fn corner(&self) -> Option<usize> {
+        match *self {
+            Defect::TooFew | Defect::Extent | Defect::NoArea => None,
+            Defect::Spike(i) | Defect::Repeated(_, i) | Defect::Crossing(_, i) => Some(i),
+        }
+    }
+
+    /// What is wrong, as the rest of a sentence about the polygon; `edge` is what an edge is called.
+    pub fn problem(&self, points: &[[f64; 2]], edge: impl Fn(usize) -> String) -> String {
+        let corner = |i: usize| format!("[{:?}, {:?}]", points[i][0], points[i][1]);
+        match *self {
+            Defect::TooFew => format!("has {}, but a region needs at least 3", counted(points.len(), "corner")),
+            Defect::Repeated(0, j) if j + 1 == points.len() => {
+                format!("repeats its first corner {} at the end", corner(0))
+            }
+            Defect::Repeated(i, j) => {
+                format!("has corner {} twice, as number {} and number {}", corner(i), i + 1, j + 1)
+            }
+            Defect::Extent => format!("leaves the range of lengths from {:?} to {EXTENT:?}", 1.0 / EXTENT),
+            Defect::NoArea => "has no area: its corners lie on one line".to_owned(),
+            Defect::Spike(i) => format!("turns back on itself at corner {} {}", i + 1, corner(i)),
+            Defect::Crossing(i, j) => {
+                format!("crosses or touches itself: edges {} and {} meet", edge(i), edge(j))
+            }
+        }
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self, points: &[[f64; 2]]) -> &'static str {
+        match *self {
+            Defect::TooFew => "add the missing corners",
+            Defect::Repeated(0, j) if j + 1 == points.len() => "delete the last corner; a polygon closes by itself",
+            Defect::Repeated(..) => "delete one of the two, or split the polygon where it touches itself",
+            Defect::Extent => "choose another unit of length",
+            Defect::NoArea => "correct the corners; listed in order they must go round a region",
+            Defect::Spike(_) => "delete the corner, or move it off the line of its neighbours",
+            Defect::Crossing(..) => {
+                "list the corners in order round the region, or split it into several polygons of the same body"
+            }
+        }
+    }
 }
 
 /// The first defect of the closed polygon through `points` (finite), or `None` if it is simple and has an area.
@@ -110,10 +157,15 @@ fn crossing(points: &[[f64; 2]]) -> Option<Defect> {
 }
 
 fn sliver(points: &[[f64; 2]]) -> Option<Defect> {
-    let [x0, y0] = points[0];
-    let twice: f64 = points.windows(2).map(|w| (w[0][0] - x0) * (w[1][1] - y0) - (w[1][0] - x0) * (w[0][1] - y0)).sum();
     let rounding = points.len() as f64 * f64::EPSILON * spread(points).powi(2);
-    (twice.abs() <= rounding).then_some(Defect::NoArea)
+    (2.0 * area(points).abs() <= rounding).then_some(Defect::NoArea)
+}
+
+/// The area of a simple polygon, positive where its corners go round it counter-clockwise; it has at least one corner.
+pub(super) fn area(points: &[[f64; 2]]) -> f64 {
+    let [x0, y0] = points[0];
+    let twice = |w: &[[f64; 2]]| (w[0][0] - x0) * (w[1][1] - y0) - (w[1][0] - x0) * (w[0][1] - y0);
+    0.5 * points.windows(2).map(twice).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -10,6 +10,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::quantity::RawQuantity;
+
 /// A value and where it stands in the file.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct At<T> {
@@ -74,7 +76,7 @@ schema_of_content!(At);
 schema_of_content!(Table);
 
 /// A list of numbers, whose length is checked later; in the schema it has two.
-type Pair = At<Vec<f64>>;
+pub(super) type Pair = At<Vec<f64>>;
 
 /// A scene of hypercircle: bodies, their conditions, and where the triangles come from.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
@@ -101,6 +103,9 @@ pub(super) struct RawScene {
     /// Boundaries that may touch, without friction.
     #[serde(default)]
     pub contacts: Vec<At<Table<RawContact>>>,
+    /// What the scene is solved for.
+    #[serde(default)]
+    pub quantities: Vec<At<Table<RawQuantity>>>,
 }
 
 /// The mechanical model.

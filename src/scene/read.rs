@@ -9,7 +9,7 @@ use std::path::Path;
 use rustix::fs::OFlags;
 
 use super::error::{FileFault, SceneError};
-use super::{ContactSides, MAX_BYTES, Scene, parse, validate};
+use super::{ContactSides, Extent, MAX_BYTES, Scene, Target, parse, validate};
 
 /// What a boundary is named for; the index counts from 0 in the list of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub enum BoundaryUse {
     Traction(usize),
     /// `contacts[i]`.
     Contact(usize),
+    /// `quantities[i]`.
+    Quantity(usize),
 }
 
 impl fmt::Display for BoundaryUse {
@@ -29,6 +31,7 @@ impl fmt::Display for BoundaryUse {
             BoundaryUse::Support(i) => ("supports", i),
             BoundaryUse::Traction(i) => ("tractions", i),
             BoundaryUse::Contact(i) => ("contacts", i),
+            BoundaryUse::Quantity(i) => ("quantities", i),
         };
         write!(f, "[[{table}]] number {}", i + 1)
     }
@@ -82,7 +85,7 @@ impl Scene {
         validate::validate(parse::parse(text, path)?, text, path)
     }
 
-    /// Every boundary that a condition names, in the order of the scene: what a mesh has to provide.
+    /// Every boundary that a condition or a quantity names, in the order of the scene: what a mesh has to provide.
     pub fn boundary_names_used(&self) -> Vec<(String, BoundaryUse)> {
         let supports = self.supports.iter().enumerate().map(|(i, s)| (s.on.clone(), BoundaryUse::Support(i)));
         let tractions = self.tractions.iter().enumerate().map(|(i, t)| (t.on.clone(), BoundaryUse::Traction(i)));
@@ -93,6 +96,10 @@ impl Scene {
             };
             sides.into_iter().map(move |side| (side, BoundaryUse::Contact(i)))
         });
-        supports.chain(tractions).chain(contacts).collect()
+        let quantities = self.quantities.iter().enumerate().filter_map(|(i, quantity)| match &quantity.target {
+            Target::Displacement { of: Extent::Boundary(name), .. } => Some((name.clone(), BoundaryUse::Quantity(i))),
+            _ => None,
+        });
+        supports.chain(tractions).chain(contacts).chain(quantities).collect()
     }
 }

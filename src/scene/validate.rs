@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::conditions::{Conditions, conditions};
 use super::error::{Fault, SceneError};
+use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::{Body, Kinematics, MeshSource, Scene, geometry};
 
@@ -91,6 +92,16 @@ impl Source<'_> {
         Err(self.error(list.span(), Fault::Number { key, table, found, rule, remedy }))
     }
 
+    /// The unit vector along a direction of any length but zero.
+    pub fn unit(&self, list: &At<Vec<f64>>, place: (&str, &str), remedy: &'static str) -> Result<[f64; 2], SceneError> {
+        let vector = self.vector::<2>(list, place)?;
+        let length = vector[0].hypot(vector[1]);
+        let number = At { value: length, start: list.start, end: list.end };
+        self.number(&number, place, |length| length > 0.0, ("a direction has a length", remedy))?;
+        self.number(&number, place, |length| length >= 1.0 / LARGEST, UNDERFLOWS)?;
+        Ok(vector.map(|x| x / length))
+    }
+
     /// A non-empty name.
     pub fn name(
         &self,
@@ -128,7 +139,9 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let (kinematics, thickness) = model(&raw.model, &source)?;
     let bodies = bodies(&raw, &source)?;
     let mesh = mesh(&raw, &bodies, &source)?;
-    let Conditions { supports, tractions, contacts } = conditions(&raw, &mesh, &source)?;
+    let conditions = conditions(&raw, &mesh, &source)?;
+    let quantities = quantities(&raw, &mesh, &bodies, &conditions, &source)?;
+    let Conditions { supports, tractions, contacts } = conditions;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene {
@@ -143,6 +156,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         supports,
         tractions,
         contacts,
+        quantities,
     })
 }
 

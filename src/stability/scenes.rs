@@ -32,6 +32,7 @@ impl Model {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            quantities: Vec::new(),
         };
         Model { scene, raw: RawMesh::default() }
     }

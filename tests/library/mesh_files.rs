@@ -29,6 +29,7 @@ fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4
             ContactSides::Between([first.into(), second.into()]),
             Gap::Table(vec![[0.0, 0.0], [0.25, 0.0], [1.0, 0.1]]),
         )],
+        quantities: Vec::new(),
     }
 }
 

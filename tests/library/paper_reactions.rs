@@ -41,6 +41,7 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]
             ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
             Gap::Constant(0.0),
         )],
+        quantities: Vec::new(),
     }
 }
 

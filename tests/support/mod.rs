@@ -88,6 +88,7 @@ impl Blocks {
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
                 self.gap.clone(),
             )],
+            quantities: Vec::new(),
         }
     }
 }

@@ -219,6 +219,7 @@ impl Build {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            quantities: Vec::new(),
         };
         Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
     }

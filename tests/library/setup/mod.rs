@@ -227,6 +227,7 @@ impl Setup {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            quantities: Vec::new(),
         };
         let (triangles, body) = triangles.into_iter().unzip();
         let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };

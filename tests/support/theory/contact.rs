@@ -100,6 +100,7 @@ impl Solution {
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
                 Gap::Constant(0.0),
             )],
+            quantities: Vec::new(),
         }
     }
 

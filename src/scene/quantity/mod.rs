@@ -1,0 +1,136 @@
+//! The numbers a scene is solved for: linear functionals of displacement, contact pressure and stress.
+//!
+//! Each is a bounded functional of the energy norm, so that an interval can be guaranteed for it. The displacement of a
+//! point, the largest pressure and a force between two sharp ends are none, and the format has no words for them.
+
+mod check;
+mod fault;
+mod raw;
+
+pub(super) use check::quantities;
+pub use fault::QuantityFault;
+pub(super) use raw::RawQuantity;
+
+use super::Scene;
+
+/// A number the scene is solved for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// Its name, unlike that of every other quantity; without `=` and control characters.
+    pub name: String,
+    /// What it is.
+    pub target: Target,
+}
+
+/// What a quantity is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Target {
+    /// Mean displacement along a direction.
+    Displacement {
+        /// Where the mean is taken.
+        of: Extent,
+        /// Unit vector.
+        direction: [f64; 2],
+    },
+    /// The normal force that presses the sides of a contact together, positive in compression.
+    ContactForce {
+        /// Index into [`Scene::contacts`].
+        contact: usize,
+        /// [s0, s1, s2, s3], a weight in the arc length s of the first side, counted as for [`super::Gap::Table`]: 0 up to
+        /// s0 and from s3 on, 1 from s1 to s2, linear between. s0 ≤ s1 ≤ s2 < s3 with s0 < s1, or s1 ≤ 0: then the weight
+        /// is 1 from the beginning of the side. `None` weights everything by 1.
+        window: Option<[f64; 4]>,
+    },
+    /// The force along a direction that a support exerts on the bodies.
+    SupportForce {
+        /// Index into [`Scene::supports`].
+        support: usize,
+        /// Unit vector.
+        direction: [f64; 2],
+    },
+    /// The moment, counter-clockwise, of the forces that a contact exerts on its first side, or a support on the bodies.
+    Moment {
+        /// What exerts them.
+        of: Holder,
+        /// The point the moment is taken about, counted from [`Scene::origin`].
+        about: [f64; 2],
+    },
+    /// Mean of a stress component over a region of a body.
+    Stress {
+        /// Index into [`Scene::bodies`].
+        body: usize,
+        /// The region; whether it lies inside the body only the mesh can tell.
+        region: Region,
+        /// The component.
+        component: Component,
+    },
+}
+
+/// Where a mean displacement is taken.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Extent {
+    /// A boundary by its name, with or without a condition.
+    Boundary(String),
+    /// Index into [`Scene::bodies`].
+    Body(usize),
+}
+
+/// What exerts forces on bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Holder {
+    /// Index into [`Scene::contacts`].
+    Contact(usize),
+    /// Index into [`Scene::supports`].
+    Support(usize),
+}
+
+/// Part of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Region {
+    /// All of it.
+    Whole,
+    /// The inside of a simple polygon, counter-clockwise, its corners counted from [`Scene::origin`]; a box has four.
+    Polygon(Vec<[f64; 2]>),
+}
+
+/// Factors of (σ_xx, σ_yy, σ_xy): [1, 0, 0], [0, 1, 0], [0, 0, 1], and [d0², d1², 2 d0 d1] for the normal stress d·σd
+/// along a unit vector d.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Component(pub [f64; 3]);
+
+impl Component {
+    /// d·σd.
+    pub fn along([x, y]: [f64; 2]) -> Self {
+        Component([x * x, y * y, 2.0 * x * y])
+    }
+}
+
+impl Quantity {
+    /// Counts coordinates from `origin`.
+    pub(super) fn shift(&mut self, origin: [f64; 2]) {
+        let points = match &mut self.target {
+            Target::Moment { about, .. } => std::slice::from_mut(about),
+            Target::Stress { region: Region::Polygon(points), .. } => points.as_mut_slice(),
+            _ => return,
+        };
+        points.iter_mut().for_each(|p| *p = [p[0] - origin[0], p[1] - origin[1]]);
+    }
+}
+
+impl Scene {
+    /// The arc lengths of the first side of `contacts[contact]` that have to be vertices: those of its gap
+    /// ([`super::Gap::breaks`]), then those at which the windows of quantities bend.
+    pub fn contact_breaks(&self, contact: usize) -> Vec<f64> {
+        let mut breaks = self.contacts.get(contact).map_or_else(Vec::new, |contact| contact.gap.breaks());
+        breaks.extend(self.window_breaks(contact));
+        breaks
+    }
+
+    /// The arc lengths at which windows of quantities on `contacts[contact]` bend.
+    pub(crate) fn window_breaks(&self, contact: usize) -> impl Iterator<Item = f64> + '_ {
+        self.quantities.iter().flat_map(move |quantity| match quantity.target {
+            Target::ContactForce { contact: on, window: Some(window) } if on == contact => window.to_vec(),
+            _ => Vec::new(),
+        })
+    }
+}
