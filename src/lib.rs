@@ -68,6 +68,7 @@ pub mod problem;
 pub mod process;
 #[cfg(feature = "python")]
 mod python;
+pub mod quantity;
 pub mod report;
 pub mod scene;
 pub mod stability;

@@ -114,48 +114,30 @@ impl Potential {
 pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let terms: Vec<[f64; 3]> = (0..mesh.triangles.len())
+    let terms: Vec<[f64; 2]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
-            let body = mesh.body[t];
-            let force = problem.scene.bodies[body].body_force;
             let corners = mesh.corners(t);
             let area = sub_area(corners);
+            let material = &materials[mesh.body[t]];
             let samples = Samples::of(v.degree(t) - 1, 0);
-            let (mut strain, mut work, mut sensitivity) = (0.0, 0.0, 0.0);
+            let (mut strain, mut sensitivity) = (0.0, 0.0);
             let mut strains = Strains::default();
             for sub in 0..3 {
                 strains.on(corners, v, t, sub);
                 for (q, (_, weight)) in samples.points.iter().enumerate() {
                     let e = strains.sample(samples, q);
-                    strain += 0.5 * weight * area * materials[body].strain_product(e, e);
-                    sensitivity += weight * area * absolute(materials[body].stress(e)) * strains.spread(samples, q);
-                }
-                if force != [0.0; 2] {
-                    // Every Bernstein polynomial has the same mean.
-                    let share = area / triangle::len(v.degree(t)) as f64;
-                    work += v.sub(t, sub).map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum::<f64>();
+                    strain += 0.5 * weight * area * material.strain_product(e, e);
+                    sensitivity += weight * area * absolute(material.stress(e)) * strains.spread(samples, q);
                 }
             }
-            [strain, work, sensitivity * shape(corners)]
+            [strain, sensitivity * shape(corners)]
         })
         .collect();
     let strain: Sum = terms.iter().map(|t| t[0]).collect();
-    let mut work: Sum = terms.iter().map(|t| t[1]).collect();
-    let sensitivity: f64 = terms.iter().map(|t| t[2]).sum();
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Traction([pa, pb]) = condition
-            && (*pa != [0.0; 2] || *pb != [0.0; 2])
-        {
-            let (length, _) = mesh.edge_frame(e);
-            let u = side_coefficients(problem, v, e);
-            for c in 0..2 {
-                let u: Vec<f64> = u.iter().map(|u| u[c]).collect();
-                work.add(length * side::integral(&[pa[c], pb[c]], &u));
-            }
-        }
-    }
+    let sensitivity: f64 = terms.iter().map(|t| t[1]).sum();
+    let work = work(problem, v);
     let t = problem.scene.thickness;
     Potential {
         strain: t * strain.value(),
@@ -163,6 +145,39 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
         magnitude: t * (strain.magnitude() + work.magnitude()),
         sensitivity: t * (sensitivity + work.magnitude()),
     }
+}
+
+/// The work of the loads on `v`, ∫F·v + ∫P·v, per unit thickness.
+pub fn work(problem: &Problem, v: &Displacement) -> Sum {
+    let mesh = &problem.mesh;
+    let mut work = Sum::default();
+    for t in 0..mesh.triangles.len() {
+        let force = problem.scene.bodies[mesh.body[t]].body_force;
+        if force != [0.0; 2] {
+            // Every Bernstein polynomial has the same mean.
+            let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
+            for sub in 0..3 {
+                work.add(v.sub(t, sub).map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum());
+            }
+        }
+    }
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        if let Condition::Traction(ends) = condition {
+            work.add(work_on_edge(problem, v, e, *ends));
+        }
+    }
+    work
+}
+
+/// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness.
+pub fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> f64 {
+    if a == [0.0; 2] && b == [0.0; 2] {
+        return 0.0;
+    }
+    let (length, _) = problem.mesh.edge_frame(e);
+    let u = side_coefficients(problem, v, e);
+    let along = |c: usize| side::integral(&[a[c], b[c]], &u.iter().map(|u| u[c]).collect::<Vec<_>>());
+    length * (along(0) + along(1))
 }
 
 fn absolute(s: [f64; 3]) -> f64 {

@@ -11,10 +11,11 @@ pub mod upper;
 
 pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound};
-pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential, work, work_on_edge};
 pub use jump::{openings, side_coefficients};
 pub use mid::mid_field;
 pub use sum::Sum;
 pub use upper::{
-    Hold, Holds, NoUpperBound, NodalValues, Nodes, Violation, admissible, bernstein, holds, repaired, supports_agree,
+    Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Pull, Until, Violation, admissible, bernstein, holds,
+    holds_at, repaired, supports_agree,
 };

@@ -96,6 +96,11 @@ impl Strains {
         samples.basis(q).iter().zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
     }
 
+    /// The largest sum of absolute values of products that make a coefficient.
+    pub fn largest_spread(&self) -> f64 {
+        self.spreads.iter().copied().fold(0.0, f64::max)
+    }
+
     fn weighed(&self, weights: impl Iterator<Item = f64>) -> [f64; 3] {
         let mut e = [0.0; 3];
         for (weight, coefficient) in weights.zip(&self.coefficients) {

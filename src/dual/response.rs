@@ -68,6 +68,9 @@ pub struct Load {
     /// Initial strains χ (xx, yy, xy), constant on the triangles that have one: the stress wanted is σ̂ + cχ with σ̂ in
     /// equilibrium with the rest of the load.
     pub strains: Vec<(usize, [f64; 3])>,
+    /// The Bernstein coefficients of φ on every contact pair, one interface after the other, empty where it vanishes: closed
+    /// contact is held at the jump −φ.
+    pub weights: Vec<Vec<f64>>,
 }
 
 /// Answers loads.
@@ -109,7 +112,13 @@ impl<'a> Responses<'a> {
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
         let (y, c) = reduced.condense(&r);
-        Loaded { responses: self, problem, system, start, y, c }
+        let pairs = self.problem.interfaces.iter().flat_map(|i| &i.pairs).zip(&load.weights);
+        let held = pairs.zip(system.unknowns.jump_blocks()).flat_map(|((pair, weights), block)| {
+            let moments = side::moments(if weights.is_empty() { &[0.0] } else { weights }, block.len - 1);
+            moments.into_iter().map(|m| -pair.length * m)
+        });
+        let held = held.collect();
+        Loaded { responses: self, problem, system, start, y, c, held }
     }
 }
 
@@ -150,6 +159,8 @@ pub struct Loaded<'a> {
     /// What [`Reduced::condense`] makes of their residual.
     y: Vec<f64>,
     c: Vec<f64>,
+    /// Jumps of closed contact.
+    held: Vec<f64>,
 }
 
 /// What the normal traction s on Γ_K is held to.
@@ -234,16 +245,22 @@ impl Loaded<'_> {
     /// Which closed coefficients are at the floor, and the jumps of all.
     fn released(&self, Bounds { closed, floor, sign }: Bounds<'_>) -> Result<(Vec<bool>, Vec<f64>), DualError> {
         let contact = &self.responses.contact;
-        let none = vec![0.0; closed.len()];
         let mut released = vec![false; closed.len()];
         for step in 1.. {
             let load = |(i, c): (usize, &f64)| if released[i] { c + sign * floor[i] } else { *c };
             let loaded: Vec<f64> = self.c.iter().enumerate().map(load).collect();
             let held: Vec<bool> = closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
-            let jumps = contact.with_closed(&loaded, &none, &held).ok_or(DualError::ContactUndetermined)?;
+            let jumps = contact.with_closed(&loaded, &self.held, &held).ok_or(DualError::ContactUndetermined)?;
             let traction = contact.gradient(&self.c, &jumps);
             let next: Vec<bool> = (0..closed.len())
-                .map(|i| closed[i] && if released[i] { sign * jumps[i] >= 0.0 } else { sign * traction[i] < floor[i] })
+                .map(|i| {
+                    closed[i]
+                        && if released[i] {
+                            sign * (jumps[i] - self.held[i]) >= 0.0
+                        } else {
+                            sign * traction[i] < floor[i]
+                        }
+                })
                 .collect();
             if next == released || step == MOST_STEPS {
                 return Ok((released, jumps));

@@ -31,8 +31,9 @@ pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
 use self::model::Model;
 pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
+pub use self::relax::Until;
 pub use self::rows::{Row, bernstein};
-use self::stiffness::Pull;
+pub use self::stiffness::Pull;
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -101,9 +102,9 @@ pub fn admissible(
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
     }
-    let model = Model::new(problem, &holds, &nodes, &rows, Pull::Scene);
-    let relaxed = relax::relax(problem, &model, floor / problem.scene.thickness, candidates, at_rest);
-    Ok(interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::Scene))
+    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
+    let relaxed = relax::relax(problem, &model, Until::Near(floor / problem.scene.thickness), candidates, at_rest);
+    Ok(interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::SCENE))
 }
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.

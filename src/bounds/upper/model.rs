@@ -182,7 +182,7 @@ mod tests {
     fn energy(problem: &Problem, field: &NodalValues) -> f64 {
         let rows = rows(problem, &field.nodes);
         let holds = holds(problem).expect("supports agree");
-        Model::new(problem, &holds, &field.nodes, &rows, Pull::Scene).energy(&field.values)
+        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE).energy(&field.values)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.
@@ -193,8 +193,8 @@ mod tests {
         for degree in degrees {
             let mut field = NodalValues::zeros(nodes(&problem, degree));
             field.values.iter_mut().enumerate().for_each(|(n, v)| *v = [(n as f64).sin(), (3.0 * n as f64).cos()]);
-            let found = potential(&problem, &fill(&problem, &field, Pull::Scene));
-            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone()), Pull::Scene));
+            let found = potential(&problem, &fill(&problem, &field, Pull::SCENE));
+            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone()), Pull::SCENE));
             let expected = (found.total() - at_rest.total()) / problem.scene.thickness;
             let of_model = energy(&problem, &field);
             assert!((of_model - expected).abs() < 1e-11 * found.magnitude, "{of_model} is not {expected}");

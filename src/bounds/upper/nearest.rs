@@ -1,14 +1,12 @@
-//! The displacement nearest to a stress: z with homogeneous supports and jumps at most given bounds that makes
-//! ‖σ_z − σ(z)‖_a small.
+//! The displacement of least energy under any pull with homogeneous supports and jumps at most given bounds: z of an adjoint
+//! pair, near to the stress that pulls at it.
 //!
 //! It is built as the free upper bound is: fit, edge moments, bounds by coefficients, relaxation over patches, inside last.
 
 use super::model::Model;
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, rows};
-use super::stiffness::Pull;
-use super::{Holds, NoUpperBound, edges, fit, holds_at, interior, relax, restricted};
-use crate::bounds::complementary;
+use super::{Holds, NoUpperBound, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -31,6 +29,11 @@ impl<'a> Nearest<'a> {
         Ok(Nearest { problem, holds: holds_at(problem, |_, _| [0.0; 2])?, nodes, rows })
     }
 
+    /// The number of coefficients that bound the jump on each pair, one interface after the other.
+    pub fn counts(&self) -> impl Iterator<Item = usize> {
+        self.rows.iter().map(Vec::len)
+    }
+
     /// The displacement that has edge moments `moments` and the strain of `stress` nearly, in values at nodes: what
     /// [`Self::to`] begins with.
     pub fn start(&self, stress: &StressField, moments: &SideValues<[f64; 2]>) -> NodalValues {
@@ -49,16 +52,17 @@ impl<'a> Nearest<'a> {
         field
     }
 
-    /// The displacement nearest to `stress` whose jumps (v' − v'')·n̂ have coefficients of at most `bounds` on every pair, and
-    /// its values at nodes; it begins with the best of `starts`.
+    /// The displacement of least energy under `pull` whose jumps (v' − v'')·n̂ have coefficients of at most `bounds` on every
+    /// pair, and its values at nodes; it begins with the best of `starts`.
     ///
     /// # Errors
     /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for the bounds.
     pub fn to(
         &self,
-        stress: &StressField,
+        pull: Pull<'_>,
         bounds: &[Vec<f64>],
         starts: Vec<NodalValues>,
+        until: Until,
     ) -> Result<(Displacement, NodalValues), NoUpperBound> {
         let bounded = |(rows, bounds): (&Vec<Row>, &Vec<f64>)| {
             rows.iter().cloned().zip(bounds).map(|(row, bound)| row.bounded(*bound)).collect()
@@ -67,10 +71,13 @@ impl<'a> Nearest<'a> {
         let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
         let candidates = starts.into_iter().map(admissible).collect::<Result<Vec<_>, NoUpperBound>>()?;
         let at_rest = admissible(NodalValues::zeros(self.nodes.clone()))?;
-        let pull = Pull::Stress(stress);
         let model = Model::new(self.problem, &self.holds, &self.nodes, &rows, pull);
-        let floor = -complementary(self.problem, stress).strain / self.problem.scene.thickness;
-        let relaxed = admissible(relax::relax(self.problem, &model, floor, candidates, at_rest))?;
-        Ok((interior::fill(self.problem, &relaxed, pull), relaxed))
+        let relaxed = admissible(relax::relax(self.problem, &model, until, candidates, at_rest))?;
+        Ok((self.filled(&relaxed, pull), relaxed))
+    }
+
+    /// Values at nodes as a displacement, the inside of triangles of least energy under `pull`.
+    pub fn filled(&self, values: &NodalValues, pull: Pull<'_>) -> Displacement {
+        interior::fill(self.problem, values, pull)
     }
 }

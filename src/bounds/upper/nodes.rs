@@ -93,6 +93,11 @@ pub struct NodalValues {
 }
 
 impl NodalValues {
+    /// On no nodes.
+    pub fn none() -> Self {
+        Self::zeros(Nodes::new(0, []))
+    }
+
     /// All zero.
     pub fn zeros(nodes: Nodes) -> Self {
         NodalValues { values: vec![[0.0; 2]; nodes.count()], nodes }

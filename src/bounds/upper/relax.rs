@@ -57,12 +57,42 @@ fn size(nodes: &Nodes) -> f64 {
 /// The factor of the stiffness of a patch, from the first sweep on.
 type Kept = Option<Box<[f64]>>;
 
-/// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are wild; `floor` is a
-/// lower bound of it, per unit thickness.
+/// When relaxing ends, after the sweeps that are always made; energies are per unit thickness.
+#[derive(Debug, Clone, Copy)]
+pub enum Until {
+    /// A sweep gains a small part of what lies between the energy and this lower bound of it.
+    Near(f64),
+    /// A sweep gains no more than this.
+    Gains(f64),
+}
+
+impl Until {
+    /// The size of the energy, as far as it is known.
+    fn size(self) -> f64 {
+        match self {
+            Until::Near(size) | Until::Gains(size) => size.abs(),
+        }
+    }
+
+    /// Whether a sweep that gained `gained` and led to the values was the last one.
+    fn is_reached(self, problem: &Problem, model: &Model<'_>, values: &[[f64; 2]], gained: f64) -> bool {
+        match self {
+            Until::Gains(least) => gained <= least,
+            Until::Near(floor) => {
+                let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
+                let gap = (model.energy(values) - floor).max(0.0);
+                gap == 0.0 || gained <= least * (GOOD * floor.abs() / gap).min(1.0) * gap
+            }
+        }
+    }
+}
+
+/// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are
+/// wild.
 pub fn relax(
     problem: &Problem,
     model: &Model<'_>,
-    floor: f64,
+    until: Until,
     candidates: Vec<NodalValues>,
     at_rest: NodalValues,
 ) -> NodalValues {
@@ -81,19 +111,14 @@ pub fn relax(
     let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
     let least = fields.min_by(|(a, _), (b, _)| known(*a).total_cmp(&known(*b)));
     let rest = at_rest.values;
-    let tame = WILD * model.energy(&rest).abs().max(floor.abs());
+    let tame = WILD * model.energy(&rest).abs().max(until.size());
     let mut values = least.filter(|(energy, _)| known(*energy) <= tame).map_or(rest, |(_, field)| field);
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
     let mut momentum = Momentum::default();
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
-        if sweep >= SWEEPS {
-            let gap = (model.energy(&values) - floor).max(0.0);
-            let worth = least * (GOOD * floor.abs() / gap).min(1.0);
-            if gap == 0.0 || gained <= worth * gap {
-                break;
-            }
+        if sweep >= SWEEPS && until.is_reached(problem, model, &values, gained) {
+            break;
         }
         let before = (sweep >= SWEEPS).then(|| values.clone());
         gained = 0.0;

@@ -52,33 +52,34 @@ impl Condensed {
     }
 }
 
-/// What pulls at a displacement.
+/// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
 #[derive(Debug, Clone, Copy)]
-pub enum Pull<'a> {
-    /// Body forces and tractions of the scene: the energy is 𝓛.
-    Scene,
-    /// A stress σ on every triangle: the energy is ½‖σ(v) − σ‖²_a less ½‖σ‖²_a.
-    Stress(&'a StressField),
+pub struct Pull<'a> {
+    /// Body forces and tractions of the scene, times this.
+    pub scene: f64,
+    /// Forces ∫ σ : e(v) of a stress on every triangle.
+    pub stress: Option<&'a StressField>,
 }
 
 impl Pull<'_> {
+    /// The scene alone: the energy is 𝓛.
+    pub const SCENE: Pull<'static> = Pull { scene: 1.0, stress: None };
+
     /// The energy of triangle `t` for displacements of degree `k`, but for tractions.
     pub fn split(&self, problem: &Problem, t: usize, k: usize, material: &Compliance) -> Split {
         let corners = problem.mesh.corners(t);
-        match self {
-            Pull::Scene => Split::new(k, corners, material, problem.scene.bodies[problem.mesh.body[t]].body_force),
-            Pull::Stress(stress) => {
-                let mut split = Split::new(k, corners, material, [0.0; 2]);
-                split.pull(k, corners, stress, t);
-                split
-            }
+        let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
+        let mut split = Split::new(k, corners, material, force.map(|f| self.scene * f));
+        if let Some(stress) = self.stress {
+            split.pull(k, corners, stress, t);
         }
+        split
     }
 
     /// The traction of the scene at the ends of edge `e`, where it pulls.
     fn traction(&self, problem: &Problem, e: usize) -> Option<[[f64; 2]; 2]> {
-        match (self, problem.conditions[e]) {
-            (Pull::Scene, Condition::Traction(ends)) => Some(ends),
+        match problem.conditions[e] {
+            Condition::Traction(ends) if self.scene != 0.0 => Some(ends.map(|p| p.map(|p| self.scene * p))),
             _ => None,
         }
     }

@@ -1,0 +1,339 @@
+//! A quantity on a mesh, as a functional of the exact solution:
+//!
+//! Q = constant + ∫ q·u + ∫ χ:τ + ∫_{ΓK} φ t,
+//!
+//! with a load q, strains χ, and weights φ of the normal traction t, all per unit thickness. A force of a support is brought
+//! into that form by a displacement w̃ that moves the support and vanishes at all vertices beyond it: with w̃ = −w there,
+//! ∫_{Γu} T·w = F(w̃) − ∫ τ:e(w̃) + ∫_{ΓK} t j(w̃).
+
+use std::collections::BTreeSet;
+
+use super::region::{Cut, cut, twice_area};
+use crate::bounds::{holds_at, openings, potential};
+use crate::dual::Load;
+use crate::element::Displacement;
+use crate::problem::{Condition, ContactPair, Problem};
+use crate::scene::{Extent, Holder, Quantity, Region, Target};
+
+/// What a quantity is, for the words of reports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Mean displacement.
+    Displacement,
+    /// Force of a contact or support.
+    Force,
+    /// Moment of a contact or support.
+    Moment,
+    /// Mean stress.
+    Stress,
+}
+
+impl Kind {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Displacement => "displacement",
+            Kind::Force => "force",
+            Kind::Moment => "moment",
+            Kind::Stress => "stress",
+        }
+    }
+}
+
+/// Why a quantity is no bounded functional on a mesh.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NotBounded {
+    /// A force of a support that meets another one.
+    #[error(
+        "the support meets another one at ({x}, {y}), and how they share the force there is no bounded functional; ask for \
+         the force of what lies apart from it"
+    )]
+    Shared {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+    },
+    /// A region that leaves its body.
+    #[error("of the region only {inside} % lie inside body '{body}'; give a region inside the body")]
+    Outside {
+        /// Per cent of the area, with one digit.
+        inside: String,
+        /// Name of the body.
+        body: String,
+    },
+    /// A boundary without edges.
+    #[error("no edge of the mesh belongs to '{name}'")]
+    Empty {
+        /// Name of the boundary or body.
+        name: String,
+    },
+}
+
+/// A quantity on a mesh.
+#[derive(Debug, Clone)]
+pub struct Functional {
+    /// What it is.
+    pub kind: Kind,
+    /// q, φ, and χ as its mean over triangles that are cut.
+    pub load: Load,
+    /// χ of a region, constant in it; the load has it too.
+    pub region: Option<([f64; 3], Vec<Cut>)>,
+    /// The part that is known.
+    pub constant: f64,
+    /// A displacement, linear on triangles, with jumps −φ, where there is one that meets the supports.
+    pub lift: Option<Displacement>,
+    /// What the value per unit thickness is multiplied by.
+    pub scale: f64,
+    /// ‖σ‖² of a stress that such a quantity has where it is no matter of statics alone, in order of magnitude.
+    pub natural: f64,
+}
+
+impl Functional {
+    /// The functional of `quantity`.
+    ///
+    /// # Errors
+    /// [`NotBounded`].
+    pub fn new(problem: &Problem, quantity: &Quantity) -> Result<Self, NotBounded> {
+        match &quantity.target {
+            Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
+            Target::Displacement { of: Extent::Body(body), direction } => on_body(problem, *body, *direction),
+            Target::Stress { body, region, component } => mean_stress(problem, *body, region, component.0),
+            Target::ContactForce { contact, window } => {
+                let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
+                // Pressure is positive.
+                Ok(on_contact(problem, *contact, Kind::Force, |_, pair| pair.arc.map(|s| -weight(s)).to_vec()))
+            }
+            Target::Moment { of: Holder::Contact(contact), about } => {
+                Ok(on_contact(problem, *contact, Kind::Moment, |problem, pair| moment_of(problem, pair, *about)))
+            }
+            Target::SupportForce { support, direction } => on_support(problem, *support, Kind::Force, |_| *direction),
+            Target::Moment { of: Holder::Support(support), about } => {
+                on_support(problem, *support, Kind::Moment, |[x, y]| [about[1] - y, x - about[0]])
+            }
+        }
+    }
+
+    fn empty(problem: &Problem, kind: Kind) -> Self {
+        let pairs = problem.interfaces.iter().map(|i| i.pairs.len()).sum();
+        Functional {
+            kind,
+            load: Load {
+                force: vec![[0.0; 2]; problem.scene.bodies.len()],
+                tractions: Vec::new(),
+                strains: Vec::new(),
+                weights: vec![Vec::new(); pairs],
+            },
+            region: None,
+            constant: 0.0,
+            lift: None,
+            scale: if matches!(kind, Kind::Force | Kind::Moment) { problem.scene.thickness } else { 1.0 },
+            natural: 0.0,
+        }
+    }
+}
+
+/// A weight: 0 at the first and last arc length, 1 between the inner two.
+fn trapezoid([a, b, c, d]: [f64; 4], s: f64) -> f64 {
+    let rise = if b > a {
+        (s - a) / (b - a)
+    } else if s < a {
+        0.0
+    } else {
+        1.0
+    };
+    let fall = if d > c {
+        (d - s) / (d - c)
+    } else if s > d {
+        0.0
+    } else {
+        1.0
+    };
+    rise.min(fall).clamp(0.0, 1.0)
+}
+
+fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional, NotBounded> {
+    let edges = problem.mesh.boundary(name);
+    let length = |e: usize| problem.mesh.edge_frame(e).0;
+    let total: f64 = edges.iter().map(|&e| length(e)).sum();
+    if edges.is_empty() {
+        return Err(NotBounded::Empty { name: name.to_string() });
+    }
+    let mut functional = Functional::empty(problem, Kind::Displacement);
+    let q = d.map(|d| d / total);
+    for e in edges {
+        match problem.conditions[e] {
+            Condition::Clamped(u0) => functional.constant += length(e) * (q[0] * u0[0] + q[1] * u0[1]),
+            _ => functional.load.tractions.push((e, [q; 2])),
+        }
+    }
+    Ok(functional)
+}
+
+fn on_body(problem: &Problem, body: usize, d: [f64; 2]) -> Result<Functional, NotBounded> {
+    let area = area(problem, body)?;
+    let mut functional = Functional::empty(problem, Kind::Displacement);
+    functional.load.force[body] = d.map(|d| d / area);
+    Ok(functional)
+}
+
+/// The area of a body.
+fn area(problem: &Problem, body: usize) -> Result<f64, NotBounded> {
+    let mesh = &problem.mesh;
+    let own = (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == body);
+    let area: f64 = own.map(|t| mesh.area(t)).sum();
+    if area > 0.0 { Ok(area) } else { Err(NotBounded::Empty { name: problem.scene.bodies[body].name.clone() }) }
+}
+
+/// Parts of a region outside its body, relative to its area, that are rounding.
+const OUTSIDE: f64 = 1e-9;
+
+fn mean_stress(
+    problem: &Problem,
+    body: usize,
+    region: &Region,
+    [xx, yy, xy]: [f64; 3],
+) -> Result<Functional, NotBounded> {
+    let mesh = &problem.mesh;
+    let whole = |t: usize| Cut { triangle: t, pieces: Vec::new(), part: 1.0 };
+    let (cuts, area) = match region {
+        Region::Whole => {
+            let own = (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == body);
+            (own.map(whole).collect(), area(problem, body)?)
+        }
+        Region::Polygon(points) => {
+            let (cuts, inside) = cut(problem, body, points);
+            let area = 0.5 * twice_area(points);
+            if inside < (1.0 - OUTSIDE) * area {
+                let name = problem.scene.bodies[body].name.clone();
+                return Err(NotBounded::Outside { inside: format!("{:.1}", 100.0 * inside / area), body: name });
+            }
+            (cuts, area)
+        }
+    };
+    let mut functional = Functional::empty(problem, Kind::Stress);
+    let chi = [xx / area, yy / area, 0.5 * xy / area];
+    let mean = |cut: &Cut| (cut.triangle, chi.map(|c| cut.part * c));
+    functional.load.strains = cuts.iter().map(mean).collect();
+    functional.region = Some((chi, cuts));
+    Ok(functional)
+}
+
+/// Weights on the pairs of one contact, by the coefficients that `weight` gives.
+fn on_contact(
+    problem: &Problem,
+    contact: usize,
+    kind: Kind,
+    weight: impl Fn(&Problem, &ContactPair) -> Vec<f64>,
+) -> Functional {
+    let mut functional = Functional::empty(problem, kind);
+    let mut next = 0;
+    for (i, interface) in problem.interfaces.iter().enumerate() {
+        for pair in &interface.pairs {
+            if i == contact {
+                functional.load.weights[next] = weight(problem, pair);
+                let young = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]);
+                let young = young.map_or(0.0, |t| problem.scene.bodies[problem.mesh.body[t]].young);
+                functional.natural += young * functional.load.weights[next].iter().map(|w| w * w).sum::<f64>();
+            }
+            next += 1;
+        }
+    }
+    functional.lift = lift(problem, &functional.load.weights);
+    functional
+}
+
+/// r × n̂ about a point, as coefficients along the pair.
+fn moment_of(problem: &Problem, pair: &ContactPair, about: [f64; 2]) -> Vec<f64> {
+    let [a, b] = pair.first.map(|v| [0, 1].map(|c| problem.mesh.points[v][c] - about[c]));
+    let [m, n] = pair.direction.ends;
+    let cross = |r: [f64; 2], n: [f64; 2]| r[0] * n[1] - r[1] * n[0];
+    // The product of two linear functions.
+    vec![cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]
+}
+
+/// The displacement, linear on triangles, that has jumps −φ from the motion of first sides alone and meets the supports;
+/// `None` where no such one does.
+fn lift(problem: &Problem, weights: &[Vec<f64>]) -> Option<Displacement> {
+    let mesh = &problem.mesh;
+    let mut vertex = vec![[0.0; 2]; mesh.points.len()];
+    let pairs = || problem.interfaces.iter().flat_map(|i| &i.pairs).zip(weights);
+    for (pair, weights) in pairs().filter(|(_, weights)| !weights.is_empty()) {
+        for (end, weight) in [(0, weights[0]), (1, weights[weights.len() - 1])] {
+            let n = pair.direction.ends[end];
+            let by = -weight / (n[0] * n[0] + n[1] * n[1]);
+            vertex[pair.first[end]] = n.map(|n| by * n);
+        }
+    }
+    let holds = holds_at(problem, |_, _| [0.0; 2]).ok()?;
+    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let met = vertex.iter().zip(&holds.vertices).all(|(u, hold)| {
+        let held = hold.impose(*u);
+        (held[0] - u[0]).hypot(held[1] - u[1]) <= 1e-12 * size
+    });
+    let lift = Displacement::from_p1(mesh, &vertex);
+    // Linear weights along a direction that is constant are met exactly; others are not.
+    let exact = pairs().all(|(pair, weights)| {
+        let jumps = jumps(problem, &lift, pair);
+        let weights = if weights.is_empty() { vec![0.0; 2] } else { weights.clone() };
+        let degree = jumps.len().max(weights.len()) - 1;
+        let [jumps, weights] = [jumps, weights].map(|c| crate::element::side::elevate(&c, degree));
+        jumps.iter().zip(&weights).all(|(j, w)| (j + w).abs() <= 1e-9 * size)
+    });
+    (met && exact).then_some(lift)
+}
+
+/// The coefficients of (v' − v'')·n̂ along a pair.
+pub(super) fn jumps(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
+    openings(problem, v, &ContactPair { gap: [0.0; 2], ..*pair }).into_iter().map(|o| -o).collect()
+}
+
+/// The force or moment of a support, by the motion w that does unit work on it.
+fn on_support(
+    problem: &Problem,
+    support: usize,
+    kind: Kind,
+    motion: impl Fn([f64; 2]) -> [f64; 2],
+) -> Result<Functional, NotBounded> {
+    let mesh = &problem.mesh;
+    let name = &problem.scene.supports[support].on;
+    let own: BTreeSet<usize> = mesh.boundary(name).into_iter().collect();
+    if own.is_empty() {
+        return Err(NotBounded::Empty { name: name.clone() });
+    }
+    let prescribed = |e: usize, v: usize| {
+        if own.contains(&e) { motion(mesh.points[v]).map(|w| -w) } else { [0.0; 2] }
+    };
+    let holds = holds_at(problem, prescribed).map_err(|error| match error {
+        crate::bounds::NoUpperBound::SupportsDisagree { x, y }
+        | crate::bounds::NoUpperBound::ForcedPenetration { x, y, .. } => NotBounded::Shared { x, y },
+    })?;
+    let mut vertex = vec![[0.0; 2]; mesh.points.len()];
+    for v in own.iter().flat_map(|&e| mesh.edges[e].vertices) {
+        vertex[v] = holds.vertices[v].impose([0.0; 2]);
+    }
+    let moved = Displacement::from_p1(mesh, &vertex);
+    let mut functional = Functional::empty(problem, kind);
+    functional.constant = potential(problem, &moved).work / problem.scene.thickness;
+    let materials = problem.scene.bodies.iter();
+    let young: Vec<f64> = materials.map(|body| body.young).collect();
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        let u = triangle.map(|v| vertex[v]);
+        if u == [[0.0; 2]; 3] {
+            continue;
+        }
+        let g = crate::bounds::strain::gradients(mesh.corners(t));
+        let d = |c: usize, x: usize| (0..3).map(|i| (u[i][c] - u[0][c]) * g[i][x]).sum::<f64>();
+        let e = [d(0, 0), d(1, 1), 0.5 * (d(0, 1) + d(1, 0))];
+        functional.load.strains.push((t, e.map(|e| -e)));
+        functional.natural += young[mesh.body[t]] * mesh.area(t) * e.iter().map(|e| e * e).sum::<f64>();
+    }
+    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    for (weights, pair) in functional.load.weights.iter_mut().zip(pairs) {
+        let along = jumps(problem, &moved, pair);
+        if along.iter().any(|w| *w != 0.0) {
+            *weights = along;
+        }
+    }
+    Ok(functional)
+}

@@ -1,0 +1,12 @@
+//! Quantities of interest: guaranteed intervals for the numbers a scene is solved for.
+//!
+//! Displacement means, forces and moments of contacts and supports, stress means over regions: each a linear functional of
+//! the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]).
+
+mod functional;
+mod interval;
+mod pass;
+mod region;
+
+pub use functional::{Functional, Kind, NotBounded};
+pub use interval::{Interval, Known, value_of};
