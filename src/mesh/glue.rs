@@ -1,6 +1,6 @@
 //! Contact sides that coincide as curves get coinciding vertices.
 //!
-//! Every vertex of one side is put into the edges of the other, break points of the gap into both. What is left is
+//! Every vertex of one side is put into the edges of the other, break points of the gap and of windows into both. What is left is
 //! the condition of the scene: two coinciding polylines.
 
 use std::collections::HashMap;
@@ -27,18 +27,18 @@ const ROUND_OFF: f64 = 1e-10;
 pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
     let mut notes = Vec::new();
     snap(&mut mesh, scene, &mut notes);
-    for contact in &scene.contacts {
+    for (index, contact) in scene.contacts.iter().enumerate() {
         let ContactSides::Between(names) = &contact.sides else { continue };
         mesh = match contact.direction {
             None => match_vertices(mesh, scene, contact, names, &mut notes)?,
             Some(direction) => {
-                mesh = insert_gap_breaks(mesh, scene, contact, &mut notes)?;
+                mesh = insert_breaks(mesh, scene, index, &mut notes)?;
                 match_along(mesh, scene, contact, names, direction, &mut notes)?
             }
         };
     }
-    for contact in scene.contacts.iter().filter(|contact| contact.direction.is_none()) {
-        mesh = insert_gap_breaks(mesh, scene, contact, &mut notes)?;
+    for index in (0..scene.contacts.len()).filter(|&index| scene.contacts[index].direction.is_none()) {
+        mesh = insert_breaks(mesh, scene, index, &mut notes)?;
     }
     Ok((mesh, notes))
 }
@@ -172,14 +172,15 @@ fn too_flat(scene: &Scene, contact: &Contact, p: [f64; 2]) -> MeshError {
     MeshError::contact(scene, contact.name(), what, "mesh both sides with the same points")
 }
 
-/// Puts the break points of the gap into the sides, so that the gap is linear on every edge.
-fn insert_gap_breaks(
+/// Puts the break points of a contact into its sides, so that the gap and the weights of quantities are linear on every
+/// edge.
+fn insert_breaks(
     mesh: Triangulation,
     scene: &Scene,
-    contact: &Contact,
+    index: usize,
     notes: &mut Vec<Note>,
 ) -> Result<Triangulation, MeshError> {
-    let breaks = contact.gap.breaks();
+    let (contact, breaks) = (&scene.contacts[index], scene.contact_breaks(index));
     if breaks.is_empty() {
         return Ok(mesh);
     }
@@ -199,10 +200,14 @@ fn insert_gap_breaks(
         inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
     }
     let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
-    notes.push(Note {
-        weakens_guarantee: false,
-        text: format!("contact {}: {} vertices inserted where the gap bends or touches", contact.name(), points.len()),
-    });
+    let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
+    for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
+    {
+        if count > 0 {
+            let text = format!("contact {}: {count} vertices inserted where {place}", contact.name());
+            notes.push(Note { weakens_guarantee: false, text });
+        }
+    }
     Ok(mesh)
 }
 

@@ -6,7 +6,7 @@ use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::{Map, RawMesh, cells::Cells};
 use crate::scene::Note;
-use crate::scene::{ContactSides, MeshSource, Scene};
+use crate::scene::{BoundaryUse, ContactSides, Extent, MeshSource, Scene, Target};
 
 /// An edge without direction.
 pub(super) type Pair = [usize; 2];
@@ -46,12 +46,16 @@ impl Labels {
     }
 }
 
-/// The boundaries to which the scene gives a condition.
+/// The boundaries to which the scene gives a condition, or of which it wants a quantity.
 pub(crate) fn used_names(scene: &Scene) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     names.extend(scene.supports.iter().map(|s| s.on.as_str()));
     names.extend(scene.tractions.iter().map(|t| t.on.as_str()));
     names.extend(contact_names(scene));
+    names.extend(scene.quantities.iter().filter_map(|quantity| match &quantity.target {
+        Target::Displacement { of: Extent::Boundary(name), .. } => Some(name.as_str()),
+        _ => None,
+    }));
     names
 }
 
@@ -111,7 +115,7 @@ pub(super) fn assign(
             ([side], []) => labels.put(*side, names[0]),
             ([side], [name]) => labels.put(*side, name),
             ([_], [first, second, ..]) => {
-                let what = format!("shares the edge {place} with '{second}', and both carry a condition of the scene");
+                let what = format!("shares the edge {place} with '{second}', and the scene uses both");
                 return Err(MeshError::boundary(scene, first, what, "put every curve into one of the two only"));
             }
             (_, []) => {}
@@ -124,6 +128,7 @@ pub(super) fn assign(
         }
     }
     check_names(&labels, &used, scene)?;
+    check_bodies(raw, scene)?;
     note_idle(idle, scene, notes);
     Ok(labels)
 }
@@ -146,8 +151,8 @@ fn facing<'a>(
         return Err(MeshError::boundary(
             scene,
             name,
-            format!("carries a condition, but its edge {place} has a triangle on both sides"),
-            "conditions belong on the outer boundary of a body",
+            format!("carries a condition or quantity, but its edge {place} has a triangle on both sides"),
+            "conditions and mean displacements belong on the outer boundary of a body",
         ));
     };
     let (sides, bodies) = match both {
@@ -194,7 +199,27 @@ fn check_names(labels: &Labels, used: &[&str], scene: &Scene) -> Result<(), Mesh
                 [] => "no boundary has a name: put the curves into physical curves, and save them".to_string(),
                 _ => format!("the boundaries are {}{}", existing.join(", "), suggestion(name, &existing)),
             };
+            let conditions = scene.boundary_names_used();
+            let by_quantity = !conditions.iter().any(|(n, by)| n == name && !matches!(by, BoundaryUse::Quantity(_)));
+            let bodies: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+            let remedy = match by_quantity {
+                true => format!("{remedy}; the bodies are {}{}", bodies.join(", "), suggestion(name, &bodies)),
+                false => remedy,
+            };
             return Err(MeshError::boundary(scene, name, "does not exist", remedy));
+        }
+    }
+    Ok(())
+}
+
+/// A body whose mean displacement is wanted shares its name with no boundary.
+fn check_bodies(raw: &RawMesh, scene: &Scene) -> Result<(), MeshError> {
+    for quantity in &scene.quantities {
+        let Target::Displacement { of: Extent::Body(body), .. } = quantity.target else { continue };
+        let name = &scene.bodies[body].name;
+        if raw.segments.iter().any(|(_, boundary)| boundary == name) {
+            let what = format!("has the name of a body, and quantity '{}' may mean either", quantity.name);
+            return Err(MeshError::boundary(scene, name, what, "give the curve another name"));
         }
     }
     Ok(())

@@ -89,19 +89,26 @@ pub(crate) fn same(links: &[Link]) -> f64 {
 const SLIVER: f64 = 1e-6;
 
 /// The points of a side at the arc lengths `breaks` that are not at an end of an edge: (edge, point). Where they are within
-/// a millionth of an edge of its ends no point is put, and the gap is linear on the edge as it is.
+/// a millionth of an edge of its ends, or of a point at an earlier one of `breaks`, no point is put, and what bends there is
+/// linear on the edge as it is.
 pub(crate) fn inner_points(edges: &[[[f64; 2]; 2]], links: &[Link], breaks: &[f64]) -> Vec<(usize, [f64; 2])> {
     let mut found = Vec::new();
+    // The arc lengths of the points put so far, ascending.
+    let mut put: Vec<f64> = Vec::new();
     let close = same(links);
     for &s in breaks {
         for link in links {
             let length = link.arc[1] - link.arc[0];
             let t = (s - link.arc[0]) / length;
             let close = close.max(SLIVER * length);
-            if s - link.arc[0] > close && link.arc[1] - s > close {
+            let place = put.partition_point(|&other| other < s);
+            let beside = |other: Option<&f64>| other.is_some_and(|other| (other - s).abs() <= close);
+            let taken = beside(put.get(place)) || place > 0 && beside(put.get(place - 1));
+            if s - link.arc[0] > close && link.arc[1] - s > close && !taken {
                 let [a, b] = edges[link.edge];
                 let t = if link.reversed { 1.0 - t } else { t };
                 found.push((link.edge, [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]));
+                put.insert(place, s);
             }
         }
     }

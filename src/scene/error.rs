@@ -13,6 +13,7 @@ use miette::{
 };
 
 pub use super::fault::Fault;
+pub use super::quantity::QuantityFault;
 use super::text::disarmed;
 
 /// Bytes of the longest line that is drawn whole.

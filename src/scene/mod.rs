@@ -14,7 +14,7 @@ mod geometry;
 mod nearest;
 mod parse;
 mod polygon;
-pub mod quantity;
+mod quantity;
 mod raw;
 mod read;
 pub(crate) mod text;

@@ -36,8 +36,10 @@ mod paper_objects;
 mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
+mod quantities;
 mod rings;
 mod rounding;
+mod scene_schema;
 mod setup;
 mod squares;
 #[path = "../support/mod.rs"]

@@ -101,7 +101,8 @@ fn the_scene_schema_names_every_table_and_forbids_others() {
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         let schema: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(schema["additionalProperties"], false);
-        for table in ["title", "model", "mesh", "geometry", "bodies", "supports", "tractions", "contacts"] {
+        for table in ["title", "model", "mesh", "geometry", "bodies", "supports", "tractions", "contacts", "quantities"]
+        {
             assert!(schema["properties"][table].is_object(), "{table}");
         }
         assert_eq!(schema["required"], serde_json::json!(["model", "bodies"]));

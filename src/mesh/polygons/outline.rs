@@ -38,7 +38,7 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
     let mut outlines = snapped(scene, polygons, close)?;
     insert_touching(scene, &mut outlines, close)?;
     check_overlap(scene, &outlines, polygons)?;
-    insert_gap_breaks(&mut outlines, scene);
+    insert_breaks(&mut outlines, scene);
     let length: f64 = outlines.iter().flatten().map(|p| distance(p.ends)).sum();
     if let Some(size) = size {
         let affordable = length / size <= super::fill::MOST;
@@ -249,10 +249,10 @@ fn check_overlap(scene: &Scene, outlines: &[Vec<Piece>], polygons: &[Polygon]) -
     Ok(())
 }
 
-/// Puts the break points of the gaps into the contact sides, so that the mesh represents the gap exactly.
-fn insert_gap_breaks(outlines: &mut [Vec<Piece>], scene: &Scene) {
-    for contact in &scene.contacts {
-        let breaks = contact.gap.breaks();
+/// Puts the break points of gaps and windows into the contact sides, so that the mesh represents both exactly.
+fn insert_breaks(outlines: &mut [Vec<Piece>], scene: &Scene) {
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        let breaks = scene.contact_breaks(index);
         if breaks.is_empty() {
             continue;
         }

@@ -5,6 +5,7 @@
 
 mod check;
 mod fault;
+mod parts;
 mod raw;
 
 pub(super) use check::quantities;
