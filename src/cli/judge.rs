@@ -26,7 +26,11 @@ impl JudgeOptions {
         }
         let contacts: Vec<String> = scene.contacts.iter().map(Contact::name).collect();
         let fields: Vec<String> = fields.iter().chain(&["free bound"]).map(|f| f.to_string()).collect();
-        let names = names_of_checks(&contacts, &fields);
+        let mut names = names_of_checks(&contacts, &fields);
+        for quantity in &scene.quantities {
+            let of = |last: &str| format!("quantity/{}/{last}", quantity.name);
+            names.extend(fields.iter().map(String::as_str).chain(["tolerance", "given"]).map(of));
+        }
         let allow = self.allowances();
         match allow.foreign(&names).into_iter().find(|name| !name.starts_with("baseline/")) {
             None => Ok(()),

@@ -19,6 +19,7 @@ pub mod show;
 pub mod solve;
 pub mod stability;
 pub mod threads;
+mod values;
 pub mod verify;
 
 use std::process::ExitCode;

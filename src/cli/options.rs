@@ -9,7 +9,7 @@ use super::{CliError, Exit};
 use crate::budget::{self, Budget};
 use crate::report;
 use crate::scene::Scene;
-use crate::study::Adapt;
+use crate::study::{Adapt, GivenValue, Wanted};
 
 /// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
 const MOST_REFINEMENTS: i64 = 12;
@@ -53,6 +53,9 @@ pub struct SolveOptions {
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
     #[arg(long, value_name = "X", value_parser = positive)]
     pub tolerance: Option<f64>,
+    /// Refine adaptively until the half-width of the interval of quantity NAME is below X times its value; may be repeated
+    #[arg(long, value_name = "NAME=X")]
+    pub tolerance_of: Vec<NamedTolerance>,
     /// What to refine towards the tolerance: mesh and degrees where it is missing, the mesh alone with uzawa
     #[arg(long, value_enum)]
     pub adapt: Option<Adapt>,
@@ -84,6 +87,17 @@ pub struct MemoryOptions {
 }
 
 impl SolveOptions {
+    /// Whether the mesh is refined adaptively.
+    pub fn is_adaptive(&self) -> bool {
+        self.tolerance.is_some() || !self.tolerance_of.is_empty()
+    }
+
+    /// The quantities that are to be known more closely.
+    pub fn wanted(&self) -> Vec<Wanted> {
+        let wanted = |of: &NamedTolerance| Wanted { name: of.name.clone(), tolerance: of.value };
+        self.tolerance_of.iter().map(wanted).collect()
+    }
+
     /// What is refined towards the tolerance.
     pub fn adapt(&self) -> Adapt {
         let linear = self.method == Method::Uzawa;
@@ -187,6 +201,42 @@ impl FromStr for Allowance {
         }
         Ok(Allowance { name: name.to_owned(), value })
     }
+}
+
+/// The tolerance of a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedTolerance {
+    /// Its name.
+    pub name: String,
+    /// Finite, above zero.
+    pub value: f64,
+}
+
+impl FromStr for NamedTolerance {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = named(text, "tip=1e-3")?;
+        if value > 0.0 { Ok(NamedTolerance { name, value }) } else { Err(format!("{value} is not above zero")) }
+    }
+}
+
+impl FromStr for GivenValue {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = named(text, "tip=0.8014")?;
+        Ok(GivenValue { name, value })
+    }
+}
+
+/// NAME=NUMBER; names of quantities contain no equals sign.
+fn named(text: &str, example: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or(format!("write NAME=X, for instance {example}"))?;
+    if name.is_empty() {
+        return Err("the name before = is missing".to_owned());
+    }
+    Ok((name.to_owned(), number(value)?))
 }
 
 fn number(text: &str) -> Result<f64, String> {

@@ -17,7 +17,7 @@ use crate::process::limit;
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
-    self, Adapt, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
+    self, Adapt, Adapted, Admission, Answer, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
 };
 
 /// Degree of the stresses that refinement of mesh and degrees begins with: linear ones tell little of where to raise it.
@@ -55,6 +55,8 @@ pub struct Particulars {
     pub sharpened: Option<Sharpened>,
     /// The guaranteed relative error that can, where models are compared.
     pub enough: Option<f64>,
+    /// The intervals of the quantities.
+    pub answers: Vec<Answer>,
     /// Remarks of its own.
     pub notes: Vec<Note>,
     /// Its phases.
@@ -83,6 +85,7 @@ impl Session {
     /// # Errors
     /// Bad input, a solver that failed, or no equilibrium.
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
+        self.refuse_unknown_quantities(solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.progress.phase("reading the mesh");
         let method = method(solve.method);
         let admission = Admission::new(method.as_ref(), self.budget);
@@ -91,8 +94,8 @@ impl Session {
         let phase = |triangles: usize| self.progress.phase(format!("solving in stresses on {triangles} triangles"));
         phase(problem.mesh.triangles.len());
         let options = self.options(solve);
-        let run = match solve.tolerance {
-            None => {
+        let run = match solve.is_adaptive() {
+            false => {
                 // A displacement that is handed in belongs to the mesh as given.
                 let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
                 certify(problem, method.as_ref(), &options).map(|certified| DualRun {
@@ -101,9 +104,11 @@ impl Session {
                     stopped: None,
                 })
             }
-            Some(tolerance) => {
+            true => {
                 let Limits { max_triangles, max_seconds } = *limits;
-                let goal = Goal { max_triangles, max_seconds, adapt: solve.adapt(), ..Goal::new(tolerance) };
+                let tolerance = solve.tolerance.unwrap_or(f64::INFINITY);
+                let adapt = solve.adapt();
+                let goal = Goal { max_triangles, max_seconds, adapt, wanted: solve.wanted(), ..Goal::new(tolerance) };
                 let first = Size::of(&problem);
                 let (mut rows, mut warned) = (Vec::new(), false);
                 let told = |row: &HistoryRow| {
@@ -127,11 +132,40 @@ impl Session {
         Ok(run)
     }
 
+    /// The intervals of the quantities of the scene.
+    pub fn answers(&self, run: &DualRun, solve: &SolveOptions) -> Vec<Answer> {
+        if self.scene.quantities.is_empty() {
+            return Vec::new();
+        }
+        self.progress.phase("bounding the quantities");
+        study::answers(&run.certified, &self.options(solve), |_| true)
+    }
+
+    /// Refuses names that no quantity of the scene has.
+    ///
+    /// # Errors
+    /// The first of them.
+    pub fn refuse_unknown_quantities<'a>(&self, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
+        let known: Vec<&str> = self.scene.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+        for name in names {
+            if !known.contains(&name) {
+                let what = format!("{}: the scene has no quantity '{name}'", self.scene.path.display());
+                let remedy = match known.as_slice() {
+                    [] => "give it one in a [[quantities]] table".to_string(),
+                    known => format!("use one of {}", known.join(", ")),
+                };
+                return Err(CliError::stopped(Exit::BadInput, what, remedy));
+            }
+        }
+        Ok(())
+    }
+
     fn options(&self, solve: &SolveOptions) -> Options {
-        let adaptive = solve.tolerance.is_some() && solve.adapt() == Adapt::Hp;
+        let adaptive = solve.is_adaptive() && solve.adapt() == Adapt::Hp;
         let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
         let elements = Elements::Uniform(block(degree as usize));
-        Options { elements, threads: self.threads, budget: self.budget, ..Options::default() }
+        let keep_factor = !self.scene.quantities.is_empty();
+        Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }
     }
 
     fn problem(&self, solve: &SolveOptions, admission: &Admission<'_>) -> Result<Problem, CliError> {
@@ -140,7 +174,7 @@ impl Session {
         };
         let mut scene = self.scene.clone();
         let mut coarsened = None;
-        if let (Some(_), MeshSource::Geometry { size, .. }) = (solve.tolerance, &mut scene.mesh) {
+        if let (true, MeshSource::Geometry { size, .. }) = (solve.is_adaptive(), &mut scene.mesh) {
             coarsened = size.take();
         }
         if let Some(triangles) = mesh::expected_triangles(&scene) {
@@ -152,6 +186,9 @@ impl Session {
             admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
         }
         let problem = Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)?;
+        study::refuse_quantities(&problem).map_err(|why| {
+            CliError::stopped(Exit::BadInput, format!("{}: {why}", self.scene.path.display()), "")
+        })?;
         if solve.refine > 0 {
             let size = Size::of(&problem).refined(solve.refine);
             let cause = format!("--refine {}", solve.refine);
@@ -249,7 +286,7 @@ impl Session {
         folder: &Path,
     ) -> Result<Exit, CliError> {
         let DualRun { certified, mut history, stopped } = run;
-        let Particulars { sharpened, enough, mut notes, mut seconds, components, failure } = particulars;
+        let Particulars { sharpened, enough, answers, mut notes, mut seconds, components, failure } = particulars;
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
             notes.push(sharpened_note(&certified, stopped));
             history.extend(meshes);
@@ -263,6 +300,7 @@ impl Session {
                 command: self.command,
                 certified: &certified,
                 comparison,
+                answers: &answers,
                 finer: finer.as_ref(),
                 enough,
                 history,
@@ -283,6 +321,9 @@ impl Session {
         if !self.quiet {
             let report = &dossier.report;
             say::line(&report.verdict);
+            for quantity in &report.quantities {
+                say::line(&format!("  {}", quantity.in_words()));
+            }
             for check in report.checks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  failed: {}: {}", check.name, check.why));
             }

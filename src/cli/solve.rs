@@ -6,7 +6,7 @@ use super::options::{Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, compare};
-use crate::study::tolerance_check;
+use crate::study::{tolerance_check, wanted_checks};
 
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
@@ -37,5 +37,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    session.conclude(run, &comparison, Particulars::default(), &folder)
+    let answers = session.answers(&run, &args.solve);
+    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    session.conclude(run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
 }

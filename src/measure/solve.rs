@@ -105,7 +105,7 @@ fn stresses(
     };
     let solved = match goal {
         None => study::certify(problem, solver, &options),
-        Some(goal) => study::adapt(problem, solver, &options, &goal, |_| {}).map(|adapted| adapted.certified),
+        Some(ref goal) => study::adapt(problem, solver, &options, goal, |_| {}).map(|adapted| adapted.certified),
     };
     let done = clock.elapsed();
     match solved {

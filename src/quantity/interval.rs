@@ -58,6 +58,19 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Nothing is known, for this reason.
+    pub fn unknown(reason: &str) -> Self {
+        let ends = [f64::NEG_INFINITY, f64::INFINITY];
+        Interval {
+            ends,
+            first_order: ends,
+            value: f64::NAN,
+            exact_by_statics: false,
+            reasons: [Some(reason.to_string()), Some(reason.to_string())],
+            shares: Vec::new(),
+        }
+    }
+
     /// Half of the width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])

@@ -79,6 +79,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
             von_mises_max: TwoSides { dual: 4.31, primal: Some(4.22) },
             component_l2_difference: ComponentDifference { xx: 0.011, yy: 0.008, xy: 0.004, von_mises: 0.012 },
         }),
+        quantities: if solved { quantities() } else { Vec::new() },
         checks: checks(failed, lower, p2),
         remarks: remarks(),
         notes: problem.notes.clone(),
@@ -180,4 +181,30 @@ fn remarks() -> Vec<Check> {
         Check::at_most(name, value, 0.0, 0.1, Basis::Chosen, "Theory sets no limit to this difference.")
     };
     vec![remark("sharpness", 0.04), remark("contact.left_face|right_face.open-length <a&b>", 0.3)]
+}
+
+/// Three quantities: one known, one with an end missing, one that statics determines.
+fn quantities() -> Vec<QuantitySummary> {
+    let model = |value: f64, inside: bool| QuantityOfModel {
+        solver: "FEniCSx P2".to_string(),
+        degree: 2,
+        value: Some(value),
+        inside: Some(inside),
+    };
+    let row = |name: &str, kind: &str, lower: f64, value: f64, upper: f64| QuantitySummary {
+        name: name.to_string(),
+        kind: kind.to_string(),
+        value,
+        lower,
+        upper,
+        first_order: [lower - 0.1, upper + 0.1],
+        exact_by_statics: lower == upper,
+        primal: vec![model(value, true)],
+        reason: upper.is_infinite().then(|| "nothing holds <it>".to_string()),
+    };
+    vec![
+        row("tip <a&b>", "displacement", 0.79, 0.801, 0.81),
+        row("seat", "force", 0.2, 0.25, f64::INFINITY),
+        row("whole", "force", 0.5, 0.5, 0.5),
+    ]
 }

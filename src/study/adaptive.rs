@@ -9,6 +9,7 @@
 use std::time::Instant;
 
 use super::admission::Admission;
+use super::answers::answers;
 use super::certified::{Certified, StudyError};
 use super::dossier::in_numbers;
 use super::forecast::Forecast;
@@ -31,6 +32,9 @@ const SHORTEST: f64 = 1e-11;
 const COARSER: f64 = 30.0;
 const LONGEST: f64 = 1e-5;
 
+/// How far from its tolerance a quantity is taken to be that has no interval yet.
+const UNKNOWN: f64 = 10.0;
+
 /// What an adaptive run refines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Adapt {
@@ -40,11 +44,22 @@ pub enum Adapt {
     Hp,
 }
 
-/// What an adaptive run is to reach, and where it stops at the latest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Goal {
-    /// Largest guaranteed relative energy-norm error.
+/// A quantity that is to be known more closely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// Its name.
+    pub name: String,
+    /// Largest half-width of its interval, relative to its value.
     pub tolerance: f64,
+}
+
+/// What an adaptive run is to reach, and where it stops at the latest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goal {
+    /// Largest guaranteed relative energy-norm error; infinite where only quantities are wanted.
+    pub tolerance: f64,
+    /// Quantities of the scene.
+    pub wanted: Vec<Wanted>,
     /// No mesh has more triangles than this, unless the first one has. The memory that a mesh may take is the budget of
     /// [`Options`].
     pub max_triangles: Option<usize>,
@@ -65,6 +80,7 @@ impl Goal {
     pub fn new(tolerance: f64) -> Self {
         Goal {
             tolerance,
+            wanted: Vec::new(),
             max_triangles: None,
             max_seconds: None,
             known_upper: None,
@@ -112,7 +128,7 @@ pub fn adapt(
         let (solved, fault) = match (outcome, last.take()) {
             (Ok(solved), before) => {
                 let seconds = [start.elapsed().as_secs_f64(), began.elapsed().as_secs_f64()];
-                let mut now = Measured::new(solved, goal, seconds, history.last());
+                let mut now = Measured::new(solved, options, goal, seconds, history.last());
                 on_step(&now.row);
                 history.push(now.row);
                 if let Ok(terms) = &now.terms {
@@ -130,8 +146,8 @@ pub fn adapt(
             }
             (Err(error), _) => return Err(error),
         };
-        let Measured { solved: Solved { certified, .. }, row, terms } = &solved;
-        if certified.bracket.tells(row.upper, goal.tolerance) {
+        let Measured { solved: Solved { certified, .. }, row, terms, left } = &solved;
+        if *left <= 1.0 {
             return Ok(Adapted { certified: solved.solved.certified, history, stopped: None });
         }
         let spent = start.elapsed().as_secs_f64();
@@ -141,7 +157,7 @@ pub fn adapt(
             (Some(most), ..) if spent >= most => Err(format!("{most} seconds have passed")),
             _ if stalls(&history, goal) => Err("it no longer makes the error smaller".to_string()),
             (.., Err(reason)) => Err(format!("no upper bound could be built ({reason})")),
-            (.., Ok(terms)) => rounds.next(&solved.solved, terms, row.relative_error_bound)?,
+            (.., Ok(terms)) => rounds.next(&solved.solved, terms, *left)?,
         };
         stage = match finer {
             Ok(finer) => finer,
@@ -152,6 +168,10 @@ pub fn adapt(
             }
         };
         last = Some(solved);
+        if let Some(last) = &mut last {
+            // The next mesh needs the memory.
+            last.solved.certified.dual.factorised = None;
+        }
     }
 }
 
@@ -159,17 +179,36 @@ pub fn adapt(
 struct Measured {
     solved: Solved,
     row: HistoryRow,
-    /// The terms of the gap, or why there is none.
+    /// The terms of what is to become smaller, or why there are none.
     terms: Result<Indicators, String>,
+    /// By what factor it is larger than it may be.
+    left: f64,
 }
 
 impl Measured {
-    fn new(solved: Solved, goal: &Goal, seconds: [f64; 2], before: Option<&HistoryRow>) -> Self {
-        let terms = match &solved.certified.bracket.free {
-            Ok(free) => Ok(Indicators::new(&solved.certified.problem, free)),
+    fn new(solved: Solved, options: &Options, goal: &Goal, seconds: [f64; 2], before: Option<&HistoryRow>) -> Self {
+        let certified = &solved.certified;
+        let row = row(certified, goal, seconds, before);
+        let mut terms = match &certified.bracket.free {
+            Ok(free) => Ok(Indicators::new(&certified.problem, free)),
             Err(reason) => Err(reason.to_string()),
         };
-        Measured { row: row(&solved.certified, goal, seconds, before), solved, terms }
+        // The gap is the square of the error.
+        let of_energy = if certified.bracket.tells(row.upper, goal.tolerance) {
+            0.0
+        } else {
+            (row.relative_error_bound / goal.tolerance).powi(2)
+        };
+        let mut left = if of_energy > 0.0 { of_energy.max(1.0 + f64::EPSILON) } else { 0.0 };
+        if !goal.wanted.is_empty()
+            && let Ok(gap) = &terms
+        {
+            let (of_quantities, shares) = open(certified, options, goal, gap);
+            let weight = if of_energy > 0.0 { of_energy / gap.total() } else { 0.0 };
+            terms = Ok((0..shares.len()).map(|t| weight * gap.of(t) + shares[t]).collect());
+            left = left.max(of_quantities);
+        }
+        Measured { row, solved, terms, left }
     }
 
     fn seen(&self) -> Option<Seen<'_>> {
@@ -186,6 +225,28 @@ impl Measured {
             self.solved.ways = learnt(now, then, &self.solved.parent, &before.solved.ways);
         }
     }
+}
+
+/// By what factor the widest interval that is wanted is wider than it may be, and what each triangle adds to those that
+/// are: shares of the gap where there is no interval.
+fn open(certified: &Certified, options: &Options, goal: &Goal, gap: &Indicators) -> (f64, Vec<f64>) {
+    let mut shares = vec![0.0; certified.problem.mesh.triangles.len()];
+    let mut most = 0.0_f64;
+    let wanted = |name: &str| goal.wanted.iter().find(|wanted| wanted.name == name);
+    for answer in answers(certified, options, |name| wanted(name).is_some()) {
+        let Some(tolerance) = wanted(&answer.name).map(|wanted| wanted.tolerance) else { continue };
+        let allowed = tolerance * answer.interval.value.abs();
+        let left = answer.interval.half_width() / allowed;
+        if left <= 1.0 {
+            continue;
+        }
+        let known = left.is_finite() && answer.interval.shares.iter().sum::<f64>() > 0.0;
+        most = most.max(if known { left } else { UNKNOWN });
+        for (t, share) in shares.iter_mut().enumerate() {
+            *share += if known { answer.interval.shares[t] / allowed } else { UNKNOWN * gap.of(t) / gap.total() };
+        }
+    }
+    (most, shares)
 }
 
 /// Whether the last two meshes were hardly worth their triangles.
@@ -221,10 +282,15 @@ fn row(
 
 fn stopped(reason: &str, row: &HistoryRow, goal: &Goal, pace: Option<String>) -> String {
     let pace = pace.map_or(String::new(), |pace| format!(" Outlook: {pace}."));
+    let tolerance = match goal.wanted.first() {
+        Some(wanted) if goal.tolerance.is_infinite() => {
+            format!("{} % for quantity '{}'", 100.0 * wanted.tolerance, wanted.name)
+        }
+        _ => format!("{} %", 100.0 * goal.tolerance),
+    };
     format!(
-        "Refinement stopped before the tolerance of {} % was reached, because {reason}: the guaranteed relative \
+        "Refinement stopped before the tolerance of {tolerance} was reached, because {reason}: the guaranteed relative \
          energy-norm error is {:.3} % with {} triangles.{pace}",
-        100.0 * goal.tolerance,
         100.0 * row.relative_error_bound,
         row.triangles
     )

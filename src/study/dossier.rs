@@ -1,6 +1,7 @@
 //! From results to the data behind the report.
 
 use super::Certified;
+use super::answers::{Answer, summaries};
 use super::curves;
 use super::provenance::{identifier, provenance};
 use crate::bounds::{Bracket, UpperBound, mid_field};
@@ -20,6 +21,8 @@ pub struct Findings<'a> {
     pub certified: &'a Certified,
     /// The comparison; without displacement models it still holds the checks of the bracket.
     pub comparison: &'a Comparison,
+    /// The intervals of the quantities of the scene.
+    pub answers: &'a [Answer],
     /// A sharper bracket from a finer mesh, where the one of `certified` could not tell two models apart.
     pub finer: Option<&'a Certified>,
     /// The guaranteed relative error that tells two models apart; `None` where no model has to be told from another.
@@ -188,6 +191,7 @@ fn report(findings: &Findings<'_>) -> Report {
             .collect(),
         contact: comparison.contacts.clone(),
         stress: comparison.stress.clone(),
+        quantities: summaries(findings.certified, findings.answers, comparison),
         checks,
         remarks,
         notes,
@@ -295,6 +299,7 @@ pub fn infeasible<'a>(
             primal: Vec::new(),
             contact: Vec::new(),
             stress: None,
+            quantities: Vec::new(),
             checks: Vec::new(),
             remarks: Vec::new(),
             notes: problem.notes.clone(),

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod admission;
+mod answers;
 mod baseline;
 mod certified;
 mod curves;
@@ -18,8 +19,11 @@ mod stage;
 mod trend;
 mod warm_start;
 
-pub use adaptive::{Adapt, Adapted, Goal, adapt, tolerance_check};
+pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
 pub use admission::Admission;
+pub use answers::{
+    Answer, Claim, GivenValue, answers, quantity_checks, refuse_quantities, summaries, value_checks, wanted_checks,
+};
 pub use baseline::{Baseline, BaselineError};
 pub use certified::{Certified, StudyError, certify};
 pub use curves::remarks as curve_remarks;

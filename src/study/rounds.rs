@@ -59,14 +59,14 @@ impl<'a> Rounds<'a> {
         Rounds { goal, admission, forecast, problem, smallest: smallest_area(problem, shortest) }
     }
 
-    /// The next mesh, or the reason why there is none; `terms` are those of the gap that makes the guaranteed error
-    /// `bound`.
+    /// The next mesh, or the reason why there is none; `terms` are those of what is larger by the factor `left` than it may
+    /// be.
     ///
     /// # Errors
     /// [`StudyError::Mesh`].
-    pub fn next(&self, solved: &Solved, terms: &Indicators, bound: f64) -> Result<Result<Stage, String>, StudyError> {
-        // The part of the gap that may stay: the bound is its root.
-        let enough = terms.total() * (AIM * self.goal.tolerance / bound).powi(2);
+    pub fn next(&self, solved: &Solved, terms: &Indicators, left: f64) -> Result<Result<Stage, String>, StudyError> {
+        // What of the terms may stay.
+        let enough = terms.total() * AIM * AIM / left;
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
         stage.ways.clone_from(&solved.ways);
         let solved = unknowns(&stage);

@@ -1,0 +1,223 @@
+//! The quantities of a scene: their intervals, the values of displacement models in them, and the checks that follow.
+
+use super::adaptive::Wanted;
+use super::Certified;
+use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
+use crate::dual::{Factorised, Motion, Options};
+use crate::problem::Problem;
+use crate::quantity::{Functional, Interval, Known, NotBounded, value_of};
+use crate::report::{QuantityOfModel, QuantitySummary};
+
+/// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
+const OWN_ERROR: f64 = 2.0;
+
+/// A quantity and what is guaranteed of it.
+#[derive(Debug, Clone)]
+pub struct Answer {
+    /// Its name.
+    pub name: String,
+    /// What it is on the mesh.
+    pub functional: Option<Functional>,
+    /// Its interval; both ends infinite, with the reason, where none is known.
+    pub interval: Interval,
+    /// What it is, in a word.
+    pub kind: &'static str,
+}
+
+/// A value of a quantity that comes without a field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GivenValue {
+    /// Name of the quantity.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+}
+
+/// Refuses quantities that do not fit the mesh.
+///
+/// # Errors
+/// A sentence that names the quantity.
+pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
+    for quantity in &problem.scene.quantities {
+        match Functional::new(problem, quantity) {
+            Ok(_) | Err(NotBounded::Shared { .. }) => {}
+            Err(error) => return Err(format!("quantity '{}': {error}", quantity.name)),
+        }
+    }
+    Ok(())
+}
+
+/// The intervals of the quantities of a problem that was solved with `options`, all of them or those that are `wanted`.
+pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -> bool) -> Vec<Answer> {
+    let Certified { problem, statics, dual, bracket } = certified;
+    let quantities: Vec<_> = problem.scene.quantities.iter().filter(|quantity| wanted(&quantity.name)).collect();
+    if quantities.is_empty() {
+        return Vec::new();
+    }
+    let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(problem, &statics.components)).collect();
+    let own;
+    let factorised: Result<&Factorised, String> = match &dual.factorised {
+        Some(kept) => Ok(kept),
+        None => {
+            own = Factorised::new(problem, &motions, options).map_err(|error| error.to_string());
+            own.as_ref().map_err(Clone::clone)
+        }
+    };
+    let known = factorised.and_then(|factorised| {
+        let free = bracket.free.as_ref().map_err(|error| error.to_string())?;
+        Known::new(problem, dual, bracket, free, factorised, options)
+    });
+    let answer = |quantity: &&crate::scene::Quantity| {
+        let name = quantity.name.clone();
+        match (Functional::new(problem, quantity), &known) {
+            (Ok(functional), Ok(known)) => {
+                let interval = known.interval(&functional);
+                Answer { name, kind: functional.kind.name(), interval, functional: Some(functional) }
+            }
+            (Ok(functional), Err(reason)) => {
+                let kind = functional.kind.name();
+                Answer { name, kind, interval: Interval::unknown(reason), functional: Some(functional) }
+            }
+            (Err(error), _) => {
+                Answer { name, kind: "force", interval: Interval::unknown(&error.to_string()), functional: None }
+            }
+        }
+    };
+    quantities.iter().map(answer).collect()
+}
+
+/// The rows of the report: every answer with the values of the displacement models that were `compared`.
+pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
+    let summary = |answer: &Answer| {
+        let Interval { ends: [lower, upper], first_order, value, exact_by_statics, reasons, .. } = &answer.interval;
+        let primal = |judged: &Judged| {
+            let value = value_in(certified, answer, judged);
+            QuantityOfModel {
+                solver: judged.candidate.name.clone(),
+                degree: judged.candidate.degree,
+                value,
+                inside: value.map(|v| *lower <= v && v <= *upper),
+            }
+        };
+        QuantitySummary {
+            name: answer.name.clone(),
+            kind: answer.kind.to_string(),
+            value: *value,
+            lower: *lower,
+            upper: *upper,
+            first_order: *first_order,
+            exact_by_statics: *exact_by_statics,
+            primal: comparison.judged.iter().map(primal).collect(),
+            reason: reasons.iter().flatten().next().cloned(),
+        }
+    };
+    answers.iter().map(summary).collect()
+}
+
+fn value_in(certified: &Certified, answer: &Answer, judged: &Judged) -> Option<f64> {
+    let functional = answer.functional.as_ref()?;
+    value_of(&certified.problem, functional, &judged.field.displacement).filter(|value| value.is_finite())
+}
+
+/// How a value outside an interval is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Claim {
+    /// A discrete solution on this mesh: what its own energy leaves open is allowed.
+    Discrete,
+    /// The exact value.
+    Exact,
+}
+
+/// One check for every quantity and displacement model.
+pub fn quantity_checks(
+    certified: &Certified,
+    answers: &[Answer],
+    comparison: &Comparison,
+    claim: Claim,
+    allow: &Allowances,
+) -> Vec<Check> {
+    let mut checks = Vec::new();
+    for answer in answers.iter().filter(|answer| answer.interval.ends.iter().any(|end| end.is_finite())) {
+        for judged in &comparison.judged {
+            let field = &judged.candidate.name;
+            let Some(value) = value_in(certified, answer, judged) else { continue };
+            let own = match claim {
+                Claim::Exact => 0.0,
+                Claim::Discrete => OWN_ERROR * own_error(certified, answer, judged),
+            };
+            let whose = if own > 0.0 {
+                format!("{field} may miss it by what its own energy leaves open")
+            } else {
+                format!("no correct value lies outside, and that of {field} has to lie inside")
+            };
+            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, own, &whose));
+        }
+    }
+    allow.apply(&mut checks);
+    checks
+}
+
+/// One check for every value that was given.
+pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
+    let check = |given: &GivenValue| {
+        let name = format!("quantity/{}/given", given.name);
+        match answers.iter().find(|answer| answer.name == given.name) {
+            Some(answer) if answer.interval.ends.iter().any(|end| end.is_finite()) => {
+                inside(&name, answer, given.value, 0.0, "no correct value lies outside")
+            }
+            Some(answer) => {
+                let reason = answer.interval.reasons.iter().flatten().next().cloned().unwrap_or_default();
+                Check::not_made(&name, 0.0, Basis::Guaranteed, format!("There is no interval for it: {reason}."))
+            }
+            None => Check::not_made(&name, 0.0, Basis::Guaranteed, "The scene has no quantity of this name."),
+        }
+    };
+    let mut checks: Vec<Check> = given.iter().map(check).collect();
+    allow.apply(&mut checks);
+    checks
+}
+
+/// One check for every quantity that was to be known more closely.
+pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
+    let check = |wanted: &Wanted| {
+        let name = format!("quantity/{}/tolerance", wanted.name);
+        match answers.iter().find(|answer| answer.name == wanted.name) {
+            Some(Answer { interval, .. }) if interval.half_width().is_finite() => Check::at_most(
+                &name,
+                interval.half_width() / interval.value.abs(),
+                0.0,
+                wanted.tolerance,
+                Basis::Asked,
+                "The half-width of the interval, relative to the value, against the tolerance that was asked for.",
+            ),
+            _ => Check::not_made(&name, wanted.tolerance, Basis::Asked, "There is no interval with two ends."),
+        }
+    };
+    let mut checks: Vec<Check> = wanted.iter().map(check).collect();
+    allow.apply(&mut checks);
+    checks
+}
+
+/// A check that `value` lies in the interval, or outside by no more than `allowed`.
+fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) -> Check {
+    let [lower, upper] = answer.interval.ends;
+    let outside = (lower - value).max(value - upper).max(0.0);
+    let nearest = value.max(lower).min(upper);
+    let why = format!(
+        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
+        answer.kind, answer.name
+    );
+    Check::with_difference(name, value, nearest, outside, allowed, Basis::Guaranteed, why)
+}
+
+/// What the energy of a displacement leaves open of its value: the width of first order belongs to H, its own error to its
+/// own gap.
+fn own_error(certified: &Certified, answer: &Answer, judged: &Judged) -> f64 {
+    let bracket = &certified.bracket;
+    let of_bracket = bracket.free.as_ref().map_or(0.0, |free| free.upper() - bracket.lower());
+    let own = (judged.admissible.upper() - bracket.lower()).max(0.0);
+    let [low, high] = answer.interval.first_order;
+    let [lower, upper] = answer.interval.ends;
+    let width = if (high - low).is_finite() { high - low } else { upper - lower };
+    if of_bracket > 0.0 && width.is_finite() { width * (own / of_bracket).sqrt() } else { f64::INFINITY }
+}
