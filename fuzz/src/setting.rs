@@ -35,6 +35,7 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         command: "verify",
         certified,
         comparison: &comparison,
+        answers: &[],
         finer: None,
         enough: Some(0.05),
         history: Vec::new(),

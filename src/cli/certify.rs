@@ -56,8 +56,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
     session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let field = ForeignField::read(displacement, args.field.as_deref(), limit(args.solve.reading_seconds))
-        .map_err(refused)?;
+    let field =
+        ForeignField::read(displacement, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)?;
     args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
     let limits = Limits { max_triangles: None, max_seconds: None };

@@ -12,7 +12,7 @@
 use super::functional::Functional;
 use super::pass::{Fields, Pass, pass, strained};
 use crate::bounds::{
-    Bracket, Nearest, NodalValues, Pull, Sum, Until, UpperBound, mid_field, openings, work, work_on_edge,
+    Bracket, Nearest, NoUpperBound, NodalValues, Pull, Sum, Until, UpperBound, mid_field, openings, work, work_on_edge,
 };
 use crate::dual::equilibrium::edge_traction;
 use crate::dual::{Bounds, DualSolution, Factorised, Loaded, Options, Response, Responses};
@@ -30,6 +30,13 @@ const NO_STRESS: f64 = 1e-18;
 
 /// Contacts of up to so many jumps have a dense Schur complement.
 const LONGEST_DENSE: usize = 6000;
+
+/// How often, and by what factor, the ratio is raised where it gives nothing.
+const MOST_RAISES: usize = 8;
+const RAISE: f64 = 4.0;
+
+/// Pressures below this part of the largest are none.
+const NO_PRESSURE: f64 = 1e-9;
 
 /// Factors of the ratio at which the contact costs nothing that are tried, beside one.
 const FACTORS: [f64; 2] = [2.0, 0.5];
@@ -145,11 +152,16 @@ impl<'a> Known<'a> {
                 let none = Pass::default();
                 let mut found: [Option<End>; 2] = [None, None];
                 for (end, sign) in [(0, 1.0), (1, -1.0)] {
-                    match search.best(&neutral, sign) {
+                    let best = match &found[0] {
+                        // Without contact one pair serves both ends.
+                        Some(lower) if self.pressure.is_empty() => Ok(search.turned(lower)),
+                        _ => search.best(&neutral, sign),
+                    };
+                    match best {
                         Ok(best) => {
                             ends[end] = sign * best.bound;
                             if let Some(first) = best.first_order {
-                                first_order[end] = sign * first;
+                                first_order[end] = sign * first.0;
                             }
                             found[end] = Some(best);
                         }
@@ -159,7 +171,7 @@ impl<'a> Known<'a> {
                 let pass = found.iter().flatten().map(|end| &end.pass).next().unwrap_or(&none);
                 exact = functional.natural > 0.0
                     && found.iter().all(Option::is_some)
-                    && pass.stress <= NO_STRESS * functional.natural;
+                    && pass.balanced <= NO_STRESS * functional.natural;
                 for end in found.iter().flatten() {
                     self.add_shares(end, &mut shares);
                 }
@@ -179,6 +191,13 @@ impl<'a> Known<'a> {
     fn respond(&self, loaded: &Loaded<'_>, floor: &[f64], sign: f64) -> Result<Response, String> {
         let bounds = Bounds { closed: self.dual.closed.values(), floor, sign };
         loaded.respond(bounds, &self.dual.moments).map_err(|error| error.to_string())
+    }
+
+    /// The ratio that the traction of `response` asks for where the contact presses.
+    fn needed(&self, response: &Response, sign: f64) -> f64 {
+        let most = self.pressure.iter().fold(0.0_f64, |m, t| m.max(-t));
+        let pressing = self.pressure.iter().zip(response.contact.values()).filter(|(t, _)| -**t > NO_PRESSURE * most);
+        pressing.map(|(t, s)| sign * s / t).fold(0.0, f64::max)
     }
 
     /// The quantity of λ and v.
@@ -294,8 +313,10 @@ struct Search<'a> {
 struct End {
     /// Lower bound of sign · Q, per unit scale.
     bound: f64,
-    /// The same from z = 0, or a lift, where that has a finite one.
-    first_order: Option<f64>,
+    /// sign · Q_h.
+    centre: f64,
+    /// Bound and Q_h from z = 0, or a lift, where that has a finite one.
+    first_order: Option<(f64, f64)>,
     /// D, rounding included.
     distance: f64,
     /// The ratio that s and k ask for.
@@ -331,7 +352,7 @@ impl Search<'_> {
             let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
             let response = known.respond(self.loaded, &floor, sign)?;
             let end = self.end(&response, sign, ratio, start.clone())?;
-            first_order = first_order.into_iter().chain(end.first_order).reduce(f64::max);
+            first_order = first_order.into_iter().chain(end.first_order).reduce(better_of);
             let better = best.as_ref().is_none_or(|best| end.bound > best.bound);
             if better {
                 start.clone_from(&end.nodes);
@@ -342,6 +363,17 @@ impl Search<'_> {
         let first = free(begun.distance);
         let first = if first.is_finite() && first > 0.0 { first } else { 1.0 };
         let mut reason = attempt(first, &mut best).err();
+        // A body that contact alone holds needs a pressure to take off from.
+        let finite = |best: &Option<End>| best.as_ref().is_some_and(|end| end.bound.is_finite());
+        let needed = known.needed(neutral, sign);
+        let mut ratio = first.max(needed);
+        for _ in 0..MOST_RAISES {
+            if finite(&best) {
+                break;
+            }
+            ratio *= RAISE;
+            reason = attempt(ratio, &mut best).err().or(reason);
+        }
         let costs = |best: &Option<End>| best.as_ref().is_none_or(|end| end.ratio > free(end.distance));
         for factor in FACTORS {
             let mut ratio = first;
@@ -360,6 +392,19 @@ impl Search<'_> {
         match best.filter(|best| best.bound.is_finite()) {
             Some(best) => Ok(End { first_order, ..best }),
             None => Err(reason.unwrap_or_else(unbounded)),
+        }
+    }
+
+    /// The other end of an interval without contact, from the pair of the lower one.
+    fn turned(&self, lower: &End) -> End {
+        let other = |bound: f64, centre: f64| bound - 2.0 * centre;
+        End {
+            bound: other(lower.bound, lower.centre),
+            first_order: lower.first_order.map(|(bound, centre)| (other(bound, centre), -centre)),
+            centre: -lower.centre,
+            pass: lower.pass.clone(),
+            nodes: lower.nodes.clone(),
+            ..*lower
         }
     }
 
@@ -395,13 +440,15 @@ impl Search<'_> {
             .collect();
         let pull = Pull { scene: 2.0 * ratio, stress: Some(&stress) };
         let until = Until::Gains(WORTH_A_SWEEP * 4.0 * ratio * ratio * known.square);
-        let (z, nodes) = known
-            .nearest
-            .to(pull, &bounds, vec![start], until)
-            .map_err(|error| format!("no displacement of the adjoint problem is admissible ({error})"))?;
+        let (z, nodes) = known.nearest.to(pull, &bounds, vec![start], until).map_err(|error| match error {
+            NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
+                "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
+            ),
+        })?;
         let end = self.measured(response, Some((&z, sign)), sign);
         let first = self.measured(response, self.functional.lift.as_ref().map(|lift| (lift, 1.0)), sign);
-        Ok(End { nodes, first_order: Some(first.bound).filter(|bound| bound.is_finite()), ..end })
+        let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
+        Ok(End { nodes, first_order, ..end })
     }
 
     /// The bound of a pair; z is `lifted` times its sign, zero where there is none.
@@ -480,8 +527,9 @@ impl Search<'_> {
             // Of the coefficients of a pair the largest excess counts; their sum is more.
             rounding += excess.iter().map(|(k, o, force)| (k - asked * o).max(0.0) * force).sum::<f64>();
         }
-        let bound = sign * sum.value() - width(distance, *square, asked) - rounding;
-        End { bound, first_order: None, distance, ratio: asked, pass, nodes: NodalValues::none() }
+        let centre = sign * sum.value();
+        let bound = centre - width(distance, *square, asked) - rounding;
+        End { bound, centre, first_order: None, distance, ratio: asked, pass, nodes: NodalValues::none() }
     }
 }
 
@@ -506,6 +554,11 @@ fn less(sigma: StressField, factor: f64, middle: &StressField) -> StressField {
 fn negated(mut moments: crate::element::SideValues<[f64; 2]>) -> crate::element::SideValues<[f64; 2]> {
     moments.values_mut().as_flattened_mut().iter_mut().for_each(|m| *m = -*m);
     moments
+}
+
+/// The one with the larger bound.
+fn better_of(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    if b.0 > a.0 { b } else { a }
 }
 
 fn unbounded() -> String {

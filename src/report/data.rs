@@ -136,7 +136,8 @@ impl QuantitySummary {
 
     /// The interval: `-0.57 … -0.56`, with a sign of infinity for an end that is missing.
     pub fn interval(&self) -> String {
-        let end = |x: f64, missing: &str| if x.is_finite() { significant(x, self.digits()) } else { missing.to_string() };
+        let end =
+            |x: f64, missing: &str| if x.is_finite() { significant(x, self.digits()) } else { missing.to_string() };
         format!("{} … {}", end(self.lower, "−∞"), end(self.upper, "∞"))
     }
 

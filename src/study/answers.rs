@@ -1,7 +1,7 @@
 //! The quantities of a scene: their intervals, the values of displacement models in them, and the checks that follow.
 
-use super::adaptive::Wanted;
 use super::Certified;
+use super::adaptive::Wanted;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
 use crate::problem::Problem;
@@ -203,10 +203,7 @@ fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) ->
     let [lower, upper] = answer.interval.ends;
     let outside = (lower - value).max(value - upper).max(0.0);
     let nearest = value.max(lower).min(upper);
-    let why = format!(
-        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
-        answer.kind, answer.name
-    );
+    let why = format!("The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.", answer.kind, answer.name);
     Check::with_difference(name, value, nearest, outside, allowed, Basis::Guaranteed, why)
 }
 

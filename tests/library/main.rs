@@ -22,6 +22,7 @@ mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
 mod inner_segments;
+mod intervals;
 mod invariance;
 mod known_solutions;
 #[path = "../support/lame.rs"]

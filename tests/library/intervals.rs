@@ -1,0 +1,251 @@
+//! Intervals of quantities hold the exact values: of known solutions, of far finer meshes, of each other.
+//!
+//! Random scenes by seed; set `HYPERCIRCLE_SCENES` for another number than a dozen.
+
+use crate::support::Blocks;
+use crate::support::random::Random;
+use crate::support::scenes::sample;
+use hypercircle::dual::{Condensed, Options};
+use hypercircle::element::{Elements, block};
+use hypercircle::problem::Problem;
+use hypercircle::scene::{Component, Extent, Holder, Quantity, Region, Scene, Target};
+use hypercircle::study::{Answer, Certified, Goal, StudyError, Wanted, adapt, answers, certify_divided};
+
+fn quantity(name: &str, target: Target) -> Quantity {
+    Quantity { name: name.to_string(), target }
+}
+
+fn of_degree(degree: usize) -> Options {
+    Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() }
+}
+
+fn solved(problem: Problem, options: &Options) -> (Certified, Vec<Answer>) {
+    let certified = certify_divided(problem, &Condensed::default(), options).expect("an answer");
+    let found = answers(&certified, options, |_| true);
+    (certified, found)
+}
+
+fn square(low: f64, high: f64) -> Region {
+    Region::Polygon(vec![[low, low], [high, low], [high, high], [low, high]])
+}
+
+/// What the first example of the paper is asked, with the values that are known to about 1e-6.
+fn asked(problem: &mut Problem) -> [f64; 3] {
+    let displacement = Target::Displacement { of: Extent::Boundary("left_west".into()), direction: [1.0, 0.0] };
+    let window = Some([0.125, 0.25, 0.375, 0.5]);
+    let stress = Target::Stress { body: 0, region: square(0.25, 0.75), component: Component([1.0, 0.0, 0.0]) };
+    problem.scene.quantities = vec![
+        quantity("tip", displacement),
+        quantity("seat", Target::ContactForce { contact: 0, window }),
+        quantity("core", stress),
+        quantity("whole", Target::ContactForce { contact: 0, window: None }),
+        quantity("wall", Target::SupportForce { support: 0, direction: [1.0, 0.0] }),
+        quantity("turn", Target::Moment { of: Holder::Support(0), about: [2.0, 0.5] }),
+    ];
+    [0.801499, 0.233537, -0.566502]
+}
+
+#[test]
+fn the_two_blocks_mesh_by_mesh() {
+    let mut widths = Vec::new();
+    for n in [4, 8, 16, 32] {
+        let mut problem = Blocks { n, ..Blocks::default() }.problem();
+        let exact = asked(&mut problem);
+        let (_, found) = solved(problem, &of_degree(1));
+        for (answer, exact) in found.iter().zip(exact) {
+            // A window that bends inside an edge is one that is linear on it.
+            if n == 4 && answer.name == "seat" {
+                continue;
+            }
+            let [low, high] = answer.interval.ends;
+            assert!(low - 2e-6 <= exact && exact <= high + 2e-6, "n = {n}: {} in [{low}, {high}]", answer.name);
+            assert!((low..=high).contains(&answer.interval.value));
+            let [first, last] = answer.interval.first_order;
+            assert!(first - 2e-6 <= exact && exact <= last + 2e-6 && last - first > high - low);
+        }
+        // Statics of the left block: ∫ (4 − 7y) dy = ½ presses on the contact, whatever the blocks are made of.
+        for (answer, exact) in found[3..].iter().zip([0.5, -0.5]) {
+            let [low, high] = answer.interval.ends;
+            assert!(low <= exact && exact <= high && high - low < 1e-9, "n = {n}: {} {:?}", answer.name, [low, high]);
+            assert!(answer.interval.exact_by_statics, "{}", answer.name);
+        }
+        widths.push([0, 1, 2].map(|i| found[i].interval.half_width()));
+    }
+    let asked = [1.6e-3, 5.3e-4, 3.7e-4];
+    assert!((0..3).all(|i| widths[3][i] <= asked[i]), "{widths:?}");
+}
+
+#[test]
+fn higher_degrees_and_refinement_towards_a_quantity_narrow_the_same_intervals() {
+    for (degree, most) in [(2, 2e-3), (3, 1e-3)] {
+        let mut problem = Blocks { n: 8, ..Blocks::default() }.problem();
+        let exact = asked(&mut problem);
+        let (_, found) = solved(problem, &of_degree(degree));
+        for (answer, exact) in found.iter().zip(exact) {
+            let [low, high] = answer.interval.ends;
+            assert!(low - 2e-6 <= exact && exact <= high + 2e-6, "degree {degree}: {} in [{low}, {high}]", answer.name);
+            assert!(high - low < 2.0 * most * 4.0, "degree {degree}: {} in [{low}, {high}]", answer.name);
+        }
+    }
+    let mut problem = Blocks { n: 2, ..Blocks::default() }.problem();
+    let [exact, ..] = asked(&mut problem);
+    let wanted = vec![Wanted { name: "tip".to_string(), tolerance: 1e-3 }];
+    let goal = Goal { wanted, max_triangles: Some(2000), ..Goal::new(f64::INFINITY) };
+    let options = of_degree(1);
+    let adapted = adapt(problem, &Condensed::default(), &options, &goal, |_| ()).expect("an answer");
+    assert_eq!(adapted.stopped, None);
+    let found = answers(&adapted.certified, &options, |name| name == "tip");
+    let [low, high] = found[0].interval.ends;
+    assert!(low - 2e-6 <= exact && exact <= high + 2e-6 && 0.5 * (high - low) <= 1e-3 * exact, "[{low}, {high}]");
+}
+
+/// A pressed bar between rollers has constant stress, which both models represent.
+#[test]
+fn exact_fields_give_intervals_of_rounding() {
+    let text = r#"
+        [model]
+        kinematics = "plane-stress"
+        thickness = 0.5
+        [geometry]
+        size = 0.3
+        [[geometry.polygons]]
+        body = "upper"
+        points = [[0, 1], [2, 1], [2, 2], [0, 2]]
+        edges = ["upper_foot", "", "top", "upper_axis"]
+        [[geometry.polygons]]
+        body = "lower"
+        points = [[0, 0], [2, 0], [2, 1], [0, 1]]
+        edges = ["base", "", "seat", "lower_axis"]
+        [bodies.upper]
+        young = 4.0
+        poisson = 0.25
+        [bodies.lower]
+        young = 4.0
+        poisson = 0.25
+        [[supports]]
+        on = "base"
+        type = "roller"
+        [[supports]]
+        on = "upper_axis"
+        type = "roller"
+        [[supports]]
+        on = "lower_axis"
+        type = "roller"
+        [[tractions]]
+        on = "top"
+        pressure = 2.0
+        [[contacts]]
+        between = ["upper_foot", "seat"]
+        [[quantities]]
+        name = "sinks"
+        displacement = "top"
+        direction = [0, -1]
+        [[quantities]]
+        name = "spreads"
+        displacement = "upper"
+        direction = [1, 0]
+        [[quantities]]
+        name = "middle"
+        force = "upper_foot|seat"
+        window = [0.5, 0.75, 1.25, 1.5]
+        [[quantities]]
+        name = "bears"
+        force = "base"
+        direction = [0, 1]
+        [[quantities]]
+        name = "slanted"
+        stress = "lower"
+        polygon = [[0.3, 0.2], [1.7, 0.3], [1.1, 0.9], [1.0, 0.4]]
+        direction = [1, 1]
+    "#;
+    let problem = Problem::load(Scene::parse(text, "bar.toml".as_ref()).expect("a scene")).expect("a problem");
+    let (_, found) = solved(problem, &of_degree(1));
+    // σ_yy = −2: ε_yy = −1/2, ε_xx = ν/2; forces are times the thickness.
+    let exact = [1.0, 0.125, 2.0 * 0.75 * 0.5, 4.0 * 0.5, -1.0];
+    for (answer, exact) in found.iter().zip(exact) {
+        let [low, high] = answer.interval.ends;
+        let size = 1e-9;
+        assert!(low <= exact + 1e-12 && exact <= high + 1e-12, "{}: {exact} in [{low}, {high}]", answer.name);
+        assert!(high - low < size, "{}: [{low}, {high}]", answer.name);
+    }
+}
+
+/// Everything that can be asked of a scene without knowing it.
+fn everything(problem: &Problem, random: &mut Random) -> Vec<Quantity> {
+    let scene = &problem.scene;
+    let angle = random.between(0.0, 6.3);
+    let direction = [angle.cos(), angle.sin()];
+    let mut all = vec![quantity("body", Target::Displacement { of: Extent::Body(0), direction })];
+    for traction in scene.tractions.iter().take(1) {
+        let of = Extent::Boundary(traction.on.clone());
+        all.push(quantity("loaded", Target::Displacement { of, direction }));
+    }
+    for (contact, interface) in problem.interfaces.iter().enumerate().take(2) {
+        all.push(quantity(&format!("contact {contact}"), Target::ContactForce { contact, window: None }));
+        // Where a window bends there is a vertex, on this mesh and on finer ones.
+        let count = interface.pairs.len();
+        if count >= 4 {
+            let window = Some([0, 1, 2, 3].map(|i| interface.pairs[i * count / 4].arc[0]));
+            all.push(quantity(&format!("window {contact}"), Target::ContactForce { contact, window }));
+        }
+    }
+    for support in 0..scene.supports.len().min(2) {
+        all.push(quantity(&format!("support {support}"), Target::SupportForce { support, direction }));
+    }
+    let component = Component::along(direction);
+    all.push(quantity("stress", Target::Stress { body: 0, region: Region::Whole, component }));
+    let t = (0..problem.mesh.triangles.len()).find(|&t| problem.mesh.body[t] == 0).expect("a triangle");
+    let region = Region::Polygon(problem.mesh.corners(t).to_vec());
+    all.push(quantity("corner", Target::Stress { body: 0, region, component }));
+    all
+}
+
+#[test]
+fn intervals_of_coarse_and_fine_meshes_never_contradict_each_other() {
+    let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(12, |n| n.parse().expect("a number of scenes"));
+    let (mut met, mut infinite, mut seed) = (0, 0, 7000);
+    let mut narrowed = Vec::new();
+    while met < wanted {
+        seed += 1;
+        let made = sample(seed);
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = made.write(folder.path());
+        let Ok(scene) = Scene::read(&file) else { continue };
+        let Ok(mut problem) = Problem::load(scene) else { continue };
+        if problem.contact_turns() || problem.mesh.triangles.len() > 1500 {
+            continue;
+        }
+        let mut random = Random::new(seed);
+        problem.scene.quantities = everything(&problem, &mut random);
+        let options = of_degree(1 + (seed % 3) as usize);
+        let coarse = match certify_divided(problem.clone(), &Condensed::default(), &options) {
+            Ok(coarse) => coarse,
+            Err(StudyError::NoEquilibrium { .. } | StudyError::Contradiction(_)) => continue,
+            Err(error) => panic!("seed {seed}: {error}"),
+        };
+        let finer = coarse.problem.refine_uniform(1).expect("a finer mesh");
+        let Ok(finer) = certify_divided(finer, &Condensed::default(), &options) else { continue };
+        met += 1;
+        let [coarse, fine] = [&coarse, &finer].map(|certified| answers(certified, &options, |_| true));
+        for (coarse, fine) in coarse.iter().zip(&fine) {
+            let ([a, b], [c, d]) = (coarse.interval.ends, fine.interval.ends);
+            assert!(a <= b && c <= d, "seed {seed}: {} [{a}, {b}] [{c}, {d}]", coarse.name);
+            assert!(a <= d && c <= b, "seed {seed}: {} is in [{a}, {b}] and in [{c}, {d}]", coarse.name);
+            let [reason, _] = &coarse.interval.reasons;
+            assert_eq!(a.is_infinite(), reason.is_some(), "seed {seed}: {}", coarse.name);
+            if a.is_infinite() || b.is_infinite() {
+                println!("seed {seed}: {} {:?}", coarse.name, coarse.interval.reasons);
+                infinite += 1;
+            } else if b - a > 1e-9 * a.abs().max(b.abs()) && (d - c).is_finite() {
+                narrowed.push((d - c) / (b - a));
+            }
+        }
+    }
+    narrowed.sort_by(f64::total_cmp);
+    let median = narrowed[narrowed.len() / 2];
+    println!(
+        "{met} scenes, {} intervals and {infinite} without an end; halving edges leaves {median:.2} of the width",
+        narrowed.len()
+    );
+    assert!(median < 0.75);
+}
