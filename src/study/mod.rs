@@ -16,6 +16,8 @@ mod rounds;
 mod sharpen;
 mod stage;
 mod trend;
+#[cfg(test)]
+mod trend_tests;
 mod warm_start;
 
 pub use adaptive::{Adapt, Adapted, Goal, adapt, tolerance_check};

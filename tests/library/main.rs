@@ -36,6 +36,7 @@ mod paper_objects;
 mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
+mod pressure_at_ends;
 mod rings;
 mod rounding;
 mod setup;
