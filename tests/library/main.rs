@@ -31,6 +31,7 @@ mod malformed;
 mod malformed_scenes;
 mod mesh_files;
 mod methods_on_cases;
+mod own_element;
 mod paper_block;
 mod paper_objects;
 mod paper_rates;
