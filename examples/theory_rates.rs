@@ -14,6 +14,9 @@ use support::theory::{constant, rates, tables};
 const COMMAND: &str = "cargo run --release --example theory_rates";
 const FINER: [usize; 5] = [8, 16, 32, 64, 128];
 const SIZES: [usize; 5] = [4, 8, 16, 32, 64];
+const OF_DEGREES: [usize; 4] = [4, 8, 16, 32];
+/// The end of contact lies in the same place of its edge on all of them.
+const CONTACT_ENDS: [usize; 4] = [4, 9, 19, 39];
 const ANGLES: [f64; 10] = [60.0, 50.0, 40.0, 30.0, 20.0, 15.0, 10.0, 5.0, 2.0, 1.0];
 
 fn main() -> std::io::Result<()> {
@@ -30,10 +33,16 @@ fn main() -> std::io::Result<()> {
     let studies: Vec<_> = rates::interpolation(&FINER).into_iter().chain(rates::contact(&SIZES)).collect();
     write("rates.json", json!({ "command": COMMAND, "studies": studies }))?;
 
+    let of_degrees: Vec<_> = (rates::interpolation_of_degrees(&OF_DEGREES).into_iter())
+        .chain(rates::contact_end_of_degrees(&CONTACT_ENDS))
+        .collect();
+    write("rates_of_degrees.json", json!({ "command": COMMAND, "studies": of_degrees }))?;
+
     let tables = [
         tables::constants(&rows),
         tables::rates(&studies, &tables::INTERPOLATION),
         tables::rates(&studies, &tables::CONTACT),
+        tables::rates_of_degrees(&of_degrees),
     ];
     for line in tables.concat() {
         println!("{line}");

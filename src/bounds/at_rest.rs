@@ -2,7 +2,7 @@
 
 use super::energy::complementary;
 use crate::dual::{DualSolution, Equilibrium};
-use crate::problem::{Problem, Scales};
+use crate::problem::{Problem, Scales, amplified};
 
 /// `dual` with λ_h = 0 in place of its stress, where that is the better field.
 ///
@@ -17,7 +17,8 @@ pub fn without_stress(problem: &Problem, mut dual: DualSolution) -> DualSolution
     let missed = problem.scene.thickness * dual.equilibrium.work;
     let lower = complementary(problem, &dual.stress).lower() - missed;
     let largest = dual.stress.values_mut().as_flattened().iter().fold(0.0_f64, |m, s| m.max(s.abs()));
-    let round_off = largest <= scales.round_off.stress && lower <= scales.round_off.energy;
+    let rounding = amplified(dual.stress.largest_degree()) * scales.round_off.stress;
+    let round_off = largest <= rounding && lower <= scales.round_off.energy;
     if lower > missed && !round_off {
         return dual;
     }

@@ -32,7 +32,8 @@ impl<'a> Ends<'a> {
             .zip(jumps)
             .flat_map(|(pair, block)| {
                 let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
-                let rounding = triangles.map(|t| scales.stress_round_off(problem, t)).fold(0.0, f64::max);
+                let rounding = |t: usize| scales.stress_round_off(problem, t, system.modes.degree(t));
+                let rounding = triangles.map(rounding).fold(0.0, f64::max);
                 std::iter::repeat_n(rounding, block.len)
             })
             .collect();

@@ -44,7 +44,7 @@ impl Equilibrium {
         let relative = |left: f64, e: usize| {
             let at = mesh.edges[e].triangles.iter().flatten();
             let near = at.clone().fold(scale, |m, &t| m.max(stressed[t]));
-            let rounding = at.fold(0.0_f64, |m, &t| m.max(scales.stress_round_off(problem, t)));
+            let rounding = at.fold(0.0_f64, |m, &t| m.max(scales.stress_round_off(problem, t, stress.degree(t))));
             let left = left - rounding;
             if left <= 0.0 {
                 0.0
@@ -103,7 +103,7 @@ impl Equilibrium {
                         }
                         gross[body] += share * norm(t);
                     }
-                    rounding[body] += length * scales.stress_round_off(problem, at);
+                    rounding[body] += length * scales.stress_round_off(problem, at, stress.degree(at));
                 }
             }
         }

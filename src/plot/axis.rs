@@ -11,6 +11,8 @@ use crate::report::number::{significant, superscript};
 pub enum Scale {
     /// By their logarithm.
     Logarithmic,
+    /// By their cube root, on which an error of hp methods falls on a straight line.
+    CubeRoot,
     /// Side by side in their order: values are indices into the labels.
     Ordinal(Vec<String>),
 }
@@ -29,6 +31,7 @@ impl Scale {
     pub(super) fn position(&self, value: f64) -> Option<f64> {
         match self {
             Scale::Logarithmic => (value.is_finite() && value > 0.0).then(|| value.log10()),
+            Scale::CubeRoot => (value.is_finite() && value >= 0.0).then(|| value.cbrt()),
             Scale::Ordinal(_) => value.is_finite().then_some(value),
         }
     }
@@ -42,6 +45,9 @@ impl Scale {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in positions {
             (low, high) = (low.min(p), high.max(p));
+        }
+        if *self == Scale::CubeRoot {
+            return cube_roots(if high > 0.0 { high } else { 1.0 });
         }
         if low > high {
             (low, high) = (-1.0, 0.0);
@@ -66,6 +72,20 @@ impl Scale {
         }
         Axis { range, ticks }
     }
+}
+
+/// From zero to `high`, with ticks of one digit that stand apart.
+fn cube_roots(high: f64) -> Axis {
+    let range = [0.0, 1.04 * high];
+    let mut ticks = vec![(0.0, "0".to_string())];
+    let decades = -6..=(3.0 * high.log10()).ceil() as i32;
+    for value in decades.flat_map(|k| [1.0, 2.0, 5.0].map(|digit| digit * 10.0_f64.powi(k))) {
+        let (at, apart) = (value.cbrt(), 0.09 * range[1]);
+        if at <= range[1] && ticks.last().is_some_and(|(last, _)| at - last >= apart) {
+            ticks.push((at, significant(value, 1)));
+        }
+    }
+    Axis { range, ticks }
 }
 
 fn power_of_ten(k: i32) -> String {
@@ -111,6 +131,16 @@ mod tests {
         assert!(axis.range[0] < -9.0 && axis.range[1] > 3.0);
         assert!(axis.ticks.len() >= 4 && axis.ticks.len() <= 13);
         assert!(axis.ticks.iter().all(|(p, label)| p.fract() == 0.0 && !label.is_empty()));
+    }
+
+    #[test]
+    fn cube_roots_begin_at_zero_and_have_ticks_at_round_values() {
+        for most in [3.0_f64, 900.0, 60_000.0, 2e7] {
+            let axis = Scale::CubeRoot.axis([0.1 * most, most].iter().map(|v| v.cbrt()));
+            assert!(axis.range[0] == 0.0 && axis.range[1] > most.cbrt() && (4..=12).contains(&axis.ticks.len()));
+            assert!(axis.ticks.windows(2).all(|w| w[1].0 > w[0].0 && w[1].1 != w[0].1), "{:?}", axis.ticks);
+        }
+        assert_eq!(Scale::CubeRoot.position(27.0), Some(27.0_f64.cbrt()));
     }
 
     #[test]

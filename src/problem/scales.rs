@@ -95,9 +95,12 @@ impl Scales {
         self
     }
 
-    /// What rounding of imposed displacements leaves as stress in triangle `t`, where there is none.
-    pub fn stress_round_off(&self, problem: &Problem, t: usize) -> f64 {
-        if self.imposed > 0.0 { ROUND_OFF * self.imposed * per_length(problem, &self.modulus, t) } else { 0.0 }
+    /// What rounding of imposed displacements leaves as stress of degree `degree` in triangle `t`, where there is none.
+    pub fn stress_round_off(&self, problem: &Problem, t: usize, degree: usize) -> f64 {
+        if self.imposed == 0.0 {
+            return 0.0;
+        }
+        ROUND_OFF * amplified(degree) * self.imposed * per_length(problem, &self.modulus, t)
     }
 }
 
@@ -111,6 +114,13 @@ fn modulus(kinematics: Kinematics, body: &Body) -> f64 {
         Kinematics::PlaneStrain => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         Kinematics::PlaneStress => young / (1.0 - nu * nu),
     }
+}
+
+/// By how much more of rounding is left in coefficients of degree `degree` than in linear ones. The largest Bernstein
+/// coefficients of polynomials of unit size grow like 2^p, and stresses meet them twice: once where the moments of the
+/// displacement are weighed, once in their own coefficients.
+pub fn amplified(degree: usize) -> f64 {
+    4.0_f64.powi(degree as i32 - 1)
 }
 
 /// The stress of a unit displacement across the smallest height of a triangle.

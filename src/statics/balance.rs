@@ -78,13 +78,13 @@ impl Verdict {
             return Ok(Verdict { held: allowed.held(), driven, one_way: None, beyond_mesh: None });
         }
 
-        let thirds = cone(&rollers, Points::Thirds);
-        let [_, beyond] = thirds.unbalanced(&load).map_err(undecided)?;
+        let carried = cone(&rollers, Points::Reach);
+        let [_, beyond] = carried.unbalanced(&load).map_err(undecided)?;
         let one_way = borderline(&*allowed, &load, total).map_err(undecided)?;
         Ok(Verdict {
             driven: None,
             one_way: one_way.map(|motion| allowed.without_sliding(motion)),
-            beyond_mesh: (beyond.norm() > tolerance).then(|| thirds.without_sliding(beyond)),
+            beyond_mesh: (beyond.norm() > tolerance).then(|| carried.without_sliding(beyond)),
             held: allowed.held(),
         })
     }

@@ -63,8 +63,8 @@ pub enum Equilibrium {
     Possible {
         /// A motion allowed one way only on which the loads do no work (to within 1e-7 of the loads): the borderline.
         one_way: Option<RigidMotion>,
-        /// A motion that shows that no pressure linear and compressive on each edge of this mesh balances the loads,
-        /// though an equilibrium exists: the discrete dual set is empty until the ends of the contact are refined.
+        /// A motion that shows that no pressure of the degrees in use whose coefficients all press balances the loads on
+        /// this mesh, though an equilibrium exists: the discrete dual set is empty until the ends of the contact are refined.
         beyond_mesh: Option<RigidMotion>,
     },
     /// Some allowed motion has L(y) > 0.
@@ -102,14 +102,23 @@ pub enum StaticsError {
     },
 }
 
-/// Rigid statics of `problem`.
+/// Rigid statics of `problem`, for stresses that are linear on every triangle.
+///
+/// # Errors
+/// As [`check_with_degrees`].
+pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
+    check_with_degrees(problem, &|_| 1)
+}
+
+/// Rigid statics of `problem`, for stresses that are of degree `degree(t)` on triangle t: the higher it is, the closer to an
+/// end of contact its pressure can act.
 ///
 /// # Errors
 /// [`StaticsError`] where round-off or the mesh leaves the question open; no scene is known to lead there.
-pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
+pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) -> Result<Statics, StaticsError> {
     let components = Components::new(problem);
     let loads = LoadResultants::new(problem, &components);
-    let runs = restraint::runs(problem, &components);
+    let runs = restraint::runs(problem, &components, degree);
     let clamped = restraint::clamped(problem, &components);
 
     let (mut held, mut vertex_pins, mut edge_pins) = (Vec::new(), Vec::new(), Vec::new());
@@ -142,7 +151,8 @@ pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
         }
         if let Some(direction) = &found.beyond_mesh {
             let motion = motion(&group, direction).0;
-            let note = words::beyond_mesh(&components, &words(&motion), found.one_way.is_some());
+            let degree = group.runs.iter().flat_map(|run| run.degree).max().unwrap_or(1);
+            let note = words::beyond_mesh(&components, &words(&motion), found.one_way.is_some(), degree);
             beyond_mesh.push((note, motion));
         }
     }

@@ -27,9 +27,11 @@ pub(super) struct Run {
     pub turning: Option<[[f64; 2]; 2]>,
     /// The two ends.
     pub ends: [[f64; 2]; 2],
-    /// Points a third of the last edge inside each end. A linear pressure that is nowhere negative on an edge has its
-    /// resultant between these two points; they stand for the ends where pressure is linear per edge.
-    pub thirds: [[f64; 2]; 2],
+    /// How far towards each end the resultant of a pressure on the last edge can move: see [`reach`]. The points stand for the
+    /// ends where pressure is of a degree.
+    pub reach: [[f64; 2]; 2],
+    /// The degree of the pressure on the edges at the two ends.
+    pub degree: [usize; 2],
 }
 
 impl Run {
@@ -51,8 +53,8 @@ pub(super) type Part = (usize, Vector3<f64>);
 pub(super) enum Points {
     /// Its ends.
     Ends,
-    /// [`Run::thirds`].
-    Thirds,
+    /// [`Run::reach`].
+    Reach,
 }
 
 impl Points {
@@ -60,13 +62,17 @@ impl Points {
     pub fn of(self, run: &Run) -> [[f64; 2]; 2] {
         match self {
             Points::Ends => run.ends,
-            Points::Thirds => run.thirds,
+            Points::Reach => run.reach,
         }
     }
 }
 
-/// The straight runs of all contacts. Contacts of a piece with itself ask nothing of a rigid motion and are left out.
-pub(super) fn runs(problem: &Problem, components: &Components) -> Vec<Run> {
+/// The degree of the stresses on each triangle.
+pub(super) type Degree<'a> = &'a dyn Fn(usize) -> usize;
+
+/// The straight runs of all contacts, with stresses of these degrees. Contacts of a piece with itself ask nothing of a rigid
+/// motion and are left out.
+pub(super) fn runs(problem: &Problem, components: &Components, degree: Degree<'_>) -> Vec<Run> {
     let mut all = Vec::new();
     for (index, interface) in problem.interfaces.iter().enumerate() {
         let sides = |pair: &ContactPair| {
@@ -83,7 +89,7 @@ pub(super) fn runs(problem: &Problem, components: &Components) -> Vec<Run> {
                 end += 1;
             }
             if here[0] != here[1] {
-                all.push(run(problem, index, here, &interface.pairs[start..end]));
+                all.push(run(problem, index, here, &interface.pairs[start..end], degree));
             }
             start = end;
         }
@@ -119,26 +125,47 @@ fn along_line(pair: &ContactPair) -> bool {
     pair.direction.is_constant() && pair.direction.ends[0] != pair.normal
 }
 
-fn run(problem: &Problem, interface: usize, sides: [Option<usize>; 2], pairs: &[ContactPair]) -> Run {
+/// The degree of t on a pair: what the stresses on both sides can carry, one less where the direction turns.
+fn pressure_degree(problem: &Problem, pair: &ContactPair, degree: Degree<'_>) -> usize {
+    let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
+    let carried = triangles.map(degree).min().unwrap_or(1);
+    pair.direction.columns(carried) - 1
+}
+
+/// The point nearest to `end` of an edge from there to `other` through which a pressure of degree k can act when none of its
+/// Bernstein coefficients pulls. That of coefficient j alone has its centroid at (j + 1)/(k + 2), so it is 1/(k + 2) of the
+/// edge from the end: a third for a linear pressure, the middle for a constant one.
+fn reach(end: [f64; 2], other: [f64; 2], k: usize) -> [f64; 2] {
+    [0, 1].map(|c| end[c] + (other[c] - end[c]) / (k + 2) as f64)
+}
+
+fn run(
+    problem: &Problem,
+    interface: usize,
+    sides: [Option<usize>; 2],
+    pairs: &[ContactPair],
+    degree: Degree<'_>,
+) -> Run {
     let point = |v: usize| problem.mesh.points[v];
     let (head, tail) = (&pairs[0], &pairs[pairs.len() - 1]);
     let ends = [point(head.first[0]), point(tail.first[1])];
-    let third =
-        |end: [f64; 2], other: [f64; 2]| [end[0] + (other[0] - end[0]) / 3.0, end[1] + (other[1] - end[1]) / 3.0];
     let chord = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
     let length = chord[0].hypot(chord[1]);
     let across = [chord[1] / length, -chord[0] / length];
     let sign = (across[0] * head.normal[0] + across[1] * head.normal[1]).signum();
     let normal = if along_line(head) { head.direction.ends[0] } else { across.map(|x| sign * x) };
-    let thirds = [third(ends[0], point(head.first[1])), third(ends[1], point(tail.first[0]))];
+    let degree = [head, tail].map(|pair| pressure_degree(problem, pair, degree));
+    let reach = [reach(ends[0], point(head.first[1]), degree[0]), reach(ends[1], point(tail.first[0]), degree[1])];
     if head.direction.is_constant() {
-        return Run { interface, sides, normal, turning: None, ends, thirds };
+        return Run { interface, sides, normal, turning: None, ends, reach, degree };
     }
-    // The resultant of t n̂ with constant t passes through the middle.
+    // Force and line of action of B_j n̂, n̂ linear, are those of n̂ at the centroid of B_j. Where t is constant both ends have
+    // the same, the middle.
     let middle = [0, 1].map(|c| 0.5 * (ends[0][c] + ends[1][c]));
+    let reach = if degree[0] == 0 { [middle; 2] } else { reach };
     let [x, y] = head.direction.at(0.5);
     let normal = [x / x.hypot(y), y / x.hypot(y)];
-    Run { interface, sides, normal, turning: Some(head.direction.ends), ends, thirds: [middle; 2] }
+    Run { interface, sides, normal, turning: Some(head.direction.ends), ends, reach, degree }
 }
 
 /// Pieces that can only move together or against each other: linked by contacts, clamped ones taken away. Unknowns are

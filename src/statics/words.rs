@@ -175,8 +175,8 @@ pub(super) fn free_one_way(components: &Components, moving: &[Moving], loaded: b
     )
 }
 
-/// The loads have an equilibrium, but no pressure that is linear on the edges of this mesh carries it.
-pub(super) fn beyond_mesh(components: &Components, moving: &[Moving], borderline: bool) -> String {
+/// The loads have an equilibrium, but no pressure of degree `degree` on the edges of this mesh carries it.
+pub(super) fn beyond_mesh(components: &Components, moving: &[Moving], borderline: bool, degree: usize) -> String {
     let lead = moving.first();
     let place = lead
         .map_or(String::new(), |lead| format!(" ({} {})", name(components, lead.component), clause(components, lead)));
@@ -185,9 +185,14 @@ pub(super) fn beyond_mesh(components: &Components, moving: &[Moving], borderline
     } else {
         "refine the ends of the contact"
     };
+    let pressure = match degree {
+        0 => "constant".to_string(),
+        1 => "linear".to_string(),
+        degree => format!("of degree {degree}"),
+    };
     format!(
         "The contact pressure that balances the loads is so close to an end of the contact that the edges there cannot \
-         carry it with pressure linear along each edge{place}: {remedy}."
+         carry it with pressure {pressure} along each edge{place}: {remedy}."
     )
 }
 

@@ -151,7 +151,8 @@ pub fn adapt(
             return Ok(Adapted { certified: solved.solved.certified, history, stopped: None });
         }
         let spent = start.elapsed().as_secs_f64();
-        let rounds = Rounds::new(goal, &admission, &forecast, &certified.problem, shortest);
+        let mesh = (&certified.problem, &solved.solved.elements);
+        let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest);
         let finer = match (goal.max_seconds, fault, terms) {
             (_, Some(fault), _) if shortest > LONGEST => Err(fault),
             (Some(most), ..) if spent >= most => Err(format!("{most} seconds have passed")),
@@ -162,7 +163,7 @@ pub fn adapt(
         stage = match finer {
             Ok(finer) => finer,
             Err(reason) => {
-                let pace = outlook(&history, goal, &admission, Size::of(&certified.problem));
+                let pace = outlook(&history, goal, &admission, Size::of_degrees(mesh.0, mesh.1));
                 let stopped = Some(stopped(&reason, row, goal, pace));
                 return Ok(Adapted { certified: solved.solved.certified, history, stopped });
             }

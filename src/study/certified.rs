@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::admission::Admission;
 use crate::bounds::{Bracket, NoUpperBound, NodalValues, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
+use crate::element::Elements;
 use crate::problem::{Problem, ProblemError};
 use crate::statics::{self, Equilibrium, Statics, StaticsError};
 
@@ -41,12 +42,14 @@ pub enum StudyError {
     },
     /// There is one, but no stress field of this mesh can express it.
     #[error(
-        "no equilibrated stress exists on this mesh: {sentence} The loads press on less than the last third of an edge; \
+        "no equilibrated stress exists on this mesh: {sentence} The loads press on less than the last {part} of an edge; \
          refine the mesh at the end of the contact"
     )]
     BeyondMesh {
         /// What would have to be expressed.
         sentence: String,
+        /// The part of an edge that pressure of the degrees in use can be confined to.
+        part: String,
     },
     /// Supports and contacts contradict each other.
     #[error("{0}; prescribe displacements that fit together there, or leave out one of the conditions")]
@@ -69,17 +72,17 @@ pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> 
         let reason = format!("a solve on {} triangles does not fit: about {excess}", problem.mesh.triangles.len());
         return Err(DualError::TooLarge { reason }.into());
     }
-    let statics = balance(&problem)?;
+    let statics = balance(&problem, &options.elements)?;
     solve_balanced(problem, statics, method, options, None)
 }
 
-/// The statics of a problem that has an equilibrium, on this mesh or a finer one.
+/// The statics of a problem that has an equilibrium, on this mesh with these elements or on a finer one.
 ///
 /// # Errors
 /// [`StudyError::Contradiction`], [`StudyError::NoEquilibrium`], or the question could not be decided.
-pub(super) fn balance(problem: &Problem) -> Result<Statics, StudyError> {
+pub(super) fn balance(problem: &Problem, elements: &Elements) -> Result<Statics, StudyError> {
     supports_agree(problem)?;
-    let statics = statics::check(problem)?;
+    let statics = statics::check_with_degrees(problem, &|t| elements.degree(t))?;
     match &statics.equilibrium {
         Equilibrium::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
             sentence: sentence.clone(),
@@ -104,7 +107,12 @@ pub(super) fn solve_balanced(
 ) -> Result<Certified, StudyError> {
     let began = Instant::now();
     if let Equilibrium::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
-        return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" ") });
+        let part = match options.elements.largest_degree() {
+            1 => "third".to_string(),
+            2 => "quarter".to_string(),
+            p => format!("1/{}", p + 2),
+        };
+        return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part });
     }
     let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
     let mut dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);

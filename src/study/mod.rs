@@ -17,6 +17,8 @@ mod rounds;
 mod sharpen;
 mod stage;
 mod trend;
+#[cfg(test)]
+mod trend_tests;
 mod warm_start;
 
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};

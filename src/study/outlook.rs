@@ -17,7 +17,7 @@ const EARLY: usize = 500;
 const STALLED: f64 = 0.2;
 
 /// A sentence where the error has stalled, or where the tolerance asks at the present pace for a mesh beyond the limits
-/// of triangles and memory; `size` is that of the last mesh.
+/// of triangles and memory; `size` is that of the last mesh, and goes on growing as its triangles do.
 pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, size: Size) -> Option<String> {
     let now = history.last()?;
     let before = history.get(history.len().checked_sub(BACK + 1)?)?;
@@ -36,8 +36,9 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
             now.triangles
         ));
     }
-    let wanted = now.triangles as f64 * (now.relative_error_bound / goal.tolerance).powf(1.0 / pace);
-    let why = match (goal.max_triangles, admission.admit(size.grown(wanted), Some(size))) {
+    let growth = (now.relative_error_bound / goal.tolerance).powf(1.0 / pace);
+    let wanted = now.triangles as f64 * growth;
+    let why = match (goal.max_triangles, admission.admit(size.grown(size.triangles * growth), Some(size))) {
         (Some(most), _) if wanted > most as f64 => format!("{most} are allowed"),
         (_, Err(excess)) => format!("{}, where {} may be used", words(excess.needed), words(excess.allowed)),
         _ => return None,

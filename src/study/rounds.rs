@@ -9,6 +9,7 @@ use super::indicators::Indicators;
 use super::stage::{Solved, Stage};
 use super::trend::{EXPECTED, inherited, raised};
 use crate::dual::Size;
+use crate::element::Elements;
 use crate::problem::Problem;
 
 /// Unknowns of the next mesh per unknown of this one: the solves on meshes that grow by g cost g/(g − 1) times the last one,
@@ -35,6 +36,8 @@ pub struct Rounds<'a> {
     forecast: &'a Forecast,
     /// On the mesh that was solved.
     problem: &'a Problem,
+    /// What is kept of it while the next one is solved.
+    kept: Size,
     /// No triangle of less area is refined.
     smallest: f64,
 }
@@ -48,15 +51,17 @@ enum Round {
 }
 
 impl<'a> Rounds<'a> {
-    /// From the mesh of `problem`; triangles `shortest` across, relative to the farthest corner, are not refined.
+    /// From the mesh of `problem` with its `elements`; triangles `shortest` across, relative to the farthest corner, are not
+    /// refined.
     pub fn new(
         goal: &'a Goal,
         admission: &'a Admission<'a>,
         forecast: &'a Forecast,
-        problem: &'a Problem,
+        (problem, elements): (&'a Problem, &Elements),
         shortest: f64,
     ) -> Self {
-        Rounds { goal, admission, forecast, problem, smallest: smallest_area(problem, shortest) }
+        let kept = Size::of_degrees(problem, elements);
+        Rounds { goal, admission, forecast, problem, kept, smallest: smallest_area(problem, shortest) }
     }
 
     /// The next mesh, or the reason why there is none; `terms` are those of what is larger by the factor `left` than it may
@@ -139,7 +144,7 @@ impl<'a> Rounds<'a> {
         let count = next.problem.mesh.triangles.len();
         match self.goal.max_triangles {
             Some(most) if count > most => Some(format!("the next mesh would have more than {most} triangles")),
-            _ => self.admission.admit(next.size(), Some(Size::of(self.problem))).err().map(|excess| {
+            _ => self.admission.admit(next.size(), Some(self.kept)).err().map(|excess| {
                 format!("the next mesh, of {count} triangles, would not fit into memory (about {excess})")
             }),
         }

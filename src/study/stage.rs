@@ -115,13 +115,13 @@ impl Stage {
     /// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
     fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
         for round in 0..MOST_AT_ENDS {
-            let statics = balance(&self.problem)?;
+            let statics = balance(&self.problem, &self.elements)?;
             if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
                 return Ok((self, statics));
             }
             self = self.bisect(&contact_ends(&self.problem, round < MOST_WHERE_IT_TURNS))?.0;
         }
-        let statics = balance(&self.problem)?;
+        let statics = balance(&self.problem, &self.elements)?;
         Ok((self, statics))
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, Options, contact_coefficients};
+use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Adapted, Goal, adapt, certify, closed_coefficients};
+use hypercircle::study::{Adapt, Adapted, Goal, adapt, certify, closed_coefficients};
 
 /// Between the bounds of a run to 0.008 %.
 const EXACT: f64 = -1.796413405;
@@ -43,6 +44,39 @@ fn run(problem: Problem, tolerance: f64) -> Adapted {
 
 fn triangles(adapted: &Adapted) -> usize {
     adapted.certified.problem.mesh.triangles.len()
+}
+
+/// The guaranteed error and the unknowns of `docs/data/hp.json`.
+#[derive(serde::Deserialize)]
+struct Curve {
+    poisson: f64,
+    refinement: String,
+    unknowns_and_guaranteed_relative_error: Vec<[f64; 2]>,
+}
+
+#[test]
+fn mesh_and_degrees_take_the_unknowns_that_the_figure_shows() {
+    let curves: Vec<Curve> = serde_json::from_str(include_str!("../../docs/data/hp.json")).expect("committed curves");
+    for (poisson, most) in [(0.3, [6_000, 16_000]), (0.4999, [12_000, 32_000])] {
+        let hp = curves.iter().find(|c| c.refinement == "hp" && c.poisson == poisson).expect("a curve");
+        let points = &hp.unknowns_and_guaranteed_relative_error;
+        for (tolerance, most) in [1e-3, 1e-4].into_iter().zip(most) {
+            let options = Options { elements: Elements::Uniform(block(3)), ..Options::default() };
+            let goal = Goal { adapt: Adapt::Hp, ..Goal::new(tolerance) };
+            let again = adapt(problem(&blocks(poisson, LIFT_OFF)), &Condensed::default(), &options, &goal, |_| ());
+            let again = again.expect("solves");
+            let unknowns = again.certified.dual.unknowns;
+            assert!(again.stopped.is_none() && unknowns <= most, "{unknowns} for {tolerance} at ν = {poisson}");
+            // The first meshes do not know yet what tolerance they lead to.
+            for (row, [unknowns, error]) in again.history.iter().zip(points).take(5) {
+                assert_eq!(row.unknowns as f64, *unknowns, "ν = {poisson}");
+                assert!((row.relative_error_bound / error - 1.0).abs() < 1e-6, "{row:?} and {error}");
+            }
+        }
+    }
+    let hp = curves.iter().find(|c| c.refinement == "hp" && c.poisson == 0.3).expect("a curve");
+    let [unknowns, error] = hp.unknowns_and_guaranteed_relative_error.last().expect("meshes");
+    assert!(*unknowns <= 40_000.0 && *error <= 1e-5, "{error} with {unknowns}");
 }
 
 #[test]

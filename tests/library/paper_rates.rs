@@ -49,6 +49,40 @@ fn contact_errors_are_the_committed_ones() {
     compare(&rates::contact(&CONTACT));
 }
 
+/// The meshes of the studies of degrees that a test can afford.
+const OF_DEGREES: [usize; 3] = [4, 8, 16];
+const CONTACT_ENDS: [usize; 2] = [4, 9];
+
+fn committed_of_degrees() -> Committed {
+    serde_json::from_str(include_str!("../../docs/data/rates_of_degrees.json")).expect("committed rates")
+}
+
+#[test]
+fn errors_of_every_degree_are_the_committed_ones() {
+    let committed = committed_of_degrees().studies;
+    let measured =
+        [rates::interpolation_of_degrees(&OF_DEGREES), rates::contact_end_of_degrees(&CONTACT_ENDS)].concat();
+    assert_eq!(measured.len(), committed.len());
+    for study in &measured {
+        let same =
+            |s: &&Study| (&s.solution, &s.family, &s.quantity) == (&study.solution, &study.family, &study.quantity);
+        let old = committed.iter().find(same).unwrap_or_else(|| panic!("{study:?} is not committed"));
+        for (new, old) in study.meshes.iter().zip(&old.meshes) {
+            assert!(new.n == old.n && (new.error - old.error).abs() < 1e-3 * old.error, "{new:?}, {old:?}");
+        }
+    }
+    for study in &committed {
+        assert!((study.rate - fitted(&study.meshes)).abs() < 1e-9, "{study:?}");
+        let finest = study.meshes.last_chunk::<2>().map(|two| fitted(two)).expect("two meshes");
+        match study.promised {
+            // p + 1 where the stress is smooth.
+            Some(promised) => assert!((finest - promised).abs() < RESOLUTION, "{study:?}"),
+            // On its way to h^{3/2} at a root, whatever the degree.
+            None => assert!(finest > 1.5 && finest < study.rate - 0.05 && finest < 1.9, "{study:?}"),
+        }
+    }
+}
+
 /// Every promise of a theorem is kept by the committed study, which has four meshes at least.
 #[test]
 fn committed_rates_keep_what_the_theorems_promise() {
@@ -94,6 +128,7 @@ fn the_documentation_shows_the_committed_numbers() {
         tables::constants(&constants.rows),
         tables::rates(&studies, &tables::INTERPOLATION),
         tables::rates(&studies, &tables::CONTACT),
+        tables::rates_of_degrees(&committed_of_degrees().studies),
     ];
     for line in lines.concat() {
         assert!(page.lines().any(|l| l == line), "docs/theory.md lacks the line {line}");

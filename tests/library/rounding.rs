@@ -3,11 +3,13 @@
 
 use crate::support::Blocks;
 use crate::support::double_double::Dd;
+use crate::support::toml::Toml;
 use hypercircle::bounds::{Bracket, complementary, mid_field};
 use hypercircle::dual::{self, Condensed, DualSolution, Equilibrium, Options};
-use hypercircle::element::StressField;
+use hypercircle::element::{Elements, StressField, block};
 use hypercircle::problem::{Condition, Problem};
-use hypercircle::scene::Gap;
+use hypercircle::scene::{Gap, Scene, SupportKind};
+use hypercircle::study::{StudyError, certify};
 
 type Point = [Dd; 2];
 
@@ -191,4 +193,57 @@ fn the_mid_field_lies_half_way_and_halves_the_bound() {
     let gap = free.upper() - bracket.lower();
     let (bound, whole) = (free.mid_error(gap), (2.0 * gap).sqrt());
     assert!(bound >= 0.5 * whole && bound < 0.55 * whole, "{bound} of {whole}");
+}
+
+/// A square turned by `angle`, far from the origin, its north held and moved by `displacement` of (along its west side, across
+/// it), beside an obstacle that its west side touches.
+fn moved_along_an_obstacle(angle: f64, [along, across]: [f64; 2]) -> Problem {
+    let (sin, cos) = angle.sin_cos();
+    let place = |[x, y]: [f64; 2]| [7.3 + cos * x - sin * y, -2.9 + sin * x + cos * y];
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(place);
+    let [dx, dy] = [0, 1].map(|c| corners[3][c] - corners[0][c]);
+    let displacement = [along * dx - across * dy, along * dy + across * dx];
+    let toml = Toml::default()
+        .size(0.4)
+        .polygon("square", &corners, ["", "", "north", "west"])
+        .table(&format!("[[supports]]\non = \"north\"\ntype = \"clamped\"\ndisplacement = {displacement:?}"))
+        .rigid("west");
+    Problem::load(Scene::parse(&toml.text(), "square.toml".as_ref()).expect("a scene")).expect("a problem")
+}
+
+/// The obstacle allows it, and the answer is without stress; what the data say only to rounding contradicts nothing.
+#[test]
+fn a_body_may_slide_along_an_obstacle_in_every_direction() {
+    for k in 0..60 {
+        let angle = 0.1 + 0.1047 * f64::from(k);
+        let options = Options::default();
+        let problem = moved_along_an_obstacle(angle, [1.66e-3, 0.0]);
+        let found = certify(problem, &Condensed::default(), &options).unwrap_or_else(|e| panic!("{angle}: {e}"));
+        let upper = found.bracket.free.as_ref().expect("an upper bound").upper();
+        assert!(found.bracket.lower() <= 0.0 && (0.0..1e-18).contains(&upper), "{angle}: {upper:e}");
+        let outcome = certify(moved_along_an_obstacle(angle, [1.66e-3, 1e-11]), &Condensed::default(), &options);
+        assert!(matches!(outcome, Err(StudyError::Contradiction(_))), "{angle}: it penetrates");
+        assert!(certify(moved_along_an_obstacle(angle, [1.66e-3, -1e-11]), &Condensed::default(), &options).is_ok());
+    }
+}
+
+/// Coefficients of higher degrees carry more of the rounding of a prescribed displacement, and mean no more.
+#[test]
+fn a_body_that_is_moved_has_no_stress_in_any_degree() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/moved_rigidly.toml");
+    let given = Scene::read(&file).expect("a scene");
+    for p in 1..=8 {
+        for k in 0..6 {
+            let mut scene = given.clone();
+            if k > 0 {
+                let (sin, cos) = (0.4 + f64::from(k)).sin_cos();
+                scene.supports[0].kind = SupportKind::Clamped { displacement: [0.48 * cos, 0.48 * sin] };
+            }
+            let problem = Problem::load(scene).expect("a problem");
+            let options = Options { elements: Elements::Uniform(block(p)), ..Options::default() };
+            let found = certify(problem, &Condensed::default(), &options).unwrap_or_else(|e| panic!("{p}, {k}: {e}"));
+            let upper = found.bracket.free.as_ref().expect("an upper bound").upper();
+            assert!(found.bracket.lower() == 0.0 && (0.0..1e-20).contains(&upper), "{p}, {k}: {upper:e}");
+        }
+    }
 }

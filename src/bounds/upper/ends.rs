@@ -7,14 +7,15 @@
 
 use super::NoUpperBound;
 use super::contact::{ROUNDING, dot, give, mean_excess, shift};
-use super::holds::Hold;
+use super::holds::{Hold, jump_rounding};
 use super::nodes::Nodes;
 use super::rows::Row;
 use crate::dual::DualSolution;
 use crate::problem::{ContactPair, Problem};
 
 /// Bounds on the jump at one end of one pair.
-pub struct End {
+pub struct End<'a> {
+    pair: &'a ContactPair,
     first: usize,
     second: Option<usize>,
     /// The direction of contact there.
@@ -44,7 +45,7 @@ pub fn restrict(
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     for end in &ends {
         let by = excess(end, vertex);
-        if by > 1e-12 * size {
+        if by > jump_rounding(problem, end.pair, size) {
             let [x, y] = problem.scene.as_written(problem.mesh.points[end.first]);
             return Err(NoUpperBound::ForcedPenetration { x, y, by });
         }
@@ -54,7 +55,7 @@ pub fn restrict(
 
 /// Moves vertex values so that vertex jumps lie within the bounds of `ends`, as far as these do not contradict each
 /// other: the normals of two short edges in line differ by rounding, and so does what they demand of a sliding vertex.
-pub fn draw(ends: &[End], holds: &[Hold], vertex: &mut [[f64; 2]]) {
+pub fn draw(ends: &[End<'_>], holds: &[Hold], vertex: &mut [[f64; 2]]) {
     let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let tolerance = 1e-13 * size;
     for _ in 0..MOST_SWEEPS {
@@ -90,19 +91,20 @@ pub fn draw(ends: &[End], holds: &[Hold], vertex: &mut [[f64; 2]]) {
 }
 
 /// By how much the jump is above (positive) or below (negative) its bounds.
-fn excess(end: &End, vertex: &[[f64; 2]]) -> f64 {
+fn excess(end: &End<'_>, vertex: &[[f64; 2]]) -> f64 {
     let jump = dot(vertex[end.first], end.normal) - end.second.map_or(0.0, |v| dot(vertex[v], end.normal));
     if jump > end.high { jump - end.high } else { (jump - end.low).min(0.0) }
 }
 
 /// Both ends of all pairs, bounded by their rows alone.
-fn ends_below(problem: &Problem, groups: &[Vec<Row>]) -> Vec<End> {
+fn ends_below<'a>(problem: &'a Problem, groups: &[Vec<Row>]) -> Vec<End<'a>> {
     let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
     pairs
         .zip(groups)
         .filter_map(|(pair, rows)| Some((pair, [rows.first()?.bound(), rows.last()?.bound()])))
         .flat_map(|(pair, bounds)| {
             [0, 1].map(|end| End {
+                pair,
                 first: pair.first[end],
                 second: pair.second.map(|s| s[end]),
                 normal: pair.direction.ends[end],
@@ -115,7 +117,7 @@ fn ends_below(problem: &Problem, groups: &[Vec<Row>]) -> Vec<End> {
 }
 
 /// Both ends of all pairs, kept near the mean jumps of the dual solution; bounds of neighbouring pairs are merged.
-pub fn ends_near(problem: &Problem, dual: &DualSolution, nodes: &Nodes) -> Vec<End> {
+pub fn ends_near<'a>(problem: &'a Problem, dual: &DualSolution, nodes: &Nodes) -> Vec<End<'a>> {
     let mut ends = Vec::new();
     for interface in &problem.interfaces {
         let least = |pair: &ContactPair| {
@@ -132,6 +134,7 @@ pub fn ends_near(problem: &Problem, dual: &DualSolution, nodes: &Nodes) -> Vec<E
                     .filter(|(_, p)| p.first.contains(&pair.first[end]));
                 let low = shared.map_or(least[k], |(n, _)| least[k].max(least[n]));
                 ends.push(End {
+                    pair,
                     first: pair.first[end],
                     second: pair.second.map(|s| s[end]),
                     normal: pair.direction.ends[end],

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::NoUpperBound;
 use super::nodes::Nodes;
 use super::sets::Sets;
-use crate::problem::{Condition, Problem};
+use crate::problem::{Condition, ContactPair, Problem};
 
 /// The support of one node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,21 +152,38 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
     let holds = holds(problem)?.vertices;
     let held = |v: usize, n: [f64; 2]| {
         let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];
-        (left[0].hypot(left[1]) <= PARALLEL).then_some(own[0] * n[0] + own[1] * n[1])
+        (left[0].hypot(left[1]) <= PARALLEL).then_some(own)
     };
     for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
         for end in 0..2 {
-            let first = held(pair.first[end], pair.normal);
-            let second = pair.second.map_or(Some(0.0), |s| held(s[end], pair.normal));
+            let n = pair.direction.ends[end];
+            let first = held(pair.first[end], n);
+            let second = pair.second.map_or(Some([0.0; 2]), |s| held(s[end], n));
             let Some((first, second)) = first.zip(second) else { continue };
-            let by = first - second - pair.gap[end];
-            if by > PARALLEL * first.abs().max(second.abs()) {
+            let by = (first[0] - second[0]) * n[0] + (first[1] - second[1]) * n[1] - pair.gap[end];
+            let size = first.iter().chain(&second).fold(0.0_f64, |m, u| m.max(u.abs()));
+            if by > jump_rounding(problem, pair, size) {
                 let [x, y] = problem.scene.as_written(problem.mesh.points[pair.first[end]]);
                 return Err(NoUpperBound::ForcedPenetration { x, y, by });
             }
         }
     }
     Ok(())
+}
+
+/// Penetrations smaller than this, relative to the displacements they come from, are rounding.
+const ROUNDED: f64 = 1e-12;
+
+/// What rounding leaves of a jump less the gap along `pair` where displacements of size `size` have none: they may slide
+/// along it, in a direction that its ends give to few digits where they lie close together, and the gap between sides that
+/// lie apart is a difference of coordinates.
+pub fn jump_rounding(problem: &Problem, pair: &ContactPair, size: f64) -> f64 {
+    let ends = pair.first.map(|v| problem.mesh.points[v]);
+    let opposite = pair.second.map_or(ends, |second| second.map(|v| problem.mesh.points[v]));
+    let farthest = ends.iter().chain(&opposite).flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let of_coordinates = 8.0 * f64::EPSILON * farthest;
+    let of_gap = if opposite == ends { 0.0 } else { of_coordinates };
+    (ROUNDED + of_coordinates / pair.length) * size + of_gap
 }
 
 /// The outward unit normal of every roller edge: that of the whole straight side which the edge is a part of.

@@ -3,7 +3,7 @@
 use super::build::{Build, transformed};
 use super::scenes::{cases, tower};
 use crate::problem::{Condition, Problem};
-use crate::statics::{Equilibrium, MotionKind, Statics, check};
+use crate::statics::{Equilibrium, MotionKind, Statics, check, check_with_degrees};
 
 /// ∫ F·u + ∫ P·u for u given at vertices and linear between, by the quadrature of products of linear functions.
 pub fn work_of_vertices(problem: &Problem, u: &[[f64; 2]]) -> f64 {
@@ -177,6 +177,28 @@ fn pressure_close_to_an_end_is_beyond_a_coarse_mesh() {
         let told =
             statics.notes.iter().any(|note| note.contains("about (0.9167, 1)") && note.contains("refine the ends"));
         assert_eq!(told, beyond, "{:?}", statics.notes);
+    }
+}
+
+#[test]
+fn pressure_of_a_higher_degree_acts_closer_to_an_end() {
+    // The first of p + 1 Bernstein polynomials has its centroid at 1/(p + 2) of an edge. Stresses of the base are linear, but
+    // where both bodies have the degree.
+    for p in 1..=8 {
+        let reach = 2.0 * (1.0 - 0.25 / (p + 2) as f64) - 1.0;
+        for (lean, beyond) in [(reach - 1e-6, false), (reach + 1e-6, true)] {
+            let problem = tower(lean);
+            let is_beyond = |degree: &dyn Fn(usize) -> usize| {
+                let statics = check_with_degrees(&problem, degree).unwrap();
+                let Equilibrium::Possible { beyond_mesh, .. } = statics.equilibrium else { panic!("{lean}") };
+                assert_eq!(beyond_mesh.is_some(), statics.notes.iter().any(|note| note.contains("refine the ends")));
+                beyond_mesh.is_some()
+            };
+            assert_eq!(is_beyond(&|_| p), beyond, "degree {p}, {lean}");
+            let base = problem.scene.bodies.iter().position(|body| body.name == "base").unwrap();
+            let linear_base = |t: usize| if problem.mesh.body[t] == base { 1 } else { p };
+            assert_eq!(is_beyond(&linear_base), p > 1 || beyond, "degree {p} on a linear base, {lean}");
+        }
     }
 }
 

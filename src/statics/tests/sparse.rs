@@ -19,7 +19,7 @@ fn sparse_and_dense_cones_give_the_same_verdicts() {
                 let problem = transformed((case.scene)(excess), angle, 1.0, 1.0, [0.0; 2]);
                 let components = Components::new(&problem);
                 let loads = LoadResultants::new(&problem, &components);
-                let runs = restraint::runs(&problem, &components);
+                let runs = restraint::runs(&problem, &components, &|_| 1);
                 let clamped = restraint::clamped(&problem, &components);
                 for group in restraint::groups(&components, &clamped, &runs) {
                     let few = Verdict::from_cones(&problem, &group, &loads, |rows, points| {

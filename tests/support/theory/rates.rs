@@ -2,12 +2,16 @@
 
 use hypercircle::bounds::{admissible, complementary, potential};
 use hypercircle::dual::{self, Condensed, Options};
-use hypercircle::element::{SideValues, interpolant, side};
+use hypercircle::element::{
+    Compliance, Elements, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
+};
+use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
+use hypercircle::scene::Kinematics;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Solution, free_motions};
-use super::fields::FIELDS;
+use super::fields::{FIELDS, Stress};
 use super::meshes::Family;
 use super::quadrature::{gauss, stress_error, visit};
 
@@ -87,6 +91,90 @@ pub fn interpolation(sizes: &[usize]) -> Vec<Study> {
         }
     }
     studies
+}
+
+/// Degrees of which rates are measured.
+pub const DEGREES: [usize; 4] = [1, 2, 3, 4];
+
+/// The field of N(K) of degree `degree` on every triangle with the tractions of a stress, projected side by side.
+fn projected(mesh: &Triangulation, degree: usize, stress: Stress) -> StressField {
+    let (element, rule) = (block(degree), gauss(degree + 8));
+    // Which of the fields with its tractions an element has hangs on the material; elastic stresses belong to all.
+    let material = Compliance::new(Kinematics::PlaneStrain, 1.0, 0.3);
+    let mut field = StressField::zeros(degree, mesh.triangles.len());
+    for t in 0..mesh.triangles.len() {
+        let corners = mesh.corners(t);
+        let mut tractions = Vec::new();
+        for i in 0..3 {
+            let (a, b) = (corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let n = [dy / dx.hypot(dy), -dx / dx.hypot(dy)];
+            let mut moments = [vec![0.0; degree + 1], vec![0.0; degree + 1]];
+            for &(s, w) in &rule {
+                let tau = stress([a[0] + s * dx, a[1] + s * dy]);
+                let value = [tau[0] * n[0] + tau[2] * n[1], tau[2] * n[0] + tau[1] * n[1]];
+                for (moments, value) in moments.iter_mut().zip(value) {
+                    moments.iter_mut().enumerate().for_each(|(k, m)| *m += w * value * side::bernstein(degree, k, s));
+                }
+            }
+            let [x, y] = moments.map(|m| side::from_moments(&m));
+            tractions.extend(x.into_iter().zip(y).flat_map(|(x, y)| [x, y]));
+        }
+        let modes = element.modes(corners, &material, [0.0; 2]);
+        let (s, _) = parameters_from_tractions(&modes, &tractions).expect("no triangle is degenerate");
+        element.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
+    }
+    field
+}
+
+/// The error of r_h of every degree for elastic stresses that are not polynomial.
+pub fn interpolation_of_degrees(sizes: &[usize]) -> Vec<Study> {
+    let mut studies = Vec::new();
+    for family in [Family::Squares, Family::Shaken] {
+        for degree in DEGREES {
+            for (name, stress) in &FIELDS[..2] {
+                let measured = sizes.iter().map(|&n| {
+                    let mesh = Solution::grazing().problem(n, family).mesh;
+                    let corners: Vec<_> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
+                    let field = projected(&mesh, degree, *stress);
+                    let mut square = 0.0;
+                    visit(&corners, degree + 4, |t, sub, bary, x, w| {
+                        let (l, e) = (field.at(t, sub, bary), stress(x));
+                        let d = [l[0] - e[0], l[1] - e[1], l[2] - e[2]];
+                        square += w * (d[0] * d[0] + d[1] * d[1] + 2.0 * d[2] * d[2]);
+                    });
+                    Measured { n, h: diameter(&corners), error: square.sqrt() }
+                });
+                let quantity = format!("L2 error of r_h τ, p = {degree}");
+                studies.push(study(name, family, &quantity, Some((degree + 1) as f64), measured.collect()));
+            }
+        }
+    }
+    studies
+}
+
+/// The error of λ_h of every degree at a contact end like a root, on meshes that are not refined there.
+pub fn contact_end_of_degrees(sizes: &[usize]) -> Vec<Study> {
+    let (name, solution, _) = solutions()[2];
+    let family = Family::Squares;
+    let of = |degree: usize| {
+        let measured = sizes.iter().map(|&n| {
+            let problem = solution.problem(n, family);
+            let corners = corners(&problem);
+            let options = Options { elements: Elements::Uniform(block(degree)), ..Options::default() };
+            let found =
+                dual::solve(&Condensed::default(), &problem, &free_motions(&problem), &options).expect("solves");
+            let mut square = 0.0;
+            visit(&corners, 12, |t, sub, bary, x, w| {
+                let (l, e) = (found.stress.at(t, sub, bary), solution.stress(problem.mesh.body[t], x));
+                let d = [l[0] - e[0], l[1] - e[1], l[2] - e[2]];
+                square += w * (d[0] * d[0] + d[1] * d[1] + 2.0 * d[2] * d[2]);
+            });
+            Measured { n, h: diameter(&corners), error: square.sqrt() }
+        });
+        study(name, family, &format!("L2 error of λ_h, p = {degree}"), None, measured.collect())
+    };
+    DEGREES.map(of).into()
 }
 
 /// What is measured of a contact solution, with the rate a theorem promises if the contact pressure is in H².

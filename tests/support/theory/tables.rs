@@ -1,7 +1,7 @@
 //! The tables of `docs/theory.md`, from the numbers of `docs/data/`.
 
 use super::constant::Row;
-use super::rates::Study;
+use super::rates::{DEGREES, Study};
 
 /// Smallest angle, c(α), c(α) sin²α.
 pub fn constants(rows: &[Row]) -> Vec<String> {
@@ -20,6 +20,17 @@ pub fn rates(studies: &[Study], quantities: &[&str]) -> Vec<String> {
         format!("| {} | {} | {} |", first.solution, first.family, cells.join(" | "))
     };
     studies.iter().filter(|s| s.quantity == quantities[0]).map(of).collect()
+}
+
+/// Columns of the tables on degrees, for what is measured of them.
+pub fn of_degrees(quantity: &str) -> [String; 4] {
+    DEGREES.map(|degree| format!("{quantity}, p = {degree}"))
+}
+
+/// One line for each solution and family, with the rate of every degree.
+pub fn rates_of_degrees(studies: &[Study]) -> Vec<String> {
+    let of = |quantity: &str| rates(studies, &of_degrees(quantity).each_ref().map(String::as_str));
+    [of("L2 error of r_h τ"), of("L2 error of λ_h")].concat()
 }
 
 /// Columns of the table on contact solutions.
