@@ -9,7 +9,7 @@ use super::{CliError, Exit};
 use crate::compare::{Comparison, compare};
 use crate::problem::Note;
 use crate::process::limit;
-use crate::study::ForeignField;
+use crate::study::{self, ForeignField};
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
 /// jump is a combination of six rounded values with weights that add up to six.
@@ -27,6 +27,9 @@ pub struct Args {
     /// Name of the point data that is the displacement, where it is not displacement, u or disp
     #[arg(long, value_name = "NAME")]
     pub field: Option<String>,
+    /// Claim that the field is the discrete solution of a displacement method on this mesh, and hold it to that
+    #[arg(long)]
+    pub solution: bool,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
@@ -56,12 +59,26 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let limits = Limits { max_triangles: None, max_seconds: None };
     let run = session.solve(&args.solve, &limits, &folder)?;
     let certified = &run.certified;
-    let candidate = field.candidate(&certified.problem, reading).map_err(refused)?;
+    let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
     session.progress.phase("comparing");
-    let rounding = field.is_single_precision().then(|| (format!("admissible/{}", candidate.name), SINGLE));
+    // A claimed solution knows the digits of its file.
+    let rounding = (field.is_single_precision() && !args.solution).then(|| (format!("admissible/{}", candidate.name), SINGLE));
     let allow = args.judge.allowances().after(rounding);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
+    let asked = args.judge.allowances();
+    comparison.checks.iter_mut().for_each(|check| check.excused &= asked.given(&check.name).is_some());
+    let mut claimed = None;
+    if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
+        session.progress.phase("holding the field to its claim");
+        let claim = study::claim(&certified.problem, judged, &allow)
+            .map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
+        let admissible = format!("admissible/{}", judged.candidate.name);
+        comparison.checks.retain(|check| check.name != admissible);
+        comparison.checks.extend(claim.checks.iter().cloned());
+        claimed = Some(claim);
+    }
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
@@ -69,9 +86,11 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let particulars = Particulars {
         sharpened,
         enough: Some(enough),
-        notes: repairs(&comparison),
+        notes: repairs(&comparison).into_iter().chain(rounded).collect(),
         seconds: vec![("reading the displacement", reading)],
         components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
+        diagnosis: claimed.iter().filter_map(|claim| claim.diagnosis.clone()).collect(),
+        residual: claimed.map(|claim| claim.residual),
         failure: None,
     };
     session.conclude(run, &comparison, particulars, &folder)

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{CliError, Exit, say, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
+use crate::diagnose::Diagnosis;
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
 use crate::element::{Elements, block};
 use crate::mesh;
@@ -61,6 +62,10 @@ pub struct Particulars {
     pub seconds: Vec<(&'static str, f64)>,
     /// What else took part, with versions.
     pub components: Vec<(String, String)>,
+    /// What explains that a field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Its residual, triangle by triangle, where a field is handed in as the discrete solution of its mesh.
+    pub residual: Option<Vec<f64>>,
     /// Why the displacement model gave no answer.
     pub failure: Option<String>,
 }
@@ -249,7 +254,8 @@ impl Session {
         folder: &Path,
     ) -> Result<Exit, CliError> {
         let DualRun { certified, mut history, stopped } = run;
-        let Particulars { sharpened, enough, mut notes, mut seconds, components, failure } = particulars;
+        let Particulars { sharpened, enough, mut notes, mut seconds, components, diagnosis, residual, failure } = particulars;
+        let is_claimed = residual.is_some();
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
             notes.push(sharpened_note(&certified, stopped));
             history.extend(meshes);
@@ -257,7 +263,7 @@ impl Session {
         });
         seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
-        let fields = Fields::new(&certified, comparison);
+        let fields = Fields::new(&certified, comparison).with_residual(residual);
         let dossier = assemble(
             Findings {
                 command: self.command,
@@ -270,6 +276,8 @@ impl Session {
                 threads: self.threads,
                 seconds,
                 components,
+                diagnosis,
+                is_claimed,
                 failure,
             },
             &fields,
@@ -285,6 +293,9 @@ impl Session {
             say::line(&report.verdict);
             for check in report.checks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  failed: {}: {}", check.name, check.why));
+            }
+            for diagnosis in &report.diagnosis {
+                say::line(&format!("  {}", diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  worth a look: {}", remark.name));

@@ -8,7 +8,7 @@ use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};
 use crate::process::limit;
-use crate::study::{candidates, pins, tolerance_check};
+use crate::study::{candidates, diagnoses, pins, tolerance_check};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -104,6 +104,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         enough,
         seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
         components,
+        diagnosis: diagnoses(&certified.problem, &comparison),
         failure: failure.as_ref().map(ToString::to_string),
         ..Particulars::default()
     };

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::balance::Balance;
+use super::solution::Numbering;
 use crate::bounds::{Bracket, NoUpperBound, UpperBound, Violation, repaired};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
@@ -37,6 +38,23 @@ pub struct Candidate {
     pub unknowns: usize,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
+    /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.
+    pub precision: f64,
+    /// Where its nodes are in the file that it comes from.
+    pub numbering: Option<Numbering>,
+}
+
+impl Candidate {
+    /// The displacement of a node: vertices, then edge midpoints.
+    pub fn value(&self, node: usize) -> [f64; 2] {
+        let vertices = self.vertex.len();
+        if node < vertices { self.vertex[node] } else { self.middle[node - vertices] }
+    }
+
+    /// The largest component of all displacements.
+    pub fn largest(&self) -> f64 {
+        self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
+    }
 }
 
 /// Variationally consistent contact reactions on one interface, thickness included.

@@ -13,7 +13,7 @@ mod tests;
 
 pub use direction::Direction;
 pub use error::ProblemError;
-pub use scales::{Scales, Sizes};
+pub use scales::{ROUND_OFF, Scales, Sizes};
 
 use crate::mesh::Triangulation;
 pub use crate::scene::Note;

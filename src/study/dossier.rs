@@ -5,6 +5,7 @@ use super::curves;
 use super::provenance::{identifier, provenance};
 use crate::bounds::{Bracket, UpperBound, mid_field};
 use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
@@ -34,6 +35,10 @@ pub struct Findings<'a> {
     pub seconds: Vec<(&'static str, f64)>,
     /// Versions of programs that took part.
     pub components: Vec<(String, String)>,
+    /// What explains that a field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Whether a field is handed in as the discrete solution of its mesh.
+    pub is_claimed: bool,
     /// Why the displacement side is missing, where it should be there.
     pub failure: Option<String>,
 }
@@ -100,6 +105,14 @@ impl Fields {
             });
         }
         Fields { maps, mid }
+    }
+
+    /// The same with the residual of a claimed solution, triangle by triangle.
+    pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
+        let map =
+            |values| Map { key: "residual", title: "What the claimed solution misses of equilibrium, at its nodes", values };
+        self.maps.splice(0..0, values.map(map));
+        self
     }
 }
 
@@ -190,6 +203,7 @@ fn report(findings: &Findings<'_>) -> Report {
         stress: comparison.stress.clone(),
         checks,
         remarks,
+        diagnosis: findings.diagnosis.clone(),
         notes,
         history: findings.history.clone(),
         provenance,
@@ -258,6 +272,14 @@ fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> 
             percent(e.relative_error_bound)
         )
     });
+    let excused = findings.comparison.checks.iter().filter(|c| c.excused && c.decides());
+    let excused: Vec<&str> = excused.map(|c| c.name.as_str()).collect();
+    let allowances = match excused.as_slice() {
+        [] => String::new(),
+        names => format!(", with what was allowed for {}", names.join(", ")),
+    };
+    let bound = if findings.command == "certify" { of_field(findings, energy) } else { bound };
+    let told: String = findings.diagnosis.iter().map(|d| format!(" {}", d.sentence)).collect();
     let models = findings.comparison.judged.len();
     match (failed.as_slice(), models) {
         ([], _) if status == Status::Undecided => {
@@ -265,12 +287,29 @@ fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> 
         }
         ([], 0) => format!("The bracket holds.{bound}"),
         ([], _) if findings.command == "certify" => {
-            format!("The displacement field is admissible and its energy respects the bound.{bound}")
+            let claim = if findings.is_claimed { "the discrete solution it claims to be" } else { "admissible" };
+            format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")
         }
-        ([], _) => format!("The stress and displacement models agree.{bound}"),
-        ([one], _) => format!("One check failed: {one}.{bound}"),
-        (several, _) => format!("{} checks failed, first {}.{bound}", several.len(), several[0]),
+        ([], _) => format!("The stress and displacement models agree{allowances}.{bound}"),
+        ([one], _) => format!("One check failed: {one}.{told}{bound}"),
+        (several, _) => format!("{} checks failed, first {}.{told}{bound}", several.len(), several[0]),
     }
+}
+
+/// What is guaranteed of a field that was handed in, not of the best that the program has.
+fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
+    let sharpest = findings.finer.map_or(&findings.certified.bracket, |finer| &finer.bracket);
+    let Some((energy, judged)) = energy.zip(findings.comparison.judged.first()) else { return String::new() };
+    let name = &judged.candidate.name;
+    let of = if judged.is_admissible() { name.clone() } else { format!("the admissible field nearest to {name}") };
+    let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
+    let upper = judged.admissible.upper();
+    format!(
+        " The {what} relative energy-norm error of {of} is at most {}: its energy is {}, and the exact one is no lower than {}.",
+        percent(in_numbers(judged.relative_error(sharpest))),
+        significant(upper, digits_to_tell(energy.lower, upper)),
+        significant(energy.lower, digits_to_tell(energy.lower, upper)),
+    )
 }
 
 /// The report on a scene without equilibrium.
@@ -297,6 +336,7 @@ pub fn infeasible<'a>(
             stress: None,
             checks: Vec::new(),
             remarks: Vec::new(),
+            diagnosis: Vec::new(),
             notes: problem.notes.clone(),
             history: Vec::new(),
             provenance: provenance(problem, threads),

@@ -25,6 +25,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
                 }
             }
             (failures(report))
+            (diagnoses(report))
             div class=(if report.energy.is_some() { "first" } else { "first alone" }) {
                 @if report.energy.is_some() { (bracket_card(report)) }
                 div.answers {
@@ -81,6 +82,26 @@ fn failures(report: &Report) -> Markup {
     }
 }
 
+/// What explains that a field is not what it claims to be.
+fn diagnoses(report: &Report) -> Markup {
+    html! {
+        @for diagnosis in &report.diagnosis {
+            section.failures.diagnosis aria-label="diagnosis" {
+                h2 { "What is wrong with " (clean(&diagnosis.field)) }
+                @if diagnosis.findings.is_empty() { p { (clean(&diagnosis.sentence)) } } @else {
+                    ul { @for finding in &diagnosis.findings { li { (clean(&finding.sentence)) } } }
+                    @if let Some(explained) = diagnosis.explained {
+                        p {
+                            "Together they explain " b { (percent(explained)) } " of the squared residual; "
+                            (diagnosis.tried) " hypotheses were held against it."
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn bracket_card(report: &Report) -> Markup {
     html! {
         section.card aria-label="energy bracket" {
@@ -108,6 +129,7 @@ fn agreement(report: &Report) -> Markup {
             div.big {
                 @match report.status {
                     Status::Agree if report.primal.is_empty() => "No second model",
+                    Status::Agree if report.checks.iter().any(|check| check.excused) => "Yes, with allowances",
                     Status::Agree => "Yes",
                     Status::Disagree => "No",
                     Status::Undecided => "Cannot be told",

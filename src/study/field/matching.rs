@@ -6,6 +6,7 @@
 //! triangle is read as the continuous field it must be.
 
 use super::{FieldError, ForeignField};
+use crate::compare::Numbering;
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::problem::Problem;
@@ -13,6 +14,10 @@ use crate::scene::Scene;
 
 /// Distance, in parts of the longest edge of a triangle, within which two points are one.
 const CLOSE: f64 = 1e-6;
+/// The same for coordinates that a writer has rounded to five or six digits: in parts of the largest coordinate of the file,
+/// and of the longest edge, beyond which a triangle would be another one.
+const ROUNDED: f64 = 1e-5;
+const DISTORTED: f64 = 0.02;
 /// Difference between two values of one point, in parts of the largest displacement, that counts as round-off.
 const JUMP: f64 = 1e-6;
 /// A direction along no line that meshes are likely to follow: sorted along it, few centroids are close neighbours.
@@ -24,6 +29,10 @@ pub(super) struct Matched {
     pub degree: usize,
     pub vertex: Vec<[f64; 2]>,
     pub middle: Vec<[f64; 2]>,
+    /// Where nodes and triangles are in the file.
+    pub numbering: Numbering,
+    /// How far a point of the file is from its vertex at most, where that is more than round-off.
+    pub off: Option<f64>,
 }
 
 /// Brings `field` onto the mesh of `problem`.
@@ -36,6 +45,11 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
     let mut vertex: Vec<Option<[f64; 2]>> = vec![None; mesh.points.len()];
     let mut middle: Vec<Option<[f64; 2]>> = vec![None; mesh.edges.len()];
     let mut degree = 1;
+    let mut numbering = Numbering {
+        nodes: vec![None; mesh.points.len() + mesh.edges.len()],
+        triangles: partners.iter().map(|(number, _)| Some(*number)).collect(),
+    };
+    let mut off = None;
     for (t, (number, corners)) in partners.into_iter().enumerate() {
         let nodes = &field.triangles[number];
         let value = |node: usize| {
@@ -60,6 +74,11 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         for i in 0..3 {
             let v = mesh.triangles[t][i];
             put(&mut vertex[v], u[i], mesh.points[v])?;
+            numbering.nodes[v].get_or_insert(nodes[corners[i]]);
+            let away = distance(field.points[nodes[corners[i]]], mesh.points[v]);
+            if away > round_off(field, &mesh.corners(t)) && off.is_none_or(|most| most < away) {
+                off = Some(away);
+            }
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let mean = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
             let ends = [mesh.triangles[t][j], mesh.triangles[t][k]].map(|v| mesh.points[v]);
@@ -75,6 +94,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
                         );
                         return Err(field.fault(what, "write the field on straight triangles"));
                     }
+                    numbering.nodes[mesh.points.len() + mesh.triangle_edges[t][i]].get_or_insert(node);
                     value(node)?
                 }
                 None => mean(u[j], u[k]),
@@ -84,7 +104,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
     }
     // Every triangle has a partner, and every vertex and edge a triangle.
     let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect();
-    Ok(Matched { degree, vertex: all(vertex), middle: all(middle) })
+    Ok(Matched { degree, vertex: all(vertex), middle: all(middle), numbering, off })
 }
 
 /// Place, among the nodes of a triangle, of the one between two corners.
@@ -136,11 +156,18 @@ fn same_corners(wanted: &[[f64; 2]; 3], found: &[[f64; 2]; 3], close: f64) -> Op
     ORDERS.into_iter().find(|order| (0..3).all(|i| distance(wanted[i], found[order[i]]) <= close))
 }
 
-/// Within what distance points of a triangle are one: the tolerance, and the rounding of single precision.
+/// Within what distance points of a triangle are one: that of a writer that rounds coordinates to few digits.
 fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
-    let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
-    let far = field.far;
-    CLOSE * longest + if field.single { f64::from(f32::EPSILON) * far } else { 0.0 }
+    round_off(field, corners).max((ROUNDED * field.far).min(DISTORTED * longest(corners)))
+}
+
+/// Within what distance they are one but for round-off, in single precision where the file is.
+fn round_off(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
+    CLOSE * longest(corners) + if field.single { f64::from(f32::EPSILON) * field.far } else { 0.0 }
+}
+
+fn longest(corners: &[[f64; 2]; 3]) -> f64 {
+    (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max)
 }
 
 fn centroid(corners: &[[f64; 2]; 3]) -> [f64; 2] {

@@ -1,5 +1,6 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
+mod digits;
 mod matching;
 
 use std::collections::BTreeMap;
@@ -11,7 +12,7 @@ use serde::Deserialize;
 use super::provenance::hash;
 use crate::compare::Candidate;
 use crate::mesh::meshio;
-use crate::problem::Problem;
+use crate::problem::{Note, Problem};
 
 const SCRIPT: &str = include_str!("read.py");
 const INSTEAD: &str = "write it as VTU, with triangles and the displacement as point data";
@@ -45,6 +46,8 @@ pub struct ForeignField {
     values: Vec<Option<[f64; 2]>>,
     /// Whether the displacement is stored in single precision.
     single: bool,
+    /// Rounding of the displacements relative to their size: that of the digits the file keeps.
+    precision: f64,
     /// The largest coordinate of the file, which says how far single precision can be off.
     far: f64,
 }
@@ -126,10 +129,18 @@ impl ForeignField {
             let what = format!("'{name}' has a third component at point {} that is not zero", i + 1);
             return Err(fault(what, "this program is plane: write a displacement in the plane z = 0"));
         }
-        let values = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
-        let single = data.single || content.single;
         let far = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single, far })
+        let third = || content.points.iter().filter_map(|p| p.get(2).copied().flatten());
+        let (low, high) = third().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+        let extent = third().fold(far, |m, z| m.max(z.abs()));
+        if high - low > if content.single { f64::from(f32::EPSILON) } else { FLAT } * extent {
+            let what = format!("its points are not in one plane z = constant: z goes from {low} to {high}");
+            return Err(fault(what, "this program is plane: write the field in the plane z = 0"));
+        }
+        let values: Vec<Option<[f64; 2]>> = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
+        let single = data.single || content.single;
+        let precision = digits::precision(values.iter().flatten().flatten().copied(), single);
+        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single, precision, far })
     }
 
     /// The same field with coordinates counted from `origin`; `None` where they are already.
@@ -159,9 +170,26 @@ impl ForeignField {
     /// # Errors
     /// [`FieldError`] names the first triangle or point that does not fit.
     pub fn candidate(&self, problem: &Problem, seconds: f64) -> Result<Candidate, FieldError> {
+        Ok(self.matched(problem, seconds)?.0)
+    }
+
+    /// The same, with a remark where points of the file are only nearly vertices of the mesh.
+    ///
+    /// # Errors
+    /// As [`Self::candidate`].
+    pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Option<Note>), FieldError> {
         let matched = matching::onto(self, problem)?;
+        let note = matched.off.map(|off| Note {
+            weakens_guarantee: false,
+            text: format!(
+                "The coordinates of {} are up to {:.1e} of the largest coordinate away from the vertices of the scene's mesh, as if \
+                 rounded when they were written. The displacements were taken for those of the vertices.",
+                self.name(),
+                off / self.far
+            ),
+        });
         let nodes = if matched.degree == 2 { matched.middle.len() } else { 0 } + matched.vertex.len();
-        Ok(Candidate {
+        let candidate = Candidate {
             name: self.name(),
             solver: "displacement file".into(),
             version: String::new(),
@@ -175,7 +203,10 @@ impl ForeignField {
             iterations: 0,
             unknowns: 2 * nodes,
             seconds: BTreeMap::from([("total".to_string(), seconds)]),
-        })
+            precision: self.precision,
+            numbering: Some(matched.numbering),
+        };
+        Ok((candidate, note))
     }
 
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {
