@@ -16,5 +16,6 @@ pub use jump::{openings, side_coefficients};
 pub use mid::mid_field;
 pub use sum::Sum;
 pub use upper::{
-    Hold, Holds, NoUpperBound, NodalValues, Nodes, Violation, admissible, bernstein, holds, repaired, supports_agree,
+    Hold, Holds, NoUpperBound, NodalValues, Nodes, Repair, Violation, admissible, bernstein, holds, repaired,
+    supports_agree,
 };

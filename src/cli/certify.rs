@@ -6,10 +6,10 @@ use std::time::Instant;
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::{CliError, Exit};
-use crate::compare::{Comparison, compare};
+use crate::compare::{Candidate, Comparison, compare};
 use crate::problem::Note;
 use crate::process::limit;
-use crate::study::{self, ForeignField};
+use crate::study::{self, ForeignField, tolerance_check};
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
 /// jump is a combination of six rounded values with weights that add up to six.
@@ -33,6 +33,9 @@ pub struct Args {
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
+    /// Where refinement stops.
+    #[command(flatten)]
+    pub limits: Limits,
     /// How to judge.
     #[command(flatten)]
     pub judge: JudgeOptions,
@@ -56,14 +59,19 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         .map_err(refused)?;
     args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
-    let limits = Limits { max_triangles: None, max_seconds: None };
-    let run = session.solve(&args.solve, &limits, &folder)?;
+    // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.
+    let on_its_mesh = SolveOptions { tolerance: None, ..args.solve.clone() };
+    let run = session.solve(&on_its_mesh, &args.limits, &folder)?;
     let certified = &run.certified;
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
+    if args.solution {
+        refuse_inserted(&candidate, &field)?;
+    }
     session.progress.phase("comparing");
     // A claimed solution knows the digits of its file.
-    let rounding = (field.is_single_precision() && !args.solution).then(|| (format!("admissible/{}", candidate.name), SINGLE));
+    let rounding =
+        (field.is_single_precision() && !args.solution).then(|| (format!("admissible/{}", candidate.name), SINGLE));
     let allow = args.judge.allowances().after(rounding);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
     let asked = args.judge.allowances();
@@ -82,7 +90,11 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
-    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &limits, &allow)?;
+    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &args.limits, &allow)?;
+    if let Some(wanted) = args.solve.tolerance {
+        let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+        comparison.checks.push(tolerance_check(sharpest, &comparison, wanted, &allow));
+    }
     let particulars = Particulars {
         sharpened,
         enough: Some(enough),
@@ -96,17 +108,35 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     session.conclude(run, &comparison, particulars, &folder)
 }
 
-/// A field lives on its own mesh, so there is nothing to refine.
-fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
-    let option = match (solve.refine, solve.tolerance) {
-        (0, None) => return Ok(()),
-        (0, Some(_)) => "--tolerance",
-        _ => "--refine",
-    };
+/// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.
+fn refuse_inserted(candidate: &Candidate, field: &ForeignField) -> Result<(), CliError> {
+    let nodes = candidate.vertex.len() + if candidate.degree == 2 { candidate.middle.len() } else { 0 };
+    let known = candidate.numbering.iter().flat_map(|n| &n.nodes).take(nodes).all(Option::is_some);
+    if known {
+        return Ok(());
+    }
     Err(CliError::stopped(
         Exit::BadInput,
-        format!("{option} changes the mesh, and a displacement field is certified on the mesh it comes with"),
-        format!("leave {option} out; refine in the program that makes the field, and certify what it then writes"),
+        format!(
+            "--solution: vertices that contacts or gaps need are no points of {}, whose triangles are cut there; the field is no discrete \
+             solution of the mesh that is left",
+            field.name()
+        ),
+        "give both sides of every contact the same vertices, and kinks of the gap one, in the mesh that both programs use; or leave \
+         --solution out",
+    ))
+}
+
+/// A field lives on its own mesh: there is nothing to refine uniformly.
+fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
+    if solve.refine == 0 {
+        return Ok(());
+    }
+    Err(CliError::stopped(
+        Exit::BadInput,
+        "--refine changes the mesh, and a displacement field is certified on the mesh it comes with",
+        "leave --refine out: --tolerance refines the stresses alone and keeps the field; to refine the field, do so in the program that \
+         makes it, and certify what it then writes",
     ))
 }
 

@@ -224,8 +224,11 @@ impl Session {
         allow: &Allowances,
     ) -> Result<(Option<Sharpened>, f64), CliError> {
         let asked = allow.given("bracket/sharpness");
-        let (aim, enough) = (asked.unwrap_or(SHARP), asked.unwrap_or(BLUNT));
+        // Where a field was handed in, refining the stresses is all that a tolerance can ask for, for as long as it takes.
+        let wanted = solve.tolerance.filter(|_| self.command == "certify");
+        let (aim, enough) = (wanted.or(asked).unwrap_or(SHARP), asked.unwrap_or(BLUNT));
         let Limits { max_triangles, max_seconds } = *limits;
+        let max_seconds = max_seconds.or(wanted.map(|_| f64::INFINITY));
         let goal = Goal { max_triangles, max_seconds, ..Goal::new(aim) };
         let told = |row: &HistoryRow| {
             let bound = 100.0 * row.relative_error_bound;
@@ -233,7 +236,10 @@ impl Session {
                 .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
         };
         let method = method(solve.method);
-        let options = self.options(solve);
+        let options = match wanted {
+            Some(_) => self.options(&SolveOptions { tolerance: None, ..solve.clone() }),
+            None => self.options(solve),
+        };
         let sharpened = study::sharpen(&run.certified, comparison, method.as_ref(), &options, goal, told)
             .map_err(|error| CliError::stopped(Exit::Failed, format!("{}: {error}", self.scene.path.display()), ""))?;
         if let Some(finer) = &sharpened {
@@ -254,7 +260,8 @@ impl Session {
         folder: &Path,
     ) -> Result<Exit, CliError> {
         let DualRun { certified, mut history, stopped } = run;
-        let Particulars { sharpened, enough, mut notes, mut seconds, components, diagnosis, residual, failure } = particulars;
+        let Particulars { sharpened, enough, mut notes, mut seconds, components, diagnosis, residual, failure } =
+            particulars;
         let is_claimed = residual.is_some();
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
             notes.push(sharpened_note(&certified, stopped));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::solution::Numbering;
-use crate::bounds::{Bracket, NoUpperBound, UpperBound, Violation, repaired};
+use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -95,7 +95,8 @@ impl Judged {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
     pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
-        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle)?;
+        let repair = if candidate.is_solution { Repair::AtContact } else { Repair::OfLeastEnergy };
+        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle, repair)?;
         let field = Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle);
         let field = UpperBound::new(problem, dual, field);
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));

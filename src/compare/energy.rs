@@ -141,7 +141,9 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     let sites = Sites::new(problem, candidate.degree, &holds);
     let depth = |site: &Site| site.excess(|node| candidate.value(node));
     let deepest = sites.list.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
-    let Some(site) = deepest.filter(|site| depth(site) > ADMISSIBLE * candidate.largest()) else { return String::new() };
+    let Some(site) = deepest.filter(|site| depth(site) > ADMISSIBLE * candidate.largest()) else {
+        return String::new();
+    };
     let (contact, place) = (&problem.interfaces[site.interface].name, candidate.named(problem, site.first));
     format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }

@@ -1,8 +1,8 @@
 //! Contact that is no unilateral, frictionless contact: penalties, gaps, friction, glue.
 
+use super::space::Space;
 use super::words::number;
 use super::{Energies, Finding, Trial};
-use super::space::Space;
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
 
@@ -55,7 +55,8 @@ impl<'a> Along<'a> {
         let deepest = self.sites.iter().copied().max_by(|a, b| self.depth(*a).total_cmp(&self.depth(*b)))?;
         let depth = self.depth(deepest);
         let place = self.solution.named(self.solution.sites.list[deepest].first);
-        let carrying: Vec<usize> = self.sites.iter().copied().filter(|s| self.pressing(*s).abs() > self.least).collect();
+        let carrying: Vec<usize> =
+            self.sites.iter().copied().filter(|s| self.pressing(*s).abs() > self.least).collect();
         if depth > 0.5 * self.enough {
             if carrying.is_empty() {
                 let sentence = format!(
@@ -66,23 +67,21 @@ impl<'a> Along<'a> {
                 return Some(Finding::new(name("missing"), Some(depth), Some(0.0), sentence));
             }
             if let Some(gap) = self.constant_gap(&carrying) {
-                let sentence = format!("contact {} closes {} too late: its gap is larger by that", self.name, number(gap));
+                let sentence =
+                    format!("contact {} closes {} too late: its gap is larger by that", self.name, number(gap));
                 return Some(Finding::new(name("gap"), Some(gap), Some(0.0), sentence));
             }
-            if let Some(penalty) = self.penalty(&carrying) {
-                return Some(self.told_penalty(name("penalty"), &penalty, deepest, energies));
-            }
-            let free: Vec<usize> =
-                self.sites.iter().copied().filter(|s| self.depth(*s) > 0.5 * self.enough && self.pressing(*s).abs() <= self.least).collect();
-            if !free.is_empty() && free.contains(&deepest) {
+            if let Some(free) = self.without_force() {
                 let sentence = format!(
-                    "contact {} does not act at {} of {} nodes: no force keeps the sides apart at {place}, where they overlap by {}",
+                    "contact {} does not act at {free} of {} nodes: no force keeps the sides apart at {place}, where they overlap by {}",
                     self.name,
-                    free.len(),
                     self.sites.len(),
                     number(depth)
                 );
                 return Some(Finding::new(name("in-part"), Some(depth), Some(0.0), sentence));
+            }
+            if let Some(penalty) = self.penalty(&carrying) {
+                return Some(self.told_penalty(name("penalty"), &penalty, deepest, energies));
             }
             let sentence = format!("contact {} penetrates by up to {} at {place}", self.name, number(depth));
             return Some(Finding::new(name("penetration"), Some(depth), Some(0.0), sentence));
@@ -123,6 +122,17 @@ impl<'a> Along<'a> {
         Some(Finding::new(name(found), Some(self.depth(widest)), Some(0.0), sentence))
     }
 
+    /// How many penetrate without any force, where all that do have none: nodes, or Bernstein coefficients of the jump.
+    fn without_force(&self) -> Option<usize> {
+        let (forces, distances) = self.solution.sites.in_coefficients(&self.solution.pressing, &self.solution.excess);
+        let count = |force: &[f64], depth: &[f64]| {
+            let deep: Vec<usize> = self.sites.iter().copied().filter(|s| depth[*s] > 0.5 * self.enough).collect();
+            let without = !deep.is_empty() && deep.iter().all(|s| force[*s].abs() <= self.least);
+            without.then_some(deep.len())
+        };
+        count(&self.solution.pressing, &self.solution.excess).or_else(|| count(&forces, &distances))
+    }
+
     /// By how much the gap is larger than that of the scene where every node that carries a force has the same distance.
     fn constant_gap(&self, carrying: &[usize]) -> Option<f64> {
         let values: Vec<f64> = carrying.iter().map(|s| self.depth(*s)).collect();
@@ -151,7 +161,9 @@ impl<'a> Along<'a> {
         let mass = self.consistent();
         let consistent = |s: usize| self.sites.binary_search(&s).map_or(0.0, |place| thickness * mass[place]);
         let kinds = [(Kind::Area, fit(&lumped)), (Kind::Area, fit(&consistent)), (Kind::Node, fit(&alone))];
-        let (kind, (stiffness, miss)) = kinds.into_iter().min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
+        // Nothing follows a list of zeros.
+        let known = kinds.into_iter().filter(|(_, (_, miss))| miss.is_finite());
+        let (kind, (stiffness, miss)) = known.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
         (miss <= FOLLOWS && stiffness > 0.0).then_some(Penalty { kind, stiffness })
     }
 
@@ -161,13 +173,14 @@ impl<'a> Along<'a> {
         let depth = |s: usize| self.depth(s).max(0.0);
         let place = |s: usize| self.sites.binary_search(&s).ok();
         for span in &self.solution.sites.spans {
-            let Some(own) = place(span[1]) else { continue };
-            let length = 1.5 * self.solution.sites.list[span[1]].weight;
-            let [a, m, b] = span.map(depth);
-            let parts = [4.0 * a + 2.0 * m - b, 2.0 * a + 16.0 * m + 2.0 * b, -a + 2.0 * m + 4.0 * b];
-            for (at, part) in [place(span[0]), Some(own), place(span[2])].into_iter().zip(parts) {
-                if let Some(at) = at {
-                    sums[at] += length / 30.0 * part;
+            let [a, b] = span.ends.map(depth);
+            let parts = match span.middle.map(depth) {
+                Some(m) => [4.0 * a + 2.0 * m - b, -a + 2.0 * m + 4.0 * b, 2.0 * a + 16.0 * m + 2.0 * b],
+                None => [10.0 * a + 5.0 * b, 5.0 * a + 10.0 * b, 0.0],
+            };
+            for (site, part) in span.ends.into_iter().chain(span.middle).zip(parts) {
+                if let Some(at) = place(site) {
+                    sums[at] += span.length / 30.0 * part;
                 }
             }
         }
@@ -195,7 +208,7 @@ impl<'a> Along<'a> {
             self.solution.named(self.solution.sites.list[deepest].first),
             number(work),
             number(most),
-            super::words::share(stress)
+            format_args!("{} %", number(100.0 * stress))
         );
         Finding::new(name, Some(penalty.stiffness), None, sentence)
     }
@@ -221,14 +234,16 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
             let mut inside = 0.0;
             for s in &along.sites {
                 let site = &solution.sites.list[*s];
-                let [a, wa] = [space.square_at(site.first), 1.0 / solution.forces.stiffness[site.first]];
-                inside += a;
-                let Some(second) = site.second else { continue };
-                let wb = 1.0 / solution.forces.stiffness[second];
-                let [ra, rb] = [solution.rest[site.first], solution.rest[second]];
-                // The force τ on the first and −τ on the second that leaves least.
-                let sum = (ra[0] + rb[0]).powi(2) + (ra[1] + rb[1]).powi(2);
-                inside += space.square_at(second) - wa * wb / (wa + wb) * sum;
+                // The force τ t on the first node and −τ t on the second that leaves least.
+                let tangent = [-site.normal[1], site.normal[0]];
+                let (mut product, mut square) = (0.0, 0.0);
+                for (node, sign) in [(Some(site.first), 1.0), (site.second, -1.0)] {
+                    let Some(node) = node else { continue };
+                    let ([x, y], [tx, ty]) = (solution.rest[node], solution.hold(node).project(tangent));
+                    product += sign * (x * tx + y * ty) / solution.forces.stiffness[node];
+                    square += (tx * tx + ty * ty) / solution.forces.stiffness[node];
+                }
+                inside += if square > 0.0 { product * product / square } else { 0.0 };
             }
             let left = (1.0 - inside / space.square).max(0.0);
             Trial { rank: 3, left, findings: vec![along.tangential()] }
@@ -260,8 +275,11 @@ impl Along<'_> {
         let glued = self.sites.iter().any(|s| self.pressing(*s) < -self.least);
         if slip <= 0.5 * self.enough {
             let how = if glued { "tied: it pulls as well, and" } else { "tied along its sides:" };
-            let sentence =
-                format!("contact {} is {how} the sides do not slide, with forces of {} along them", self.name, number(tangent));
+            let sentence = format!(
+                "contact {} is {how} the sides do not slide, with forces of {} along them",
+                self.name,
+                number(tangent)
+            );
             return Finding::new(format!("contact/{}/tied", self.name), Some(tangent), Some(0.0), sentence);
         }
         let sentence = format!(

@@ -41,7 +41,7 @@ impl<'a> Terms<'a> {
 
     /// Every term by itself.
     pub fn alone(&self) -> Vec<Trial> {
-        self.list.iter().map(|term| self.trial(&[term])).collect()
+        self.list.iter().map(|term| self.trial(&[term])).filter(Trial::is_possible).collect()
     }
 
     /// Two terms together, those that explain most alone.
@@ -50,7 +50,7 @@ impl<'a> Terms<'a> {
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         order.truncate(PAIRED);
         let pairs = (0..order.len()).flat_map(|i| (i + 1..order.len()).map(move |j| (i, j)));
-        pairs.map(|(i, j)| self.trial(&[order[i].1, order[j].1])).collect()
+        pairs.map(|(i, j)| self.trial(&[order[i].1, order[j].1])).filter(Trial::is_possible).collect()
     }
 
     fn trial(&self, terms: &[&Term<'a>]) -> Trial {
@@ -72,7 +72,9 @@ pub fn fit(columns: &[&[f64]], residual: &[f64], square: f64) -> (Vec<f64>, f64)
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let n = columns.len();
     let sizes: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt().max(f64::MIN_POSITIVE)).collect();
-    let gram = DMatrix::from_fn(n, n, |i, j| dot(columns[i], columns[j]) / (sizes[i] * sizes[j]));
+    // A column of zeros, as of a node that supports hold, has no product with any other.
+    let cosine = |i: usize, j: usize| dot(columns[i], columns[j]) / sizes[i] / sizes[j];
+    let gram = DMatrix::from_fn(n, n, |i, j| if cosine(i, j).is_finite() { cosine(i, j) } else { 0.0 });
     let load = DVector::from_fn(n, |i, _| -dot(columns[i], residual) / sizes[i]);
     let solution = gram.svd(true, true).solve(&load, DEPENDENT).unwrap_or_else(|_| DVector::zeros(n));
     let coefficients: Vec<f64> = solution.iter().zip(&sizes).map(|(x, size)| x / size).collect();

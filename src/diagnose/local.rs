@@ -15,8 +15,7 @@ const LARGEST: usize = 8;
 pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     let places = Places::new(space);
     let mut trials = Vec::new();
-    let near_the_worst: BTreeSet<usize> =
-        places.worst.iter().flat_map(|n| &places.triangles_at[*n]).copied().collect();
+    let near_the_worst: BTreeSet<usize> = places.worst.iter().flat_map(|n| &places.triangles_at[*n]).copied().collect();
     let nodes: BTreeSet<usize> = near_the_worst.iter().flat_map(|t| space.nodes(*t)).collect();
     trials.extend(nodes.iter().map(|node| places.moved(*node)));
     trials.extend(places.worst.iter().map(|node| places.equation(*node)));
@@ -52,7 +51,12 @@ impl<'a> Places<'a> {
         Moduli::of_body(problem, &problem.scene.bodies[problem.mesh.body[t]])
     }
 
-    fn column(&self, triangles: &[usize], moduli: impl Fn(usize) -> Moduli, value: impl Fn(usize) -> [f64; 2]) -> Vec<f64> {
+    fn column(
+        &self,
+        triangles: &[usize],
+        moduli: impl Fn(usize) -> Moduli,
+        value: impl Fn(usize) -> [f64; 2],
+    ) -> Vec<f64> {
         let mut forces = vec![[0.0; 2]; self.space.count()];
         for &t in triangles {
             self.space.add_element(t, moduli(t), &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
@@ -68,7 +72,8 @@ impl<'a> Places<'a> {
         };
         let columns = [unit(0), unit(1)];
         let (x, left) = fit(&columns.each_ref().map(Vec::as_slice), &self.space.residual, self.space.square);
-        let off = [0.0 - x[0], 0.0 - x[1]];
+        let size = x[0].hypot(x[1]);
+        let off = [0, 1].map(|c| if x[c].abs() > 1e-6 * size { 0.0 - x[c] } else { 0.0 });
         let sentence = format!(
             "the displacement of {} is off by ({}, {})",
             self.space.solution.named(node),
@@ -79,9 +84,16 @@ impl<'a> Places<'a> {
         Trial { rank: 4, left, findings: vec![finding] }
     }
 
-    /// What is left where nothing is asked of the given nodes.
+    /// What is left where nothing is asked of the given nodes, nor of those that contacts tie to them.
     fn without(&self, nodes: impl IntoIterator<Item = usize>) -> f64 {
-        let inside: f64 = nodes.into_iter().map(|n| self.space.square_at(n)).sum();
+        let mut all: BTreeSet<usize> = nodes.into_iter().collect();
+        for site in &self.space.solution.sites.list {
+            let Some(second) = site.second else { continue };
+            if all.contains(&site.first) || all.contains(&second) {
+                all.extend([site.first, second]);
+            }
+        }
+        let inside: f64 = all.into_iter().map(|n| self.space.square_at(n)).sum();
         (1.0 - inside / self.space.square).max(0.0)
     }
 
@@ -89,7 +101,8 @@ impl<'a> Places<'a> {
     fn equation(&self, node: usize) -> Trial {
         let [x, y] = self.space.solution.rest[node];
         let name = self.space.solution.named(node);
-        let sentence = format!("the equations of {name} alone are not met: a force ({}, {}) acts there", number(x), number(y));
+        let sentence =
+            format!("the equations of {name} alone are not met: a force ({}, {}) acts there", number(x), number(y));
         Trial {
             rank: 5,
             left: self.without([node]),

@@ -25,7 +25,15 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     )];
     let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     for (i, j) in pairs.take(MOST_PAIRS) {
-        let swapped = |b: usize| if b == i { j } else if b == j { i } else { b };
+        let swapped = |b: usize| {
+            if b == i {
+                j
+            } else if b == j {
+                i
+            } else {
+                b
+            }
+        };
         let mut exchange = |name: &str, what: &str, made: &dyn Fn(&Body, &Body) -> Moduli| {
             let finding = Finding::new(
                 format!("bodies/{}|{}/{name}", bodies[i].name, bodies[j].name),
@@ -63,7 +71,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let own = move |b: usize| Moduli::of_body(problem, &bodies[b]);
     let all = |name: &'static str, what: &'static str, part: fn(Moduli) -> Moduli, terms: &mut Terms<'a>| {
         let column = space.stiffness(|b| Some(part(own(b))));
-        terms.push(2, vec![column], move |x| {
+        terms.push(1, vec![column], move |x| {
             vec![Finding::new(name, Some(1.0 + x[0]), Some(1.0), factor(what, 1.0 + x[0]))]
         });
     };
@@ -72,8 +80,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     for b in 0..bodies.len().min(MOST_BODIES) {
         let body = &bodies[b];
         let part = |moduli: Moduli| space.stiffness(|at| (at == b).then_some(moduli));
-        let (of_lambda, of_mu) =
-            (part(Moduli { lambda: 1.0, ..NONE }), part(Moduli { mu: 1.0, shear: 1.0, ..NONE }));
+        let (of_lambda, of_mu) = (part(Moduli { lambda: 1.0, ..NONE }), part(Moduli { mu: 1.0, shear: 1.0, ..NONE }));
         let Moduli { lambda, mu, .. } = own(b);
         let whole = of_lambda.iter().zip(&of_mu).map(|(l, m)| lambda * l + mu * m).collect();
         // With one body alone its modulus cannot be told from the loads, which have the word.
@@ -89,8 +96,14 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             let [young, poisson] = Moduli::engineering(scene.kinematics, lambda + x[0], mu + x[1]);
             let mut findings = Vec::new();
             if !near(young, body.young) {
-                let sentence = format!("Young's modulus of {} is {} in place of {}", body.name, number(young), body.young);
-                findings.push(Finding::new(format!("body/{}/young", body.name), Some(young), Some(body.young), sentence));
+                let sentence =
+                    format!("Young's modulus of {} is {} in place of {}", body.name, number(young), body.young);
+                findings.push(Finding::new(
+                    format!("body/{}/young", body.name),
+                    Some(young),
+                    Some(body.young),
+                    sentence,
+                ));
             }
             if !near(poisson, body.poisson) || findings.is_empty() {
                 let sentence =
@@ -108,11 +121,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         if alike {
             terms.push(2, columns, move |x| {
                 let first = own(0);
-                let [young, poisson] = Moduli::engineering(
-                    scene.kinematics,
-                    first.lambda * (1.0 + x[0]),
-                    first.mu * (1.0 + x[1]),
-                );
+                let [young, poisson] =
+                    Moduli::engineering(scene.kinematics, first.lambda * (1.0 + x[0]), first.mu * (1.0 + x[1]));
                 let both = format!(
                     "the material of every body has E = {} and ν = {} in place of {} and {}",
                     number(young),

@@ -25,6 +25,8 @@ use space::Space;
 
 /// Of the squared residual what an explanation may leave: a hundredth of the residual.
 const LEFT: f64 = 1e-4;
+/// Of a Young's modulus, what a wrong one is no less than.
+const LEAST_STIFFNESS: f64 = 1e-12;
 /// Explanations that leave less than this times what the best leaves are as good.
 const AS_GOOD: f64 = 10.0;
 
@@ -71,6 +73,25 @@ struct Trial {
     findings: Vec<Finding>,
 }
 
+impl Trial {
+    /// Whether a material with the constants found exists: one without stiffness would explain everything.
+    fn is_possible(&self) -> bool {
+        self.findings.iter().all(|f| match (f.value, f.expected) {
+            (Some(young), Some(given)) if f.name.ends_with("/young") => young > LEAST_STIFFNESS * given,
+            (Some(poisson), _) if f.name.ends_with("/poisson") => -1.0 < poisson && poisson < 0.5,
+            _ => true,
+        })
+    }
+
+    /// Whether a finding of forces or displacements along supports and contacts stands beside this explanation, and is no
+    /// consequence of it.
+    fn leaves(&self, finding: &Finding) -> bool {
+        let of_values = self.findings.iter().any(|f| f.name == "value" || f.name.starts_with("displacement/"));
+        let of_forces = ["/glued", "/open"].iter().any(|end| finding.name.ends_with(end));
+        !of_values && !of_forces
+    }
+}
+
 /// Energies of a field as it is, and of the nearest admissible one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
@@ -112,6 +133,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         match found {
             Ok(trial) => {
                 diagnosis.explained = Some(1.0 - trial.left);
+                diagnosis.findings.retain(|finding| trial.leaves(finding));
                 diagnosis.findings.extend(trial.findings);
             }
             Err(trials) => {
@@ -136,10 +158,7 @@ fn simplest(mut trials: Vec<Trial>, floor: f64) -> Result<Trial, Vec<Trial>> {
     let enough = (AS_GOOD * best).max(floor).max(1e-2 * LEFT);
     trials.retain(|t| t.left <= enough);
     let key = |t: &Trial| (t.rank, t.left);
-    trials
-        .into_iter()
-        .min_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)))
-        .ok_or_else(Vec::new)
+    trials.into_iter().min_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1))).ok_or_else(Vec::new)
 }
 
 fn sentence(diagnosis: &Diagnosis, nearest: Option<&Trial>) -> String {

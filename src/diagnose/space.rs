@@ -140,7 +140,11 @@ impl<'a> Space<'a> {
     }
 
     /// The same for other displacements.
-    pub fn stiffness_on(&self, moduli: impl Fn(usize) -> Option<Moduli>, value: impl Fn(usize) -> [f64; 2]) -> Vec<f64> {
+    pub fn stiffness_on(
+        &self,
+        moduli: impl Fn(usize) -> Option<Moduli>,
+        value: impl Fn(usize) -> [f64; 2],
+    ) -> Vec<f64> {
         let mut forces = vec![[0.0; 2]; self.count()];
         for (t, body) in self.problem().mesh.body.iter().enumerate() {
             let Some(moduli) = moduli(*body) else { continue };

@@ -41,6 +41,13 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
         findings.push(if largest <= NO_FORCE * applied {
             let sentence = format!("the support on {on} is not applied: no force acts there, and it moves by up to {}", number(depth));
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
+        } else if let Some(c) = (0..2).find(|c| free_along(*c, &off, &force, enough, NO_FORCE * applied)) {
+            let axis = ["x", "y"][c];
+            let sentence = format!(
+                "the support on {on} is not applied along {axis}: no force acts in this direction, and it moves by up to {}",
+                number(depth)
+            );
+            Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
         } else if let Some(s) = prescribed(solution, support.kind, &nodes) {
             let sentence = format!("the displacement of {on} is {} times the prescribed one", number(s));
             Finding::new(name("displacement"), Some(s), Some(1.0), sentence)
@@ -65,6 +72,12 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
         });
     }
     findings
+}
+
+/// Whether a support misses along axis `c` alone, and no force acts along it.
+fn free_along(c: usize, off: &[[f64; 2]], force: &[[f64; 2]], enough: f64, no_force: f64) -> bool {
+    let most = |values: &[[f64; 2]], c: usize| values.iter().fold(0.0_f64, |m, v| m.max(v[c].abs()));
+    most(off, c) > enough && most(off, 1 - c) <= enough && most(force, c) <= no_force
 }
 
 /// By how much the displacement of a node misses its support.
@@ -93,6 +106,7 @@ fn prescribed(solution: &Solution<'_>, kind: SupportKind, nodes: &[usize]) -> Op
 fn spring(off: &[[f64; 2]], force: &[[f64; 2]]) -> Option<f64> {
     let dot = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum::<f64>();
     let stiffness = -dot(off, force) / dot(off, off);
-    let miss = off.iter().zip(force).map(|(d, f)| (f[0] + stiffness * d[0]).powi(2) + (f[1] + stiffness * d[1]).powi(2));
+    let miss =
+        off.iter().zip(force).map(|(d, f)| (f[0] + stiffness * d[0]).powi(2) + (f[1] + stiffness * d[1]).powi(2));
     (stiffness > 0.0 && miss.sum::<f64>() <= SPRING * SPRING * dot(force, force)).then_some(stiffness)
 }

@@ -15,6 +15,7 @@ pub fn number(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
         return format!("{x:.3e}");
     }
+    let x = format!("{x:.3e}").parse().unwrap_or(x);
     let digits = (3 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32).clamp(0, 6);
     format!("{x:.*}", digits as usize)
 }

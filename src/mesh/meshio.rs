@@ -51,8 +51,12 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
             Outcome::Exit(status) if status.code() == Some(NO_MESHIO) => {}
             Outcome::Exit(status) if status.code() == Some(NO_PACKAGE) => {
                 let name = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("it needs");
-                let what = format!("meshio needs the Python package {name} for this format, and {} lacks it", interpreter.display());
-                let remedy = format!("install it (pip install {name}, or apt-get install python3-{name}), or {instead}");
+                let what = format!(
+                    "meshio needs the Python package {name} for this format, and {} lacks it",
+                    interpreter.display()
+                );
+                let remedy =
+                    format!("install it (pip install {name}, or apt-get install python3-{name}), or {instead}");
                 return Err(failure(what, remedy));
             }
             Outcome::Exit(_) | Outcome::Lost(_) => {

@@ -109,8 +109,11 @@ impl Fields {
 
     /// The same with the residual of a claimed solution, triangle by triangle.
     pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
-        let map =
-            |values| Map { key: "residual", title: "What the claimed solution misses of equilibrium, at its nodes", values };
+        let map = |values| Map {
+            key: "residual",
+            title: "What the claimed solution misses of equilibrium, at its nodes",
+            values,
+        };
         self.maps.splice(0..0, values.map(map));
         self
     }

@@ -1,6 +1,6 @@
 //! The checks of a field that claims to be a discrete solution.
 
-use super::{SOLVER, Solution};
+use super::{SOLVER, Site, Solution};
 use crate::bounds::Hold;
 use crate::compare::{Allowances, Basis, Check};
 use crate::mesh::sets::DisjointSets;
@@ -44,7 +44,10 @@ impl Solution<'_> {
             false => String::new(),
         };
         let digits = match self.rounding > SOLVER * self.scale {
-            true => format!(" The displacements are kept to {:.1e} of their size, which leaves the rest of the allowance.", self.candidate.precision),
+            true => format!(
+                " The displacements are kept to {:.1e} of their size, which leaves the rest of the allowance.",
+                self.candidate.precision
+            ),
             false => String::new(),
         };
         let what = format!(
@@ -73,7 +76,9 @@ impl Solution<'_> {
             "solution/supports",
             self.relative(depth),
             SOLVER + self.candidate.precision,
-            format!("The field has the displacement that supports prescribe{place}, relative to the largest displacement."),
+            format!(
+                "The field has the displacement that supports prescribe{place}, relative to the largest displacement."
+            ),
         )
     }
 
@@ -111,7 +116,9 @@ impl Solution<'_> {
             "solution/reactions",
             value,
             SOLVER + self.rounding / self.scale,
-            format!("Forces of supports and contacts, from the stresses of the field, are in equilibrium with the loads on every body.{force}"),
+            format!(
+                "Forces of supports and contacts, from the stresses of the field, are in equilibrium with the loads on every body.{force}"
+            ),
         )
     }
 
@@ -125,7 +132,10 @@ impl Solution<'_> {
             Hold::Fixed(value) => value,
         };
         let supports: f64 = nodes.map(|n| dot(self.supported(n), prescribed(n))).sum();
-        let gaps: f64 = self.sites.list.iter().zip(&self.pressing).map(|(site, force)| force * site.gap).sum();
+        // What contact does on a penetration has a check of its own.
+        let distance = |(site, excess): (&Site, &f64)| site.gap + excess.max(0.0);
+        let distances = self.sites.list.iter().zip(&self.excess).map(distance);
+        let gaps: f64 = distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum();
         let (left, right) = (2.0 * self.strain, work + supports - gaps);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
         Check::equal(

@@ -9,7 +9,7 @@
 mod checks;
 mod sites;
 
-pub use sites::{Site, Sites};
+pub use sites::{Site, Sites, Span};
 
 use super::balance::Balance;
 use super::candidate::Candidate;

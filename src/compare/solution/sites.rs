@@ -49,9 +49,20 @@ impl Site {
 pub struct Sites {
     /// The places, interface by interface.
     pub list: Vec<Site>,
-    /// For every pair of edges of degree 2 with one direction: its first end, midpoint and second end.
-    pub spans: Vec<[usize; 3]>,
+    /// The places of every pair of edges with one direction.
+    pub spans: Vec<Span>,
     groups: Vec<Group>,
+}
+
+/// The places of one pair of edges, as indices into [`Sites::list`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// At its ends.
+    pub ends: [usize; 2],
+    /// At its midpoint, for nodes of degree 2.
+    pub middle: Option<usize>,
+    /// Its length.
+    pub length: f64,
 }
 
 /// Places that share nodes, with an orthonormal basis of the forces that contact can exert there.
@@ -88,12 +99,14 @@ impl Sites {
                         }
                     }
                 }
+                let middle = (degree == 2 && pair.edges[0].is_some()).then_some(sites.list.len());
+                let turned = !pair.direction.is_constant();
+                if !turned {
+                    sites.spans.push(Span { ends: at_ends, middle, length: pair.length });
+                }
                 let (2, Some(own)) = (degree, pair.edges[0]) else { continue };
                 let [n, m] = pair.direction.ends;
-                let turned = (!pair.direction.is_constant()).then(|| [m[0] - n[0], m[1] - n[1]]);
-                if turned.is_none() {
-                    sites.spans.push([at_ends[0], sites.list.len(), at_ends[1]]);
-                }
+                let turned = turned.then(|| [m[0] - n[0], m[1] - n[1]]);
                 sites.list.push(Site {
                     interface,
                     first: vertices + own,
@@ -142,7 +155,8 @@ impl Sites {
     /// Forces and gaps in Bernstein coefficients, in which every pressure ≥ 0 is a list of forces ≥ 0.
     pub fn in_coefficients(&self, pressing: &[f64], excess: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut forces, mut distances) = (pressing.to_vec(), excess.to_vec());
-        for &[first, middle, last] in &self.spans {
+        for span in &self.spans {
+            let ([first, last], Some(middle)) = (span.ends, span.middle) else { continue };
             forces[middle] = 0.5 * pressing[middle];
             forces[first] += 0.25 * pressing[middle];
             forces[last] += 0.25 * pressing[middle];

@@ -137,10 +137,20 @@ impl ForeignField {
             let what = format!("its points are not in one plane z = constant: z goes from {low} to {high}");
             return Err(fault(what, "this program is plane: write the field in the plane z = 0"));
         }
-        let values: Vec<Option<[f64; 2]>> = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
+        let values: Vec<Option<[f64; 2]>> =
+            rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
         let single = data.single || content.single;
         let precision = digits::precision(values.iter().flatten().flatten().copied(), single);
-        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single, precision, far })
+        Ok(ForeignField {
+            file: file.into(),
+            sha256,
+            points,
+            triangles: content.triangles,
+            values,
+            single,
+            precision,
+            far,
+        })
     }
 
     /// The same field with coordinates counted from `origin`; `None` where they are already.
@@ -173,21 +183,30 @@ impl ForeignField {
         Ok(self.matched(problem, seconds)?.0)
     }
 
-    /// The same, with a remark where points of the file are only nearly vertices of the mesh.
+    /// The same, with remarks where points of the file are only nearly vertices of the mesh, or fewer than these.
     ///
     /// # Errors
     /// As [`Self::candidate`].
-    pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Option<Note>), FieldError> {
+    pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Vec<Note>), FieldError> {
         let matched = matching::onto(self, problem)?;
-        let note = matched.off.map(|off| Note {
-            weakens_guarantee: false,
-            text: format!(
+        let note = |text: String| Note { weakens_guarantee: false, text };
+        let mut notes = Vec::new();
+        if matched.inserted > 0 {
+            notes.push(note(format!(
+                "{} vertices of the scene's mesh, put into its edges where contacts and gaps ask for them, are no points of {}: its \
+                 polynomials on the triangles of the file were taken over as they are.",
+                matched.inserted,
+                self.name()
+            )));
+        }
+        notes.extend(matched.off.map(|off| {
+            note(format!(
                 "The coordinates of {} are up to {:.1e} of the largest coordinate away from the vertices of the scene's mesh, as if \
                  rounded when they were written. The displacements were taken for those of the vertices.",
                 self.name(),
                 off / self.far
-            ),
-        });
+            ))
+        }));
         let nodes = if matched.degree == 2 { matched.middle.len() } else { 0 } + matched.vertex.len();
         let candidate = Candidate {
             name: self.name(),
@@ -206,7 +225,7 @@ impl ForeignField {
             precision: self.precision,
             numbering: Some(matched.numbering),
         };
-        Ok((candidate, note))
+        Ok((candidate, notes))
     }
 
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {

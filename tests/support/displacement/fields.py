@@ -76,7 +76,7 @@ CHANGES = {
 }
 WAYS = {
     "right": {},
-    "penalty_stiff": {"penalty": 1e6},
+    "penalty_stiff": {"penalty": 1e4},
     "penalty_soft": {"penalty": 2e1},
     "tied": {"tied": True},
     "contact_row_missing": {"forget": (1,)},
