@@ -137,7 +137,9 @@ impl<'a> Along<'a> {
     fn constant_gap(&self, carrying: &[usize]) -> Option<f64> {
         let values: Vec<f64> = carrying.iter().map(|s| self.depth(*s)).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let same = values.len() > 2 && values.iter().all(|d| (d - mean).abs() <= CONSTANT * mean.abs());
+        let same = values.len() > 2
+            && mean.abs() > 0.5 * self.enough
+            && values.iter().all(|d| (d - mean).abs() <= CONSTANT * mean.abs());
         same.then_some(mean)
     }
 

@@ -71,8 +71,15 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let own = move |b: usize| Moduli::of_body(problem, &bodies[b]);
     let all = |name: &'static str, what: &'static str, part: fn(Moduli) -> Moduli, terms: &mut Terms<'a>| {
         let column = space.stiffness(|b| Some(part(own(b))));
+        let poisson: Vec<f64> = bodies.iter().map(|body| body.poisson).collect();
         terms.push(1, vec![column], move |x| {
-            vec![Finding::new(name, Some(1.0 + x[0]), Some(1.0), factor(what, 1.0 + x[0]))]
+            let s = 1.0 + x[0];
+            let mut sentence = factor(what, s);
+            let turned = |nu: &f64| *nu != 0.0 && near(s, (1.0 - 2.0 * nu) / (1.0 + 2.0 * nu));
+            if name == "stiffness/lambda" && scene.kinematics == Kinematics::PlaneStrain && poisson.iter().all(turned) {
+                sentence += ", as if 1 + 2ν stood in place of 1 − 2ν";
+            }
+            vec![Finding::new(name, Some(s), Some(1.0), sentence)]
         });
     };
     all("stiffness/lambda", "Lamé's λ of every body", |m| Moduli { lambda: m.lambda, ..NONE }, terms);
