@@ -21,9 +21,9 @@ pub struct Args {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The displacement field, in any format that meshio reads
-    #[arg(long, value_name = "FILE")]
-    pub displacement: PathBuf,
+    /// The displacement field, in any format that meshio reads; may be repeated, for one file a body
+    #[arg(long, value_name = "FILE", required = true)]
+    pub displacement: Vec<PathBuf>,
     /// Name of the point data that is the displacement, where it is not displacement, u or disp
     #[arg(long, value_name = "NAME")]
     pub field: Option<String>,
@@ -55,8 +55,12 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
     session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let field = ForeignField::read(&args.displacement, args.field.as_deref(), limit(args.solve.reading_seconds))
-        .map_err(refused)?;
+    let read = |file: &PathBuf| {
+        ForeignField::read(file, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)
+    };
+    let mut parts = args.displacement.iter().map(read);
+    let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
+    let field = parts.try_fold(first, |field, part| Ok::<_, CliError>(field.and(part?)))?;
     args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
     // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.

@@ -181,8 +181,8 @@ impl<'a> Places<'a> {
         let problem = self.space.problem();
         let numbering = self.space.solution.candidate.numbering.as_ref();
         let corners = problem.mesh.triangles[t].map(|v| self.space.solution.named(v)).join(", ");
-        match numbering.and_then(|n| n.triangles.get(t).copied().flatten()) {
-            Some(number) => format!("triangle {} of the file (corners: {corners})", number + 1),
+        match numbering.and_then(|n| n.triangle(t)) {
+            Some(triangle) => format!("{triangle} (corners: {corners})"),
             None => format!("the triangle with the corners {corners}"),
         }
     }

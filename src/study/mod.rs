@@ -17,6 +17,7 @@ mod rounds;
 mod sharpen;
 mod stage;
 mod trend;
+mod verdict;
 mod warm_start;
 
 pub use adaptive::{Adapt, Adapted, Goal, adapt, tolerance_check};

@@ -27,6 +27,29 @@ pub struct Numbering {
     pub nodes: Vec<Option<usize>>,
     /// Of triangles: the number of the triangle, from zero.
     pub triangles: Vec<Option<usize>>,
+    /// Where a field comes in several files: of each the name and its first point and triangle.
+    pub files: Vec<(String, [usize; 2])>,
+}
+
+impl Numbering {
+    /// A point of the file, or a triangle, as a message names it: counted from one, in its own file.
+    fn named(&self, kind: &str, which: usize, number: usize) -> String {
+        let own = self.files.iter().rev().find(|(_, first)| first[which] <= number);
+        match own.filter(|_| self.files.len() > 1) {
+            Some((name, first)) => format!("{kind} {} of {name}", number - first[which] + 1),
+            None => format!("{kind} {} of the file", number + 1),
+        }
+    }
+
+    /// A node by its point.
+    pub fn point(&self, node: usize) -> Option<String> {
+        Some(self.named("point", 0, self.nodes.get(node).copied().flatten()?))
+    }
+
+    /// A triangle by its number.
+    pub fn triangle(&self, t: usize) -> Option<String> {
+        Some(self.named("triangle", 1, self.triangles.get(t).copied().flatten()?))
+    }
 }
 
 /// A field with what it leaves of the equations of a discrete solution.
@@ -176,8 +199,8 @@ impl Candidate {
     pub fn named(&self, problem: &Problem, node: usize) -> String {
         let extent = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let [x, y] = problem.scene.as_written(place(problem, node)).map(|x| round(x, extent));
-        match self.numbering.as_ref().and_then(|n| n.nodes.get(node).copied().flatten()) {
-            Some(number) => format!("point {} of the file, at ({x}, {y})", number + 1),
+        match self.numbering.as_ref().and_then(|n| n.point(node)) {
+            Some(point) => format!("{point}, at ({x}, {y})"),
             None => format!("({x}, {y})"),
         }
     }

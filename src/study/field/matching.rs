@@ -53,6 +53,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
     let mut numbering = Numbering {
         nodes: vec![None; mesh.points.len() + mesh.edges.len()],
         triangles: partners.iter().zip(&parents).map(|(own, parent)| own.map(|p| p.0).or(*parent)).collect(),
+        files: field.files.clone(),
     };
     let mut off = None;
     let value = |node: usize| {

@@ -40,6 +40,8 @@ pub struct ForeignField {
     sha256: String,
     /// Coordinates of every point.
     points: Vec<[f64; 2]>,
+    /// Of every file its name and its first point and triangle.
+    files: Vec<(String, [usize; 2])>,
     /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
     triangles: Vec<Vec<usize>>,
     /// Displacement of every point; `None` where the file has no finite number.
@@ -141,7 +143,9 @@ impl ForeignField {
             rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
         let single = data.single || content.single;
         let precision = digits::precision(values.iter().flatten().flatten().copied(), single);
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         Ok(ForeignField {
+            files: vec![(name, [0; 2])],
             file: file.into(),
             sha256,
             points,
@@ -153,15 +157,29 @@ impl ForeignField {
         })
     }
 
+    /// This field and that of another file, which has other bodies of the scene.
+    pub fn and(mut self, other: ForeignField) -> Self {
+        let first = [self.points.len(), self.triangles.len()];
+        self.files.extend(other.files.into_iter().map(|(name, at)| (name, [at[0] + first[0], at[1] + first[1]])));
+        self.triangles.extend(other.triangles.into_iter().map(|nodes| nodes.iter().map(|n| n + first[0]).collect()));
+        self.points.extend(other.points);
+        self.values.extend(other.values);
+        self.single |= other.single;
+        self.precision = self.precision.max(other.precision);
+        self.far = self.far.max(other.far);
+        self.sha256 = format!("{} {}", self.sha256, other.sha256);
+        self
+    }
+
     /// The same field with coordinates counted from `origin`; `None` where they are already.
     fn about(&self, origin: [f64; 2]) -> Option<Self> {
         let points = || self.points.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect();
         (origin != [0.0; 2]).then(|| ForeignField { points: points(), ..self.clone() })
     }
 
-    /// The name of the file, by which reports and checks call the field.
+    /// The names of the files, by which reports and checks call the field.
     pub fn name(&self) -> String {
-        self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
+        self.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" + ")
     }
 
     /// SHA-256 of the file.
