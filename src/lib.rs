@@ -58,6 +58,7 @@ pub mod budget;
 pub mod chart;
 pub mod cli;
 pub mod compare;
+pub mod diagnose;
 pub mod dual;
 pub mod element;
 pub mod measure;

@@ -36,6 +36,8 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         certified,
         comparison: &comparison,
         answers: &[],
+        diagnosis: Vec::new(),
+        is_claimed: false,
         finer: None,
         enough: Some(0.05),
         history: Vec::new(),

@@ -16,6 +16,6 @@ pub use jump::{openings, side_coefficients};
 pub use mid::mid_field;
 pub use sum::Sum;
 pub use upper::{
-    Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Pull, Until, Violation, admissible, bernstein, holds,
-    holds_at, repaired, supports_agree,
+    Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Pull, Repair, Until, Violation, admissible, bernstein,
+    holds, holds_at, repaired, supports_agree,
 };

@@ -7,10 +7,12 @@ use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
-use crate::compare::{Comparison, compare};
+use crate::compare::{Candidate, Comparison, compare};
 use crate::problem::Note;
 use crate::process::limit;
-use crate::study::{Claim, ForeignField, GivenValue, quantity_checks, value_checks, wanted_checks};
+use crate::study::{
+    self, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
+};
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
 /// jump is a combination of six rounded values with weights that add up to six.
@@ -22,18 +24,24 @@ pub struct Args {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// The displacement field, in any format that meshio reads
+    /// The displacement field, in any format that meshio reads; may be repeated, for one file a body
     #[arg(long, value_name = "FILE", required_unless_present_any = ["value", "values"])]
-    pub displacement: Option<PathBuf>,
+    pub displacement: Vec<PathBuf>,
     /// Values without a field.
     #[command(flatten)]
     pub values: ValueOptions,
     /// Name of the point data that is the displacement, where it is not displacement, u or disp
     #[arg(long, value_name = "NAME")]
     pub field: Option<String>,
+    /// Claim that the field is the discrete solution of a displacement method on this mesh, and hold it to that
+    #[arg(long)]
+    pub solution: bool,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
+    /// Where refinement stops.
+    #[command(flatten)]
+    pub limits: Limits,
     /// How to judge.
     #[command(flatten)]
     pub judge: JudgeOptions,
@@ -50,39 +58,73 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let session = Session::open("certify", &args.scene, &args.solve, args.run.quiet)?;
     let given = args.values.all()?;
     session.refuse_unknown_quantities(given.iter().map(|value| value.name.as_str()))?;
-    let Some(displacement) = &args.displacement else { return values_alone(args, &session, &given) };
+    if args.displacement.is_empty() {
+        return values_alone(args, &session, &given);
+    }
     refuse_refinement(&args.solve)?;
     let folder = args.run.report_folder(&session.scene)?;
     let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
     session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let field =
-        ForeignField::read(displacement, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)?;
+    let read = |file: &PathBuf| {
+        ForeignField::read(file, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)
+    };
+    let mut parts = args.displacement.iter().map(read);
+    let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
+    let field = parts.try_fold(first, |field, part| Ok::<_, CliError>(field.and(part?)))?;
     args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
-    let limits = Limits { max_triangles: None, max_seconds: None };
-    let run = session.solve(&args.solve, &limits, &folder)?;
+    // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.
+    let on_its_mesh = SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..args.solve.clone() };
+    let run = session.solve(&on_its_mesh, &args.limits, &folder)?;
     let certified = &run.certified;
-    let candidate = field.candidate(&certified.problem, reading).map_err(refused)?;
+    let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
+    if args.solution {
+        refuse_inserted(&candidate, &field)?;
+    }
     session.progress.phase("comparing");
-    let rounding = field.is_single_precision().then(|| (format!("admissible/{}", candidate.name), SINGLE));
+    // A claimed solution knows the digits of its file.
+    let rounding =
+        (field.is_single_precision() && !args.solution).then(|| (format!("admissible/{}", candidate.name), SINGLE));
     let allow = args.judge.allowances().after(rounding);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
-    let answers = session.answers(&run, &args.solve);
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Claim::Exact, &allow));
-    comparison.checks.extend(value_checks(&answers, &given, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
+    let asked = args.judge.allowances();
+    comparison.checks.iter_mut().for_each(|check| check.excused &= asked.given(&check.name).is_some());
+    let mut claimed = None;
+    if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
+        session.progress.phase("holding the field to its claim");
+        let claim = study::claim(&certified.problem, judged, &allow)
+            .map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
+        let admissible = format!("admissible/{}", judged.candidate.name);
+        comparison.checks.retain(|check| check.name != admissible);
+        comparison.checks.extend(claim.checks.iter().cloned());
+        claimed = Some(claim);
+    }
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
-    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &limits, &allow)?;
+    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &args.limits, &allow)?;
+    if let Some(wanted) = args.solve.tolerance {
+        let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+        comparison.checks.push(tolerance_check(sharpest, &comparison, wanted, &allow));
+    }
+    // The field has its values on its own mesh, intervals come from the finest one.
+    let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+    let answers = session.answers(sharpest, &args.solve);
+    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Exact, &allow));
+    comparison.checks.extend(value_checks(&answers, &given, &allow));
+    args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
     let particulars = Particulars {
         sharpened,
         enough: Some(enough),
         answers,
-        notes: repairs(&comparison),
+        notes: repairs(&comparison).into_iter().chain(rounded).collect(),
         seconds: vec![("reading the displacement", reading)],
         components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
+        diagnosis: claimed.iter().filter_map(|claim| claim.diagnosis.clone()).collect(),
+        residual: claimed.map(|claim| claim.residual),
         failure: None,
     };
     session.conclude(run, &comparison, particulars, &folder)
@@ -92,10 +134,10 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
 fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<Exit, CliError> {
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, &[])?;
-    let run = session.solve(&args.solve, &Limits { max_triangles: None, max_seconds: None }, &folder)?;
+    let run = session.solve(&args.solve, &args.limits, &folder)?;
     let (certified, allow) = (&run.certified, args.judge.allowances());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
-    let answers = session.answers(&run, &args.solve);
+    let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, false)?;
@@ -104,17 +146,35 @@ fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<
     session.conclude(run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
 }
 
-/// A field lives on its own mesh, so there is nothing to refine.
-fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
-    let option = match (solve.refine, solve.tolerance) {
-        (0, None) => return Ok(()),
-        (0, Some(_)) => "--tolerance",
-        _ => "--refine",
-    };
+/// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.
+fn refuse_inserted(candidate: &Candidate, field: &ForeignField) -> Result<(), CliError> {
+    let nodes = candidate.vertex.len() + if candidate.degree == 2 { candidate.middle.len() } else { 0 };
+    let known = candidate.numbering.iter().flat_map(|n| &n.nodes).take(nodes).all(Option::is_some);
+    if known {
+        return Ok(());
+    }
     Err(CliError::stopped(
         Exit::BadInput,
-        format!("{option} changes the mesh, and a displacement field is certified on the mesh it comes with"),
-        format!("leave {option} out; refine in the program that makes the field, and certify what it then writes"),
+        format!(
+            "--solution: vertices that contacts or gaps need are no points of {}, whose triangles are cut there; the field is no discrete \
+             solution of the mesh that is left",
+            field.name()
+        ),
+        "give both sides of every contact the same vertices, and kinks of the gap one, in the mesh that both programs use; or leave \
+         --solution out",
+    ))
+}
+
+/// A field lives on its own mesh: there is nothing to refine uniformly.
+fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
+    if solve.refine == 0 {
+        return Ok(());
+    }
+    Err(CliError::stopped(
+        Exit::BadInput,
+        "--refine changes the mesh, and a displacement field is certified on the mesh it comes with",
+        "leave --refine out: --tolerance refines the stresses alone and keeps the field; to refine the field, do so in the program that \
+         makes it, and certify what it then writes",
     ))
 }
 

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{CliError, Exit, say, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
+use crate::diagnose::Diagnosis;
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
 use crate::element::{Elements, block};
 use crate::mesh;
@@ -64,6 +65,10 @@ pub struct Particulars {
     pub seconds: Vec<(&'static str, f64)>,
     /// What else took part, with versions.
     pub components: Vec<(String, String)>,
+    /// What explains that a field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Its residual, triangle by triangle, where a field is handed in as the discrete solution of its mesh.
+    pub residual: Option<Vec<f64>>,
     /// Why the displacement model gave no answer.
     pub failure: Option<String>,
 }
@@ -133,13 +138,13 @@ impl Session {
         Ok(run)
     }
 
-    /// The intervals of the quantities of the scene.
-    pub fn answers(&self, run: &DualRun, solve: &SolveOptions) -> Vec<Answer> {
+    /// The intervals of the quantities of the scene, from a problem that was solved.
+    pub fn answers(&self, certified: &Certified, solve: &SolveOptions) -> Vec<Answer> {
         if self.scene.quantities.is_empty() {
             return Vec::new();
         }
         self.progress.phase("bounding the quantities");
-        study::answers(&run.certified, &self.options(solve), |_| true)
+        study::answers(certified, &self.options(solve), |_| true)
     }
 
     /// Refuses names that no quantity of the scene has.
@@ -256,16 +261,25 @@ impl Session {
         allow: &Allowances,
     ) -> Result<(Option<Sharpened>, f64), CliError> {
         let asked = allow.given("bracket/sharpness");
-        let (aim, enough) = (asked.unwrap_or(SHARP), asked.unwrap_or(BLUNT));
+        // Where a field was handed in, refining the stresses is all that a tolerance can ask for, for as long as it takes.
+        let wanted = solve.tolerance.filter(|_| self.command == "certify");
+        let (aim, enough) = (wanted.or(asked).unwrap_or(SHARP), asked.unwrap_or(BLUNT));
         let Limits { max_triangles, max_seconds } = *limits;
-        let goal = Goal { max_triangles, max_seconds, ..Goal::new(aim) };
+        // A run without a field has refined towards its quantities before.
+        let quantities = if self.command == "certify" { solve.wanted() } else { Vec::new() };
+        let patient = wanted.is_some() || !quantities.is_empty();
+        let max_seconds = max_seconds.or(patient.then_some(f64::INFINITY));
+        let goal = Goal { max_triangles, max_seconds, wanted: quantities, ..Goal::new(aim) };
         let told = |row: &HistoryRow| {
             let bound = 100.0 * row.relative_error_bound;
             self.progress
                 .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
         };
         let method = method(solve.method);
-        let options = self.options(solve);
+        let options = match patient {
+            true => self.options(&SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..solve.clone() }),
+            false => self.options(solve),
+        };
         let sharpened = study::sharpen(&run.certified, comparison, method.as_ref(), &options, goal, told)
             .map_err(|error| CliError::stopped(Exit::Failed, format!("{}: {error}", self.scene.path.display()), ""))?;
         if let Some(finer) = &sharpened {
@@ -286,7 +300,18 @@ impl Session {
         folder: &Path,
     ) -> Result<Exit, CliError> {
         let DualRun { certified, mut history, stopped } = run;
-        let Particulars { sharpened, enough, answers, mut notes, mut seconds, components, failure } = particulars;
+        let Particulars {
+            sharpened,
+            enough,
+            answers,
+            mut notes,
+            mut seconds,
+            components,
+            diagnosis,
+            residual,
+            failure,
+        } = particulars;
+        let is_claimed = residual.is_some();
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
             notes.push(sharpened_note(&certified, stopped));
             history.extend(meshes);
@@ -294,7 +319,7 @@ impl Session {
         });
         seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
-        let fields = Fields::new(&certified, comparison);
+        let fields = Fields::new(&certified, comparison).with_residual(residual);
         let dossier = assemble(
             Findings {
                 command: self.command,
@@ -308,6 +333,8 @@ impl Session {
                 threads: self.threads,
                 seconds,
                 components,
+                diagnosis,
+                is_claimed,
                 failure,
             },
             &fields,
@@ -326,6 +353,9 @@ impl Session {
             }
             for check in report.checks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  failed: {}: {}", check.name, check.why));
+            }
+            for diagnosis in &report.diagnosis {
+                say::line(&format!("  {}", diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  worth a look: {}", remark.name));

@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    let answers = session.answers(&run, &args.solve);
+    let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     session.conclude(run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
 }

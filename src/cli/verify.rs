@@ -8,7 +8,7 @@ use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};
 use crate::process::limit;
-use crate::study::{Claim, candidates, pins, quantity_checks, tolerance_check, wanted_checks};
+use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -89,9 +89,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    let answers = session.answers(&run, &args.solve);
+    let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Claim::Discrete, &allow));
+    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Discrete, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
     let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
     comparison.checks.extend(baseline);
@@ -108,6 +108,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         answers,
         seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
         components,
+        diagnosis: diagnoses(&certified.problem, &comparison),
         failure: failure.as_ref().map(ToString::to_string),
         ..Particulars::default()
     };

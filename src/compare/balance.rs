@@ -18,6 +18,7 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
+use super::solution::place;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
@@ -98,7 +99,7 @@ impl Balance {
             rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
-            worst: worst.map(|i| (solution.place(i), rest[i])),
+            worst: worst.map(|i| (place(problem, i), rest[i])),
             reactions,
             reaction_rounding,
             carried,
@@ -116,25 +117,12 @@ struct Solution<'a> {
 
 impl Solution<'_> {
     fn value(&self, node: usize) -> [f64; 2] {
-        let vertices = self.candidate.vertex.len();
-        if node < vertices { self.candidate.vertex[node] } else { self.candidate.middle[node - vertices] }
-    }
-
-    fn place(&self, node: usize) -> [f64; 2] {
-        let mesh = &self.problem.mesh;
-        match node.checked_sub(mesh.points.len()) {
-            None => mesh.points[node],
-            Some(e) => {
-                let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-                [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
-            }
-        }
+        self.candidate.value(node)
     }
 
     /// Coefficients this far below their bound are open.
     fn closed_within(&self) -> f64 {
-        let all = self.candidate.vertex.iter().chain(&self.candidate.middle).flatten();
-        CLOSED * all.fold(0.0_f64, |m, v| m.max(v.abs()))
+        CLOSED * self.candidate.largest()
     }
 
     /// Takes the forces of the middle coefficients b1 = 2 j_mid − ½ (j_a + j_b) out of `rest`, at the midpoints and at

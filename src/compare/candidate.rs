@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::balance::Balance;
-use crate::bounds::{Bracket, NoUpperBound, UpperBound, Violation, repaired};
+use super::solution::Numbering;
+use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired};
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -37,6 +38,23 @@ pub struct Candidate {
     pub unknowns: usize,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
+    /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.
+    pub precision: f64,
+    /// Where its nodes are in the file that it comes from.
+    pub numbering: Option<Numbering>,
+}
+
+impl Candidate {
+    /// The displacement of a node: vertices, then edge midpoints.
+    pub fn value(&self, node: usize) -> [f64; 2] {
+        let vertices = self.vertex.len();
+        if node < vertices { self.vertex[node] } else { self.middle[node - vertices] }
+    }
+
+    /// The largest component of all displacements.
+    pub fn largest(&self) -> f64 {
+        self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
+    }
 }
 
 /// Variationally consistent contact reactions on one interface, thickness included.
@@ -77,7 +95,8 @@ impl Judged {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
     pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
-        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle)?;
+        let repair = if candidate.is_solution { Repair::AtContact } else { Repair::OfLeastEnergy };
+        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle, repair)?;
         let field = Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle);
         let field = UpperBound::new(problem, dual, field);
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));

@@ -25,6 +25,9 @@ pub struct Check {
     pub why: String,
     /// Where the tolerance comes from.
     pub basis: Basis,
+    /// Whether it passed by an allowance alone.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub excused: bool,
 }
 
 /// Where an allowed value comes from.
@@ -35,6 +38,9 @@ pub enum Basis {
     Guaranteed,
     /// Round-off of an identity that holds exactly.
     RoundOff,
+    /// Claimed of a field that somebody hands in: that it is admissible or, with `--solution`, the discrete solution of its
+    /// mesh, to the accuracy of a solver.
+    Claimed,
     /// Chosen by this program: theory leaves it open, and what exceeds it is worth a look, no more.
     Chosen,
     /// Asked for by the user: a tolerance, an allowance, a stored result to be reproduced.
@@ -49,11 +55,13 @@ impl Check {
 
     /// The same with `allowed` in place of the tolerance, as the user asks.
     pub fn asked(mut self, allowed: f64) -> Self {
+        let failed = self.decides() && !self.passed;
         self.allowed = allowed;
         self.margin = self.difference.map(|difference| allowed - difference);
         self.passed =
             self.value.is_some() && self.reference.is_some() && self.margin.is_some_and(|margin| margin >= 0.0);
         self.basis = Basis::Asked;
+        self.excused = failed && self.passed;
         self
     }
 
@@ -89,6 +97,7 @@ impl Check {
             passed: difference <= allowed && value.is_finite() && reference.is_finite(),
             why: why.into(),
             basis,
+            excused: false,
         }
     }
 
@@ -104,6 +113,7 @@ impl Check {
             passed: false,
             why: why.into(),
             basis,
+            excused: false,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Energy checks: the bracket, its order, and the identities a solution satisfies.
 
 use super::balance::Balance;
-use super::candidate::{ADMISSIBLE, Judged};
+use super::candidate::{ADMISSIBLE, Candidate, Judged};
+use super::solution::{Site, Sites};
 use super::tolerance::chosen;
 use super::{Basis, Check};
-use crate::bounds::{Bracket, UpperBound, Violation};
+use crate::bounds::{Bracket, UpperBound, Violation, holds};
 use crate::dual::DualSolution;
 use crate::problem::{Problem, Scales};
 
@@ -63,10 +64,11 @@ pub fn primal_checks(problem: &Problem, scales: &Scales, bracket: &Bracket, judg
         support.max(depth),
         0.0,
         ADMISSIBLE,
-        Basis::RoundOff,
+        if judged.candidate.is_solution { Basis::RoundOff } else { Basis::Claimed },
         format!(
             "Supports are met (off by {support:.1e}) and nothing penetrates, {where_to}, relative to the largest \
-             displacement."
+             displacement.{}",
+            deepest(problem, &judged.candidate)
         ),
     ));
     checks.push(order(who, bracket, judged.admissible.upper()));
@@ -131,6 +133,19 @@ pub fn primal_checks(problem: &Problem, scales: &Scales, bracket: &Bracket, judg
          √(2·gap).",
     ));
     checks
+}
+
+/// Which contact a field penetrates most, and at which node; nothing where no node penetrates.
+fn deepest(problem: &Problem, candidate: &Candidate) -> String {
+    let Ok(holds) = holds(problem) else { return String::new() };
+    let sites = Sites::new(problem, candidate.degree, &holds);
+    let depth = |site: &Site| site.excess(|node| candidate.value(node));
+    let deepest = sites.list.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let Some(site) = deepest.filter(|site| depth(site) > ADMISSIBLE * candidate.largest()) else {
+        return String::new();
+    };
+    let (contact, place) = (&problem.interfaces[site.interface].name, candidate.named(problem, site.first));
+    format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }
 
 /// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges.

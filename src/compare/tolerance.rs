@@ -23,7 +23,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 19] = [
+const NAMES: [&str; 26] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -43,6 +43,13 @@ const NAMES: [&str; 19] = [
     "contact/{contact}/pressure-max",
     "contact/{contact}/reactions",
     "contact/{contact}/resultant",
+    "solution/residual",
+    "solution/supports",
+    "solution/reactions",
+    "solution/energy-identity",
+    "solution/contact/{contact}/penetration",
+    "solution/contact/{contact}/pulling",
+    "solution/contact/{contact}/pressure-where-open",
 ];
 
 /// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make.

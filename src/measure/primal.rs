@@ -4,7 +4,7 @@ use super::memory::Watch;
 use super::record::{Answer, End, Measured, Seconds};
 use super::solve::variation;
 use super::{Clock, Method, Settings};
-use crate::bounds::{potential, repaired};
+use crate::bounds::{Repair, potential, repaired};
 use crate::compare::pressure::{maximum, reaction_pressure};
 use crate::compare::{Candidate, Reactions};
 use crate::primal::{self, PrimalError, PrimalSeconds};
@@ -113,7 +113,7 @@ fn answer(problem: &Problem, candidate: &Candidate) -> Answer {
         iterations: candidate.iterations,
         ..Answer::default()
     };
-    match repaired(problem, &candidate.vertex, &candidate.middle) {
+    match repaired(problem, &candidate.vertex, &candidate.middle, Repair::AtContact) {
         Ok((field, violation)) => {
             let energy = potential(problem, &field);
             answer.upper = Some(energy.total());

@@ -10,7 +10,11 @@ except ImportError as error:
     sys.exit(44)
 
 source, target = sys.argv[1:]
-mesh = meshio.read(source)
+try:
+    mesh = meshio.read(source)
+except ModuleNotFoundError as error:
+    print(error.name, file=sys.stderr)
+    sys.exit(45)
 shapes = {"line": "line", "line3": "line", "triangle": "triangle", "triangle6": "triangle"}
 
 # The integers that group cells, by the name each format gives them.

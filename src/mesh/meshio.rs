@@ -8,6 +8,9 @@ use crate::process::{Outcome, Scratch, python, supervise};
 /// Exit code of a script whose interpreter has no meshio.
 const NO_MESHIO: i32 = 44;
 
+/// The same where meshio itself lacks a package for this format; the last line names it.
+const NO_PACKAGE: i32 = 45;
+
 /// How long meshio may read one file where nobody says otherwise.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -22,7 +25,7 @@ pub(crate) struct Failure {
 
 /// Runs `script` on `file` with the first interpreter that has meshio (`HYPERCIRCLE_PYTHON`, `python3`,
 /// `/usr/bin/python3`), and gives what it wrote: its arguments are `file` and the file to write. A script ends with
-/// code 44 where meshio is missing, and with a message where it fails. `instead` is a remedy that needs no meshio.
+/// code 44 where meshio is missing, with 45 and its name where a package that meshio needs is, and with a message where it fails. `instead` is a remedy that needs no meshio.
 ///
 /// # Errors
 /// [`Failure`] when there is no such interpreter, or when the script fails or takes longer than `limit`.
@@ -46,6 +49,16 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
                     .map_err(|e| failure(format!("meshio's result cannot be read: {e}"), instead.to_string()));
             }
             Outcome::Exit(status) if status.code() == Some(NO_MESHIO) => {}
+            Outcome::Exit(status) if status.code() == Some(NO_PACKAGE) => {
+                let name = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("it needs");
+                let what = format!(
+                    "meshio needs the Python package {name} for this format, and {} lacks it",
+                    interpreter.display()
+                );
+                let remedy =
+                    format!("install it (pip install {name}, or apt-get install python3-{name}), or {instead}");
+                return Err(failure(what, remedy));
+            }
             Outcome::Exit(_) | Outcome::Lost(_) => {
                 let end = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("no message");
                 return Err(failure(format!("meshio cannot read it: {end}"), format!("check the file, or {instead}")));

@@ -13,7 +13,7 @@ mod tests;
 
 pub use direction::Direction;
 pub use error::ProblemError;
-pub use scales::{Scales, Sizes, amplified};
+pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use crate::mesh::Triangulation;
 pub use crate::scene::Note;

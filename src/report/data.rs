@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::number::{digits_to_tell, significant};
 
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
+pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
@@ -45,6 +46,8 @@ pub struct Report {
     /// Comparisons with a tolerance that this program chose, because theory sets none. One that does not pass is worth a
     /// look; none turns the verdict, unless `--allow` makes a check of it.
     pub remarks: Vec<Check>,
+    /// What explains that a displacement field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
     /// What the reader has to know.
     pub notes: Vec<Note>,
     /// How adaptive refinement went, one row per mesh; empty without it.

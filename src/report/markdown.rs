@@ -18,6 +18,9 @@ pub fn summary(report: &Report) -> String {
     let _ = writeln!(text, "{}\n", cell(&report.verdict));
     bracket(&mut text, report);
     checks(&mut text, report);
+    for diagnosis in &report.diagnosis {
+        let _ = writeln!(text, "**What is wrong with {}:** {}\n", cell(&diagnosis.field), cell(&diagnosis.sentence));
+    }
     primals(&mut text, report);
     contacts(&mut text, report);
     let weakening: Vec<_> = report.notes.iter().filter(|note| note.weakens_guarantee).collect();

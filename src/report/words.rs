@@ -18,6 +18,7 @@ pub(crate) fn status_word(status: Status) -> &'static str {
 pub(crate) fn headline(report: &Report) -> &'static str {
     match report.status {
         Status::Agree if report.primal.is_empty() => "passed",
+        Status::Agree if report.checks.iter().any(|check| check.excused) => "agree, with allowances",
         status => status_word(status),
     }
 }
@@ -38,6 +39,7 @@ pub(crate) fn basis_word(basis: Basis) -> &'static str {
     match basis {
         Basis::Guaranteed => "guaranteed",
         Basis::RoundOff => "round-off",
+        Basis::Claimed => "claimed",
         Basis::Chosen => "chosen",
         Basis::Asked => "asked for",
     }
@@ -54,6 +56,10 @@ pub(crate) fn meaning(check: &Check) -> &'static str {
         (_, Basis::RoundOff) => {
             "Round-off: the two numbers are equal in exact arithmetic, and differ here by more than rounding explains. \
              One of them was computed or transferred wrongly."
+        }
+        (_, Basis::Claimed) => {
+            "Claimed: the field is not what it is handed in as. Nothing is said by this about the bound, which belongs to the nearest \
+             admissible field; --allow NAME=VALUE takes a larger difference for none."
         }
         (_, Basis::Chosen) => {
             "Chosen: theory sets no limit here, and this is no part of the verdict. The models differ more than is usual: \

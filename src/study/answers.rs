@@ -16,8 +16,6 @@ const OWN_ERROR: f64 = 2.0;
 pub struct Answer {
     /// Its name.
     pub name: String,
-    /// What it is on the mesh.
-    pub functional: Option<Functional>,
     /// Its interval; both ends infinite, with the reason, where none is known.
     pub interval: Interval,
     /// What it is, in a word.
@@ -72,15 +70,13 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
         match (Functional::new(problem, quantity), &known) {
             (Ok(functional), Ok(known)) => {
                 let interval = known.interval(&functional);
-                Answer { name, kind: functional.kind.name(), interval, functional: Some(functional) }
+                Answer { name, kind: functional.kind.name(), interval }
             }
             (Ok(functional), Err(reason)) => {
                 let kind = functional.kind.name();
-                Answer { name, kind, interval: Interval::unknown(reason), functional: Some(functional) }
+                Answer { name, kind, interval: Interval::unknown(reason) }
             }
-            (Err(error), _) => {
-                Answer { name, kind: "force", interval: Interval::unknown(&error.to_string()), functional: None }
-            }
+            (Err(error), _) => Answer { name, kind: "force", interval: Interval::unknown(&error.to_string()) },
         }
     };
     quantities.iter().map(answer).collect()
@@ -115,13 +111,14 @@ pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Compari
 }
 
 fn value_in(certified: &Certified, answer: &Answer, judged: &Judged) -> Option<f64> {
-    let functional = answer.functional.as_ref()?;
-    value_of(&certified.problem, functional, &judged.field.displacement).filter(|value| value.is_finite())
+    let quantity = certified.problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name)?;
+    let functional = Functional::new(&certified.problem, quantity).ok()?;
+    value_of(&certified.problem, &functional, &judged.field.displacement).filter(|value| value.is_finite())
 }
 
 /// How a value outside an interval is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Claim {
+pub enum Meant {
     /// A discrete solution on this mesh: what its own energy leaves open is allowed.
     Discrete,
     /// The exact value.
@@ -133,7 +130,7 @@ pub fn quantity_checks(
     certified: &Certified,
     answers: &[Answer],
     comparison: &Comparison,
-    claim: Claim,
+    meant: Meant,
     allow: &Allowances,
 ) -> Vec<Check> {
     let mut checks = Vec::new();
@@ -141,9 +138,9 @@ pub fn quantity_checks(
         for judged in &comparison.judged {
             let field = &judged.candidate.name;
             let Some(value) = value_in(certified, answer, judged) else { continue };
-            let own = match claim {
-                Claim::Exact => 0.0,
-                Claim::Discrete => OWN_ERROR * own_error(certified, answer, judged),
+            let own = match meant {
+                Meant::Exact => 0.0,
+                Meant::Discrete => OWN_ERROR * own_error(certified, answer, judged),
             };
             let whose = if own > 0.0 {
                 format!("{field} may miss it by what its own energy leaves open")

@@ -4,12 +4,13 @@ use super::Certified;
 use super::answers::{Answer, summaries};
 use super::curves;
 use super::provenance::{identifier, provenance};
+use super::verdict::verdict;
 use crate::bounds::{Bracket, UpperBound, mid_field};
 use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
-use crate::report::number::{digits_to_tell, percent, significant};
 use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
 
 /// What a run found.
@@ -37,6 +38,10 @@ pub struct Findings<'a> {
     pub seconds: Vec<(&'static str, f64)>,
     /// Versions of programs that took part.
     pub components: Vec<(String, String)>,
+    /// What explains that a field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Whether a field is handed in as the discrete solution of its mesh.
+    pub is_claimed: bool,
     /// Why the displacement side is missing, where it should be there.
     pub failure: Option<String>,
 }
@@ -103,6 +108,17 @@ impl Fields {
             });
         }
         Fields { maps, mid }
+    }
+
+    /// The same with the residual of a claimed solution, triangle by triangle.
+    pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
+        let map = |values| Map {
+            key: "residual",
+            title: "What the claimed solution misses of equilibrium, at its nodes",
+            values,
+        };
+        self.maps.splice(0..0, values.map(map));
+        self
     }
 }
 
@@ -194,6 +210,7 @@ fn report(findings: &Findings<'_>) -> Report {
         quantities: summaries(findings.certified, findings.answers, comparison),
         checks,
         remarks,
+        diagnosis: findings.diagnosis.clone(),
         notes,
         history: findings.history.clone(),
         provenance,
@@ -246,37 +263,6 @@ fn enclosed_work(upper: &UpperBound, bracket: &Bracket) -> [f64; 2] {
     [0.0 - 2.0 * upper.upper(), 0.0 - 2.0 * bracket.lower()]
 }
 
-/// The verdict in one sentence.
-fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> String {
-    if let Some(failure) = &findings.failure {
-        return format!("No comparison was made: {failure}");
-    }
-    let failed = findings.comparison.checks.iter().filter(|c| !c.passed && c.decides());
-    let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
-    let bound = energy.map_or(String::new(), |e| {
-        let what = if e.guaranteed { "guaranteed" } else { "indicated" };
-        format!(
-            " The exact energy lies between {} and {}; the {what} relative energy-norm error is at most {}.",
-            significant(e.lower, digits_to_tell(e.lower, e.upper)),
-            significant(e.upper, digits_to_tell(e.lower, e.upper)),
-            percent(e.relative_error_bound)
-        )
-    });
-    let models = findings.comparison.judged.len();
-    match (failed.as_slice(), models) {
-        ([], _) if status == Status::Undecided => {
-            format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
-        }
-        ([], 0) => format!("The bracket holds.{bound}"),
-        ([], _) if findings.command == "certify" => {
-            format!("The displacement field is admissible and its energy respects the bound.{bound}")
-        }
-        ([], _) => format!("The stress and displacement models agree.{bound}"),
-        ([one], _) => format!("One check failed: {one}.{bound}"),
-        (several, _) => format!("{} checks failed, first {}.{bound}", several.len(), several[0]),
-    }
-}
-
 /// The report on a scene without equilibrium.
 pub fn infeasible<'a>(
     command: &str,
@@ -302,6 +288,7 @@ pub fn infeasible<'a>(
             quantities: Vec::new(),
             checks: Vec::new(),
             remarks: Vec::new(),
+            diagnosis: Vec::new(),
             notes: problem.notes.clone(),
             history: Vec::new(),
             provenance: provenance(problem, threads),

@@ -5,6 +5,7 @@ mod admission;
 mod answers;
 mod baseline;
 mod certified;
+mod claim;
 mod curves;
 mod dossier;
 mod field;
@@ -19,15 +20,17 @@ mod stage;
 mod trend;
 #[cfg(test)]
 mod trend_tests;
+mod verdict;
 mod warm_start;
 
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
 pub use admission::Admission;
 pub use answers::{
-    Answer, Claim, GivenValue, answers, quantity_checks, refuse_quantities, summaries, value_checks, wanted_checks,
+    Answer, GivenValue, Meant, answers, quantity_checks, refuse_quantities, summaries, value_checks, wanted_checks,
 };
 pub use baseline::{Baseline, BaselineError};
 pub use certified::{Certified, StudyError, certify};
+pub use claim::{Claim, claim, diagnoses};
 pub use curves::remarks as curve_remarks;
 pub use dossier::{Fields, Findings, assemble, infeasible};
 pub use field::{FieldError, ForeignField};

@@ -59,5 +59,7 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
         iterations: solution.iterations,
         unknowns: solution.unknowns,
         seconds,
+        precision: f64::EPSILON,
+        numbering: None,
     }
 }

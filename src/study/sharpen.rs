@@ -43,7 +43,7 @@ pub fn sharpen(
     on_step: impl FnMut(&HistoryRow),
 ) -> Result<Option<Sharpened>, StudyError> {
     let upper = comparison.upper(&certified.bracket).map_or(f64::INFINITY, |(upper, _)| upper.upper());
-    if certified.bracket.tells(upper, goal.tolerance) {
+    if goal.wanted.is_empty() && certified.bracket.tells(upper, goal.tolerance) {
         return Ok(None);
     }
     let known_upper = comparison.judged.iter().map(|j| j.admissible.upper()).reduce(f64::min);

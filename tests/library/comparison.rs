@@ -45,6 +45,8 @@ fn exact(problem: &Problem) -> Candidate {
         iterations: 1,
         unknowns: 1,
         seconds: BTreeMap::new(),
+        precision: f64::EPSILON,
+        numbering: None,
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod certify;
 mod chart;
+mod claimed;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;

@@ -16,6 +16,7 @@ mod fit;
 mod groups;
 mod holds;
 mod interior;
+mod lift;
 mod model;
 mod momentum;
 mod nearest;
@@ -34,6 +35,7 @@ pub use self::nodes::{NodalValues, Nodes};
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein};
 pub use self::stiffness::Pull;
+use super::energy::potential;
 use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::Problem;
@@ -143,6 +145,18 @@ impl Violation {
     }
 }
 
+/// How a field that penetrates becomes admissible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Repair {
+    /// By the values along the contact alone: enough for what a solver leaves.
+    AtContact,
+    /// By the change of least energy, wherever it costs less.
+    OfLeastEnergy,
+}
+
+/// Penetrations up to this part of the displacement are what solvers leave, and cost no energy to speak of.
+const WORTH_LIFTING: f64 = 1e-9;
+
 /// The nearest admissible continuous quadratic field to one given by its values at vertices and edge midpoints, and how
 /// far from admissible that was.
 ///
@@ -152,6 +166,7 @@ pub fn repaired(
     problem: &Problem,
     vertex: &[[f64; 2]],
     middle: &[[f64; 2]],
+    repair: Repair,
 ) -> Result<(Displacement, Violation), NoUpperBound> {
     let holds = holds(problem)?;
     let size = vertex.iter().chain(middle).flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
@@ -160,6 +175,21 @@ pub fn repaired(
     let rows = rows::rows(problem, &start.nodes);
     let (field, farthest) = restricted(problem, &holds, &rows, start)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
-    let (vertex, inner) = field.values.split_at(field.nodes.vertices());
-    Ok((Displacement::quadratic(&problem.mesh, vertex, inner), violation))
+    let made = |field: NodalValues| {
+        let (vertex, inner) = field.values.split_at(field.nodes.vertices());
+        Displacement::quadratic(&problem.mesh, vertex, inner)
+    };
+    let nearest = made(field);
+    if repair == Repair::OfLeastEnergy
+        && penetration > WORTH_LIFTING
+        && let Some((vertex, middle)) = lift::lifted(problem, &holds, vertex, middle)
+    {
+        let lifted = NodalValues::quadratic(&problem.mesh, &vertex, &middle);
+        let lifted = restricted(problem, &holds, &rows, lifted)?.0;
+        let lifted = made(lifted);
+        if potential(problem, &lifted).total() < potential(problem, &nearest).total() {
+            return Ok((lifted, violation));
+        }
+    }
+    Ok((nearest, violation))
 }

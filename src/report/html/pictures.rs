@@ -116,6 +116,8 @@ fn explanation(key: &str) -> &'static str {
         "How far the stresses of the two models are apart, triangle by triangle."
     } else if key.contains("contribution") || key.contains("error") || key.contains("gap") {
         "What each triangle adds to the width of the bracket: light triangles are where a finer mesh pays."
+    } else if key.contains("residual") {
+        "What equilibrium misses at the nodes of each triangle, relative to the whole: next to nothing everywhere for a discrete solution."
     } else {
         ""
     }

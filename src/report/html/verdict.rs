@@ -25,6 +25,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
                 }
             }
             (failures(report))
+            (diagnoses(report))
             div class=(if report.energy.is_some() { "first" } else { "first alone" }) {
                 @if report.energy.is_some() { (bracket_card(report)) }
                 div.answers {
@@ -81,6 +82,26 @@ fn failures(report: &Report) -> Markup {
     }
 }
 
+/// What explains that a field is not what it claims to be.
+fn diagnoses(report: &Report) -> Markup {
+    html! {
+        @for diagnosis in &report.diagnosis {
+            section.failures.diagnosis aria-label="diagnosis" {
+                h2 { "What is wrong with " (clean(&diagnosis.field)) }
+                @if diagnosis.findings.is_empty() { p { (clean(&diagnosis.sentence)) } } @else {
+                    ul { @for finding in &diagnosis.findings { li { (clean(&finding.sentence)) } } }
+                    @if let Some(explained) = diagnosis.explained {
+                        p {
+                            "Together they explain " b { (percent(explained)) } " of the squared residual; "
+                            (diagnosis.tried) " hypotheses were held against it."
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn bracket_card(report: &Report) -> Markup {
     html! {
         section.card aria-label="energy bracket" {
@@ -104,10 +125,11 @@ fn agreement(report: &Report) -> Markup {
     let (passed, all) = (report.checks.len() - failing(report).len(), report.checks.len());
     html! {
         section.card {
-            h3 { "Do the two models agree?" }
+            h3 { (if of_field(report) { "Is the field what it is handed in as?" } else { "Do the two models agree?" }) }
             div.big {
                 @match report.status {
                     Status::Agree if report.primal.is_empty() => "No second model",
+                    Status::Agree if report.checks.iter().any(|check| check.excused) => "Yes, with allowances",
                     Status::Agree => "Yes",
                     Status::Disagree => "No",
                     Status::Undecided => "Cannot be told",
@@ -129,7 +151,37 @@ fn agreement(report: &Report) -> Markup {
     }
 }
 
+/// Whether the report is about a field that was handed in.
+fn of_field(report: &Report) -> bool {
+    report.command == "certify" && !report.primal.is_empty()
+}
+
+/// How far a field that was handed in can be from the truth, before what the program has of its own.
+fn distance_of_field(report: &Report) -> Markup {
+    html! {
+        section.card {
+            h3 { "How far can the field be from the truth?" }
+            @for primal in &report.primal {
+                @if let Some(bound) = primal.relative_error_bound.filter(|bound| bound.is_finite()) {
+                    div.big { "≤ " (percent(bound)) }
+                    p {
+                        @if primal.admissible { "The stresses of " (clean(&primal.name)) " differ" }
+                        @else { (clean(&primal.name)) " is not admissible; the stresses of the nearest field that is differ" }
+                        " from the exact ones by at most this in the energy norm."
+                    }
+                } @else { p { "No bound was obtained for " (clean(&primal.name)) "." } }
+            }
+            @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
+                p { "Of the stresses that this program computed for comparison: at most " b { (percent(energy.relative_error_bound)) } "." }
+            }
+        }
+    }
+}
+
 fn distance(report: &Report) -> Markup {
+    if of_field(report) {
+        return distance_of_field(report);
+    }
     html! {
         section.card {
             h3 { "How far can each be from the truth?" }

@@ -4,8 +4,12 @@
 //! contact have two vertices at equal coordinates, and which point belongs to which body only the triangles say. A file
 //! that has merged such points gives both vertices the same displacement; one that has a point of its own for every
 //! triangle is read as the continuous field it must be.
+//!
+//! Contacts put vertices of one side and kinks of the gap into the edges of a mesh, and cut the triangles there. A triangle that is
+//! not in the file is then looked for inside one that is, whose polynomial it has.
 
 use super::{FieldError, ForeignField};
+use crate::compare::Numbering;
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::problem::Problem;
@@ -13,6 +17,10 @@ use crate::scene::Scene;
 
 /// Distance, in parts of the longest edge of a triangle, within which two points are one.
 const CLOSE: f64 = 1e-6;
+/// The same for coordinates that a writer has rounded to five or six digits: in parts of the largest coordinate of the file,
+/// and of the longest edge, beyond which a triangle would be another one.
+const ROUNDED: f64 = 1e-5;
+const DISTORTED: f64 = 0.02;
 /// Difference between two values of one point, in parts of the largest displacement, that counts as round-off.
 const JUMP: f64 = 1e-6;
 /// A direction along no line that meshes are likely to follow: sorted along it, few centroids are close neighbours.
@@ -24,6 +32,12 @@ pub(super) struct Matched {
     pub degree: usize,
     pub vertex: Vec<[f64; 2]>,
     pub middle: Vec<[f64; 2]>,
+    /// Where nodes and triangles are in the file.
+    pub numbering: Numbering,
+    /// How many vertices of the mesh are no points of the file.
+    pub inserted: usize,
+    /// How far a point of the file is from its vertex at most, where that is more than round-off.
+    pub off: Option<f64>,
 }
 
 /// Brings `field` onto the mesh of `problem`.
@@ -31,35 +45,47 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
     let (mesh, scene) = (&problem.mesh, &problem.scene);
     let moved = field.about(scene.origin);
     let field = moved.as_ref().unwrap_or(field);
-    let partners = partners(field, mesh, scene)?;
+    let (partners, parents) = partners(field, mesh, scene)?;
     let size = field.values.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut vertex: Vec<Option<[f64; 2]>> = vec![None; mesh.points.len()];
     let mut middle: Vec<Option<[f64; 2]>> = vec![None; mesh.edges.len()];
     let mut degree = 1;
-    for (t, (number, corners)) in partners.into_iter().enumerate() {
+    let mut numbering = Numbering {
+        nodes: vec![None; mesh.points.len() + mesh.edges.len()],
+        triangles: partners.iter().zip(&parents).map(|(own, parent)| own.map(|p| p.0).or(*parent)).collect(),
+        files: field.files.clone(),
+    };
+    let mut off = None;
+    let value = |node: usize| {
+        field.values[node].ok_or_else(|| {
+            let what =
+                format!("there is no finite displacement at point {} {}", node + 1, at(scene, field.points[node]));
+            field.fault(what, "write a finite value at every point of a triangle")
+        })
+    };
+    let put = |slot: &mut Option<[f64; 2]>, u: [f64; 2], point: [f64; 2]| match slot {
+        Some(other) if (other[0] - u[0]).abs().max((other[1] - u[1]).abs()) > JUMP * size => {
+            let what = format!("the displacement jumps inside a body, at {}", at(scene, point));
+            Err(field.fault(what, "only a continuous field has an energy: write it in a continuous space"))
+        }
+        Some(_) => Ok(()),
+        None => {
+            *slot = Some(u);
+            Ok(())
+        }
+    };
+    for (t, partner) in partners.into_iter().enumerate() {
+        let Some((number, corners)) = partner else { continue };
         let nodes = &field.triangles[number];
-        let value = |node: usize| {
-            field.values[node].ok_or_else(|| {
-                let what =
-                    format!("there is no finite displacement at point {} {}", node + 1, at(scene, field.points[node]));
-                field.fault(what, "write a finite value at every point of a triangle")
-            })
-        };
-        let put = |slot: &mut Option<[f64; 2]>, u: [f64; 2], point: [f64; 2]| match slot {
-            Some(other) if (other[0] - u[0]).abs().max((other[1] - u[1]).abs()) > JUMP * size => {
-                let what = format!("the displacement jumps inside a body, at {}", at(scene, point));
-                Err(field.fault(what, "only a continuous field has an energy: write it in a continuous space"))
-            }
-            Some(_) => Ok(()),
-            None => {
-                *slot = Some(u);
-                Ok(())
-            }
-        };
         let u = [value(nodes[corners[0]])?, value(nodes[corners[1]])?, value(nodes[corners[2]])?];
         for i in 0..3 {
             let v = mesh.triangles[t][i];
             put(&mut vertex[v], u[i], mesh.points[v])?;
+            numbering.nodes[v].get_or_insert(nodes[corners[i]]);
+            let away = distance(field.points[nodes[corners[i]]], mesh.points[v]);
+            if away > round_off(field, &mesh.corners(t)) && off.is_none_or(|most| most < away) {
+                off = Some(away);
+            }
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let mean = |a: [f64; 2], b: [f64; 2]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
             let ends = [mesh.triangles[t][j], mesh.triangles[t][k]].map(|v| mesh.points[v]);
@@ -75,6 +101,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
                         );
                         return Err(field.fault(what, "write the field on straight triangles"));
                     }
+                    numbering.nodes[mesh.points.len() + mesh.triangle_edges[t][i]].get_or_insert(node);
                     value(node)?
                 }
                 None => mean(u[j], u[k]),
@@ -82,9 +109,31 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
             put(&mut middle[mesh.triangle_edges[t][i]], between, halfway)?;
         }
     }
-    // Every triangle has a partner, and every vertex and edge a triangle.
+    for (t, parent) in parents.into_iter().enumerate() {
+        let Some(nodes) = parent.map(|number| &field.triangles[number]) else { continue };
+        if nodes.len() == 6 {
+            degree = 2;
+        }
+        let values: Vec<[f64; 2]> = nodes.iter().map(|node| value(*node)).collect::<Result<_, _>>()?;
+        let corners = [0, 1, 2].map(|i| field.points[nodes[i]]);
+        let own = mesh.corners(t);
+        let within = |p: [f64; 2]| interpolated(&values, barycentric(&corners, p));
+        for i in 0..3 {
+            let v = mesh.triangles[t][i];
+            put(&mut vertex[v], within(own[i]), own[i])?;
+            let weights = barycentric(&corners, own[i]);
+            if let Some(corner) = (0..3).find(|c| weights[*c] > 1.0 - INSIDE) {
+                numbering.nodes[v].get_or_insert(nodes[corner]);
+            }
+            let [a, b] = [own[(i + 1) % 3], own[(i + 2) % 3]];
+            let halfway = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            put(&mut middle[mesh.triangle_edges[t][i]], within(halfway), halfway)?;
+        }
+    }
+    let inserted = numbering.nodes[..mesh.points.len()].iter().filter(|n| n.is_none()).count();
+    // Every triangle has a partner or a parent, and every vertex and edge a triangle.
     let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect();
-    Ok(Matched { degree, vertex: all(vertex), middle: all(middle) })
+    Ok(Matched { degree, vertex: all(vertex), middle: all(middle), numbering, inserted, off })
 }
 
 /// Place, among the nodes of a triangle, of the one between two corners.
@@ -96,13 +145,26 @@ fn middle_node(a: usize, b: usize) -> usize {
     }
 }
 
-/// For each triangle of `mesh` the triangle of `field`, and which of its corners are those of the mesh's, in order.
-fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result<Vec<(usize, [usize; 3])>, FieldError> {
+/// Per triangle of a mesh, the triangle of a field that is the same, with the corners that are its corners, in order.
+type Partners = Vec<Option<(usize, [usize; 3])>>;
+/// Per triangle of a mesh that has no partner, the triangle of a field that it is a part of.
+type Parents = Vec<Option<usize>>;
+
+/// Barycentric coordinates this far below zero are inside.
+const INSIDE: f64 = 1e-6;
+/// Part of a triangle that its parts may leave open or fill twice, by rounding.
+const UNFILLED: f64 = 1e-3;
+/// Pairs of triangles that are tried when parents are looked for.
+const MOST_PAIRS: usize = 4_000_000;
+
+/// Where every triangle of `mesh` is in `field`.
+fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result<(Partners, Parents), FieldError> {
     let along = |p: [f64; 2]| DIRECTION[0] * p[0] + DIRECTION[1] * p[1];
     let mut order: Vec<(f64, usize)> =
         (0..mesh.triangles.len()).map(|t| (along(centroid(&mesh.corners(t))), t)).collect();
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut found: Vec<Option<(usize, [usize; 3])>> = vec![None; mesh.triangles.len()];
+    let mut found: Partners = vec![None; mesh.triangles.len()];
+    let mut strays = Vec::new();
     for (number, nodes) in field.triangles.iter().enumerate() {
         let corners = [0, 1, 2].map(|i| field.points[nodes[i]]);
         let close = tolerance(field, &corners);
@@ -112,8 +174,8 @@ fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result
         let partner = near.filter_map(|(_, t)| Some((*t, same_corners(&mesh.corners(*t), &corners, close)?)));
         // Of two that overlap within the tolerance, one that is still free.
         let Some((t, permutation)) = partner.min_by_key(|(t, _)| found[*t].is_some()) else {
-            let what = format!("{} is not in the mesh of the scene", describe(scene, number, corners));
-            return Err(field.fault(what, REMEDY));
+            strays.push(number);
+            continue;
         };
         if let Some((other, _)) = found[t] {
             let what = format!("{} is there twice, as triangle {} too", describe(scene, number, corners), other + 1);
@@ -121,13 +183,75 @@ fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result
         }
         found[t] = Some((number, permutation));
     }
-    let complete = |(t, partner): (usize, Option<_>)| {
-        partner.ok_or_else(|| {
+    match parents(field, mesh, &found, &strays) {
+        Ok(parents) => Ok((found, parents)),
+        Err(Lost::Field(number)) => {
+            let corners = [0, 1, 2].map(|i| field.points[field.triangles[number][i]]);
+            Err(field.fault(format!("{} is not in the mesh of the scene", describe(scene, number, corners)), REMEDY))
+        }
+        Err(Lost::Mesh(t)) => {
             let corners = mesh.corners(t).map(|p| at(scene, p)).join(", ");
-            field.fault(format!("the triangle {corners} of the scene's mesh is not in it"), REMEDY)
-        })
+            Err(field.fault(format!("the triangle {corners} of the scene's mesh is not in it"), REMEDY))
+        }
+    }
+}
+
+/// A triangle of a field, or of a mesh, without counterpart.
+enum Lost {
+    Field(usize),
+    Mesh(usize),
+}
+
+/// The triangles among `strays` that those of `mesh` without a partner are parts of; the parts fill them.
+fn parents(field: &ForeignField, mesh: &Triangulation, found: &Partners, strays: &[usize]) -> Result<Parents, Lost> {
+    let mut parents: Parents = vec![None; found.len()];
+    let alone: Vec<usize> = (0..found.len()).filter(|t| found[*t].is_none()).collect();
+    let first_lost = |t: usize| strays.first().map_or(Lost::Mesh(t), |number| Lost::Field(*number));
+    if let Some(t) = alone.first().filter(|_| alone.len() * strays.len() > MOST_PAIRS) {
+        return Err(first_lost(*t));
+    }
+    let corners = |number: usize| [0, 1, 2].map(|i| field.points[field.triangles[number][i]]);
+    let mut filled = vec![0.0; strays.len()];
+    for t in alone {
+        let own = mesh.corners(t);
+        let parent = strays.iter().position(|number| {
+            let outer = corners(*number);
+            // A field may be rounded where the mesh is not.
+            let slack = INSIDE.max(tolerance(field, &outer) / longest(&outer));
+            own.iter().all(|p| barycentric(&outer, *p).iter().all(|l| *l > -slack))
+        });
+        let place = parent.ok_or_else(|| first_lost(t))?;
+        filled[place] += mesh.area(t) / area(&corners(strays[place])).abs();
+        parents[t] = Some(strays[place]);
+    }
+    match filled.iter().position(|part| (part - 1.0).abs() > UNFILLED) {
+        Some(place) => Err(Lost::Field(strays[place])),
+        None => Ok(parents),
+    }
+}
+
+fn area([a, b, c]: &[[f64; 2]; 3]) -> f64 {
+    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+}
+
+/// Barycentric coordinates of a point.
+fn barycentric(corners: &[[f64; 2]; 3], point: [f64; 2]) -> [f64; 3] {
+    let [a, b, c] = *corners;
+    let whole = area(corners);
+    [area(&[point, b, c]) / whole, area(&[a, point, c]) / whole, area(&[a, b, point]) / whole]
+}
+
+/// The value of a linear or quadratic field given at the nodes of a triangle: corners, then the middles of (0, 1), (1, 2), (2, 0).
+fn interpolated(values: &[[f64; 2]], l: [f64; 3]) -> [f64; 2] {
+    let weights = match values.len() {
+        6 => {
+            let corner = |i: usize| l[i] * (2.0 * l[i] - 1.0);
+            let middle = |i: usize, j: usize| 4.0 * l[i] * l[j];
+            vec![corner(0), corner(1), corner(2), middle(0, 1), middle(1, 2), middle(2, 0)]
+        }
+        _ => l.to_vec(),
     };
-    found.into_iter().enumerate().map(complete).collect()
+    values.iter().zip(weights).fold([0.0; 2], |sum, (u, w)| [sum[0] + w * u[0], sum[1] + w * u[1]])
 }
 
 /// The corners of `found` that are those of `wanted`, if the two triangles are one.
@@ -136,11 +260,18 @@ fn same_corners(wanted: &[[f64; 2]; 3], found: &[[f64; 2]; 3], close: f64) -> Op
     ORDERS.into_iter().find(|order| (0..3).all(|i| distance(wanted[i], found[order[i]]) <= close))
 }
 
-/// Within what distance points of a triangle are one: the tolerance, and the rounding of single precision.
+/// Within what distance points of a triangle are one: that of a writer that rounds coordinates to few digits.
 fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
-    let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
-    let far = field.far;
-    CLOSE * longest + if field.single { f64::from(f32::EPSILON) * far } else { 0.0 }
+    round_off(field, corners).max((ROUNDED * field.far).min(DISTORTED * longest(corners)))
+}
+
+/// Within what distance they are one but for round-off, in single precision where the file is.
+fn round_off(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
+    CLOSE * longest(corners) + if field.single { f64::from(f32::EPSILON) * field.far } else { 0.0 }
+}
+
+fn longest(corners: &[[f64; 2]; 3]) -> f64 {
+    (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max)
 }
 
 fn centroid(corners: &[[f64; 2]; 3]) -> [f64; 2] {

@@ -1,5 +1,6 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
+mod digits;
 mod matching;
 
 use std::collections::BTreeMap;
@@ -11,7 +12,7 @@ use serde::Deserialize;
 use super::provenance::hash;
 use crate::compare::Candidate;
 use crate::mesh::meshio;
-use crate::problem::Problem;
+use crate::problem::{Note, Problem};
 
 const SCRIPT: &str = include_str!("read.py");
 const INSTEAD: &str = "write it as VTU, with triangles and the displacement as point data";
@@ -39,12 +40,16 @@ pub struct ForeignField {
     sha256: String,
     /// Coordinates of every point.
     points: Vec<[f64; 2]>,
+    /// Of every file its name and its first point and triangle.
+    files: Vec<(String, [usize; 2])>,
     /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
     triangles: Vec<Vec<usize>>,
     /// Displacement of every point; `None` where the file has no finite number.
     values: Vec<Option<[f64; 2]>>,
     /// Whether the displacement is stored in single precision.
     single: bool,
+    /// Rounding of the displacements relative to their size: that of the digits the file keeps.
+    precision: f64,
     /// The largest coordinate of the file, which says how far single precision can be off.
     far: f64,
 }
@@ -126,10 +131,44 @@ impl ForeignField {
             let what = format!("'{name}' has a third component at point {} that is not zero", i + 1);
             return Err(fault(what, "this program is plane: write a displacement in the plane z = 0"));
         }
-        let values = rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
-        let single = data.single || content.single;
         let far = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        Ok(ForeignField { file: file.into(), sha256, points, triangles: content.triangles, values, single, far })
+        let third = || content.points.iter().filter_map(|p| p.get(2).copied().flatten());
+        let (low, high) = third().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+        let extent = third().fold(far, |m, z| m.max(z.abs()));
+        if high - low > if content.single { f64::from(f32::EPSILON) } else { FLAT } * extent {
+            let what = format!("its points are not in one plane z = constant: z goes from {low} to {high}");
+            return Err(fault(what, "this program is plane: write the field in the plane z = 0"));
+        }
+        let values: Vec<Option<[f64; 2]>> =
+            rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
+        let single = data.single || content.single;
+        let precision = digits::precision(values.iter().flatten().flatten().copied(), single);
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
+        Ok(ForeignField {
+            files: vec![(name, [0; 2])],
+            file: file.into(),
+            sha256,
+            points,
+            triangles: content.triangles,
+            values,
+            single,
+            precision,
+            far,
+        })
+    }
+
+    /// This field and that of another file, which has other bodies of the scene.
+    pub fn and(mut self, other: ForeignField) -> Self {
+        let first = [self.points.len(), self.triangles.len()];
+        self.files.extend(other.files.into_iter().map(|(name, at)| (name, [at[0] + first[0], at[1] + first[1]])));
+        self.triangles.extend(other.triangles.into_iter().map(|nodes| nodes.iter().map(|n| n + first[0]).collect()));
+        self.points.extend(other.points);
+        self.values.extend(other.values);
+        self.single |= other.single;
+        self.precision = self.precision.max(other.precision);
+        self.far = self.far.max(other.far);
+        self.sha256 = format!("{} {}", self.sha256, other.sha256);
+        self
     }
 
     /// The same field with coordinates counted from `origin`; `None` where they are already.
@@ -138,9 +177,9 @@ impl ForeignField {
         (origin != [0.0; 2]).then(|| ForeignField { points: points(), ..self.clone() })
     }
 
-    /// The name of the file, by which reports and checks call the field.
+    /// The names of the files, by which reports and checks call the field.
     pub fn name(&self) -> String {
-        self.file.file_name().unwrap_or(self.file.as_os_str()).to_string_lossy().into_owned()
+        self.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" + ")
     }
 
     /// SHA-256 of the file.
@@ -159,9 +198,35 @@ impl ForeignField {
     /// # Errors
     /// [`FieldError`] names the first triangle or point that does not fit.
     pub fn candidate(&self, problem: &Problem, seconds: f64) -> Result<Candidate, FieldError> {
+        Ok(self.matched(problem, seconds)?.0)
+    }
+
+    /// The same, with remarks where points of the file are only nearly vertices of the mesh, or fewer than these.
+    ///
+    /// # Errors
+    /// As [`Self::candidate`].
+    pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Vec<Note>), FieldError> {
         let matched = matching::onto(self, problem)?;
+        let note = |text: String| Note { weakens_guarantee: false, text };
+        let mut notes = Vec::new();
+        if matched.inserted > 0 {
+            notes.push(note(format!(
+                "{} vertices of the scene's mesh, put into its edges where contacts and gaps ask for them, are no points of {}: its \
+                 polynomials on the triangles of the file were taken over as they are.",
+                matched.inserted,
+                self.name()
+            )));
+        }
+        notes.extend(matched.off.map(|off| {
+            note(format!(
+                "The coordinates of {} are up to {:.1e} of the largest coordinate away from the vertices of the scene's mesh, as if \
+                 rounded when they were written. The displacements were taken for those of the vertices.",
+                self.name(),
+                off / self.far
+            ))
+        }));
         let nodes = if matched.degree == 2 { matched.middle.len() } else { 0 } + matched.vertex.len();
-        Ok(Candidate {
+        let candidate = Candidate {
             name: self.name(),
             solver: "displacement file".into(),
             version: String::new(),
@@ -175,7 +240,10 @@ impl ForeignField {
             iterations: 0,
             unknowns: 2 * nodes,
             seconds: BTreeMap::from([("total".to_string(), seconds)]),
-        })
+            precision: self.precision,
+            numbering: Some(matched.numbering),
+        };
+        Ok((candidate, notes))
     }
 
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {

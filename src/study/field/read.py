@@ -32,6 +32,12 @@ def readable():
     return copy
 
 
+def missing(error):
+    """Ends with the name of a package that meshio needs for this format."""
+    print(error.name, file=sys.stderr)
+    sys.exit(45)
+
+
 def read():
     """Points, cell blocks and point data; of a time series the last step."""
     said = io.StringIO()
@@ -40,15 +46,15 @@ def read():
             mesh = meshio.read(readable())
         return mesh.points, mesh.cells, mesh.point_data
     except ModuleNotFoundError as error:
-        sys.exit(f"the Python package {error.name} is missing")
+        missing(error)
     except (Exception, SystemExit) as error:
         if source.lower().endswith((".xdmf", ".xmf")):
             try:
                 with meshio.xdmf.TimeSeriesReader(source) as series:
                     points, cells = series.read_points_cells()
                     return points, cells, series.read_data(series.num_steps - 1)[1]
-            except ModuleNotFoundError as missing:
-                sys.exit(f"the Python package {missing.name} is missing")
+            except ModuleNotFoundError as lacking:
+                missing(lacking)
             except Exception:
                 pass
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]

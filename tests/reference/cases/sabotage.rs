@@ -2,9 +2,9 @@
 
 use super::run::{Run, case, with_reference};
 
-/// Every file of the report names what caught the bug.
+/// Every file of the report names what caught the bug, and the diagnosis of both solutions the bug itself.
 #[track_caller]
-fn caught(scene: &str, bug: &str, expected: &str) {
+fn caught(scene: &str, bug: &str, expected: &str, named: &str) {
     if !with_reference() {
         return;
     }
@@ -14,6 +14,11 @@ fn caught(scene: &str, bug: &str, expected: &str) {
     assert_eq!(report.0["status"], "disagree");
     let failed = report.failed();
     assert!(failed.contains(&expected), "{bug} caught by {failed:?}");
+    for diagnosis in report.0["diagnosis"].as_array().expect("a list") {
+        let findings = diagnosis["findings"].as_array().expect("a list");
+        assert!(findings.len() == 1 && findings[0]["name"].as_str().is_some_and(|n| n.ends_with(named)), "{diagnosis}");
+    }
+    assert_eq!(report.0["diagnosis"].as_array().map(Vec::len), Some(2), "{}", report.0["diagnosis"]);
     for name in failed {
         let first = name.split(' ').next().unwrap_or(name);
         for file in ["report.json", "report.html", "summary.md", "junit.xml"] {
@@ -28,12 +33,12 @@ fn caught(scene: &str, bug: &str, expected: &str) {
 
 #[test]
 fn a_wrong_sign_in_the_stiffness() {
-    caught("two_blocks", "flip-sign", "energy/recomputed/FEniCSx P2");
-    caught("hertz_rigid", "flip-sign", "primal/equilibrium/FEniCSx P2");
+    caught("two_blocks", "flip-sign", "energy/recomputed/FEniCSx P2", "stiffness/lambda");
+    caught("hertz_rigid", "flip-sign", "primal/equilibrium/FEniCSx P2", "stiffness/lambda");
 }
 
 #[test]
 fn a_contact_row_that_is_missing() {
-    caught("two_blocks", "drop-row", "admissible/FEniCSx P2");
-    caught("punch", "drop-row", "admissible/FEniCSx P2");
+    caught("two_blocks", "drop-row", "admissible/FEniCSx P2", "/in-part");
+    caught("punch", "drop-row", "admissible/FEniCSx P2", "/in-part");
 }

@@ -1,0 +1,197 @@
+//! The checks of a field that claims to be a discrete solution.
+
+use super::{SOLVER, Site, Solution};
+use crate::bounds::Hold;
+use crate::compare::{Allowances, Basis, Check};
+use crate::mesh::sets::DisjointSets;
+use crate::problem::Scales;
+
+/// How many nodes with a large residual are named.
+const NAMED: usize = 3;
+
+impl Solution<'_> {
+    /// All of them; `scales` says what counts as no force and no energy, `allow` what was asked for.
+    pub fn checks(&self, scales: &Scales, allow: &Allowances) -> Vec<Check> {
+        let mut checks =
+            vec![self.residual_check(), self.supports_check(), self.reactions_check(scales), self.energy_check(scales)];
+        for (index, interface) in self.problem.interfaces.iter().enumerate() {
+            let name = |what: &str| format!("solution/contact/{}/{what}", interface.name);
+            checks.push(self.penetration_check(index, &name("penetration")));
+            let [(pulling, pulled), (open, opened)] = self.complementarity(index);
+            let digits = self.rounding / self.scale;
+            checks.push(claimed(
+                &name("pulling"),
+                pulling,
+                SOLVER + digits,
+                format!("Contact pushes and never pulls: the sum of the nodal forces that pull{pulled}, relative to all forces."),
+            ));
+            checks.push(claimed(
+                &name("pressure-where-open"),
+                open,
+                SOLVER + digits,
+                format!("Contact carries a force only where it is closed: the sum of the nodal forces at open nodes{opened}, relative to all forces."),
+            ));
+        }
+        allow.apply(&mut checks);
+        checks
+    }
+
+    fn residual_check(&self) -> Check {
+        let worst: Vec<String> = self.worst().into_iter().take(NAMED).map(|n| self.force_at(n)).collect();
+        let residual = self.residual();
+        let places = match residual > self.allowed() {
+            true => format!(" Most is left at {}.", worst.join("; ")),
+            false => String::new(),
+        };
+        let digits = match self.rounding > SOLVER * self.scale {
+            true => format!(
+                " The displacements are kept to {:.1e} of their size, which leaves the rest of the allowance.",
+                self.candidate.precision
+            ),
+            false => String::new(),
+        };
+        let what = format!(
+            "The stresses of a discrete solution balance the loads on every basis function of degree {}, together with forces of \
+             supports and along contacts: what is left of the nodal forces, relative to all of them.{places}{digits}",
+            self.candidate.degree
+        );
+        claimed("solution/residual", residual, self.allowed(), what)
+    }
+
+    fn force_at(&self, node: usize) -> String {
+        let [x, y] = self.rest[node];
+        format!("{} (force ({x:.3e}, {y:.3e}))", self.named(node))
+    }
+
+    fn supports_check(&self) -> Check {
+        let off = |node: usize| {
+            let u = self.candidate.value(node);
+            let there = self.hold(node).impose(u);
+            (u[0] - there[0]).hypot(u[1] - there[1])
+        };
+        let worst = (0..self.rest.len()).max_by(|a, b| off(*a).total_cmp(&off(*b)));
+        let depth = worst.map_or(0.0, off);
+        let place = worst.filter(|_| depth > 0.0).map_or(String::new(), |n| format!(", most at {}", self.named(n)));
+        claimed(
+            "solution/supports",
+            self.relative(depth),
+            SOLVER + self.candidate.precision,
+            format!(
+                "The field has the displacement that supports prescribe{place}, relative to the largest displacement."
+            ),
+        )
+    }
+
+    /// `length` relative to the largest displacement.
+    fn relative(&self, length: f64) -> f64 {
+        if self.largest > 0.0 { length / self.largest } else { length }
+    }
+
+    fn reactions_check(&self, scales: &Scales) -> Check {
+        let mesh = &self.problem.mesh;
+        let vertices = mesh.points.len();
+        let mut sets = DisjointSets::new(vertices + mesh.edges.len());
+        for (corners, edges) in mesh.triangles.iter().zip(&mesh.triangle_edges) {
+            corners[1..].iter().for_each(|v| sets.join(corners[0], *v));
+            edges.iter().for_each(|e| sets.join(corners[0], vertices + e));
+        }
+        let (label, count) = sets.labels();
+        // What the balance of a body misses: supports, contacts and loads, which leave the residual.
+        let (mut sum, mut size) = (vec![[0.0; 2]; count], vec![0.0; count]);
+        for (node, rest) in self.rest.iter().enumerate() {
+            let part = label[node];
+            (0..2).for_each(|c| sum[part][c] += rest[c]);
+            let [load, held] = [self.forces.load[node], self.forces.left[node]].map(|f| f[0].hypot(f[1]));
+            size[part] += load + held;
+        }
+        let missing = |part: usize| sum[part][0].hypot(sum[part][1]);
+        let relative = |part: usize| {
+            let size = size[part].max(scales.round_off.force);
+            if size > 0.0 { missing(part) / size } else { 0.0 }
+        };
+        let worst = (0..count).max_by(|a, b| relative(*a).total_cmp(&relative(*b)));
+        let value = worst.map_or(0.0, relative);
+        let force = worst.map_or(String::new(), |p| format!(" ({:.3e}, {:.3e}) is missing.", sum[p][0], sum[p][1]));
+        claimed(
+            "solution/reactions",
+            value,
+            SOLVER + self.rounding / self.scale,
+            format!(
+                "Forces of supports and contacts, from the stresses of the field, are in equilibrium with the loads on every body.{force}"
+            ),
+        )
+    }
+
+    fn energy_check(&self, scales: &Scales) -> Check {
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let nodes = 0..self.rest.len();
+        let work: f64 = nodes.clone().map(|n| dot(self.forces.load[n], self.candidate.value(n))).sum();
+        let prescribed = |n: usize| match *self.hold(n) {
+            Hold::Free => [0.0; 2],
+            Hold::Line { normal, value } => normal.map(|x| value * x),
+            Hold::Fixed(value) => value,
+        };
+        let supports: f64 = nodes.map(|n| dot(self.supported(n), prescribed(n))).sum();
+        // What contact does on a penetration has a check of its own.
+        let distance = |(site, excess): (&Site, &f64)| site.gap + excess.max(0.0);
+        let distances = self.sites.list.iter().zip(&self.excess).map(distance);
+        let gaps: f64 = distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum();
+        let (left, right) = (2.0 * self.strain, work + supports - gaps);
+        let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
+        Check::equal(
+            "solution/energy-identity",
+            left,
+            right,
+            scale * (SOLVER + self.rounding / self.scale) + scales.round_off.energy,
+            Basis::Claimed,
+            "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
+             prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",
+        )
+    }
+
+    fn penetration_check(&self, interface: usize, name: &str) -> Check {
+        let deepest = self.deepest(interface);
+        let depth = deepest.map_or(0.0, |site| self.excess[site].max(0.0));
+        let place = deepest.filter(|_| depth > 0.0).map_or(String::new(), |site| {
+            format!(" It is deepest, {depth:.3e}, at {}.", self.named(self.sites.list[site].first))
+        });
+        claimed(
+            name,
+            self.relative(depth),
+            SOLVER + 2.0 * self.candidate.precision,
+            format!("No node penetrates, relative to the largest displacement.{place}"),
+        )
+    }
+
+    /// The site of contact `interface` that penetrates most.
+    pub fn deepest(&self, interface: usize) -> Option<usize> {
+        let own = (0..self.excess.len()).filter(|s| self.sites.list[*s].interface == interface);
+        own.max_by(|a, b| self.excess[*a].total_cmp(&self.excess[*b]))
+    }
+
+    /// Pulling and pushing where open, each with its place, relative to the forces of the scene.
+    fn complementarity(&self, interface: usize) -> [(f64, String); 2] {
+        if self.is_pushed() {
+            return [(0.0, String::new()), (0.0, String::new())];
+        }
+        let total = self.applied().max(self.carried(interface));
+        let share = |force: f64| if total > 0.0 { force / total } else { force };
+        let open = -2.0 * (SOLVER + self.candidate.precision) * self.largest;
+        let (forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
+        let own = || (0..forces.len()).filter(|s| self.sites.list[*s].interface == interface);
+        let sum = |force: &dyn Fn(usize) -> f64| {
+            let worst = own().max_by(|a, b| force(*a).total_cmp(&force(*b))).filter(|s| force(*s) > 0.0);
+            let place = worst.map_or(String::new(), |s| format!(" (most at {})", self.named(self.sites.list[s].first)));
+            (share(own().map(force).sum()), place)
+        };
+        let pulling = sum(&|s| (-forces[s]).max(0.0));
+        let pushed = |force: f64, distance: f64| if distance < open { force.max(0.0) } else { 0.0 };
+        let at_nodes = sum(&|s| pushed(self.pressing[s], self.excess[s]));
+        let in_coefficients = sum(&|s| pushed(forces[s], distances[s]));
+        [pulling, if at_nodes.0 <= in_coefficients.0 { at_nodes } else { in_coefficients }]
+    }
+}
+
+fn claimed(name: &str, value: f64, allowed: f64, why: String) -> Check {
+    Check::at_most(name, value, 0.0, allowed, Basis::Claimed, why)
+}

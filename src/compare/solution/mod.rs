@@ -1,0 +1,226 @@
+//! Whether a field that claims it is the discrete solution of a displacement method on this mesh.
+//!
+//! Its stresses then balance the loads on every basis function of its space, node by node, together with forces of the
+//! supports and forces along the contacts. Nothing of this asks how the other program solved: what is left of the nodal
+//! forces once supports and contacts, pushing or pulling, open or closed, have taken what they can is the *residual*; what
+//! contact then carries is held against complementarity by itself. A method may bound the jump at its nodes or in its Bernstein
+//! coefficients, which differ at the end of contact: what either of the two explains is explained.
+
+mod checks;
+mod sites;
+
+pub use sites::{Site, Sites, Span};
+
+use super::balance::Balance;
+use super::candidate::Candidate;
+use super::forces::NodalForces;
+use crate::bounds::{Hold, Holds, NoUpperBound, holds};
+use crate::problem::{Problem, ROUND_OFF};
+
+/// What a solver may leave in the equations that it solves, relative to what they balance.
+pub const SOLVER: f64 = 1e-6;
+
+/// Where the nodes and triangles of a mesh are in the file that a field comes from.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Numbering {
+    /// Of vertices, then edge midpoints: the number of the point, from zero.
+    pub nodes: Vec<Option<usize>>,
+    /// Of triangles: the number of the triangle, from zero.
+    pub triangles: Vec<Option<usize>>,
+    /// Where a field comes in several files: of each the name and its first point and triangle.
+    pub files: Vec<(String, [usize; 2])>,
+}
+
+impl Numbering {
+    /// A point of the file, or a triangle, as a message names it: counted from one, in its own file.
+    fn named(&self, kind: &str, which: usize, number: usize) -> String {
+        let own = self.files.iter().rev().find(|(_, first)| first[which] <= number);
+        match own.filter(|_| self.files.len() > 1) {
+            Some((name, first)) => format!("{kind} {} of {name}", number - first[which] + 1),
+            None => format!("{kind} {} of the file", number + 1),
+        }
+    }
+
+    /// A node by its point.
+    pub fn point(&self, node: usize) -> Option<String> {
+        Some(self.named("point", 0, self.nodes.get(node).copied().flatten()?))
+    }
+
+    /// A triangle by its number.
+    pub fn triangle(&self, t: usize) -> Option<String> {
+        Some(self.named("triangle", 1, self.triangles.get(t).copied().flatten()?))
+    }
+}
+
+/// A field with what it leaves of the equations of a discrete solution.
+#[derive(Debug, Clone)]
+pub struct Solution<'a> {
+    /// Scene and mesh.
+    pub problem: &'a Problem,
+    /// The field.
+    pub candidate: &'a Candidate,
+    /// Nodal forces: what stresses ask for, less the loads.
+    pub forces: NodalForces,
+    /// What supports and contacts cannot take of them, node by node.
+    pub rest: Vec<[f64; 2]>,
+    /// What supports hold at vertices, then at edge midpoints.
+    pub holds: Holds,
+    /// Where contact acts.
+    pub sites: Sites,
+    /// At each of [`Self::sites`] the force that presses the two sides together.
+    pub pressing: Vec<f64>,
+    /// At each of them (v' − v'')·n̂ − g.
+    pub excess: Vec<f64>,
+    /// What the residual is relative to, as the root of an energy.
+    pub scale: f64,
+    /// Half of a(u, u).
+    pub strain: f64,
+    /// The largest component of the displacement.
+    pub largest: f64,
+    /// What the closed Bernstein coefficients, pushing alone, leave over: relative to `scale`.
+    pushed: f64,
+    /// What rounding of the displacements, to the digits that the file keeps, can leave of the residual.
+    pub rounding: f64,
+}
+
+impl<'a> Solution<'a> {
+    /// Holds `candidate`, of strain energy `strain`, against the equations of a solution of its degree.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other.
+    pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
+        let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
+        let holds = holds(problem)?;
+        let sites = Sites::new(problem, candidate.degree, &holds);
+        let mut rest = forces.unsupported(&holds);
+        let pressing = sites.pressing(&rest);
+        sites.take(&mut rest);
+        let value = |node: usize| candidate.value(node);
+        let excess = sites.list.iter().map(|site| site.excess(value)).collect();
+        let balance = Balance::new(problem, candidate, strain)?;
+        let digits = candidate.precision / f64::EPSILON;
+        Ok(Solution {
+            problem,
+            candidate,
+            rest,
+            holds,
+            pressing,
+            excess,
+            scale: balance.scale.max(f64::MIN_POSITIVE),
+            strain,
+            largest: candidate.largest(),
+            pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
+            rounding: balance.rounding * digits.max(1.0),
+            sites,
+            forces,
+        })
+    }
+
+    /// The residual of the whole field, relative to its scale.
+    pub fn residual(&self) -> f64 {
+        let all = self.forces.energy_size(|i| self.rest[i][0].hypot(self.rest[i][1])) / self.scale;
+        all.min(if self.is_pushed() { self.pushed } else { f64::INFINITY })
+    }
+
+    /// What may be left of it where every equation is solved.
+    pub fn allowed(&self) -> f64 {
+        SOLVER + self.rounding / self.scale
+    }
+
+    /// Whether closed Bernstein coefficients that push explain all contact forces.
+    pub fn is_pushed(&self) -> bool {
+        self.pushed <= self.allowed()
+    }
+
+    /// The nodes by the size of the residual there, the largest first.
+    pub fn worst(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.rest.len()).collect();
+        order.sort_by(|a, b| self.weighed(*b).total_cmp(&self.weighed(*a)));
+        order
+    }
+
+    /// |r_i|/√K_ii.
+    pub fn weighed(&self, node: usize) -> f64 {
+        let [x, y] = self.rest[node];
+        x.hypot(y) / self.forces.stiffness[node].max(f64::MIN_POSITIVE).sqrt()
+    }
+
+    /// The residual of every triangle for a map: of its nodes the largest |r_i|/√K_ii, relative to the scale of the whole.
+    pub fn by_triangle(&self) -> Vec<f64> {
+        let mesh = &self.problem.mesh;
+        let vertices = mesh.points.len();
+        let largest = |t: usize| {
+            let middles = mesh.triangle_edges[t].into_iter().map(|e| vertices + e).filter(|n| *n < self.rest.len());
+            let nodes = mesh.triangles[t].into_iter().chain(middles);
+            nodes.map(|n| self.weighed(n)).fold(0.0, f64::max) / self.scale
+        };
+        (0..mesh.triangles.len()).map(largest).collect()
+    }
+
+    /// The hold of a node.
+    pub fn hold(&self, node: usize) -> &Hold {
+        let vertices = self.holds.vertices.len();
+        if node < vertices { &self.holds.vertices[node] } else { &self.holds.edges[node - vertices] }
+    }
+
+    /// Where a node is.
+    pub fn place(&self, node: usize) -> [f64; 2] {
+        place(self.problem, node)
+    }
+
+    /// A node as a message names it: its number in the file it comes from, from one, and its coordinates.
+    pub fn named(&self, node: usize) -> String {
+        self.candidate.named(self.problem, node)
+    }
+
+    /// Forces of supports on the nodes.
+    pub fn supported(&self, node: usize) -> [f64; 2] {
+        let force = self.forces.left[node];
+        let free = self.hold(node).project(force);
+        [force[0] - free[0], force[1] - free[1]]
+    }
+
+    /// Forces that press contact `interface` together, and the sum of all of them.
+    pub fn carried(&self, interface: usize) -> f64 {
+        let sites = self.sites.list.iter().zip(&self.pressing);
+        sites.filter(|(s, _)| s.interface == interface).map(|(_, f)| f.abs()).sum()
+    }
+
+    /// What forces are relative to: the loads, and what supports carry.
+    pub fn applied(&self) -> f64 {
+        let size = |f: [f64; 2]| f[0].hypot(f[1]);
+        let loads: f64 = self.forces.load.iter().map(|f| size(*f)).sum();
+        loads.max((0..self.rest.len()).map(|n| size(self.supported(n))).sum())
+    }
+}
+
+impl Candidate {
+    /// A node as a message names it: its number in the file it comes from, from one, and its coordinates.
+    pub fn named(&self, problem: &Problem, node: usize) -> String {
+        let extent = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let [x, y] = problem.scene.as_written(place(problem, node)).map(|x| round(x, extent));
+        match self.numbering.as_ref().and_then(|n| n.point(node)) {
+            Some(point) => format!("{point}, at ({x}, {y})"),
+            None => format!("({x}, {y})"),
+        }
+    }
+}
+
+/// Where a node is: a vertex, or the midpoint of an edge.
+pub fn place(problem: &Problem, node: usize) -> [f64; 2] {
+    let mesh = &problem.mesh;
+    match node.checked_sub(mesh.points.len()) {
+        None => mesh.points[node],
+        Some(e) => {
+            let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+            [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+        }
+    }
+}
+
+/// `x` to six digits of `extent`, for a message; no negative zero.
+fn round(x: f64, extent: f64) -> f64 {
+    let step = 10f64.powi(extent.max(f64::MIN_POSITIVE).log10().ceil() as i32 - 6);
+    let rounded = (x / step).round() / (1.0 / step).round().max(1.0 / step);
+    if rounded.abs() < ROUND_OFF * extent { 0.0 } else { rounded }
+}

@@ -1,0 +1,228 @@
+//! The places where contact acts on the nodes of a displacement model: matched nodes and the direction between them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::bounds::{Hold, Holds};
+use crate::mesh::sets::DisjointSets;
+use crate::problem::Problem;
+
+/// Directions whose cross product is smaller are one.
+const PARALLEL: f64 = 1e-9;
+/// Rows that are shorter than this, once supports and other rows have taken their part, say nothing new.
+const SPENT: f64 = 1e-9;
+
+/// Nodes that face each other, or one that faces a rigid obstacle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site {
+    /// Index into [`Problem::interfaces`].
+    pub interface: usize,
+    /// Node of the first side: vertices, then the midpoint of every edge.
+    pub first: usize,
+    /// Node of the second side.
+    pub second: Option<usize>,
+    /// Direction of contact, out of the first side.
+    pub normal: [f64; 2],
+    /// Gap there.
+    pub gap: f64,
+    /// ∫φ ds of the node's shape function along the contact.
+    pub weight: f64,
+    /// Where the direction turns along the edge, the other direction of a midpoint.
+    turned: Option<[f64; 2]>,
+}
+
+impl Site {
+    /// (v' − v'')·n̂ − g: a penetration where it is positive, an opening where it is negative.
+    pub fn excess(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
+        dot(value(self.first), self.normal) - self.second.map_or(0.0, |s| dot(value(s), self.normal)) - self.gap
+    }
+
+    /// The component of a pair of nodal forces along the contact, counted as pressing the two sides together.
+    fn nodes(&self) -> impl Iterator<Item = (usize, f64)> {
+        [(Some(self.first), 1.0), (self.second, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
+    }
+}
+
+/// All places, and which of them bound one edge.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sites {
+    /// The places, interface by interface.
+    pub list: Vec<Site>,
+    /// The places of every pair of edges with one direction.
+    pub spans: Vec<Span>,
+    groups: Vec<Group>,
+}
+
+/// The places of one pair of edges, as indices into [`Sites::list`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// At its ends.
+    pub ends: [usize; 2],
+    /// At its midpoint, for nodes of degree 2.
+    pub middle: Option<usize>,
+    /// Its length.
+    pub length: f64,
+}
+
+/// Places that share nodes, with an orthonormal basis of the forces that contact can exert there.
+#[derive(Debug, Clone, PartialEq)]
+struct Group {
+    nodes: Vec<usize>,
+    sites: Vec<usize>,
+    rows: DMatrix<f64>,
+    basis: Vec<DVector<f64>>,
+}
+
+impl Sites {
+    /// Those of `problem` for nodes of the given degree.
+    pub fn new(problem: &Problem, degree: usize, holds: &Holds) -> Self {
+        let vertices = problem.mesh.points.len();
+        let mut sites = Sites { list: Vec::new(), spans: Vec::new(), groups: Vec::new() };
+        for (interface, contact) in problem.interfaces.iter().enumerate() {
+            let mut known: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
+            for pair in &contact.pairs {
+                let part = pair.length / if degree == 2 { 6.0 } else { 2.0 };
+                let mut at_ends = [0; 2];
+                for (end, at) in at_ends.iter_mut().enumerate() {
+                    let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
+                    let normal = pair.direction.ends[end];
+                    let same = known.entry((first, second)).or_default();
+                    let found = same.iter().copied().find(|s| cross(sites.list[*s].normal, normal).abs() < PARALLEL);
+                    *at = found.unwrap_or(sites.list.len());
+                    match found {
+                        Some(s) => sites.list[s].weight += part,
+                        None => {
+                            same.push(sites.list.len());
+                            let gap = pair.gap[end];
+                            sites.list.push(Site { interface, first, second, normal, gap, weight: part, turned: None });
+                        }
+                    }
+                }
+                let middle = (degree == 2 && pair.edges[0].is_some()).then_some(sites.list.len());
+                let turned = !pair.direction.is_constant();
+                if !turned {
+                    sites.spans.push(Span { ends: at_ends, middle, length: pair.length });
+                }
+                let (2, Some(own)) = (degree, pair.edges[0]) else { continue };
+                let [n, m] = pair.direction.ends;
+                let turned = turned.then(|| [m[0] - n[0], m[1] - n[1]]);
+                sites.list.push(Site {
+                    interface,
+                    first: vertices + own,
+                    second: pair.edges[1].map(|e| vertices + e),
+                    normal: pair.direction.at(0.5),
+                    gap: 0.5 * (pair.gap[0] + pair.gap[1]),
+                    weight: 4.0 * part,
+                    turned,
+                });
+            }
+        }
+        sites.groups = groups(&sites.list, holds);
+        sites
+    }
+
+    /// Takes out of nodal forces whatever contact along its direction can exert, pushing or pulling, open or closed.
+    pub fn take(&self, forces: &mut [[f64; 2]]) {
+        for group in &self.groups {
+            let mut local = group.gather(forces);
+            for row in &group.basis {
+                let part = row.dot(&local);
+                local.axpy(-part, row, 1.0);
+            }
+            for (i, node) in group.nodes.iter().enumerate() {
+                forces[*node] = [local[2 * i], local[2 * i + 1]];
+            }
+        }
+    }
+
+    /// The force at each place that presses the two sides together, from what supports leave of the nodal forces.
+    pub fn pressing(&self, forces: &[[f64; 2]]) -> Vec<f64> {
+        let mut pressing = vec![0.0; self.list.len()];
+        for group in &self.groups {
+            let local = group.gather(forces);
+            if let [site] = group.sites[..] {
+                let row = group.rows.column(0);
+                let square = row.norm_squared();
+                pressing[site] = if square > SPENT * SPENT { -row.dot(&local) / square } else { 0.0 };
+            } else if let Ok(found) = group.rows.clone().svd(true, true).solve(&local, SPENT) {
+                group.sites.iter().zip(found.iter()).for_each(|(site, force)| pressing[*site] = -force);
+            }
+        }
+        pressing
+    }
+
+    /// Forces and gaps in Bernstein coefficients, in which every pressure ≥ 0 is a list of forces ≥ 0.
+    pub fn in_coefficients(&self, pressing: &[f64], excess: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut forces, mut distances) = (pressing.to_vec(), excess.to_vec());
+        for span in &self.spans {
+            let ([first, last], Some(middle)) = (span.ends, span.middle) else { continue };
+            forces[middle] = 0.5 * pressing[middle];
+            forces[first] += 0.25 * pressing[middle];
+            forces[last] += 0.25 * pressing[middle];
+            distances[middle] = 2.0 * excess[middle] - 0.5 * (excess[first] + excess[last]);
+        }
+        (forces, distances)
+    }
+}
+
+impl Group {
+    fn gather(&self, forces: &[[f64; 2]]) -> DVector<f64> {
+        DVector::from_iterator(2 * self.nodes.len(), self.nodes.iter().flat_map(|n| forces[*n]))
+    }
+}
+
+fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
+    let all: Vec<&Hold> = holds.vertices.iter().chain(&holds.edges).collect();
+    let mut sets = DisjointSets::new(all.len());
+    for site in list {
+        if let Some(second) = site.second {
+            sets.join(site.first, second);
+        }
+    }
+    let (label, _) = sets.labels();
+    let mut members: BTreeMap<usize, (BTreeSet<usize>, Vec<usize>)> = BTreeMap::new();
+    for (number, site) in list.iter().enumerate() {
+        let (nodes, sites) = members.entry(label[site.first]).or_default();
+        nodes.extend(site.nodes().map(|(node, _)| node));
+        sites.push(number);
+    }
+    let group = |(nodes, sites): (BTreeSet<usize>, Vec<usize>)| {
+        let nodes: Vec<usize> = nodes.into_iter().collect();
+        let row = |site: &Site, direction: [f64; 2]| {
+            let mut row = DVector::zeros(2 * nodes.len());
+            for (node, sign) in site.nodes() {
+                let Ok(place) = nodes.binary_search(&node) else { continue };
+                let d = all[node].project(direction);
+                row[2 * place] += sign * d[0];
+                row[2 * place + 1] += sign * d[1];
+            }
+            row
+        };
+        let columns: Vec<DVector<f64>> = sites.iter().map(|s| row(&list[*s], list[*s].normal)).collect();
+        let rows = DMatrix::from_columns(&columns);
+        let turned = sites.iter().filter_map(|s| Some(row(&list[*s], list[*s].turned?)));
+        let mut basis: Vec<DVector<f64>> = Vec::new();
+        for mut row in columns.into_iter().chain(turned) {
+            let long = row.norm();
+            for known in &basis {
+                let part = known.dot(&row);
+                row.axpy(-part, known, 1.0);
+            }
+            let left = row.norm();
+            if left > SPENT * long.max(SPENT) {
+                basis.push(row / left);
+            }
+        }
+        Group { nodes, sites, rows, basis }
+    };
+    members.into_values().map(group).collect()
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}

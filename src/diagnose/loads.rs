@@ -1,0 +1,145 @@
+//! Wrong loads.
+
+use super::Finding;
+use super::fit::Terms;
+use super::space::Space;
+use super::words::{factor, near, number};
+use crate::problem::Condition;
+
+/// Coefficients of components that are smaller than this are none.
+const NONE: f64 = 5e-3;
+
+/// Loads that are off by a number, one by one and all together, and body forces that the scene does not have.
+pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    let scene = &space.problem().scene;
+    let tractions: Vec<(&str, Vec<[f64; 2]>)> = scene
+        .tractions
+        .iter()
+        .map(|traction| (traction.on.as_str(), of_traction(space, &traction.on)))
+        .filter(|(_, forces)| forces.iter().flatten().any(|f| *f != 0.0))
+        .collect();
+    let weights: Vec<usize> = (0..scene.bodies.len()).filter(|b| scene.bodies[*b].body_force != [0.0; 2]).collect();
+    let several = tractions.len() + weights.len() > 1;
+    let negative = |forces: &[[f64; 2]]| space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
+    let thickness = scene.thickness;
+    let all = move |name: &str, what: &str, s: f64| {
+        let mut sentence = factor(what, s);
+        if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
+            sentence += &format!(", as if the thickness {thickness} were left out on one side");
+        }
+        if s.abs() > NONE && !near(s, -1.0) {
+            sentence += &format!(" (or every Young's modulus {} times)", number(1.0 / s));
+        }
+        vec![Finding::new(name, Some(s), Some(1.0), sentence)]
+    };
+    if several {
+        let column = negative(&space.solution.forces.load);
+        terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
+    }
+    for (on, forces) in &tractions {
+        let (on, name, what) = (on.to_string(), format!("load/{on}"), format!("the load on {on}"));
+        terms.push(1, vec![negative(forces)], move |x| match several {
+            true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+            false => all(&name, &what, 1.0 + x[0]),
+        });
+        // Each component of the traction acting in each direction.
+        let part = |from: usize, to: usize| {
+            let turned = |f: &[f64; 2]| if to == 0 { [f[from], 0.0] } else { [0.0, f[from]] };
+            negative(&forces.iter().map(turned).collect::<Vec<_>>())
+        };
+        let given = [0, 1].map(|c| forces.iter().any(|f| f[c] != 0.0));
+        let parts: Vec<[usize; 2]> =
+            [[0, 0], [1, 1], [0, 1], [1, 0]].into_iter().filter(|[from, _]| given[*from]).collect();
+        let columns = parts.iter().map(|[from, to]| part(*from, *to)).collect();
+        terms.push(3, columns, move |x| components(&on, given, &parts, x));
+    }
+    for (b, body) in scene.bodies.iter().enumerate() {
+        let [fx, fy] = [[1.0, 0.0], [0.0, 1.0]].map(|f| of_body(space, b, f));
+        let given = body.body_force;
+        let name = format!("body/{}/body_force", body.name);
+        let what = format!("the body force of {}", body.name);
+        if given != [0.0; 2] {
+            let whole: Vec<[f64; 2]> = fx.iter().zip(&fy).map(|(x, y)| [x[0] * given[0], y[1] * given[1]]).collect();
+            let (name, what) = (name.clone(), what.clone());
+            terms.push(1, vec![negative(&whole)], move |x| match several {
+                true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+                false => all(&name, &what, 1.0 + x[0]),
+            });
+        }
+        terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
+            let [found, wanted] = [[given[0] + x[0], given[1] + x[1]], given];
+            let vector = |v: [f64; 2]| format!("({}, {})", number(v[0]), number(v[1]));
+            let sentence = format!("{what} is {} in place of {}", vector(found), vector(wanted));
+            vec![Finding::new(name.clone(), Some(found[0].hypot(found[1])), Some(wanted[0].hypot(wanted[1])), sentence)]
+        });
+    }
+}
+
+/// What is wrong with the components of the traction on `on`; `parts` say which component acts in which direction.
+fn components(on: &str, given: [bool; 2], parts: &[[usize; 2]], x: &[f64]) -> Vec<Finding> {
+    let axis = ["x", "y"];
+    let factor_of = |from: usize, to: usize| {
+        let own = if from == to { 1.0 } else { 0.0 };
+        parts.iter().position(|p| *p == [from, to]).map_or(0.0, |k| own + x[k])
+    };
+    let (same, crossed) = ([0, 1].map(|c| factor_of(c, c)), [factor_of(0, 1), factor_of(1, 0)]);
+    let zero = |values: [f64; 2]| (0..2).all(|c| !given[c] || values[c].abs() < NONE);
+    let one = |values: [f64; 2]| (0..2).all(|c| !given[c] || near(values[c], 1.0));
+    if zero(same) && one(crossed) {
+        let sentence = format!("x and y of the load on {on} are exchanged");
+        return vec![Finding::new(format!("load/{on}/axes"), None, None, sentence)];
+    }
+    let mut findings = Vec::new();
+    for c in (0..2).filter(|c| given[*c]) {
+        if !near(same[c], 1.0) {
+            let sentence = factor(&format!("component {} of the load on {on}", axis[c]), same[c]);
+            findings.push(Finding::new(format!("load/{on}/{}", axis[c]), Some(same[c]), Some(1.0), sentence));
+        }
+        if crossed[c].abs() >= NONE {
+            let (from, to) = (axis[c], axis[1 - c]);
+            let sentence = format!("component {from} of the load on {on} acts {} times along {to}", number(crossed[c]));
+            findings.push(Finding::new(format!("load/{on}/{from}{to}"), Some(crossed[c]), Some(0.0), sentence));
+        }
+    }
+    findings
+}
+
+/// Nodal forces of the traction on one boundary.
+fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
+    let (problem, mesh) = (space.problem(), &space.problem().mesh);
+    let vertices = mesh.points.len();
+    let mut forces = vec![[0.0; 2]; space.count()];
+    let quadratic = space.count() > vertices;
+    for e in mesh.boundary(on) {
+        let Condition::Traction([pa, pb]) = problem.conditions[e] else { continue };
+        let part = problem.scene.thickness * mesh.edge_frame(e).0 / 6.0;
+        let [a, b] = mesh.edges[e].vertices;
+        for c in 0..2 {
+            let [at_a, at_b] = match quadratic {
+                true => [pa[c], pb[c]],
+                false => [2.0 * pa[c] + pb[c], pa[c] + 2.0 * pb[c]],
+            };
+            forces[a][c] += part * at_a;
+            forces[b][c] += part * at_b;
+            if quadratic {
+                forces[vertices + e][c] += 2.0 * part * (pa[c] + pb[c]);
+            }
+        }
+    }
+    forces
+}
+
+/// Nodal forces of a constant body force in one body.
+fn of_body(space: &Space<'_>, body: usize, force: [f64; 2]) -> Vec<[f64; 2]> {
+    let (problem, mesh) = (space.problem(), &space.problem().mesh);
+    let mut forces = vec![[0.0; 2]; space.count()];
+    for t in (0..mesh.triangles.len()).filter(|t| mesh.body[*t] == body) {
+        let part = problem.scene.thickness * mesh.area(t) / 3.0;
+        let nodes = space.nodes(t);
+        // A quadratic shape function has a third of the area at a midpoint and nothing at a corner.
+        for node in &nodes[nodes.len() - 3..] {
+            (0..2).for_each(|c| forces[*node][c] += part * force[c]);
+        }
+    }
+    forces
+}

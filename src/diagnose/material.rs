@@ -1,0 +1,144 @@
+//! Wrong elastic constants.
+
+use super::fit::Terms;
+use super::space::{Moduli, Space};
+use super::words::{factor, near, number};
+use super::{Finding, Trial};
+use crate::scene::{Body, Kinematics};
+
+/// Mistakes without a number: the other plane state, constants exchanged between bodies.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let problem = space.problem();
+    let (scene, bodies) = (&problem.scene, &problem.scene.bodies);
+    let own: Vec<Moduli> = bodies.iter().map(|b| Moduli::of_body(problem, b)).collect();
+    let with = |others: &dyn Fn(usize) -> Moduli, finding: Finding| {
+        let change = space.stiffness(|b| Some(others(b).less(own[b])).filter(|d| *d != NONE));
+        Trial { rank: 0, left: space.left_with(&change), findings: vec![finding] }
+    };
+    let (other, sentence) = match scene.kinematics {
+        Kinematics::PlaneStrain => (Kinematics::PlaneStress, "plane stress stands in place of plane strain"),
+        Kinematics::PlaneStress => (Kinematics::PlaneStrain, "plane strain stands in place of plane stress"),
+    };
+    let mut trials = vec![with(
+        &|b| Moduli::of(other, bodies[b].young, bodies[b].poisson),
+        Finding::new("kinematics", None, None, sentence),
+    )];
+    let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
+    for (i, j) in pairs.take(MOST_PAIRS) {
+        let swapped = |b: usize| {
+            if b == i {
+                j
+            } else if b == j {
+                i
+            } else {
+                b
+            }
+        };
+        let mut exchange = |name: &str, what: &str, made: &dyn Fn(&Body, &Body) -> Moduli| {
+            let finding = Finding::new(
+                format!("bodies/{}|{}/{name}", bodies[i].name, bodies[j].name),
+                None,
+                None,
+                format!("{what} of {} and {} are exchanged", bodies[i].name, bodies[j].name),
+            );
+            trials.push(with(&|b| made(&bodies[b], &bodies[swapped(b)]), finding));
+        };
+        let made = |young: f64, poisson: f64| Moduli::of(scene.kinematics, young, poisson);
+        let (young, poisson) = (bodies[i].young != bodies[j].young, bodies[i].poisson != bodies[j].poisson);
+        if poisson {
+            exchange("poisson-exchanged", "Poisson's ratios", &|own, other| made(own.young, other.poisson));
+        }
+        if young {
+            exchange("young-exchanged", "Young's moduli", &|own, other| made(other.young, own.poisson));
+        }
+        if young && poisson {
+            exchange("materials-exchanged", "the materials", &|_, other| made(other.young, other.poisson));
+        }
+    }
+    trials
+}
+
+/// Pairs of bodies whose materials may be exchanged: more are not tried.
+const MOST_PAIRS: usize = 200;
+/// Bodies of their own in least squares: more are not tried.
+const MOST_BODIES: usize = 64;
+const NONE: Moduli = Moduli { lambda: 0.0, mu: 0.0, shear: 0.0 };
+
+/// Constants that are off by a number.
+pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    let problem = space.problem();
+    let (scene, bodies) = (&problem.scene, &problem.scene.bodies);
+    let own = move |b: usize| Moduli::of_body(problem, &bodies[b]);
+    let all = |name: &'static str, what: &'static str, part: fn(Moduli) -> Moduli, terms: &mut Terms<'a>| {
+        let column = space.stiffness(|b| Some(part(own(b))));
+        let poisson: Vec<f64> = bodies.iter().map(|body| body.poisson).collect();
+        terms.push(1, vec![column], move |x| {
+            let s = 1.0 + x[0];
+            let mut sentence = factor(what, s);
+            let turned = |nu: &f64| *nu != 0.0 && near(s, (1.0 - 2.0 * nu) / (1.0 + 2.0 * nu));
+            if name == "stiffness/lambda" && scene.kinematics == Kinematics::PlaneStrain && poisson.iter().all(turned) {
+                sentence += ", as if 1 + 2ν stood in place of 1 − 2ν";
+            }
+            vec![Finding::new(name, Some(s), Some(1.0), sentence)]
+        });
+    };
+    all("stiffness/lambda", "Lamé's λ of every body", |m| Moduli { lambda: m.lambda, ..NONE }, terms);
+    all("stiffness/shear", "the shear stiffness of every body", |m| Moduli { shear: m.shear, ..NONE }, terms);
+    for b in 0..bodies.len().min(MOST_BODIES) {
+        let body = &bodies[b];
+        let part = |moduli: Moduli| space.stiffness(|at| (at == b).then_some(moduli));
+        let (of_lambda, of_mu) = (part(Moduli { lambda: 1.0, ..NONE }), part(Moduli { mu: 1.0, shear: 1.0, ..NONE }));
+        let Moduli { lambda, mu, .. } = own(b);
+        let whole = of_lambda.iter().zip(&of_mu).map(|(l, m)| lambda * l + mu * m).collect();
+        // With one body alone its modulus cannot be told from the loads, which have the word.
+        if bodies.len() > 1 {
+            terms.push(1, vec![whole], move |x| {
+                let what = format!("Young's modulus of {}", body.name);
+                let found = (1.0 + x[0]) * body.young;
+                let sentence = factor(&what, 1.0 + x[0]);
+                vec![Finding::new(format!("body/{}/young", body.name), Some(found), Some(body.young), sentence)]
+            });
+        }
+        terms.push(2, vec![of_lambda, of_mu], move |x| {
+            let [young, poisson] = Moduli::engineering(scene.kinematics, lambda + x[0], mu + x[1]);
+            let mut findings = Vec::new();
+            if !near(young, body.young) {
+                let sentence =
+                    format!("Young's modulus of {} is {} in place of {}", body.name, number(young), body.young);
+                findings.push(Finding::new(
+                    format!("body/{}/young", body.name),
+                    Some(young),
+                    Some(body.young),
+                    sentence,
+                ));
+            }
+            if !near(poisson, body.poisson) || findings.is_empty() {
+                let sentence =
+                    format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), body.poisson);
+                let name = format!("body/{}/poisson", body.name);
+                findings.push(Finding::new(name, Some(poisson), Some(body.poisson), sentence));
+            }
+            findings
+        });
+    }
+    if bodies.len() > 1 {
+        let column = |part: fn(Moduli) -> Moduli| space.stiffness(|b| Some(part(own(b))));
+        let columns = vec![column(|m| Moduli { lambda: m.lambda, ..NONE }), column(|m| Moduli { lambda: 0.0, ..m })];
+        let alike = bodies.iter().all(|b| b.young == bodies[0].young && b.poisson == bodies[0].poisson);
+        if alike {
+            terms.push(2, columns, move |x| {
+                let first = own(0);
+                let [young, poisson] =
+                    Moduli::engineering(scene.kinematics, first.lambda * (1.0 + x[0]), first.mu * (1.0 + x[1]));
+                let both = format!(
+                    "the material of every body has E = {} and ν = {} in place of {} and {}",
+                    number(young),
+                    number(poisson),
+                    bodies[0].young,
+                    bodies[0].poisson
+                );
+                vec![Finding::new("bodies/poisson", Some(poisson), Some(bodies[0].poisson), both)]
+            });
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Which mistake explains a field that is not the discrete solution it claims to be.
+//!
+//! The residual r = Q(K u − F) of a field, with Q what neither supports nor contacts can take, is linear in the loads and in the
+//! elastic constants of every body. A wrong one of these leaves a residual in the span of a few columns, which least squares find;
+//! mistakes that are not linear are made on purpose and held against the residual as well. Of the hypotheses that explain it
+//! about equally well the simplest is named, of two together where none does alone, and none where none does. What contact and
+//! supports do shows in forces and displacements there and is read from them.
+
+mod contact;
+mod fit;
+mod loads;
+mod local;
+mod material;
+mod space;
+mod supports;
+mod values;
+mod words;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::compare::Solution;
+use fit::Terms;
+use space::Space;
+
+/// Of the squared residual what an explanation may leave: a hundredth of the residual.
+const LEFT: f64 = 1e-4;
+/// Of a Young's modulus, what a wrong one is no less than.
+const LEAST_STIFFNESS: f64 = 1e-12;
+/// Explanations that leave less than this times what the best leaves are as good.
+const AS_GOOD: f64 = 10.0;
+
+/// What is wrong with a field, as far as it can be told.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Diagnosis {
+    /// Name of the field.
+    pub field: String,
+    /// All of it in a sentence or two.
+    pub sentence: String,
+    /// What was found; several take part together.
+    pub findings: Vec<Finding>,
+    /// Part of the squared residual that the findings explain; `null` where the residual is none.
+    pub explained: Option<f64>,
+    /// How many hypotheses were held against the residual.
+    pub tried: usize,
+}
+
+/// One mistake.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Finding {
+    /// Stable name, for example `body/left/young` or `contact/left_face|right_face/penalty`.
+    pub name: String,
+    /// What was found: a factor, a modulus, a stiffness, a shift.
+    pub value: Option<f64>,
+    /// What the scene says in its place.
+    pub expected: Option<f64>,
+    /// In words.
+    pub sentence: String,
+}
+
+impl Finding {
+    fn new(name: impl Into<String>, value: Option<f64>, expected: Option<f64>, sentence: impl Into<String>) -> Self {
+        Finding { name: name.into(), value, expected, sentence: sentence.into() }
+    }
+}
+
+/// A hypothesis after it was held against the residual.
+struct Trial {
+    /// The simpler the smaller.
+    rank: usize,
+    /// What it leaves of the squared residual, relative to it.
+    left: f64,
+    findings: Vec<Finding>,
+}
+
+impl Trial {
+    /// Whether a material with the constants found exists: one without stiffness would explain everything.
+    fn is_possible(&self) -> bool {
+        self.findings.iter().all(|f| match (f.value, f.expected) {
+            (Some(young), Some(given)) if f.name.ends_with("/young") => young > LEAST_STIFFNESS * given,
+            (Some(poisson), _) if f.name.ends_with("/poisson") => -1.0 < poisson && poisson < 0.5,
+            _ => true,
+        })
+    }
+
+    /// Whether a finding of forces or displacements along supports and contacts stands beside this explanation, and is no
+    /// consequence of it.
+    fn leaves(&self, finding: &Finding) -> bool {
+        let of_values = self.findings.iter().any(|f| f.name == "value" || f.name.starts_with("displacement/"));
+        let of_forces = ["/glued", "/open"].iter().any(|end| finding.name.ends_with(end));
+        !of_values && !of_forces
+    }
+}
+
+/// Energies of a field as it is, and of the nearest admissible one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energies {
+    /// 𝓛 of the field.
+    pub own: f64,
+    /// 𝓛 of the admissible field.
+    pub admissible: f64,
+}
+
+/// Looks for what explains that `solution` is none; `None` where it is one.
+pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis> {
+    let mut findings = supports::findings(solution);
+    findings.extend(contact::findings(solution, energies));
+    let mut diagnosis = Diagnosis {
+        field: solution.candidate.name.clone(),
+        sentence: String::new(),
+        findings,
+        explained: None,
+        tried: 0,
+    };
+    let mut nearest = None;
+    if solution.residual() > solution.allowed() {
+        let space = Space::new(solution);
+        let mut trials = values::trials(&space);
+        trials.extend(material::trials(&space));
+        trials.extend(local::trials(&space));
+        trials.extend(contact::trials(&space));
+        let mut terms = Terms::new(&space);
+        material::terms(&space, &mut terms);
+        loads::terms(&space, &mut terms);
+        trials.extend(terms.alone());
+        diagnosis.tried = trials.len();
+        let floor = (solution.allowed() / solution.residual()).powi(2);
+        let found = simplest(trials, floor).or_else(|trials| {
+            let together = terms.together();
+            diagnosis.tried += together.len();
+            simplest(together, floor).map_err(|_| trials)
+        });
+        match found {
+            Ok(trial) => {
+                diagnosis.explained = Some(1.0 - trial.left);
+                diagnosis.findings.retain(|finding| trial.leaves(finding));
+                diagnosis.findings.extend(trial.findings);
+            }
+            Err(trials) => {
+                diagnosis.explained = Some(0.0);
+                nearest = trials.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
+            }
+        }
+    }
+    if diagnosis.findings.is_empty() && diagnosis.explained.is_none() {
+        return None;
+    }
+    diagnosis.sentence = sentence(&diagnosis, nearest.as_ref());
+    Some(diagnosis)
+}
+
+/// The simplest of the trials that leave next to nothing, or all of them where none does; `floor` is what a solver leaves.
+fn simplest(mut trials: Vec<Trial>, floor: f64) -> Result<Trial, Vec<Trial>> {
+    let best = trials.iter().map(|t| t.left).fold(f64::INFINITY, f64::min);
+    if best > LEFT.max(floor) {
+        return Err(trials);
+    }
+    let enough = (AS_GOOD * best).max(floor).max(1e-2 * LEFT);
+    trials.retain(|t| t.left <= enough);
+    let key = |t: &Trial| (t.rank, t.left);
+    trials.into_iter().min_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1))).ok_or_else(Vec::new)
+}
+
+fn sentence(diagnosis: &Diagnosis, nearest: Option<&Trial>) -> String {
+    let said: Vec<&str> = diagnosis.findings.iter().map(|f| f.sentence.as_str()).collect();
+    let mut text = said.join("; ");
+    if !text.is_empty() {
+        text = format!("This explains it: {text}.");
+    }
+    match (diagnosis.explained, nearest) {
+        (Some(share), None) => text += &format!(" It accounts for {} of the residual.", words::share(share)),
+        (Some(_), Some(trial)) => {
+            let (near, share) = (words::list(&trial.findings), words::share(1.0 - trial.left));
+            let begin = if text.is_empty() { "" } else { " " };
+            text += &format!(
+                "{begin}None of {} hypotheses explains the residual; the nearest, that {near}, would account for {share} of it.",
+                diagnosis.tried
+            );
+        }
+        (None, _) => {}
+    }
+    text
+}

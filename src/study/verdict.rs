@@ -1,0 +1,61 @@
+//! The verdict in words.
+
+use super::dossier::{Findings, in_numbers};
+use crate::report::number::{digits_to_tell, percent, significant};
+use crate::report::{Energy, Status};
+
+/// The verdict in one sentence.
+pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> String {
+    if let Some(failure) = &findings.failure {
+        return format!("No comparison was made: {failure}");
+    }
+    let failed = findings.comparison.checks.iter().filter(|c| !c.passed && c.decides());
+    let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
+    let bound = energy.map_or(String::new(), |e| {
+        let what = if e.guaranteed { "guaranteed" } else { "indicated" };
+        format!(
+            " The exact energy lies between {} and {}; the {what} relative energy-norm error is at most {}.",
+            significant(e.lower, digits_to_tell(e.lower, e.upper)),
+            significant(e.upper, digits_to_tell(e.lower, e.upper)),
+            percent(e.relative_error_bound)
+        )
+    });
+    let excused = findings.comparison.checks.iter().filter(|c| c.excused && c.decides());
+    let excused: Vec<&str> = excused.map(|c| c.name.as_str()).collect();
+    let allowances = match excused.as_slice() {
+        [] => String::new(),
+        names => format!(", with what was allowed for {}", names.join(", ")),
+    };
+    let bound = if findings.command == "certify" { of_field(findings, energy) } else { bound };
+    let told: String = findings.diagnosis.iter().map(|d| format!(" {}", d.sentence)).collect();
+    let models = findings.comparison.judged.len();
+    match (failed.as_slice(), models) {
+        ([], _) if status == Status::Undecided => {
+            format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
+        }
+        ([], 0) => format!("The bracket holds.{bound}"),
+        ([], _) if findings.command == "certify" => {
+            let claim = if findings.is_claimed { "the discrete solution it claims to be" } else { "admissible" };
+            format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")
+        }
+        ([], _) => format!("The stress and displacement models agree{allowances}.{bound}"),
+        ([one], _) => format!("One check failed: {one}.{told}{bound}"),
+        (several, _) => format!("{} checks failed, first {}.{told}{bound}", several.len(), several[0]),
+    }
+}
+
+/// What is guaranteed of a field that was handed in, not of the best that the program has.
+fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
+    let sharpest = findings.finer.map_or(&findings.certified.bracket, |finer| &finer.bracket);
+    let Some((energy, judged)) = energy.zip(findings.comparison.judged.first()) else { return String::new() };
+    let name = &judged.candidate.name;
+    let of = if judged.is_admissible() { name.clone() } else { format!("the admissible field nearest to {name}") };
+    let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
+    let upper = judged.admissible.upper();
+    format!(
+        " The {what} relative energy-norm error of {of} is at most {}: its energy is {}, and the exact one is no lower than {}.",
+        percent(in_numbers(judged.relative_error(sharpest))),
+        significant(upper, digits_to_tell(energy.lower, upper)),
+        significant(energy.lower, digits_to_tell(energy.lower, upper)),
+    )
+}
