@@ -158,9 +158,23 @@ pub struct JudgeOptions {
     /// Write the results to the baseline instead of comparing with it
     #[arg(long, requires = "baseline")]
     pub accept: bool,
+    /// Who accepts, and why.
+    #[command(flatten)]
+    pub signature: SignatureOptions,
     /// Allow the check NAME a difference of VALUE; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub allow: Vec<Allowance>,
+}
+
+/// What a baseline says about those who accept it.
+#[derive(Debug, Clone, Args)]
+pub struct SignatureOptions {
+    /// Write into the baseline why its numbers are accepted
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+    pub reason: String,
+    /// Write into the baseline who accepts its numbers [default: who runs this, as the environment tells]
+    #[arg(long, value_name = "NAME")]
+    pub accepted_by: Option<String>,
 }
 
 /// A tolerance from the command line.

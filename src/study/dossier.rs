@@ -9,7 +9,7 @@ use crate::dual::Motion;
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
 use crate::report::number::{digits_to_tell, percent, significant};
-use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
+use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, SCHEMA_VERSION, Status};
 
 /// What a run found.
 #[derive(Debug)]
@@ -152,7 +152,7 @@ fn report(findings: &Findings<'_>) -> Report {
     provenance.components.extend(findings.components.iter().cloned());
     provenance.seconds.extend(findings.seconds.iter().map(|(k, v)| (k.to_string(), *v)));
     Report {
-        schema_version: 1,
+        schema_version: SCHEMA_VERSION,
         scene: problem.scene.name.clone(),
         title: problem.scene.title.clone(),
         command: findings.command.to_string(),
@@ -191,6 +191,7 @@ fn report(findings: &Findings<'_>) -> Report {
         checks,
         remarks,
         notes,
+        baseline: Vec::new(),
         history: findings.history.clone(),
         provenance,
     }
@@ -283,7 +284,7 @@ pub fn infeasible<'a>(
 ) -> Dossier<'a> {
     Dossier {
         report: Report {
-            schema_version: 1,
+            schema_version: SCHEMA_VERSION,
             scene: problem.scene.name.clone(),
             title: problem.scene.title.clone(),
             command: command.to_string(),
@@ -298,6 +299,7 @@ pub fn infeasible<'a>(
             checks: Vec::new(),
             remarks: Vec::new(),
             notes: problem.notes.clone(),
+            baseline: Vec::new(),
             history: Vec::new(),
             provenance: provenance(problem, threads),
         },

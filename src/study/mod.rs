@@ -1,5 +1,6 @@
 //! One run from a problem to a report: statics, dual solve, bracket, displacement models, verdict.
 
+mod accepted;
 mod adaptive;
 mod admission;
 mod baseline;
@@ -10,6 +11,7 @@ mod field;
 mod forecast;
 mod indicators;
 mod outlook;
+mod patch;
 mod primal;
 mod provenance;
 mod rounds;
@@ -18,6 +20,7 @@ mod stage;
 mod trend;
 mod warm_start;
 
+pub use accepted::{Accepted, Signature, checks as baseline_checks};
 pub use adaptive::{Adapt, Adapted, Goal, adapt, tolerance_check};
 pub use admission::Admission;
 pub use baseline::{Baseline, BaselineError};
@@ -29,7 +32,7 @@ pub use indicators::Indicators;
 pub use outlook::outlook;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
-pub(crate) use provenance::{hash, hex};
+pub(crate) use provenance::{hash, hex, identifier};
 pub use sharpen::{Sharpened, sharpen};
 pub use stage::certify_divided;
 pub use warm_start::closed_coefficients;
