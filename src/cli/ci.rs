@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::CliError;
 use super::say::shown;
+use crate::report::{Report, Status, summary};
 
 /// Bytes that GitHub shows of a step.
 const MOST: u64 = 1 << 20;
@@ -43,6 +44,16 @@ pub fn annotate(complaints: &[Complaint]) {
         for complaint in complaints.iter().take(MARKS) {
             let _ = writeln!(std::io::stdout(), "{}", mark(complaint, &workspace()));
         }
+    }
+}
+
+/// Tells of the report on one scene.
+pub fn report(report: &Report, scene: &Path) {
+    step_summary(&summary(report), &report.verdict);
+    if report.status != Status::Agree {
+        let first = report.checks.iter().find(|check| !check.passed);
+        let message = first.map_or(report.verdict.clone(), |check| format!("{}: {}", check.name, check.why));
+        annotate(&[Complaint { file: scene.to_path_buf(), line: None, title: report.scene.clone(), message }]);
     }
 }
 

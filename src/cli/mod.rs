@@ -6,6 +6,7 @@
 pub mod certify;
 pub mod chart;
 pub mod ci;
+pub mod diff;
 pub mod error;
 pub mod exit;
 pub mod gather;
@@ -19,15 +20,19 @@ pub mod progress;
 pub mod say;
 pub mod schema;
 pub mod session;
+pub mod shell;
 pub mod show;
 pub mod solve;
 pub mod stability;
 pub mod threads;
 pub mod verify;
+pub mod version;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use error::CliError;
@@ -56,6 +61,8 @@ pub enum Command {
     Certify(certify::Args),
     /// Make one page of the parts of a job
     Gather(gather::Args),
+    /// Compare two reports: what changed, and whether it matters
+    Diff(diff::Args),
     /// Measure accuracy against time, every method and refinement
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
@@ -65,12 +72,20 @@ pub enum Command {
     Measure(measure::Args),
     /// Print the JSON Schema of a file format
     Schema(schema::Args),
+    /// Print the script that completes command lines in a shell
+    Completions(shell::CompletionsArgs),
+    /// Print the manual page, or write one for each command
+    Man(shell::ManArgs),
 }
 
 /// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
     let (cli, given) = match parsed(std::env::args_os()) {
         Ok(parsed) => parsed,
+        Err(error) if error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(|w| w == "--version") => {
+            let _ = writeln!(std::io::stdout(), "{}", version::long());
+            return ExitCode::SUCCESS;
+        }
         Err(error) => {
             // Help and version are answers, on stdout with code 0; the rest is bad usage, with the code of bad input.
             // Where nobody reads the answer there is nobody to tell.
@@ -108,10 +123,13 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Solve(args) => solve::run(args, given),
         Command::Certify(args) => certify::run(args, given),
         Command::Gather(args) => gather::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Schema(args) => schema::run(args),
+        Command::Completions(args) => shell::completions(args),
+        Command::Man(args) => shell::man(args),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::element::{Elements, block};
 use crate::mesh;
 use crate::problem::{Note, Problem};
 use crate::process::{end_with_parent, limit};
-use crate::report::{self, BaselineRow, Dossier, HistoryRow, Report, Status};
+use crate::report::{self, BaselineRow, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
     self, Adapt, Adapted, Admission, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
@@ -197,7 +197,7 @@ impl Session {
             StudyError::NoEquilibrium { sentence, motion, problem, .. } => {
                 let mut dossier = study::infeasible(self.command, &problem, &sentence, motion, self.threads);
                 self.sign(&mut dossier);
-                self.tell_ci(&dossier.report);
+                ci::report(&dossier.report, &self.scene.path);
                 if let Err(error) = report::write(&dossier, folder) {
                     return CliError::stopped(Exit::Failed, error.to_string(), "");
                 }
@@ -311,23 +311,10 @@ impl Session {
         }
     }
 
-    fn tell_ci(&self, report: &Report) {
-        ci::step_summary(&report::summary(report), &report.verdict);
-        if report.status != Status::Agree {
-            let first = report.checks.iter().find(|check| !check.passed);
-            ci::annotate(&[ci::Complaint {
-                file: self.scene.path.clone(),
-                line: None,
-                title: report.scene.clone(),
-                message: first.map_or(report.verdict.clone(), |check| format!("{}: {}", check.name, check.why)),
-            }]);
-        }
-    }
-
     fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
-        self.tell_ci(&dossier.report);
+        ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
             let report = &dossier.report;
             say::line(&report.verdict);

@@ -55,24 +55,25 @@ fn class(job: &Job) -> &'static str {
 
 fn first_screen(gathered: &Gathered) -> Markup {
     let job = &gathered.job;
-    let worst = job.worst_first().first().map(|i| &job.scenes[*i]).filter(|worst| worst.exit != 0);
+    let first = job.worst_first().first().copied();
+    let worst = first.map(|i| (i, &job.scenes[i])).filter(|(_, worst)| worst.exit != 0);
     html! {
         header {
             h1 { "hypercircle " (job.command) ", " (job.counts.scenes) @if job.counts.scenes == 1 { " scene" } @else { " scenes" } }
             p.sub { (seconds(job.seconds)) " of processes in all · exit code " (job.exit) }
             div class={ "verdict " (class(job)) } role="status" {
-                span.symbol aria-hidden="true" { (worst.map_or("✔", |worst| worst.status.symbol())) }
+                span.symbol aria-hidden="true" { (worst.map_or("✔", |(_, worst)| worst.status.symbol())) }
                 div {
                     div.word {
                         @match worst {
                             None if job.compares() => "ALL AGREE",
                             None => "ALL PASSED",
-                            Some(worst) => (job.word(worst.status).to_uppercase()),
+                            Some((_, worst)) => (job.word(worst.status).to_uppercase()),
                         }
                     }
                     p { (job.sentence()) "." }
-                    @if let Some(worst) = worst {
-                        p { "Worst: " a href={ "#scene-" (worst.name) } { (clean(&worst.name)) } ". " (clean(&worst.verdict)) }
+                    @if let Some((i, worst)) = worst {
+                        p { "Worst: " a href={ "#" (id(i)) } { (clean(&worst.name)) } ". " (clean(&worst.verdict)) }
                     }
                 }
             }
@@ -89,13 +90,14 @@ fn table(gathered: &Gathered) -> Markup {
                     th { "scene" } th { "status" } th.n { "error at most" } th.n { "lower bound" } th.n { "upper bound" }
                     th.n { "triangles" } th.n { "seconds" } th { "what is said" }
                 } }
-                tbody { @for i in job.worst_first() { (row(job, &job.scenes[i], gathered.reports[i].as_ref())) } }
+                tbody { @for i in job.worst_first() { (row(gathered, i)) } }
             }
         }
     }
 }
 
-fn row(job: &Job, entry: &Entry, report: Option<&Stored>) -> Markup {
+fn row(gathered: &Gathered, i: usize) -> Markup {
+    let (job, entry, report) = (&gathered.job, &gathered.job.scenes[i], gathered.reports[i].as_ref());
     let colour = match entry.exit {
         0 => "good",
         1 => "bad",
@@ -106,7 +108,7 @@ fn row(job: &Job, entry: &Entry, report: Option<&Stored>) -> Markup {
     let digits = lower.zip(upper).map_or(6, |(lower, upper)| digits_to_tell(lower, upper));
     let bound = |x: Option<f64>| x.map_or("–".to_string(), |x| significant(x, digits));
     html! {
-        tr.(colour) id={ "scene-" (entry.name) } {
+        tr.(colour) id=(id(i)) {
             td.long {
                 @match &entry.folder {
                     Some(folder) => a href={ (encoded(folder)) "/report.html" } { (clean(&entry.name)) },
@@ -176,7 +178,7 @@ fn against_baseline(gathered: &Gathered) -> Markup {
         @for i in job.worst_first() {
             @let entry = &job.scenes[i];
             @if has_baseline(entry) {
-                h3 { a href={ "#scene-" (entry.name) } { (clean(&entry.name)) } }
+                h3 { a href={ "#" (id(i)) } { (clean(&entry.name)) } }
                 ul { (list("changed", &entry.changed)) (list("new", &entry.new)) (list("missing", &entry.missing)) }
             }
         }
@@ -185,6 +187,11 @@ fn against_baseline(gathered: &Gathered) -> Markup {
             ul { @for name in &job.not_in_job { li { code { (clean(name)) } } } }
         }
     }
+}
+
+/// Where scene number `i`, from 0, is on the page.
+fn id(i: usize) -> String {
+    format!("scene-{}", i + 1)
 }
 
 /// A name as part of an address.

@@ -144,3 +144,56 @@ fn longest_run(text: &str, of: char) -> usize {
     }
     longest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::{Counts, SCHEMA_VERSION, SceneStatus};
+
+    fn failed(number: usize) -> Entry {
+        Entry {
+            name: format!("{number}-{}", "n".repeat(250)),
+            scene: format!("scenes/{number}.toml"),
+            title: None,
+            folder: None,
+            exit: 3,
+            status: SceneStatus::Crashed,
+            verdict: "`words | words` ".repeat(100),
+            line: None,
+            seconds: 1.0,
+            run: None,
+            energy: None,
+            triangles: None,
+            checks: 0,
+            failing: Vec::new(),
+            changed: Vec::new(),
+            new: Vec::new(),
+            missing: Vec::new(),
+            said: vec!["é```".repeat(500); 40],
+        }
+    }
+
+    #[test]
+    fn whatever_is_said_it_fits_and_tells_of_twenty() {
+        let scenes: Vec<Entry> = (0..5000).map(failed).collect();
+        let job = Job {
+            schema_version: SCHEMA_VERSION,
+            command: "verify".to_string(),
+            options: Vec::new(),
+            version: "0".to_string(),
+            exit: 3,
+            counts: Counts::of(scenes.iter().map(|scene| scene.exit)),
+            seconds: 1.0,
+            scenes,
+            left_out: Vec::new(),
+            not_in_job: vec!["x".repeat(200); 5000],
+        };
+        let gathered = Gathered { reports: vec![None; job.scenes.len()], job, patch: None };
+        let text = summary(&gathered, Path::new("/nonexistent"));
+        assert!(text.len() < 1 << 20, "{} bytes", text.len());
+        assert_eq!(text.matches("\n### ").count(), IN_FULL);
+        assert!(text.contains("4980 more scenes are not in order"));
+        // What is printed cannot end the fence around it.
+        assert!(text.contains("\n````text\n"));
+    }
+}

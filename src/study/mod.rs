@@ -32,7 +32,7 @@ pub use indicators::Indicators;
 pub use outlook::outlook;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
-pub(crate) use provenance::{hash, hex, identifier};
+pub(crate) use provenance::{hash, hex, identifier, locked_version};
 pub use sharpen::{Sharpened, sharpen};
 pub use stage::certify_divided;
 pub use warm_start::closed_coefficients;

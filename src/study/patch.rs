@@ -35,7 +35,7 @@ pub fn unified(path: &str, text: Option<&str>, edits: &[Edit]) -> String {
         Some(_) => format!("--- a/{path}\n+++ b/{path}\n"),
         None => format!("--- /dev/null\n+++ b/{path}\n"),
     };
-    let mut shift = 0;
+    let mut shift: isize = 0;
     for group in edits.chunk_by(|a, b| b.lines.start - a.lines.end <= 2 * AROUND) {
         let (Some(first), Some(last)) = (group.first(), group.last()) else { continue };
         let start = first.lines.start.saturating_sub(AROUND);
@@ -46,7 +46,12 @@ pub fn unified(path: &str, text: Option<&str>, edits: &[Edit]) -> String {
         // Lines count from 1; a range without lines is named by the line before it.
         let from = |first: usize, length: usize| if length == 0 { first } else { first + 1 };
         // Writing to a String cannot fail.
-        let _ = writeln!(patch, "@@ -{},{before} +{},{after} @@", from(start, before), from(start + shift, after));
+        let _ = writeln!(
+            patch,
+            "@@ -{},{before} +{},{after} @@",
+            from(start, before),
+            from(start.saturating_add_signed(shift), after)
+        );
         let mut next = start;
         for edit in group {
             old[next..edit.lines.start].iter().for_each(|line| push(&mut patch, ' ', line));
@@ -55,8 +60,7 @@ pub fn unified(path: &str, text: Option<&str>, edits: &[Edit]) -> String {
             next = edit.lines.end;
         }
         old[next..end].iter().for_each(|line| push(&mut patch, ' ', line));
-        // Never below zero: what was shown before is part of both texts.
-        shift = (shift + added).wrapping_sub(removed);
+        shift += added as isize - removed as isize;
     }
     patch
 }

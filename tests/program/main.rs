@@ -2,11 +2,14 @@
 
 mod certify;
 mod chart;
+mod ci;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;
+mod diff;
 mod fields;
 mod hostile;
+mod jobs;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;

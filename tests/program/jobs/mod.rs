@@ -1,0 +1,8 @@
+//! Many scenes given to one command: what one of them does hides nothing of another.
+
+mod accepted;
+mod junit;
+mod many;
+mod parts;
+mod place;
+mod reference;
