@@ -123,7 +123,10 @@ fn without_report(record: &Record) -> (u8, SceneStatus, String) {
     let reason = reason(&record.said);
     match record.end {
         End::TimedOut => {
-            let verdict = format!("It took longer than a scene may, and was ended after {}.", seconds());
+            let verdict = format!(
+                "It took longer than a scene may, and was ended after {}; allow more with --scene-seconds.",
+                seconds()
+            );
             (3, SceneStatus::TimedOut, verdict)
         }
         End::Signal(Some(signal)) => {

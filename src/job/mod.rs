@@ -1,7 +1,7 @@
 //! Many scenes, each in a process of its own: what one of them does hides nothing of another.
 //!
 //! A [`Plan`] names the scenes; a [`Runner`] gives them to this program once more, some at a time, and keeps a [`Record`] of
-//! each as it ends; [`gather`] puts plan, records and reports together, whoever made them and wherever; [`write()`] makes one
+//! each as it ends; [`gather()`] puts plan, records and reports together, whoever made them and wherever; [`write()`] makes one
 //! page of them. A job in one piece does these four one after the other; a job in parts leaves the last two to whoever has all
 //! parts, and one that was interrupted finds the records of what was finished.
 //!
