@@ -11,7 +11,7 @@ use super::options::{JudgeOptions, MemoryOptions, RunOptions, positive};
 use super::progress::Progress;
 use super::{CliError, Exit, ci, say};
 use crate::budget::Budget;
-use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Shard, severity};
+use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Shard};
 use crate::process::limit;
 use crate::report;
 use crate::report::number::{percent, seconds};
@@ -159,14 +159,15 @@ pub fn run(order: &Order<'_>) -> Result<Exit, CliError> {
 
 /// The end of a part: the rest of the job may be running still.
 fn part_of_job(out: &Path, shard: Shard, quiet: bool) -> Result<Exit, CliError> {
-    let gathered = job::gather(out).map_err(refused)?;
-    let own = gathered.job.scenes.iter().enumerate().filter(|(i, _)| shard.has(*i)).map(|(_, entry)| entry.exit);
-    let worst = own.max_by_key(|exit| severity(*exit)).unwrap_or(0);
+    let part = job::gather(out).map_err(refused)?.part(shard);
+    ci::step_summary(&job::summary(&part, out), &part.job.sentence());
+    ci::annotate(&complaints(&part));
     if !quiet {
         let Shard { number, of } = shard;
+        say::line(&format!("{}.", part.job.sentence()));
         say::line(&format!("part {number} of {of}; with all parts there: hypercircle gather {}", out.display()));
     }
-    Ok(Exit::of(worst))
+    Ok(Exit::of(part.job.exit))
 }
 
 /// Makes one page of what is in `out`, accepts what is to be accepted, and says how it ended.

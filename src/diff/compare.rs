@@ -1,6 +1,6 @@
 //! What changed between two reports.
 
-use crate::compare::Check;
+use crate::compare::{Basis, Check};
 use crate::report::{Status, Stored};
 
 /// Relative change below which two numbers count as the same: other builds and machines round differently.
@@ -137,12 +137,21 @@ fn checks(first: &Stored, second: &Stored) -> Vec<CheckChange> {
     all
 }
 
+/// Whether the numbers of a check are others. An identity that holds but for round-off has moved if it did by more than that.
+fn has_moved(a: &Check, b: &Check) -> bool {
+    let slack = if a.basis == Basis::RoundOff { a.allowed } else { 0.0 };
+    [[a.value, b.value], [a.reference, b.reference]].into_iter().any(|pair| {
+        let near = pair[0].zip(pair[1]).is_some_and(|(a, b)| (a - b).abs() <= slack);
+        moved(pair) && !near
+    })
+}
+
 fn change(name: &str, checks: [Option<Check>; 2]) -> CheckChange {
     let kind = match &checks {
         [Some(a), Some(b)] => match (a.passed, b.passed) {
             (true, false) => Kind::Broken,
             (false, true) => Kind::Mended,
-            _ if moved([a.value, b.value]) || moved([a.reference, b.reference]) => Kind::Moved,
+            _ if has_moved(a, b) => Kind::Moved,
             _ => Kind::Same,
         },
         [None, _] => Kind::New,

@@ -50,6 +50,8 @@ fn changed_checks_come_first_and_outcomes_decide() {
     let back = compare(second(), report(|_| {}));
     assert_eq!(kinds(&back), [("b", Kind::Mended), ("a", Kind::Moved), ("c", Kind::Missing), ("r", Kind::Same)]);
     assert!(back.is_decisive());
+    let rounded = compare(report(|_| {}), report(|v| v["checks"][1]["value"] = json!(0.9)));
+    assert!(rounded.checks.iter().all(|c| c.kind == Kind::Same), "within round-off");
     // A remark has no part in it, a value alone neither; a check that was not made again has.
     let remark = compare(report(|_| {}), report(|v| v["remarks"][0]["passed"] = json!(false)));
     assert!(remark.checks[0].kind == Kind::Broken && !remark.is_decisive());

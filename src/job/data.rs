@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::plan::Shard;
 use crate::report::{Status, Stored};
 
 /// `job.json`.
@@ -177,6 +178,14 @@ pub fn severity(exit: u8) -> usize {
 }
 
 impl Job {
+    /// Counts the scenes anew, with what follows from that.
+    pub(super) fn count(&mut self) {
+        let exits = || self.scenes.iter().map(|scene| scene.exit);
+        self.exit = exits().max_by_key(|exit| severity(*exit)).unwrap_or(0);
+        self.counts = Counts::of(exits());
+        self.seconds = self.scenes.iter().map(|scene| scene.seconds).sum();
+    }
+
     /// Indices of the scenes from the worst on; equally bad ones in the order in which they were found.
     pub fn worst_first(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.scenes.len()).collect();
@@ -247,6 +256,18 @@ pub struct Gathered {
     pub reports: Vec<Option<Stored>>,
     /// What would bring the baseline up to date, where it differs.
     pub patch: Option<String>,
+}
+
+impl Gathered {
+    /// The scenes of one part of the job, as if they were all of it.
+    pub fn part(mut self, shard: Shard) -> Self {
+        let job = &mut self.job;
+        job.scenes = job.scenes.drain(..).enumerate().filter(|(i, _)| shard.has(*i)).map(|(_, scene)| scene).collect();
+        self.reports =
+            self.reports.drain(..).enumerate().filter(|(i, _)| shard.has(*i)).map(|(_, report)| report).collect();
+        job.count();
+        self
+    }
 }
 
 /// JSON Schema of `job.json`.

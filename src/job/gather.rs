@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::baseline;
-use super::data::{Bracketed, Counts, Entry, Gathered, Job, SceneStatus, severity};
+use super::data::{Bracketed, Counts, Entry, Gathered, Job, SceneStatus};
 use super::plan::{Plan, Planned};
 use super::record::{End, Record};
 use super::{JobError, SCHEMA_VERSION};
@@ -27,19 +27,19 @@ pub fn gather(out: &Path) -> Result<Gathered, JobError> {
         reports.push(report);
     }
     let kept = baseline::of(&plan, &reports)?;
-    let exits = || scenes.iter().map(|scene: &Entry| scene.exit);
-    let job = Job {
+    let mut job = Job {
         schema_version: SCHEMA_VERSION,
         command: plan.command,
         options: plan.options,
         version: env!("CARGO_PKG_VERSION").to_string(),
-        exit: exits().max_by_key(|exit| severity(*exit)).unwrap_or(0),
-        counts: Counts::of(exits()),
-        seconds: scenes.iter().map(|scene| scene.seconds).sum(),
+        exit: 0,
+        counts: Counts::default(),
+        seconds: 0.0,
         scenes,
         left_out: plan.left_out,
         not_in_job: kept.not_in_job,
     };
+    job.count();
     Ok(Gathered { job, reports, patch: kept.patch })
 }
 

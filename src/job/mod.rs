@@ -28,6 +28,7 @@ pub use gather::{entry, gather};
 pub use plan::{Plan, Planned, Shard, content, names, scenes_of};
 pub use record::{End, Record};
 pub use run::{Runner, settings};
+pub use summary::summary;
 pub use write::{FILES, write};
 
 /// Version of `job.json` and of the files that a job keeps.

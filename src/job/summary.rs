@@ -8,7 +8,7 @@ use crate::report::markdown::{cell, code};
 use crate::report::number::{percent, seconds};
 
 /// Bytes of the whole text.
-pub(super) const MOST: usize = 1_000_000;
+const MOST: usize = 1_000_000;
 /// Scenes that are not in order and are shown in full.
 const IN_FULL: usize = 20;
 /// Bytes that one of them may have.
@@ -17,7 +17,7 @@ const LONGEST: usize = 40_000;
 const TABLE: usize = 150_000;
 
 /// The job as Markdown; the summaries of single scenes are those in the folders in `out`.
-pub(super) fn summary(gathered: &Gathered, out: &Path) -> String {
+pub fn summary(gathered: &Gathered, out: &Path) -> String {
     let job = &gathered.job;
     let mut text = String::new();
     // Writing to a String cannot fail, so the results of `write!` below carry no information.

@@ -279,6 +279,8 @@ fn with_newline(lines: &[&str], mut edits: Vec<Edit>) -> Vec<Edit> {
 
 fn line(name: &str, value: f64, allowed: f64, signature: &Signature) -> String {
     let Signature { by, on, reason } = signature;
+    // A zero without a sign.
+    let value = value + 0.0;
     format!(
         "{} = {{ value = {value:?}, allowed = {allowed:.1e}, by = {}, on = {on}, reason = {} }}\n",
         text(name),
