@@ -20,8 +20,8 @@ const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene files, and folders for the TOML files in them; of more than one scene the results are in a folder each, with one
-    /// page for all
+    /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
+    /// not searched. Several scenes get a folder each, and one page for all
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
     /// The displacement field, in any format that meshio reads; for several scenes also a folder with one for each, of the

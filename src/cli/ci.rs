@@ -17,8 +17,8 @@ const MARKS: usize = 10;
 /// One thing that is wrong with a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Complaint {
-    /// The file.
-    pub file: PathBuf,
+    /// The file, where it is about one.
+    pub file: Option<PathBuf>,
     /// The line, from 1.
     pub line: Option<usize>,
     /// A few words.
@@ -53,19 +53,18 @@ pub fn report(report: &Report, scene: &Path) {
     if report.status != Status::Agree {
         let first = report.checks.iter().find(|check| !check.passed);
         let message = first.map_or(report.verdict.clone(), |check| format!("{}: {}", check.name, check.why));
-        annotate(&[Complaint { file: scene.to_path_buf(), line: None, title: report.scene.clone(), message }]);
+        annotate(&[Complaint { file: Some(scene.to_path_buf()), line: None, title: report.scene.clone(), message }]);
     }
 }
 
 /// Marks an error that a command ended with.
 pub fn annotate_error(error: &CliError) {
-    if let CliError::Scene(error) = error
-        && let Some(place) = error.place()
-    {
-        let file = place.path().to_path_buf();
-        let message = format!("{}; {}", error.found(), error.remedy());
-        annotate(&[Complaint { file, line: Some(place.line()), title: "bad input".to_string(), message }]);
-    }
+    let place = match error {
+        CliError::Scene(error) => error.place(),
+        CliError::Stopped { .. } => None,
+    };
+    let (file, line) = place.map(|place| (place.path().to_path_buf(), place.line())).unzip();
+    annotate(&[Complaint { file, line, title: "hypercircle".to_string(), message: error.to_string() }]);
 }
 
 fn workspace() -> PathBuf {
@@ -74,16 +73,14 @@ fn workspace() -> PathBuf {
 
 /// `::error file=…,line=…,title=…::…`
 fn mark(complaint: &Complaint, workspace: &Path) -> String {
-    let file = std::path::absolute(&complaint.file).unwrap_or_else(|_| complaint.file.clone());
-    let inside = file.strip_prefix(workspace).unwrap_or(&complaint.file);
-    let inside: PathBuf = inside.components().filter(|part| *part != Component::CurDir).collect();
-    let line = complaint.line.map_or(String::new(), |line| format!(",line={line}"));
-    format!(
-        "::error file={}{line},title={}::{}",
-        property(&inside.display().to_string()),
-        property(&complaint.title),
-        data(&shown(&complaint.message))
-    )
+    let file = complaint.file.as_ref().map_or(String::new(), |given| {
+        let whole = std::path::absolute(given).unwrap_or_else(|_| given.clone());
+        let inside = whole.strip_prefix(workspace).unwrap_or(given);
+        let inside: PathBuf = inside.components().filter(|part| *part != Component::CurDir).collect();
+        format!("file={},", property(&inside.display().to_string()))
+    });
+    let line = complaint.line.map_or(String::new(), |line| format!("line={line},"));
+    format!("::error {file}{line}title={}::{}", property(&complaint.title), data(&shown(&complaint.message)))
 }
 
 /// Text behind the last colons.
@@ -103,7 +100,7 @@ mod tests {
     #[test]
     fn a_mark_is_one_line_whatever_it_says() {
         let complaint = Complaint {
-            file: PathBuf::from("/work/a/./cases/b,c.toml"),
+            file: Some(PathBuf::from("/work/a/./cases/b,c.toml")),
             line: Some(3),
             title: "x: disagree".to_string(),
             message: "50 %\n::error::not mine".to_string(),

@@ -152,14 +152,14 @@ pub fn run(order: &Order<'_>) -> Result<Exit, CliError> {
     }
     drop(progress);
     if shard != Shard::WHOLE {
-        return part_of_job(&out, shard, order.run.quiet);
+        return part_of_job(&out, &plan, shard, order.run.quiet);
     }
     conclude(&out, &plan, order.judge.map(JudgeOptions::signature).as_ref(), order.run.quiet)
 }
 
 /// The end of a part: the rest of the job may be running still.
-fn part_of_job(out: &Path, shard: Shard, quiet: bool) -> Result<Exit, CliError> {
-    let part = job::gather(out).map_err(refused)?.part(shard);
+fn part_of_job(out: &Path, plan: &Plan, shard: Shard, quiet: bool) -> Result<Exit, CliError> {
+    let part = job::gather(out, plan).map_err(refused)?.part(shard);
     ci::step_summary(&job::summary(&part, out), &part.job.sentence());
     ci::annotate(&complaints(&part));
     if !quiet {
@@ -170,12 +170,12 @@ fn part_of_job(out: &Path, shard: Shard, quiet: bool) -> Result<Exit, CliError> 
     Ok(Exit::of(part.job.exit))
 }
 
-/// Makes one page of what is in `out`, accepts what is to be accepted, and says how it ended.
+/// Makes one page of what `out` has of `plan`, accepts what is to be accepted, and says how it ended.
 ///
 /// # Errors
 /// The files cannot be read or written.
 pub fn conclude(out: &Path, plan: &Plan, signature: Option<&Signature>, quiet: bool) -> Result<Exit, CliError> {
-    let gathered = job::gather(out).map_err(refused)?;
+    let gathered = job::gather(out, plan).map_err(refused)?;
     let summary = job::write(&gathered, out).map_err(refused)?;
     let accepted = match signature {
         Some(signature) => job::accept(plan, &gathered, signature).map_err(refused)?,
@@ -206,7 +206,7 @@ fn complaints(gathered: &Gathered) -> Vec<ci::Complaint> {
         let entry = &job.scenes[i];
         let first = gathered.reports[i].as_ref().and_then(|report| report.checks.iter().find(|check| !check.passed));
         ci::Complaint {
-            file: PathBuf::from(&entry.scene),
+            file: Some(PathBuf::from(&entry.scene)),
             line: entry.line,
             title: format!("{}: {}", entry.name, job.word(entry.status)),
             message: first.map_or(entry.verdict.clone(), |check| format!("{}: {}", check.name, check.why)),

@@ -117,7 +117,7 @@ pub struct RunOptions {
     #[arg(
         long,
         value_name = "DIR",
-        help = "Folder for the results, made when there is something to write [default: out/<name>]"
+        help = "Folder for the results, made when there is something to write [default: out/<name>; out for several scenes]"
     )]
     pub out: Option<PathBuf>,
     /// Say nothing but errors
@@ -152,7 +152,7 @@ impl RunOptions {
 /// How a comparison is judged.
 #[derive(Debug, Clone, Args)]
 pub struct JudgeOptions {
-    /// Compare with the results stored in FILE
+    /// Compare with the results stored in FILE; one for several scenes has a name that ends with .toml
     #[arg(long, value_name = "FILE")]
     pub baseline: Option<PathBuf>,
     /// Write the results to the baseline instead of comparing with it

@@ -18,8 +18,8 @@ const FIELDS: [&str; 2] = ["FEniCSx P1", "FEniCSx P2"];
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scene files, and folders for the TOML files in them; of more than one scene the results are in a folder each, with one
-    /// page for all
+    /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
+    /// not searched. Several scenes get a folder each, and one page for all
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
     /// How to solve.

@@ -9,16 +9,15 @@ use super::record::{End, Record};
 use super::{JobError, SCHEMA_VERSION};
 use crate::report::{BaselineRow, Change, Stored};
 
-/// The job in `out`. A scene without a record of the present plan has not been run, and counts as failed.
+/// What `out` has of the job `plan`. A scene without a record of this plan has not been run, and counts as failed.
 ///
 /// # Errors
-/// There is no plan in `out`, or its baseline cannot be read.
-pub fn gather(out: &Path) -> Result<Gathered, JobError> {
-    let plan = Plan::read(out)?;
+/// Its baseline cannot be read.
+pub fn gather(out: &Path, plan: &Plan) -> Result<Gathered, JobError> {
     let mut scenes = Vec::new();
     let mut reports = Vec::new();
     for planned in &plan.scenes {
-        let record = Record::read(out, &plan, planned);
+        let record = Record::read(out, plan, planned);
         let report = record.as_ref().and_then(|record| report_of(out, planned, record));
         scenes.push(match record {
             Some(record) => entry_of(planned, &record, report.as_ref()),
@@ -26,17 +25,17 @@ pub fn gather(out: &Path) -> Result<Gathered, JobError> {
         });
         reports.push(report);
     }
-    let kept = baseline::of(&plan, &reports)?;
+    let kept = baseline::of(plan, &reports)?;
     let mut job = Job {
         schema_version: SCHEMA_VERSION,
-        command: plan.command,
-        options: plan.options,
+        command: plan.command.clone(),
+        options: plan.options.clone(),
         version: env!("CARGO_PKG_VERSION").to_string(),
         exit: 0,
         counts: Counts::default(),
         seconds: 0.0,
         scenes,
-        left_out: plan.left_out,
+        left_out: plan.left_out.clone(),
         not_in_job: kept.not_in_job,
     };
     job.count();
