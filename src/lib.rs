@@ -18,7 +18,7 @@
 //!
 //! Data travel in the order of the modules: [`process`] and [`budget`] → [`scene`] → [`mesh`] → [`problem`] → [`statics`] →
 //! [`element`] → [`dual`] →
-//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`study`] → [`measure`] → [`chart`] and [`stability`], with [`cli`] as a
+//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`diff`] and [`study`] → [`measure`] → [`chart`] and [`stability`] → [`job`], with [`cli`] as a
 //! thin door.
 //!
 //! ```
@@ -59,8 +59,10 @@ pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod diagnose;
+pub mod diff;
 pub mod dual;
 pub mod element;
+pub mod job;
 pub mod measure;
 pub mod mesh;
 pub mod plot;

@@ -1,8 +1,10 @@
 //! `hypercircle certify`: somebody else's displacement field against the dual bound.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::given::Given;
+use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::values::ValueOptions;
@@ -21,10 +23,12 @@ const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The scene file
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
-    /// The displacement field, in any format that meshio reads; may be repeated, for one file a body
+    /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
+    /// not searched. Several scenes get a folder each, and one page for all
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// The displacement field, in any format that meshio reads; may be repeated, for one file a body; for several scenes also a
+    /// folder with one for each, of the same name but for the ending
     #[arg(long, value_name = "FILE", required_unless_present_any = ["value", "values"])]
     pub displacement: Vec<PathBuf>,
     /// Values without a field.
@@ -45,6 +49,9 @@ pub struct Args {
     /// How to judge.
     #[command(flatten)]
     pub judge: JudgeOptions,
+    /// How several scenes are run.
+    #[command(flatten)]
+    pub job: JobOptions,
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
@@ -54,8 +61,29 @@ pub struct Args {
 ///
 /// # Errors
 /// The scene or the field is refused, or no answer can be given.
-pub fn run(args: &Args) -> Result<Exit, CliError> {
-    let session = Session::open("certify", &args.scene, &args.solve, args.run.quiet)?;
+pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    match args.scenes.as_slice() {
+        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
+        _ => several(args, given),
+    }
+}
+
+fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    job::run(&Order {
+        command: "certify",
+        scenes: &args.scenes,
+        job: &args.job,
+        given,
+        threads: args.solve.threads,
+        memory: &args.solve.memory,
+        judge: Some(&args.judge),
+        run: &args.run,
+        own: &|scene| own(args, scene),
+    })
+}
+
+fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
+    let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
     let given = args.values.all()?;
     session.refuse_unknown_quantities(given.iter().map(|value| value.name.as_str()))?;
     if args.displacement.is_empty() {
@@ -72,7 +100,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut parts = args.displacement.iter().map(read);
     let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
     let field = parts.try_fold(first, |field, part| Ok::<_, CliError>(field.and(part?)))?;
-    args.judge.refuse_early(&session.scene, &[&field.name()])?;
+    args.judge.refuse_early(&session.scene, &[&field.name()], &args.job)?;
     let reading = start.elapsed().as_secs_f64();
     // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.
     let on_its_mesh = SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..args.solve.clone() };
@@ -102,8 +130,6 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         comparison.checks.extend(claim.checks.iter().cloned());
         claimed = Some(claim);
     }
-    let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
-    comparison.checks.extend(baseline);
     let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &args.limits, &allow)?;
     if let Some(wanted) = args.solve.tolerance {
         let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
@@ -115,7 +141,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Exact, &allow));
     comparison.checks.extend(value_checks(&answers, &given, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty())?;
+    args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
+    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
+    comparison.checks.extend(against);
     let particulars = Particulars {
         sharpened,
         enough: Some(enough),
@@ -126,24 +154,59 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         diagnosis: claimed.iter().filter_map(|claim| claim.diagnosis.clone()).collect(),
         residual: claimed.map(|claim| claim.residual),
         failure: None,
+        baseline,
     };
     session.conclude(run, &comparison, particulars, &folder)
+}
+
+/// The displacements of one scene among several: the files that were given, or those of the scene's name in the folders.
+fn own(args: &Args, scene: &Path) -> Result<Own, CliError> {
+    let mut own = Own::default();
+    for given in &args.displacement {
+        let file = if given.is_dir() { of_scene(given, scene)? } else { given.clone() };
+        let option = file.to_str().map(|file| format!("--displacement={file}")).ok_or_else(|| {
+            let what = format!("the name of {} is not Unicode", file.display());
+            CliError::stopped(Exit::BadInput, what, "rename the file")
+        })?;
+        own.fields.push(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
+        own.options.push(option);
+        own.files.push(file);
+    }
+    own.files.extend(args.values.values.clone());
+    Ok(own)
+}
+
+/// The one file in `folder` that has the name of the scene.
+fn of_scene(folder: &Path, scene: &Path) -> Result<PathBuf, CliError> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    files.retain(|file| file.is_file() && file.file_stem() == scene.file_stem());
+    if let [file] = files.as_slice() {
+        return Ok(file.clone());
+    }
+    let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let found = if files.is_empty() { "no file" } else { "more than one file" };
+    Err(CliError::stopped(
+        Exit::BadInput,
+        format!("{} has {found} named {name} and an ending, for the scene {}", folder.display(), scene.display()),
+        "give each scene one displacement of its name, or certify the scenes one by one",
+    ))
 }
 
 /// Holds values against the intervals where there is no field.
 fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<Exit, CliError> {
     let folder = args.run.report_folder(&session.scene)?;
-    args.judge.refuse_early(&session.scene, &[])?;
+    args.judge.refuse_early(&session.scene, &[], &args.job)?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let (certified, allow) = (&run.certified, args.judge.allowances());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, false)?;
-    let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
-    comparison.checks.extend(baseline);
-    session.conclude(run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
+    args.judge.refuse_unknown(&allow, &comparison.checks, false, &args.job)?;
+    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
+    comparison.checks.extend(against);
+    session.conclude(run, &comparison, Particulars { answers, baseline, ..Particulars::default() }, &folder)
 }
 
 /// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.

@@ -20,6 +20,20 @@ pub enum Exit {
     NoEquilibrium = 5,
 }
 
+impl Exit {
+    /// The one with that code; a code that is none means a failure.
+    pub fn of(code: u8) -> Self {
+        match code {
+            0 => Exit::Agree,
+            1 => Exit::Disagree,
+            2 => Exit::BadInput,
+            4 => Exit::NotInstalled,
+            5 => Exit::NoEquilibrium,
+            _ => Exit::Failed,
+        }
+    }
+}
+
 /// The table for the help text.
 pub const TABLE: &str = "Exit codes: 0 agree, 1 disagree, 2 bad input, 3 a solver or the reference failed, \
                          4 the reference is not installed, 5 no equilibrium exists";

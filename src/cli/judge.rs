@@ -1,10 +1,13 @@
 //! Tolerances and baselines from the command line.
 
-use super::options::JudgeOptions;
+use super::job::JobOptions;
+use super::options::{JudgeOptions, SignatureOptions};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, Check, Comparison, names_of_checks};
+use crate::job::today;
+use crate::report::BaselineRow;
 use crate::scene::{Contact, Scene};
-use crate::study::{Baseline, Certified};
+use crate::study::{Accepted, Answer, Baseline, BaselineError, Certified, Signature, baseline_checks};
 
 impl JudgeOptions {
     /// The tolerances given with `--allow`.
@@ -17,22 +20,46 @@ impl JudgeOptions {
     ///
     /// # Errors
     /// What is at fault.
-    pub fn refuse_early(&self, scene: &Scene, fields: &[&str]) -> Result<(), CliError> {
-        let refused = |e: crate::study::BaselineError| CliError::stopped(Exit::BadInput, e.to_string(), "");
+    pub fn refuse_early(&self, scene: &Scene, fields: &[&str], job: &JobOptions) -> Result<(), CliError> {
         match &self.baseline {
-            Some(file) if self.accept => Baseline::refuse(file).map_err(refused)?,
+            Some(file) if self.accept && !job.is_part() => Baseline::refuse(file).map_err(refused)?,
+            Some(file) if Accepted::is_meant(file) && self.accept => {
+                drop(Accepted::read_if_there(file).map_err(refused)?)
+            }
+            Some(file) if Accepted::is_meant(file) => drop(Accepted::read(file).map_err(refused)?),
             Some(file) => drop(Baseline::read(file).map_err(refused)?),
             None => {}
         }
-        let contacts: Vec<String> = scene.contacts.iter().map(Contact::name).collect();
-        let fields: Vec<String> = fields.iter().chain(&["free bound"]).map(|f| f.to_string()).collect();
-        let mut names = names_of_checks(&contacts, &fields);
-        for quantity in &scene.quantities {
-            let of = |last: &str| format!("quantity/{}/{last}", quantity.name);
-            names.extend(fields.iter().map(String::as_str).chain(["tolerance", "given"]).map(of));
+        if job.is_part() {
+            // A check of another scene of the job may be meant.
+            return Ok(());
         }
+        self.refuse_foreign(&[(scene.clone(), fields.iter().map(|f| f.to_string()).collect())])
+    }
+
+    /// Refuses a tolerance for a check that is made on none of `scenes`, given with the displacement fields that are
+    /// compared on each.
+    ///
+    /// # Errors
+    /// What is at fault.
+    pub fn refuse_foreign(&self, scenes: &[(Scene, Vec<String>)]) -> Result<(), CliError> {
+        let of_scene = |(scene, fields): &(Scene, Vec<String>)| {
+            let contacts: Vec<String> = scene.contacts.iter().map(Contact::name).collect();
+            let fields: Vec<String> = fields.iter().cloned().chain(["free bound".to_string()]).collect();
+            let mut names = names_of_checks(&contacts, &fields);
+            for quantity in &scene.quantities {
+                let of = |last: &str| format!("quantity/{}/{last}", quantity.name);
+                names.extend(fields.iter().map(String::as_str).chain(["tolerance", "given"]).map(of));
+            }
+            names
+        };
+        let mut names: Vec<String> = scenes.iter().flat_map(of_scene).collect();
+        let mut seen = std::collections::HashSet::new();
+        names.retain(|name| seen.insert(name.clone()));
         let allow = self.allowances();
-        match allow.foreign(&names).into_iter().find(|name| !name.starts_with("baseline/")) {
+        // Where no scene can be read there is nothing to hold a name against.
+        let foreign = if names.is_empty() { Vec::new() } else { allow.foreign(&names) };
+        match foreign.into_iter().find(|name| !name.starts_with("baseline/")) {
             None => Ok(()),
             Some(name) => Err(CliError::stopped(
                 Exit::BadInput,
@@ -46,10 +73,16 @@ impl JudgeOptions {
     ///
     /// # Errors
     /// An unknown name.
-    pub fn refuse_unknown(&self, allow: &Allowances, checks: &[Check], incomplete: bool) -> Result<(), CliError> {
+    pub fn refuse_unknown(
+        &self,
+        allow: &Allowances,
+        checks: &[Check],
+        incomplete: bool,
+        job: &JobOptions,
+    ) -> Result<(), CliError> {
         let unknown = allow.unknown(checks);
         let meant: Vec<&&str> = unknown.iter().filter(|name| !name.starts_with("baseline/")).collect();
-        if incomplete || meant.is_empty() {
+        if incomplete || meant.is_empty() || job.is_part() {
             return Ok(());
         }
         let names: Vec<&str> = checks.iter().map(|c| c.name.as_str()).collect();
@@ -60,7 +93,7 @@ impl JudgeOptions {
         ))
     }
 
-    /// Compares with the baseline, or writes it.
+    /// Compares with the baseline, or writes it; one scene of a job leaves the writing to the job.
     ///
     /// # Errors
     /// The baseline cannot be read or written.
@@ -68,15 +101,52 @@ impl JudgeOptions {
         &self,
         certified: &Certified,
         comparison: &Comparison,
+        answers: &[Answer],
         allow: &Allowances,
-    ) -> Result<Vec<Check>, CliError> {
-        let Some(file) = &self.baseline else { return Ok(Vec::new()) };
-        let present = Baseline::new(certified, comparison);
-        let refused = |e: crate::study::BaselineError| CliError::stopped(Exit::BadInput, e.to_string(), "");
+        job: &JobOptions,
+    ) -> Result<(Vec<Check>, Vec<BaselineRow>), CliError> {
+        let Some(file) = &self.baseline else { return Ok((Vec::new(), Vec::new())) };
+        let values = Baseline::numbers(certified, comparison, answers);
+        let scene = &certified.problem.scene.name;
+        if Accepted::is_meant(file) {
+            let name = job.part_name.as_ref().unwrap_or(scene);
+            let stored = if self.accept { Accepted::read_if_there(file) } else { Accepted::read(file) };
+            let stored = stored.map_err(refused)?;
+            let rows = stored.rows(name, &values, allow);
+            if !self.accept {
+                return Ok((baseline_checks(&rows), rows));
+            }
+            if !job.is_part()
+                && let Some(text) = stored.with(&[(name.clone(), rows.clone())].into(), &self.signature())
+            {
+                Baseline::write_text(file, text).map_err(refused)?;
+            }
+            return Ok((Vec::new(), rows));
+        }
+        let present = Baseline::new(scene, values);
         if self.accept {
             present.write(file).map_err(refused)?;
-            return Ok(Vec::new());
+            return Ok((Vec::new(), Vec::new()));
         }
-        Ok(present.checks(&Baseline::read(file).map_err(refused)?, allow))
+        Ok((present.checks(&Baseline::read(file).map_err(refused)?, allow), Vec::new()))
     }
+
+    /// Who accepts, when and why.
+    pub fn signature(&self) -> Signature {
+        self.signature.signature()
+    }
+}
+
+impl SignatureOptions {
+    /// Who accepts, when and why: what is not said is taken from the environment, which in CI names the one who pushed.
+    pub fn signature(&self) -> Signature {
+        let known = ["GIT_AUTHOR_NAME", "GITHUB_ACTOR", "GITLAB_USER_LOGIN", "LOGNAME", "USER"];
+        let named = || known.iter().find_map(|name| std::env::var(name).ok().filter(|value| !value.is_empty()));
+        let by = self.accepted_by.clone().or_else(named).unwrap_or_default();
+        Signature { by, on: today(), reason: self.reason.clone() }
+    }
+}
+
+fn refused(error: BaselineError) -> CliError {
+    CliError::stopped(Exit::BadInput, error.to_string(), "")
 }

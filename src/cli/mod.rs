@@ -5,8 +5,13 @@
 
 pub mod certify;
 pub mod chart;
+pub mod ci;
+pub mod diff;
 pub mod error;
 pub mod exit;
+pub mod gather;
+pub mod given;
+pub mod job;
 pub mod judge;
 pub mod measure;
 pub mod memory;
@@ -15,19 +20,25 @@ pub mod progress;
 pub mod say;
 pub mod schema;
 pub mod session;
+pub mod shell;
 pub mod show;
 pub mod solve;
 pub mod stability;
 pub mod threads;
 mod values;
 pub mod verify;
+pub mod version;
 
+use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::error::ErrorKind;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use error::CliError;
 pub use exit::Exit;
+use given::Given;
 
 use crate::process::{clear, signals};
 
@@ -49,6 +60,10 @@ pub enum Command {
     Solve(solve::Args),
     /// Hold a displacement field from elsewhere against the bound
     Certify(certify::Args),
+    /// Make one page of the parts of a job
+    Gather(gather::Args),
+    /// Compare two reports: what changed, and whether it matters
+    Diff(diff::Args),
     /// Measure accuracy against time, every method and refinement
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
@@ -58,12 +73,20 @@ pub enum Command {
     Measure(measure::Args),
     /// Print the JSON Schema of a file format
     Schema(schema::Args),
+    /// Print the script that completes command lines in a shell
+    Completions(shell::CompletionsArgs),
+    /// Print the manual page, or write one for each command
+    Man(shell::ManArgs),
 }
 
 /// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    let (cli, given) = match parsed(std::env::args_os()) {
+        Ok(parsed) => parsed,
+        Err(error) if error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(|w| w == "--version") => {
+            let _ = writeln!(std::io::stdout(), "{}", version::long());
+            return ExitCode::SUCCESS;
+        }
         Err(error) => {
             // Help and version are answers, on stdout with code 0; the rest is bad usage, with the code of bad input.
             // Where nobody reads the answer there is nobody to tell.
@@ -74,25 +97,40 @@ pub fn main() -> ExitCode {
     show::install_panic_message();
     signals::watch();
     clear();
-    match std::panic::catch_unwind(|| run(&cli.command)) {
+    match std::panic::catch_unwind(|| run(&cli.command, &given)) {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
             show::error(&error);
+            ci::annotate_error(&error);
             error.exit().into()
         }
         Err(_) => Exit::Failed.into(),
     }
 }
 
-fn run(command: &Command) -> Result<Exit, CliError> {
+/// The command line, and the options of its command as they were given.
+fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, Given), clap::Error> {
+    let mut definition = Cli::command();
+    let matches = definition.try_get_matches_from_mut(words)?;
+    let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut definition))?;
+    let used = matches.subcommand().and_then(|(name, matches)| Some((definition.find_subcommand(name)?, matches)));
+    let given = used.map_or_else(Given::default, |(command, matches)| Given::new(command, matches));
+    Ok((cli, given))
+}
+
+fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
     match command {
-        Command::Verify(args) => verify::run(args),
-        Command::Solve(args) => solve::run(args),
-        Command::Certify(args) => certify::run(args),
+        Command::Verify(args) => verify::run(args, given),
+        Command::Solve(args) => solve::run(args, given),
+        Command::Certify(args) => certify::run(args, given),
+        Command::Gather(args) => gather::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Schema(args) => schema::run(args),
+        Command::Completions(args) => shell::completions(args),
+        Command::Man(args) => shell::man(args),
     }
 }
 
@@ -117,7 +155,7 @@ mod tests {
                     --baseline b.json --accept --allow energy=1e-3 --allow contact=0 --max-triangles 9 --max-seconds 1.5 \
                     --max-memory 2G";
         let Ok(Command::Verify(args)) = parse(line) else { panic!("{:?}", parse(line)) };
-        assert_eq!(args.scene.to_str(), Some("a.toml"));
+        assert_eq!(args.scenes, [std::path::PathBuf::from("a.toml")]);
         assert_eq!((args.solve.method, args.solve.refine, args.solve.threads), (Method::ActiveSet, 2, 2));
         assert_eq!(args.solve.memory.max_memory, Some(2_000_000_000));
         assert_eq!((args.limits.max_triangles, args.limits.max_seconds), (Some(9), Some(1.5)));
@@ -130,7 +168,9 @@ mod tests {
     fn numbers_out_of_range_are_refused() {
         for line in [
             "hypercircle solve",
-            "hypercircle solve a.toml b.toml",
+            "hypercircle solve a.toml --jobs 0",
+            "hypercircle solve a.toml --shard 3/2",
+            "hypercircle solve a.toml --scene-seconds 0",
             "hypercircle solve a.toml --tolerance nan",
             "hypercircle solve a.toml --tolerance 0",
             "hypercircle solve a.toml --refine -1",

@@ -131,7 +131,7 @@ pub struct RunOptions {
     #[arg(
         long,
         value_name = "DIR",
-        help = "Folder for the results, made when there is something to write [default: out/<name>]"
+        help = "Folder for the results, made when there is something to write [default: out/<name>; out for several scenes]"
     )]
     pub out: Option<PathBuf>,
     /// Say nothing but errors
@@ -166,15 +166,29 @@ impl RunOptions {
 /// How a comparison is judged.
 #[derive(Debug, Clone, Args)]
 pub struct JudgeOptions {
-    /// Compare with the results stored in FILE
+    /// Compare with the results stored in FILE; one for several scenes has a name that ends with .toml
     #[arg(long, value_name = "FILE")]
     pub baseline: Option<PathBuf>,
     /// Write the results to the baseline instead of comparing with it
     #[arg(long, requires = "baseline")]
     pub accept: bool,
+    /// Who accepts, and why.
+    #[command(flatten)]
+    pub signature: SignatureOptions,
     /// Allow the check NAME a difference of VALUE; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub allow: Vec<Allowance>,
+}
+
+/// What a baseline says about those who accept it.
+#[derive(Debug, Clone, Args)]
+pub struct SignatureOptions {
+    /// Write into the baseline why its numbers are accepted
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+    pub reason: String,
+    /// Write into the baseline who accepts its numbers [default: who runs this, as the environment tells]
+    #[arg(long, value_name = "NAME")]
+    pub accepted_by: Option<String>,
 }
 
 /// A tolerance from the command line.

@@ -39,6 +39,13 @@ impl Progress {
         self.bar.set_message(what);
     }
 
+    /// Prints a line on standard output.
+    pub fn line(&self, text: &str) {
+        if !self.quiet {
+            self.bar.suspend(|| super::say::line(text));
+        }
+    }
+
     /// Says at once, as a line of its own, what whoever waits should know.
     pub fn remark(&self, what: &str) {
         if !self.quiet {

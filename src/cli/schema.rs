@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write};
 use clap::ValueEnum;
 
 use super::{CliError, Exit};
+use crate::job;
 use crate::report;
 use crate::scene;
 
@@ -23,6 +24,8 @@ pub enum File {
     Scene,
     /// report.json
     Report,
+    /// job.json
+    Job,
 }
 
 /// Prints the JSON Schema on stdout.
@@ -33,6 +36,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let schema = match args.file {
         File::Scene => scene::schema(),
         File::Report => report::schema(),
+        File::Job => job::schema(),
     };
     match writeln!(std::io::stdout(), "{schema:#}") {
         // A reader such as `head` may have had enough.

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
+use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
 use super::options::{Limits, Method, SolveOptions};
 use super::progress::Progress;
-use super::{CliError, Exit, say, threads};
+use super::{CliError, Exit, ci, say, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::diagnose::Diagnosis;
@@ -14,8 +15,8 @@ use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options
 use crate::element::{Elements, block};
 use crate::mesh;
 use crate::problem::{Note, Problem};
-use crate::process::limit;
-use crate::report::{self, Dossier, HistoryRow, Status};
+use crate::process::{end_with_parent, limit};
+use crate::report::{self, BaselineRow, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
     self, Adapt, Adapted, Admission, Answer, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble,
@@ -36,6 +37,8 @@ pub struct Session {
     /// Name of the command.
     pub command: &'static str,
     quiet: bool,
+    /// Identifier of the run, where the job that it is part of gave it one.
+    run: Option<String>,
     threads: usize,
     budget: Budget,
 }
@@ -71,6 +74,8 @@ pub struct Particulars {
     pub residual: Option<Vec<f64>>,
     /// Why the displacement model gave no answer.
     pub failure: Option<String>,
+    /// Its numbers beside those of the baseline.
+    pub baseline: Vec<BaselineRow>,
 }
 
 impl Session {
@@ -78,12 +83,30 @@ impl Session {
     ///
     /// # Errors
     /// The scene is refused.
-    pub fn open(command: &'static str, scene: &Path, solve: &SolveOptions, quiet: bool) -> Result<Self, CliError> {
+    pub fn open(
+        command: &'static str,
+        scene: &Path,
+        solve: &SolveOptions,
+        quiet: bool,
+        job: &JobOptions,
+    ) -> Result<Self, CliError> {
         let start = Instant::now();
+        if job.is_part() {
+            end_with_parent();
+        }
         let scene = Scene::read(scene)?;
         let threads = threads::start(solve.threads);
         let budget = enough(solve.memory.budget(threads))?;
-        Ok(Session { scene, progress: Progress::new(quiet), start, command, quiet, threads, budget })
+        Ok(Session {
+            scene,
+            progress: Progress::new(quiet),
+            start,
+            command,
+            quiet,
+            run: job.part.clone(),
+            threads,
+            budget,
+        })
     }
 
     /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`.
@@ -214,7 +237,9 @@ impl Session {
         let message = format!("{}: {error}", self.scene.path.display());
         match error {
             StudyError::NoEquilibrium { sentence, motion, problem, .. } => {
-                let dossier = study::infeasible(self.command, &problem, &sentence, motion, self.threads);
+                let mut dossier = study::infeasible(self.command, &problem, &sentence, motion, self.threads);
+                self.sign(&mut dossier);
+                ci::report(&dossier.report, &self.scene.path);
                 if let Err(error) = report::write(&dossier, folder) {
                     return CliError::stopped(Exit::Failed, error.to_string(), "");
                 }
@@ -310,6 +335,7 @@ impl Session {
             diagnosis,
             residual,
             failure,
+            baseline,
         } = particulars;
         let is_claimed = residual.is_some();
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
@@ -317,10 +343,10 @@ impl Session {
             history.extend(meshes);
             certified
         });
-        seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
+        seconds.push(("total", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
         let fields = Fields::new(&certified, comparison).with_residual(residual);
-        let dossier = assemble(
+        let mut dossier = assemble(
             Findings {
                 command: self.command,
                 certified: &certified,
@@ -339,12 +365,22 @@ impl Session {
             },
             &fields,
         );
+        dossier.report.baseline = baseline;
+        self.sign(&mut dossier);
         self.close(&dossier, folder)
+    }
+
+    /// Gives the report the identifier of this run, where one was given.
+    fn sign(&self, dossier: &mut Dossier<'_>) {
+        if let Some(run) = &self.run {
+            dossier.report.run.clone_from(run);
+        }
     }
 
     fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
+        ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
             let report = &dossier.report;
             say::line(&report.verdict);

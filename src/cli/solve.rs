@@ -1,7 +1,9 @@
 //! `hypercircle solve`: the dual solve and its own two-sided energy bracket.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::given::Given;
+use super::job::{self, JobOptions, Order, Own};
 use super::options::{Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::{CliError, Exit};
@@ -11,15 +13,19 @@ use crate::study::{tolerance_check, wanted_checks};
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The scene file
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
+    /// not searched. Several scenes get a folder each, and one page for all
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
     /// Where refinement stops.
     #[command(flatten)]
     pub limits: Limits,
+    /// How several scenes are run.
+    #[command(flatten)]
+    pub job: JobOptions,
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
@@ -29,8 +35,29 @@ pub struct Args {
 ///
 /// # Errors
 /// The scene is refused, or no answer can be given.
-pub fn run(args: &Args) -> Result<Exit, CliError> {
-    let session = Session::open("solve", &args.scene, &args.solve, args.run.quiet)?;
+pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    match args.scenes.as_slice() {
+        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
+        _ => several(args, given),
+    }
+}
+
+fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    job::run(&Order {
+        command: "solve",
+        scenes: &args.scenes,
+        job: &args.job,
+        given,
+        threads: args.solve.threads,
+        memory: &args.solve.memory,
+        judge: None,
+        run: &args.run,
+        own: &|_| Ok(Own::default()),
+    })
+}
+
+fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
+    let session = Session::open("solve", scene, &args.solve, args.run.quiet, &args.job)?;
     let folder = args.run.report_folder(&session.scene)?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let (certified, allow) = (&run.certified, Allowances::default());

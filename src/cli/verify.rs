@@ -1,7 +1,9 @@
 //! `hypercircle verify`: dual and primal model of one scene, compared.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::given::Given;
+use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
 use super::session::{Particulars, Session};
 use super::{CliError, Exit};
@@ -10,12 +12,16 @@ use crate::primal::{self, PrimalError};
 use crate::process::limit;
 use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
 
+/// The displacement solutions that it compares.
+const FIELDS: [&str; 2] = ["FEniCSx P1", "FEniCSx P2"];
+
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The scene file
-    #[arg(value_name = "SCENE")]
-    pub scene: PathBuf,
+    /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
+    /// not searched. Several scenes get a folder each, and one page for all
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
@@ -25,6 +31,9 @@ pub struct Args {
     /// How to judge.
     #[command(flatten)]
     pub judge: JudgeOptions,
+    /// How several scenes are run.
+    #[command(flatten)]
+    pub job: JobOptions,
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
@@ -52,10 +61,31 @@ pub enum Planted {
 ///
 /// # Errors
 /// The scene is refused, or no answer can be given.
-pub fn run(args: &Args) -> Result<Exit, CliError> {
-    let session = Session::open("verify", &args.scene, &args.solve, args.run.quiet)?;
+pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    match args.scenes.as_slice() {
+        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
+        _ => several(args, given),
+    }
+}
+
+fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    job::run(&Order {
+        command: "verify",
+        scenes: &args.scenes,
+        job: &args.job,
+        given,
+        threads: args.solve.threads,
+        memory: &args.solve.memory,
+        judge: Some(&args.judge),
+        run: &args.run,
+        own: &|_| Ok(Own { fields: FIELDS.map(String::from).to_vec(), ..Own::default() }),
+    })
+}
+
+fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
+    let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
     let folder = args.run.report_folder(&session.scene)?;
-    args.judge.refuse_early(&session.scene, &["FEniCSx P1", "FEniCSx P2"])?;
+    args.judge.refuse_early(&session.scene, &FIELDS, &args.job)?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
@@ -92,9 +122,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Discrete, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some())?;
-    let baseline = args.judge.against_baseline(certified, &comparison, &allow)?;
-    comparison.checks.extend(baseline);
+    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
+    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
+    comparison.checks.extend(against);
     let (sharpened, enough) = match comparison.judged.is_empty() {
         true => (None, None),
         false => {
@@ -110,6 +140,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         components,
         diagnosis: diagnoses(&certified.problem, &comparison),
         failure: failure.as_ref().map(ToString::to_string),
+        baseline,
         ..Particulars::default()
     };
     let exit = session.conclude(run, &comparison, particulars, &folder)?;

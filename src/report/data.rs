@@ -1,7 +1,7 @@
 //! The data structure behind every output file.
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::number::{digits_to_tell, significant};
 
@@ -10,6 +10,9 @@ pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
+
+/// Version of `report.json`.
+pub const SCHEMA_VERSION: u32 = 1;
 
 /// `report.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -50,6 +53,9 @@ pub struct Report {
     pub diagnosis: Vec<Diagnosis>,
     /// What the reader has to know.
     pub notes: Vec<Note>,
+    /// How the numbers of this run compare with those of the baseline; empty without one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub baseline: Vec<BaselineRow>,
     /// How adaptive refinement went, one row per mesh; empty without it.
     pub history: Vec<HistoryRow>,
     /// What made the numbers.
@@ -57,7 +63,7 @@ pub struct Report {
 }
 
 /// The verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// All checks passed.
@@ -70,6 +76,35 @@ pub enum Status {
     Infeasible,
     /// A solver failed.
     Failed,
+}
+
+/// One number beside that of the baseline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct BaselineRow {
+    /// Its name.
+    pub name: String,
+    /// As found; `null` where only the baseline has it.
+    pub value: Option<f64>,
+    /// As accepted; `null` where the baseline does not have it.
+    pub accepted: Option<f64>,
+    /// The largest difference that counts as none; `null` where the baseline does not have it.
+    pub allowed: Option<f64>,
+    /// What came of it.
+    pub change: Change,
+}
+
+/// How a number compares with the accepted one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// Within what is allowed.
+    Unchanged,
+    /// Further away.
+    Changed,
+    /// Not in the baseline.
+    New,
+    /// Only in the baseline.
+    Missing,
 }
 
 /// The two-sided bound of the exact energy 𝓛(u).

@@ -140,7 +140,7 @@ fn contacts(text: &mut String, report: &Report) {
 const NO_LINK: &str = "&#8203;";
 
 /// User text on one line: whatever Markdown or HTML would act on is escaped, and nothing becomes a link.
-fn cell(text: &str) -> String {
+pub(crate) fn cell(text: &str) -> String {
     let mut escaped = String::new();
     let text = clean(text);
     let mut rest = text.chars().peekable();
@@ -172,7 +172,7 @@ fn cell(text: &str) -> String {
 }
 
 /// User text inside a code span in a table: a backtick would end it, and a bar the cell.
-fn code(text: &str) -> String {
+pub(crate) fn code(text: &str) -> String {
     clean(text).replace(['\n', '\t'], " ").replace('`', "'").replace('|', "\\|")
 }
 

@@ -10,22 +10,26 @@ mod html;
 mod json;
 mod junit;
 mod lattice;
-mod markdown;
+pub(crate) mod markdown;
 pub(crate) mod number;
 mod run;
 #[cfg(test)]
 mod sample;
 #[cfg(test)]
 mod sample_numbers;
+mod stored;
 mod vtu;
-mod words;
+pub(crate) mod words;
 mod write;
 
 pub use data::*;
+pub(crate) use html::CSS;
 pub use html::page;
 pub use json::{json, schema};
 pub use junit::junit;
+pub(crate) use junit::{case, for_jenkins};
 pub use markdown::summary;
 pub use run::run_of;
+pub use stored::*;
 pub use vtu::vtu;
 pub use write::{NAMES, ReportError, write};

@@ -84,6 +84,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         remarks: remarks(),
         diagnosis: Vec::new(),
         notes: problem.notes.clone(),
+        baseline: Vec::new(),
         history: [(16, 1.1e-1), (120, 4.4e-2), (900, 1.3e-2), (5900, 4.1e-3)]
             .map(|(triangles, bound)| HistoryRow {
                 triangles,

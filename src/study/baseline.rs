@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rustix::fs::Access;
 use serde::{Deserialize, Serialize};
 
-use super::Certified;
+use super::{Answer, Certified};
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::report::folder::replace_file;
 
@@ -60,8 +60,13 @@ pub enum BaselineError {
 }
 
 impl Baseline {
+    /// The numbers of a run on the scene `scene`.
+    pub fn new(scene: &str, values: BTreeMap<String, f64>) -> Self {
+        Baseline { version: VERSION, scene: scene.to_string(), values }
+    }
+
     /// The numbers of a run.
-    pub fn new(certified: &Certified, comparison: &Comparison) -> Self {
+    pub fn numbers(certified: &Certified, comparison: &Comparison, answers: &[Answer]) -> BTreeMap<String, f64> {
         let Certified { problem, bracket, .. } = certified;
         let mut values = BTreeMap::new();
         values.insert("triangles".to_string(), problem.mesh.triangles.len() as f64);
@@ -72,6 +77,10 @@ impl Baseline {
         for judged in &comparison.judged {
             values.insert(format!("energy.{}", judged.candidate.name), judged.field.potential.total());
         }
+        for answer in answers.iter().filter(|answer| answer.interval.half_width().is_finite()) {
+            values.insert(format!("quantity.{}", answer.name), answer.interval.value);
+            values.insert(format!("quantity.{}.half-width", answer.name), answer.interval.half_width());
+        }
         for contact in &comparison.contacts {
             let [x, y] = contact.resultant.dual;
             let name = |what: &str| format!("{}.{what}", contact.name);
@@ -80,7 +89,7 @@ impl Baseline {
             values.insert(name("pressure max"), contact.pressure_max.dual);
             values.insert(name("open fraction"), contact.open_fraction);
         }
-        Baseline { version: VERSION, scene: problem.scene.name.clone(), values }
+        values
     }
 
     /// Reads a baseline.
@@ -119,11 +128,20 @@ impl Baseline {
     /// # Errors
     /// [`BaselineError`].
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
+        let io = |e: serde_json::Error| BaselineError::Write { path: path.to_path_buf(), source: e.into() };
+        let text = serde_json::to_string_pretty(self).map_err(io)?;
+        Self::write_text(path, format!("{text}\n"))
+    }
+
+    /// Writes the text of a baseline in the same way.
+    ///
+    /// # Errors
+    /// [`BaselineError`].
+    pub fn write_text(path: &Path, text: String) -> Result<(), BaselineError> {
         Self::refuse(path)?;
-        let io = |source: std::io::Error| BaselineError::Write { path: path.to_path_buf(), source };
         let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-        let text = serde_json::to_string_pretty(self).map_err(|e| io(e.into()))?;
-        replace_file(&target, format!("{text}\n").into_bytes()).map_err(io)
+        let io = |source: std::io::Error| BaselineError::Write { path: path.to_path_buf(), source };
+        replace_file(&target, text.into_bytes()).map_err(io)
     }
 
     /// Holds these numbers against stored ones: one check each, and one for every number that is new or missing.
@@ -132,7 +150,7 @@ impl Baseline {
         let largest = stored.values.values().fold(0.0_f64, |m, v| m.max(v.abs()));
         for (name, &reference) in &stored.values {
             let name_of = format!("baseline/{name}");
-            let default = UNCHANGED * reference.abs().max(UNCHANGED * largest);
+            let default = unchanged(reference, largest);
             let allowed = allow.given(&name_of).unwrap_or(default);
             let why = format!("{name} against the stored value of {}.", stored.scene);
             checks.push(match self.values.get(name) {
@@ -147,6 +165,11 @@ impl Baseline {
         }
         checks
     }
+}
+
+/// The largest difference from `value` that rounding explains, beside numbers up to `largest`.
+pub(super) fn unchanged(value: f64, largest: f64) -> f64 {
+    UNCHANGED * value.abs().max(UNCHANGED * largest)
 }
 
 /// The folder that holds the file `path`.

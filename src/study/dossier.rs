@@ -11,7 +11,7 @@ use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::{Displacement, StressField};
 use crate::problem::{Note, Problem};
-use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, Status};
+use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, SCHEMA_VERSION, Status};
 
 /// What a run found.
 #[derive(Debug)]
@@ -171,7 +171,7 @@ fn report(findings: &Findings<'_>) -> Report {
     provenance.components.extend(findings.components.iter().cloned());
     provenance.seconds.extend(findings.seconds.iter().map(|(k, v)| (k.to_string(), *v)));
     Report {
-        schema_version: 1,
+        schema_version: SCHEMA_VERSION,
         scene: problem.scene.name.clone(),
         title: problem.scene.title.clone(),
         command: findings.command.to_string(),
@@ -212,6 +212,7 @@ fn report(findings: &Findings<'_>) -> Report {
         remarks,
         diagnosis: findings.diagnosis.clone(),
         notes,
+        baseline: Vec::new(),
         history: findings.history.clone(),
         provenance,
     }
@@ -273,7 +274,7 @@ pub fn infeasible<'a>(
 ) -> Dossier<'a> {
     Dossier {
         report: Report {
-            schema_version: 1,
+            schema_version: SCHEMA_VERSION,
             scene: problem.scene.name.clone(),
             title: problem.scene.title.clone(),
             command: command.to_string(),
@@ -290,6 +291,7 @@ pub fn infeasible<'a>(
             remarks: Vec::new(),
             diagnosis: Vec::new(),
             notes: problem.notes.clone(),
+            baseline: Vec::new(),
             history: Vec::new(),
             provenance: provenance(problem, threads),
         },

@@ -1,5 +1,6 @@
 //! One run from a problem to a report: statics, dual solve, bracket, displacement models, verdict.
 
+mod accepted;
 mod adaptive;
 mod admission;
 mod answers;
@@ -12,6 +13,7 @@ mod field;
 mod forecast;
 mod indicators;
 mod outlook;
+mod patch;
 mod primal;
 mod provenance;
 mod rounds;
@@ -23,6 +25,7 @@ mod trend_tests;
 mod verdict;
 mod warm_start;
 
+pub use accepted::{Accepted, Signature, checks as baseline_checks};
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
 pub use admission::Admission;
 pub use answers::{
@@ -38,7 +41,7 @@ pub use indicators::Indicators;
 pub use outlook::outlook;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
-pub(crate) use provenance::{hash, hex};
+pub(crate) use provenance::{hash, hex, identifier, locked_version};
 pub use sharpen::{Sharpened, sharpen};
 pub use stage::certify_divided;
 pub use warm_start::closed_coefficients;

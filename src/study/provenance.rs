@@ -33,7 +33,7 @@ pub fn provenance(problem: &Problem, threads: usize) -> Provenance {
 }
 
 /// The version that the lock file pins for a package.
-fn locked_version(name: &str) -> Option<String> {
+pub fn locked_version(name: &str) -> Option<String> {
     let start = LOCK.find(&format!("name = \"{name}\"\n"))?;
     let rest = &LOCK[start..];
     let version = rest.split_once("version = \"")?.1;

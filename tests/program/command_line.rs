@@ -73,7 +73,7 @@ fn a_missing_scene_and_a_folder_are_bad_input() {
         assert!(text(&output.stderr).contains("nowhere.toml: there is no such scene file"));
         let output = hypercircle(folder, &["solve", "."]);
         assert_eq!(output.status.code(), Some(2));
-        assert!(text(&output.stderr).contains("this is a directory"));
+        assert!(text(&output.stderr).contains("is a directory without a scene"));
     });
 }
 
@@ -91,6 +91,40 @@ fn bad_usage_exits_with_2_and_help_with_0() {
             assert_eq!(output.status.code(), Some(0), "{arguments:?}");
             assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
         }
+    });
+}
+
+#[test]
+fn version_manual_and_completions_come_from_the_command_line_itself() {
+    in_empty_folder(|folder| {
+        let version = text(&hypercircle(folder, &["--version"]).stdout);
+        for line in ["hypercircle ", "commit: ", "build: ", "faer: ", "clarabel: ", "nalgebra: ", "interpreter: "] {
+            assert!(version.lines().any(|l| l.starts_with(line)), "{line} in\n{version}");
+        }
+        assert_eq!(text(&hypercircle(folder, &["-V"]).stdout).lines().count(), 1);
+        let page = text(&hypercircle(folder, &["man"]).stdout);
+        assert!(page.starts_with(".ie") && page.contains("verify") && page.contains("Exit codes"), "{page}");
+        for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+            let script = text(&hypercircle(folder, &["completions", shell]).stdout);
+            assert!(script.contains("verify") && script.contains("scene-seconds"), "{shell}");
+        }
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = hypercircle(folder.path(), &["man", "--out", "man"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let page = std::fs::read_to_string(folder.path().join("man/hypercircle-verify.1")).expect("a page");
+    assert!(page.contains("scene\\-seconds") && !page.contains("part\\-name"), "{page}");
+}
+
+#[test]
+fn the_schema_of_a_job_names_its_keys() {
+    in_empty_folder(|folder| {
+        let output = hypercircle(folder, &["schema", "job"]);
+        let schema: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        for key in ["schema_version", "command", "scenes", "counts", "exit"] {
+            assert!(schema["properties"][key].is_object(), "{key}");
+        }
+        assert!(schema["$defs"]["SceneStatus"].to_string().contains("timed-out"));
     });
 }
 

@@ -2,12 +2,15 @@
 
 mod certify;
 mod chart;
+mod ci;
 mod claimed;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;
+mod diff;
 mod fields;
 mod hostile;
+mod jobs;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;

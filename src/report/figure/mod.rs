@@ -16,5 +16,4 @@ mod svg;
 mod symbols;
 mod viridis;
 
-#[cfg(test)]
 pub(crate) use svg::escape;

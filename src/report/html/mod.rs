@@ -10,6 +10,7 @@ use maud::{Markup, html};
 use super::Dossier;
 use super::document::document;
 use super::number::{clean, grouped};
+pub(crate) use style::CSS;
 
 /// The page: no script, nothing loaded.
 pub fn page(dossier: &Dossier) -> String {

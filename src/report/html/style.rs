@@ -1,7 +1,7 @@
 //! The style sheet.
 
 /// Light and dark, narrow and wide, screen and paper.
-pub(super) const CSS: &str = r#"
+pub(crate) const CSS: &str = r#"
 :root{color-scheme:light dark;--paper:#fff;--sheet:#f6f8fa;--ink:#1f2328;--dim:#59636e;--rule:#d1d9e0;--good:#1a7f37;--bad:#cf222e;--warn:#9a6700;--accent:#0969da;--good-bg:#e6f6ea;--bad-bg:#ffebe9;--warn-bg:#fff6db}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,-apple-system,"Segoe UI",sans-serif}
