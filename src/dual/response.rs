@@ -93,9 +93,9 @@ pub struct Response {
     pub remainder: f64,
 }
 
-impl<'a> Responses<'a> {
+impl Responses<'_> {
     /// Prepares the answers to `load`.
-    pub fn to(&'a self, load: &Load) -> Loaded<'a> {
+    pub fn to(&self, load: &Load) -> Loaded<'_> {
         let Factorised { system, reduced } = self.factorised;
         let own = || self.problem.scene.bodies.iter().map(|body| body.body_force);
         let (problem, modes) = if own().eq(load.force.iter().copied()) {

@@ -303,10 +303,10 @@ fn in_degree(coefficients: &[f64], degree: usize) -> Vec<f64> {
 }
 
 /// The search for one end.
-struct Search<'a> {
-    known: &'a Known<'a>,
-    functional: &'a Functional,
-    loaded: &'a Loaded<'a>,
+struct Search<'s, 'a> {
+    known: &'s Known<'a>,
+    functional: &'s Functional,
+    loaded: &'s Loaded<'s>,
 }
 
 /// A bound from one pair.
@@ -335,7 +335,7 @@ impl End {
     }
 }
 
-impl Search<'_> {
+impl Search<'_, '_> {
     /// The best end for sign · Q that a few ratios give.
     fn best(&self, neutral: &Response, sign: f64) -> Result<End, String> {
         let known = self.known;

@@ -115,7 +115,7 @@ mod tests {
                 }
                 let mut found = exact.block(0).to_vec();
                 found[3 * k..].fill([7.0, -5.0]);
-                inside(k, &Split::new(k, CORNERS, &material, [0.0; 2]), &mut found);
+                inside(k, &Split::new(k, CORNERS, &material), &mut found);
                 for (a, b) in found.iter().zip(exact.block(0)) {
                     assert!((a[0] - b[0]).hypot(a[1] - b[1]) < allowed, "degree {k}: {a:?} is not {b:?}");
                 }

@@ -32,6 +32,7 @@ pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
 use self::model::Model;
 pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
+use self::relax::Patches;
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein};
 pub use self::stiffness::Pull;
@@ -104,8 +105,10 @@ pub fn admissible(
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
     }
-    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
-    let relaxed = relax::relax(problem, &model, Until::Near(floor / problem.scene.thickness), candidates, at_rest);
+    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE, false);
+    let mut patches = Patches::new(problem, &nodes);
+    let relaxed =
+        relax::relax(problem, &model, &mut patches, Until::Near(floor / problem.scene.thickness), candidates, at_rest);
     Ok(interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::SCENE))
 }
 

@@ -4,7 +4,7 @@ use super::groups::Group;
 use super::holds::{Hold, Holds};
 use super::nodes::Nodes;
 use super::rows::Row;
-use super::stiffness::{Condensed, Pull, condensed};
+use super::stiffness::{Condensed, Pull, condensed, reload};
 use crate::problem::Problem;
 
 /// What does not change while patches move.
@@ -29,7 +29,15 @@ impl<'a> Model<'a> {
     /// Prepares the energy of all triangles and the conditions on all nodes.
     ///
     /// `groups` are the rows of every pair, `pull` what the energy has beside that of the strains.
-    pub fn new(problem: &'a Problem, holds: &Holds, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) -> Self {
+    /// Where it is to be used `again`, other loads and bounds can take their place.
+    pub fn new(
+        problem: &'a Problem,
+        holds: &Holds,
+        nodes: &Nodes,
+        groups: &[Vec<Row>],
+        pull: Pull<'_>,
+        again: bool,
+    ) -> Self {
         let mesh = &problem.mesh;
         let (mut of_triangles, mut start) = (Vec::new(), vec![0]);
         for t in 0..mesh.triangles.len() {
@@ -39,13 +47,19 @@ impl<'a> Model<'a> {
         let rows_at = rows_at(problem, groups);
         Model {
             problem,
-            elements: condensed(problem, nodes, pull),
+            elements: condensed(problem, nodes, pull, again),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
             rows_at,
             of_triangles: (of_triangles, start),
             edge: (0..nodes.edges()).flat_map(|e| std::iter::repeat_n(e, nodes.inside(e).len())).collect(),
         }
+    }
+
+    /// The same with another load and other bounds on the jumps.
+    pub fn with(&mut self, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
+        reload(self.problem, nodes, pull, &mut self.elements);
+        self.rows = groups.iter().flatten().cloned().collect();
     }
 
     /// 𝓛 of the values per unit thickness less that of zero values, without the triangles that have no unique minimum
@@ -182,7 +196,7 @@ mod tests {
     fn energy(problem: &Problem, field: &NodalValues) -> f64 {
         let rows = rows(problem, &field.nodes);
         let holds = holds(problem).expect("supports agree");
-        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE).energy(&field.values)
+        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE, false).energy(&field.values)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.

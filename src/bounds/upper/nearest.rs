@@ -3,10 +3,12 @@
 //!
 //! It is built as the free upper bound is: fit, edge moments, bounds by coefficients, relaxation over patches, inside last.
 
+use std::cell::RefCell;
+
 use super::model::Model;
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, rows};
-use super::{Holds, NoUpperBound, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
+use super::{Holds, NoUpperBound, Patches, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -16,6 +18,8 @@ pub struct Nearest<'a> {
     holds: Holds,
     nodes: Nodes,
     rows: Vec<Vec<Row>>,
+    /// Stiffness and factors, from the first displacement on.
+    kept: RefCell<Option<(Model<'a>, Patches)>>,
 }
 
 impl<'a> Nearest<'a> {
@@ -26,7 +30,7 @@ impl<'a> Nearest<'a> {
     pub fn new(problem: &'a Problem, like: &SideValues<[f64; 2]>) -> Result<Self, NoUpperBound> {
         let nodes = Nodes::new(problem.mesh.points.len(), like.iter().map(|moments| moments.len()));
         let rows = rows(problem, &nodes);
-        Ok(Nearest { problem, holds: holds_at(problem, |_, _| [0.0; 2])?, nodes, rows })
+        Ok(Nearest { problem, holds: holds_at(problem, |_, _| [0.0; 2])?, nodes, rows, kept: RefCell::default() })
     }
 
     /// The number of coefficients that bound the jump on each pair, one interface after the other.
@@ -71,8 +75,19 @@ impl<'a> Nearest<'a> {
         let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
         let candidates = starts.into_iter().map(admissible).collect::<Result<Vec<_>, NoUpperBound>>()?;
         let at_rest = admissible(NodalValues::zeros(self.nodes.clone()))?;
-        let model = Model::new(self.problem, &self.holds, &self.nodes, &rows, pull);
-        let relaxed = admissible(relax::relax(self.problem, &model, until, candidates, at_rest))?;
+        let mut kept = self.kept.borrow_mut();
+        match kept.as_mut() {
+            Some((model, _)) => model.with(&self.nodes, &rows, pull),
+            None => {
+                let model = Model::new(self.problem, &self.holds, &self.nodes, &rows, pull, true);
+                *kept = Some((model, Patches::new(self.problem, &self.nodes)));
+            }
+        }
+        let relaxed = match kept.as_mut() {
+            Some((model, patches)) => relax::relax(self.problem, model, patches, until, candidates, at_rest),
+            None => at_rest,
+        };
+        let relaxed = admissible(relaxed)?;
         Ok((self.filled(&relaxed, pull), relaxed))
     }
 

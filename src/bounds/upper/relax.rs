@@ -87,25 +87,39 @@ impl Until {
     }
 }
 
+/// What relaxing needs of a mesh, whatever the loads.
+pub struct Patches {
+    groups: Vec<Group>,
+    kept: Vec<Kept>,
+    patch: Patch,
+}
+
+impl Patches {
+    /// Groups the vertices of a mesh; factors are computed when they are needed first.
+    pub fn new(problem: &Problem, nodes: &Nodes) -> Self {
+        let size = size(nodes);
+        let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
+        let patch = Patch {
+            local: vec![usize::MAX; nodes.count()],
+            room: (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices(),
+            most: (MOST_IN_PATCH as f64 * size) as usize,
+            ..Patch::default()
+        };
+        Patches { kept: vec![None; groups.len()], groups, patch }
+    }
+}
+
 /// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are
 /// wild.
 pub fn relax(
     problem: &Problem,
     model: &Model<'_>,
+    patches: &mut Patches,
     until: Until,
     candidates: Vec<NodalValues>,
     at_rest: NodalValues,
 ) -> NodalValues {
-    let nodes = &at_rest.nodes;
-    let size = size(nodes);
-    let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
-    let mut kept: Vec<Kept> = vec![None; groups.len()];
-    let mut patch = Patch {
-        local: vec![usize::MAX; model.free.len()],
-        room: (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices(),
-        most: (MOST_IN_PATCH as f64 * size) as usize,
-        ..Patch::default()
-    };
+    let Patches { groups, kept, patch } = patches;
     let fields = candidates.into_iter().map(|field| (model.energy(&field.values), field.values));
     // A displacement that is not a number has no energy to compare.
     let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };

@@ -23,13 +23,13 @@ pub struct Split {
     /// Unknowns inside.
     pub inside: usize,
     matrix: Vec<f64>,
-    /// f: the body force.
+    /// f: forces on every coefficient.
     pub load: Vec<f64>,
 }
 
 impl Split {
-    /// The energy on a counter-clockwise triangle for displacements of degree `k`.
-    pub fn new(k: usize, corners: [[f64; 2]; 3], material: &Compliance, force: [f64; 2]) -> Self {
+    /// The energy on a counter-clockwise triangle for displacements of degree `k`, without forces.
+    pub fn new(k: usize, corners: [[f64; 2]; 3], material: &Compliance) -> Self {
         let all = 2 * split_len(k);
         let mut split =
             Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all], load: vec![0.0; all] };
@@ -45,35 +45,8 @@ impl Split {
                 }
                 split.put(nodes[entry.nodes[0]], nodes[entry.nodes[1]], sum);
             }
-            // Every Bernstein polynomial has the same mean.
-            let share = area / nodes.len() as f64;
-            for node in nodes {
-                split.load[2 * node] += share * force[0];
-                split.load[2 * node + 1] += share * force[1];
-            }
         }
         split
-    }
-
-    /// Adds the forces ∫ σ : e(φ) of a stress on triangle `t`, which has these corners.
-    pub fn pull(&mut self, k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize) {
-        let area = sub_area(corners);
-        let samples = Samples::of(k - 1, stress.degree(t));
-        for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
-            let g = gradients(sub_corners(corners, sub));
-            for (q, (l, weight)) in samples.points.iter().enumerate() {
-                let s = stress.at(t, sub, *l);
-                let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);
-                for (beta, b) in triangle::indices(k - 1).zip(samples.basis(q)) {
-                    let by = k as f64 * area * weight * b;
-                    for (i, force) in forces.iter().enumerate() {
-                        let node = nodes[triangle::number(triangle::raised(beta, i))];
-                        self.load[2 * node] += by * force[0];
-                        self.load[2 * node + 1] += by * force[1];
-                    }
-                }
-            }
-        }
     }
 
     /// A row of K.
@@ -100,6 +73,41 @@ impl Split {
             add(2 * a + i, 2 * b + j, value);
             if a != b {
                 add(2 * b + j, 2 * a + i, value);
+            }
+        }
+    }
+}
+
+/// The forces of a body force on every coefficient of degree `k`, x and y of each.
+pub fn load(k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
+    let mut out = vec![0.0; 2 * split_len(k)];
+    for nodes in &SplitNodes::of(k).subs {
+        // Every Bernstein polynomial has the same mean.
+        let share = sub_area(corners) / nodes.len() as f64;
+        for node in nodes {
+            out[2 * node] += share * force[0];
+            out[2 * node + 1] += share * force[1];
+        }
+    }
+    out
+}
+
+/// Adds to them the forces ∫ σ : e(φ) of a stress on triangle `t`, which has these corners.
+pub fn pull(k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize, out: &mut [f64]) {
+    let area = sub_area(corners);
+    let samples = Samples::of(k - 1, stress.degree(t));
+    for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        let g = gradients(sub_corners(corners, sub));
+        for (q, (l, weight)) in samples.points.iter().enumerate() {
+            let s = stress.at(t, sub, *l);
+            let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);
+            for (beta, b) in triangle::indices(k - 1).zip(samples.basis(q)) {
+                let by = k as f64 * area * weight * b;
+                for (i, force) in forces.iter().enumerate() {
+                    let node = nodes[triangle::number(triangle::raised(beta, i))];
+                    out[2 * node] += by * force[0];
+                    out[2 * node + 1] += by * force[1];
+                }
             }
         }
     }
@@ -175,7 +183,7 @@ mod tests {
         {
             let material = Compliance::new(kinematics, 3.0, nu);
             for k in 1..=MOST {
-                let split = Split::new(k, CORNERS, &material, [0.0; 2]);
+                let split = Split::new(k, CORNERS, &material);
                 let value = |n: usize| f64::from((20 * k as u32 + n as u32 + 1) * 7919 % 1009) / 1009.0 - 0.5;
                 let mut u = Displacement::zeros([k]);
                 u.block_mut(0).iter_mut().enumerate().for_each(|(n, u)| *u = [value(2 * n), value(2 * n + 1)]);
@@ -199,10 +207,9 @@ mod tests {
     #[test]
     fn the_load_is_the_work_of_the_body_force() {
         for k in 1..=MOST {
-            let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
-            let split = Split::new(k, CORNERS, &material, [2.0, -3.0]);
+            let forces = load(k, CORNERS, [2.0, -3.0]);
             // A unit translation does the work of the whole force.
-            let work = |c: usize| split.load.iter().skip(c).step_by(2).sum::<f64>();
+            let work = |c: usize| forces.iter().skip(c).step_by(2).sum::<f64>();
             let area = 3.0 * sub_area(CORNERS);
             assert!((work(0) - 2.0 * area).abs() < 1e-13 && (work(1) + 3.0 * area).abs() < 1e-13);
         }

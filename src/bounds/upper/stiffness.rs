@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::cholesky;
 use super::nodes::Nodes;
-use super::split::Split;
+use super::split::{Split, load, pull};
 use crate::dual::modes::materials;
 use crate::element::side::{elevation, product};
 use crate::element::{Compliance, StressField};
@@ -16,6 +16,20 @@ pub struct Condensed {
     size: usize,
     /// K row by row, then f: body force and traction.
     data: Box<[f64]>,
+    /// What another load needs, where it was kept.
+    inside: Option<Box<Inside>>,
+}
+
+/// How the inside was eliminated.
+#[derive(Debug, Clone)]
+struct Inside {
+    /// Degree, and degrees of the sides.
+    k: usize,
+    degrees: [usize; 3],
+    /// L of K_ii = L Lᵀ, packed.
+    factor: Box<[f64]>,
+    /// L⁻¹ K_ib, row by row.
+    across: Box<[f64]>,
 }
 
 impl Condensed {
@@ -36,6 +50,30 @@ impl Condensed {
             let by = factor * u;
             out.iter_mut().zip(row).for_each(|(o, k)| *o += by * k);
         }
+    }
+
+    /// Puts the load of other forces, on all coefficients of the triangle, in the place of f; `false` where nothing was kept
+    /// for that.
+    fn reload(&mut self, forces: &[f64]) -> bool {
+        let Some(inside) = &self.inside else { return false };
+        let (boundary, within) = forces.split_at(6 * inside.k);
+        let mut y = within.to_vec();
+        cholesky::forward(&inside.factor, &mut y, within.len());
+        let mut load = boundary.to_vec();
+        for (by, row) in y.iter().zip(inside.across.chunks_exact(boundary.len())) {
+            load.iter_mut().zip(row).for_each(|(f, v)| *f -= by * v);
+        }
+        let size = self.size;
+        let own = &mut self.data[size * size..];
+        if inside.degrees == [inside.k; 3] {
+            own.copy_from_slice(&load);
+            return true;
+        }
+        own.fill(0.0);
+        for (i, a, p) in raising(inside.k, inside.degrees) {
+            (0..2).for_each(|c| own[2 * a + c] += p * load[2 * i + c]);
+        }
+        true
     }
 
     /// uᵀKv.
@@ -67,13 +105,20 @@ impl Pull<'_> {
 
     /// The energy of triangle `t` for displacements of degree `k`, but for tractions.
     pub fn split(&self, problem: &Problem, t: usize, k: usize, material: &Compliance) -> Split {
+        let mut split = Split::new(k, problem.mesh.corners(t), material);
+        split.load = self.forces(problem, t, k);
+        split
+    }
+
+    /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
+    fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
         let corners = problem.mesh.corners(t);
         let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
-        let mut split = Split::new(k, corners, material, force.map(|f| self.scene * f));
+        let mut forces = load(k, corners, force.map(|f| self.scene * f));
         if let Some(stress) = self.stress {
-            split.pull(k, corners, stress, t);
+            pull(k, corners, stress, t, &mut forces);
         }
-        split
+        forces
     }
 
     /// The traction of the scene at the ends of edge `e`, where it pulls.
@@ -85,8 +130,9 @@ impl Pull<'_> {
     }
 }
 
-/// Of every triangle, per unit thickness. `None` where the inside has no unique minimum in numbers.
-pub fn condensed(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Vec<Option<Condensed>> {
+/// Of every triangle, per unit thickness, with what other loads need where they are to come. `None` where the inside has no
+/// unique minimum in numbers.
+pub fn condensed(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, keep: bool) -> Vec<Option<Condensed>> {
     let materials = materials(problem);
     let mesh = &problem.mesh;
     (0..mesh.triangles.len())
@@ -96,34 +142,53 @@ pub fn condensed(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Vec<Option
             let degrees = mesh.triangle_edges[t].map(|e| nodes.degree(e));
             let k = nodes.triangle_degree(mesh, t);
             let split = pull.split(problem, t, k, &materials[mesh.body[t]]);
-            let mut element = lowered(eliminated(&split)?, k, degrees);
-            for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
-                let Some(ends) = pull.traction(problem, e) else { continue };
-                // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
-                let (length, _) = mesh.edge_frame(e);
-                let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();
-                let k = degrees[i];
-                let size = element.size;
-                let load = &mut element.data[size * size..];
-                for j in 0..=k {
-                    let node = match j {
-                        0 => (i + 1) % 3,
-                        j if j == k => (i + 2) % 3,
-                        j => first + j - 1,
-                    };
-                    let weights = [0, 1].map(|end| length * product(1, end, k, j));
-                    for c in 0..2 {
-                        load[2 * node + c] += weights[0] * ends[0][c] + weights[1] * ends[1][c];
-                    }
-                }
-            }
+            let mut element = lowered(eliminated(&split, degrees, keep)?, k, degrees);
+            add_tractions(problem, pull, t, degrees, &mut element);
             Some(element)
         })
         .collect()
 }
 
+/// Puts the load of `pull` in the place of that of `elements`, which were made to be used again.
+pub fn reload(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, elements: &mut [Option<Condensed>]) {
+    let mesh = &problem.mesh;
+    elements.par_iter_mut().enumerate().with_min_len(16).for_each(|(t, element)| {
+        if let Some(element) = element {
+            let forces = pull.forces(problem, t, nodes.triangle_degree(mesh, t));
+            let reloaded = element.reload(&forces);
+            debug_assert!(reloaded, "made to be used once");
+            add_tractions(problem, pull, t, mesh.triangle_edges[t].map(|e| nodes.degree(e)), element);
+        }
+    });
+}
+
+/// Adds the tractions on the boundary edges of triangle `t` to its load.
+fn add_tractions(problem: &Problem, pull: Pull<'_>, t: usize, degrees: [usize; 3], element: &mut Condensed) {
+    let mesh = &problem.mesh;
+    for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
+        let Some(ends) = pull.traction(problem, e) else { continue };
+        // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
+        let (length, _) = mesh.edge_frame(e);
+        let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();
+        let k = degrees[i];
+        let size = element.size;
+        let load = &mut element.data[size * size..];
+        for j in 0..=k {
+            let node = match j {
+                0 => (i + 1) % 3,
+                j if j == k => (i + 2) % 3,
+                j => first + j - 1,
+            };
+            let weights = [0, 1].map(|end| length * product(1, end, k, j));
+            for c in 0..2 {
+                load[2 * node + c] += weights[0] * ends[0][c] + weights[1] * ends[1][c];
+            }
+        }
+    }
+}
+
 /// Eliminates the inside: with K_ii = L Lᵀ and Y = L⁻¹ K_ib, what is left is K_bb − YᵀY.
-fn eliminated(split: &Split) -> Option<Condensed> {
+fn eliminated(split: &Split, degrees: [usize; 3], keep: bool) -> Option<Condensed> {
     let (size, inside) = (split.boundary, split.inside);
     let mut factor = split.inside();
     if !cholesky::factorise(&mut factor, inside, 0.0) {
@@ -147,7 +212,14 @@ fn eliminated(split: &Split) -> Option<Condensed> {
             load[i] -= by * y[size];
         }
     }
-    Some(Condensed { size, data: data.into() })
+    let rows = || y.chunks_exact(size + 1);
+    let kept = || Inside {
+        k: size / 6,
+        degrees,
+        factor: factor.as_slice().into(),
+        across: rows().flat_map(|row| &row[..size]).copied().collect(),
+    };
+    Some(Condensed { size, data: data.into(), inside: keep.then(|| Box::new(kept())) })
 }
 
 /// The same energy for sides of the given degrees, from that for sides of degree `k`.
@@ -171,7 +243,7 @@ fn lowered(element: Condensed, k: usize, degrees: [usize; 3]) -> Condensed {
             }
         }
     }
-    Condensed { size, data: data.into() }
+    Condensed { size, data: data.into(), inside: element.inside }
 }
 
 /// What coefficient i of the boundary in degree `k` has of node a where the sides have the given degrees: i, a and the factor.
