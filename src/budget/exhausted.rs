@@ -86,7 +86,9 @@ mod tests {
         // As a global allocator would, without being one.
         let huge = Layout::from_size_align(1 << 62, 8).expect("a layout");
         // SAFETY: the layout has a size; a null pointer is not used.
-        assert!(fallible(|| unsafe { ExitOnExhaustion.alloc(huge) }).is_null());
+        let found = fallible(|| unsafe { ExitOnExhaustion.alloc(huge) });
+        // A compiler may leave out an allocation of which nothing but its address is asked.
+        assert!(std::hint::black_box(found).is_null());
         assert!(!ASKED.get(), "only for the time of the call");
     }
 }

@@ -128,7 +128,7 @@ impl<'a> Rounds<'a> {
             let mut rises = vec![false; before.triangles.len()];
             rising.iter().for_each(|&t| rises[t] = true);
             let rising: Vec<usize> = (0..within.len()).filter(|&t| rises[within[t]]).collect();
-            let raised = raised(mesh, &next.elements, &rising);
+            let raised = raised(mesh, &next.problem.facing_edges(), &next.elements, &rising);
             let left = |t: usize| EXPECTED.powi((raised.degree(t) - next.elements.degree(t)) as i32);
             predicted = (0..within.len()).map(|t| predicted.of(t) * left(t)).collect();
             next.elements = raised;

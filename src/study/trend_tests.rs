@@ -207,7 +207,7 @@ fn degrees_rise_by_one_and_take_along_as_few_as_they_can() {
     let mut elements = Elements::Blocks(vec![1; count].into());
     for round in 1..=MAX_DEGREE + 2 {
         let marked: &[usize] = if round == 2 { &[peak, other] } else { &[peak] };
-        elements = raised(&mesh, &elements, marked);
+        elements = raised(&mesh, &[], &elements, marked);
         let heights = [(round + 1).min(MAX_DEGREE), if round > 1 { 2 } else { 1 }];
         let wanted = |t: usize| (0..2).map(|k| heights[k].saturating_sub(from[k][t])).max().unwrap_or(1).max(1);
         let found: Vec<usize> = (0..count).map(|t| elements.degree(t)).collect();
@@ -215,6 +215,35 @@ fn degrees_rise_by_one_and_take_along_as_few_as_they_can() {
     }
     assert_eq!(elements.largest_degree(), MAX_DEGREE);
     let same: Arc<[u8]> = (0..count).map(|t| elements.degree(t) as u8).collect();
-    let kept = raised(&mesh, &Elements::Blocks(same.clone()), &[]);
+    let kept = raised(&mesh, &[], &Elements::Blocks(same.clone()), &[]);
     assert!((0..count).all(|t| kept.degree(t) == usize::from(same[t])), "nothing marked, nothing raised");
+}
+
+/// As if the west of the square were in contact with its east.
+#[test]
+fn both_sides_of_a_contact_have_the_same_degree() {
+    let mesh = square();
+    let side = |x: f64| -> Vec<usize> {
+        let on = |e: &usize| mesh.edges[*e].vertices.iter().all(|&v| mesh.points[v][0] == x);
+        let mut edges: Vec<usize> = (0..mesh.edges.len()).filter(on).collect();
+        edges.sort_by(|&a, &b| {
+            mesh.points[mesh.edges[a].vertices[0]][1].total_cmp(&mesh.points[mesh.edges[b].vertices[0]][1])
+        });
+        edges
+    };
+    let facing: Vec<[usize; 2]> = side(0.0).into_iter().zip(side(1.0)).map(|(a, b)| [a, b]).collect();
+    assert_eq!(facing.len(), 4);
+    let at = |e: usize| mesh.edges[e].triangles[0].expect("a triangle");
+    let mut elements = Elements::Blocks(vec![1; mesh.triangles.len()].into());
+    for marked in [at(facing[1][0]), at(facing[3][1]), at(facing[1][0])] {
+        elements = raised(&mesh, &facing, &elements, &[marked]);
+        let degree = |e: usize| elements.degree(at(e));
+        assert!(facing.iter().all(|&[a, b]| degree(a) == degree(b)));
+        for edge in &mesh.edges {
+            if let [Some(a), Some(b)] = edge.triangles {
+                assert!(elements.degree(a).abs_diff(elements.degree(b)) <= 1);
+            }
+        }
+    }
+    assert_eq!(elements.degree(at(facing[1][1])), 3, "raised twice, by what it faces");
 }

@@ -106,6 +106,10 @@ fn mesh_and_degrees_together_cost_few_unknowns() {
                 assert!(degrees[a].abs_diff(degrees[b]) <= 1);
             }
         }
+        for pair in &run.certified.problem.interfaces[0].pairs {
+            let of = pair.edges.map(|e| run.certified.problem.mesh.edges[e.expect("two sides")].triangles[0]);
+            assert_eq!(of[0].map(|t| degrees[t]), of[1].map(|t| degrees[t]));
+        }
     }
 }
 
