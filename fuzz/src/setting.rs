@@ -45,6 +45,8 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         threads: 1,
         seconds: Vec::new(),
         components: Vec::new(),
+        diagnosis: Vec::new(),
+        is_claimed: false,
         failure: None,
     };
     let dossier = assemble(findings, &fields);

@@ -19,10 +19,13 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         Kinematics::PlaneStrain => (Kinematics::PlaneStress, "plane stress stands in place of plane strain"),
         Kinematics::PlaneStress => (Kinematics::PlaneStrain, "plane strain stands in place of plane stress"),
     };
-    let mut trials = vec![with(
+    let negative =
+        Finding::new("bodies/poisson-sign", None, None, "Poisson's ratio of every body has the opposite sign");
+    let mut trials = vec![with(&|b| Moduli::of(scene.kinematics, bodies[b].young, -bodies[b].poisson), negative)];
+    trials.push(with(
         &|b| Moduli::of(other, bodies[b].young, bodies[b].poisson),
         Finding::new("kinematics", None, None, sentence),
-    )];
+    ));
     let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     for (i, j) in pairs.take(MOST_PAIRS) {
         let swapped = |b: usize| {

@@ -20,6 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::compare::Solution;
+use crate::compare::solution::SOLVER;
 use fit::Terms;
 use space::Space;
 
@@ -99,12 +100,29 @@ pub struct Energies {
     pub own: f64,
     /// 𝓛 of the admissible field.
     pub admissible: f64,
+    /// 𝓛 and ½a(u, u) as the program that made the field reports them, relative to those of the field.
+    pub reported: Option<[f64; 2]>,
+}
+
+impl Energies {
+    /// The same factor on both energies: that of a thickness, which no displacement shows.
+    fn thickness(&self, solution: &Solution<'_>) -> Option<Finding> {
+        let [whole, strain] = self.reported?;
+        let same = (whole - strain).abs() <= SOLVER && (whole - 1.0).abs() > SOLVER;
+        let given = solution.problem.scene.thickness;
+        let sentence = format!(
+            "the thickness is {} times what the scene says: so are both energies reported",
+            words::number(whole)
+        );
+        same.then(|| Finding::new("thickness", Some(whole * given), Some(given), sentence))
+    }
 }
 
 /// Looks for what explains that `solution` is none; `None` where it is one.
 pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis> {
     let mut findings = supports::findings(solution);
     findings.extend(contact::findings(solution, energies));
+    findings.extend(energies.thickness(solution));
     let mut diagnosis = Diagnosis {
         field: solution.candidate.name.clone(),
         sentence: String::new(),

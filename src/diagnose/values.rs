@@ -6,10 +6,13 @@ use super::{Finding, Trial};
 /// Shifts of the numbering that are tried, either way.
 const SHIFTS: usize = 3;
 
+/// What undoes a mistake at one node.
+type Undo = fn([f64; 2]) -> [f64; 2];
+
 /// Every way that is known, undone.
 pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     let candidate = space.solution.candidate;
-    let simple: [(&str, &str, fn([f64; 2]) -> [f64; 2]); 4] = [
+    let simple: [(&str, &str, Undo); 4] = [
         ("sign-x", "component x of the displacement has the opposite sign", |[x, y]| [-x, y]),
         ("sign-y", "component y of the displacement has the opposite sign", |[x, y]| [x, -y]),
         ("axes", "x and y of the displacement are exchanged", |[x, y]| [y, x]),

@@ -43,5 +43,12 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
 }
 
 fn energies(judged: &Judged) -> Energies {
-    Energies { own: judged.field.potential.total(), admissible: judged.admissible.potential.total() }
+    let own = judged.field.potential;
+    let candidate = &judged.candidate;
+    let reported = candidate.reported.zip(candidate.reported_strain);
+    Energies {
+        own: own.total(),
+        admissible: judged.admissible.potential.total(),
+        reported: reported.map(|(whole, strain)| [whole / own.total(), strain / own.strain]),
+    }
 }

@@ -320,6 +320,31 @@ fn quadratic_energy() -> f64 {
 }
 
 #[test]
+fn each_body_may_have_a_file_of_its_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    std::fs::write(folder.join("scene.toml"), scene()).expect("writable");
+    let problem = Problem::load(Scene::read(&folder.join("scene.toml")).expect("a scene")).expect("a mesh");
+    let whole = FieldFile::new(&problem, Cells::Linear, |body, _| if body == 0 { [0.1, 0.0] } else { [0.0; 2] });
+    for body in 0..2 {
+        let mut part = whole.clone();
+        let mut of = problem.mesh.body.iter();
+        part.cells.retain(|_| of.next() == Some(&body));
+        std::fs::write(folder.join(format!("{body}.vtk")), part.vtk()).expect("writable");
+    }
+    let files = ["--displacement", "1.vtk", "--displacement", "0.vtk"];
+    let usual = ["certify", "scene.toml", "--quiet", "--out", "out"];
+    // The first body is pushed into the second: the contact and a point of its file are named.
+    let output = run(hypercircle(folder, usual.iter().chain(&files)));
+    ended("two files", &output, 1, &[]);
+    let text = std::fs::read_to_string(folder.join("out/report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    let why = check(&report, "admissible/1.vtk + 0.vtk")["why"].as_str().expect("a sentence").to_string();
+    assert!(why.contains("left_face|right_face is penetrated most") && why.contains("of 0.vtk, at (1, "), "{why}");
+    ended("one file", &run(hypercircle(folder, usual.iter().chain(&files[..2]))), 2, &["scene's mesh is not in it"]);
+}
+
+#[test]
 fn a_field_out_of_its_plane_and_a_missing_package_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();

@@ -10,6 +10,7 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Col, Side};
 
 use super::holds::{Hold, Holds};
+use super::nodes::NodalValues;
 use super::rows::{Row, bernstein};
 use crate::bounds::strain::{gradients, shape_gradients};
 use crate::dual::modes::materials;
@@ -25,13 +26,8 @@ const ROUNDS: usize = 6;
 /// Above so many nodes the change is not looked for.
 const MOST_NODES: usize = 400_000;
 
-/// The changed values at vertices and edge midpoints; `None` where nothing penetrates or the change cannot be computed.
-pub fn lifted(
-    problem: &Problem,
-    holds: &Holds,
-    vertex: &[[f64; 2]],
-    middle: &[[f64; 2]],
-) -> Option<(Vec<[f64; 2]>, Vec<[f64; 2]>)> {
+/// The changed quadratic field; `None` where nothing penetrates or the change cannot be computed.
+pub fn lifted(problem: &Problem, holds: &Holds, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Option<NodalValues> {
     let vertices = vertex.len();
     let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle).copied().collect();
     if values.len() > MOST_NODES || values.iter().flatten().any(|x| !x.is_finite()) {
@@ -59,7 +55,7 @@ pub fn lifted(
     }
     let mut lifted = lifted?;
     let middle = lifted.split_off(vertices);
-    Some((lifted, middle))
+    Some(NodalValues::quadratic(&problem.mesh, &lifted, &middle))
 }
 
 /// The stiffness of quadratic displacements in the directions that supports leave free.

@@ -185,11 +185,9 @@ pub fn repaired(
     let nearest = made(field);
     if repair == Repair::OfLeastEnergy
         && penetration > WORTH_LIFTING
-        && let Some((vertex, middle)) = lift::lifted(problem, &holds, vertex, middle)
+        && let Some(lifted) = lift::lifted(problem, &holds, vertex, middle)
     {
-        let lifted = NodalValues::quadratic(&problem.mesh, &vertex, &middle);
-        let lifted = restricted(problem, &holds, &rows, lifted)?.0;
-        let lifted = made(lifted);
+        let lifted = made(restricted(problem, &holds, &rows, lifted)?.0);
         if potential(problem, &lifted).total() < potential(problem, &nearest).total() {
             return Ok((lifted, violation));
         }
