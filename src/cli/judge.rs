@@ -4,10 +4,9 @@ use super::job::JobOptions;
 use super::options::{JudgeOptions, SignatureOptions};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, Check, Comparison, names_of_checks};
-use crate::job::today;
 use crate::report::BaselineRow;
 use crate::scene::{Contact, Scene};
-use crate::study::{Accepted, Answer, Baseline, BaselineError, Certified, Signature, baseline_checks};
+use crate::study::{Accepted, Answer, Baseline, BaselineError, Certified, Signature, baseline_checks, today};
 
 impl JudgeOptions {
     /// The tolerances given with `--allow`.

@@ -22,7 +22,7 @@ mod write;
 
 use std::path::PathBuf;
 
-pub use baseline::{accept, today};
+pub use baseline::accept;
 pub use data::{Bracketed, Counts, Entry, Gathered, Job, SceneStatus, schema, severity};
 pub use gather::{entry, gather};
 pub use plan::{Plan, Planned, Shard, content, names, scenes_of};

@@ -270,6 +270,9 @@ fn is_alone(text: &str, span: &Range<usize>) -> bool {
 /// An insertion behind a last line that does not end puts its end there first.
 fn with_newline(lines: &[&str], mut edits: Vec<Edit>) -> Vec<Edit> {
     let Some(last) = lines.last().filter(|line| !line.ends_with('\n')) else { return edits };
+    if edits.iter().any(|edit| edit.lines.contains(&(lines.len() - 1))) {
+        return edits;
+    }
     if let Some(edit) = edits.iter_mut().find(|edit| edit.lines == (lines.len()..lines.len())) {
         edit.lines.start -= 1;
         edit.new.insert(0, format!("{last}\n"));

@@ -64,7 +64,14 @@ fn people_s_words_stay_where_they_are() {
     let again = Accepted::parse(&new).expect("a baseline");
     assert!(changes(&again, "x", &found).iter().all(|(_, change)| *change == Change::Unchanged), "{new}");
     assert_eq!(changes(&again, "y", &[("gap", 2.05)]), [("gap".to_string(), Change::Unchanged)]);
-    // Behind a last line without an end.
+    // Behind a last line without an end, as it is or changed.
+    let new = accept(&accepted, "y", &[("gap", 3.0), ("more", 1.0)]).expect("changes");
+    let again = Accepted::parse(&new).expect("a baseline");
+    assert!(
+        changes(&again, "y", &[("gap", 3.0), ("more", 1.0)]).iter().all(|(_, change)| *change == Change::Unchanged)
+    );
+    let gone = accept(&accepted, "y", &[("more", 1.0)]).expect("changes");
+    assert_eq!(changes(&Accepted::parse(&gone).expect("a baseline"), "y", &[("more", 1.0)]).len(), 1);
     let new = accept(&accepted, "y", &[("gap", 2.0), ("more", 1.0)]).expect("changes");
     assert_eq!(
         changes(&Accepted::parse(&new).expect("a baseline"), "y", &[("gap", 2.0), ("more", 1.0)])[1].1,
