@@ -56,8 +56,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
     session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let field = ForeignField::read(displacement, args.field.as_deref(), limit(args.solve.reading_seconds))
-        .map_err(refused)?;
+    let field =
+        ForeignField::read(displacement, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)?;
     args.judge.refuse_early(&session.scene, &[&field.name()])?;
     let reading = start.elapsed().as_secs_f64();
     let limits = Limits { max_triangles: None, max_seconds: None };
@@ -107,7 +107,8 @@ fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<
 /// A field lives on its own mesh, so there is nothing to refine.
 fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
     let option = match (solve.refine, solve.tolerance) {
-        (0, None) => return Ok(()),
+        (0, None) if solve.tolerance_of.is_empty() => return Ok(()),
+        (0, None) => "--tolerance-of",
         (0, Some(_)) => "--tolerance",
         _ => "--refine",
     };

@@ -17,7 +17,8 @@ use crate::process::limit;
 use crate::report::{self, Dossier, HistoryRow, Status};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{
-    self, Adapt, Adapted, Admission, Answer, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble, outlook,
+    self, Adapt, Adapted, Admission, Answer, Certified, Fields, Findings, Goal, Sharpened, StudyError, assemble,
+    outlook,
 };
 
 /// Degree of the stresses that refinement of mesh and degrees begins with: linear ones tell little of where to raise it.
@@ -186,9 +187,8 @@ impl Session {
             admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
         }
         let problem = Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)?;
-        study::refuse_quantities(&problem).map_err(|why| {
-            CliError::stopped(Exit::BadInput, format!("{}: {why}", self.scene.path.display()), "")
-        })?;
+        study::refuse_quantities(&problem)
+            .map_err(|why| CliError::stopped(Exit::BadInput, format!("{}: {why}", self.scene.path.display()), ""))?;
         if solve.refine > 0 {
             let size = Size::of(&problem).refined(solve.refine);
             let cause = format!("--refine {}", solve.refine);
@@ -294,7 +294,7 @@ impl Session {
         });
         seconds.push(("whole run", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
-        let fields = Fields::new(&certified, comparison);
+        let fields = Fields::new(&certified, comparison, &answers);
         let dossier = assemble(
             Findings {
                 command: self.command,
@@ -322,7 +322,7 @@ impl Session {
             let report = &dossier.report;
             say::line(&report.verdict);
             for quantity in &report.quantities {
-                say::line(&format!("  {}", quantity.in_words()));
+                say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
             }
             for check in report.checks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  failed: {}: {}", check.name, check.why));

@@ -1,7 +1,7 @@
 //! The quantities of a scene: their intervals, the values of displacement models in them, and the checks that follow.
 
-use super::adaptive::Wanted;
 use super::Certified;
+use super::adaptive::Wanted;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
 use crate::problem::Problem;
@@ -90,13 +90,14 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
 pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
     let summary = |answer: &Answer| {
         let Interval { ends: [lower, upper], first_order, value, exact_by_statics, reasons, .. } = &answer.interval;
+        let known = lower.is_finite() || upper.is_finite();
         let primal = |judged: &Judged| {
             let value = value_in(certified, answer, judged);
             QuantityOfModel {
                 solver: judged.candidate.name.clone(),
                 degree: judged.candidate.degree,
                 value,
-                inside: value.map(|v| *lower <= v && v <= *upper),
+                inside: value.filter(|_| known).map(|v| *lower <= v && v <= *upper),
             }
         };
         QuantitySummary {
@@ -203,10 +204,7 @@ fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) ->
     let [lower, upper] = answer.interval.ends;
     let outside = (lower - value).max(value - upper).max(0.0);
     let nearest = value.max(lower).min(upper);
-    let why = format!(
-        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
-        answer.kind, answer.name
-    );
+    let why = format!("The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.", answer.kind, answer.name);
     Check::with_difference(name, value, nearest, outside, allowed, Basis::Guaranteed, why)
 }
 

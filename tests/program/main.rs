@@ -11,6 +11,7 @@ mod hostile;
 mod malformed;
 mod malformed_meshes;
 mod memory;
+mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
