@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::ArgGroup;
+
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
 use super::session::{Particulars, Session};
 use super::values::ValueOptions;
@@ -18,12 +20,13 @@ const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
+#[command(group = ArgGroup::new("claim").required(true).multiple(true).args(["displacement", "value", "values"]))]
 pub struct Args {
     /// The scene file
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
     /// The displacement field, in any format that meshio reads
-    #[arg(long, value_name = "FILE", required_unless_present_any = ["value", "values"])]
+    #[arg(long, value_name = "FILE")]
     pub displacement: Option<PathBuf>,
     /// Values without a field.
     #[command(flatten)]
