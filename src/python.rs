@@ -128,7 +128,9 @@ fn elements(degree: Option<usize>, degrees: Option<Vec<usize>>, triangles: usize
 }
 
 /// The dual solution of a scene: energies, bracket, `contact_traction` (interface, pair, coefficient), `degrees` (triangle),
-/// `stress` (triangle, node, component), `moments` (edge, coefficient, component), `closed`.
+/// `stress` (triangle, node, component), `moments` (edge, coefficient, component), `closed`, and `quantities`: for each of the
+/// scene `name`, `kind`, `value` (`None` where it is not known), the ends `lower` and `upper` of the interval that holds the exact
+/// value (infinite where nothing is guaranteed), `first_order`, `exact_by_statics`, and the `reason` why an end is missing.
 ///
 /// `degree` is the polynomial degree of the stresses, 1 where nothing is said; `degrees` has one for each triangle. A triangle of
 /// degree p has (p + 1)(p + 2)/2 nodes on each of its three parts, an edge p + 1 coefficients with the larger of the degrees at
@@ -148,9 +150,15 @@ fn solve<'py>(
     let method = Method::from_str(method, false).map_err(fault)?;
     let problem = load(scene)?;
     let elements = elements(degree, degrees, problem.mesh.triangles.len())?;
-    let options = Options { elements, ..Options::default() };
-    let certified = py
-        .detach(|| study::certify(problem, solver(method).as_ref(), &options).map_err(|e| e.to_string()))
+    study::refuse_quantities(&problem).map_err(fault)?;
+    let keep_factor = !problem.scene.quantities.is_empty();
+    let options = Options { elements, keep_factor, ..Options::default() };
+    let (certified, answers) = py
+        .detach(|| {
+            let certified = study::certify(problem, solver(method).as_ref(), &options).map_err(|e| e.to_string())?;
+            let answers = study::answers(&certified, &options, |_| true);
+            Ok::<_, String>((certified, answers))
+        })
         .map_err(fault)?;
     let study::Certified { dual, bracket, .. } = &certified;
     let complementary = &bracket.complementary;
@@ -173,7 +181,26 @@ fn solve<'py>(
     out.set_item("equilibrium_residual", dual.equilibrium.residual())?;
     out.set_item("iterations", dual.iterations)?;
     out.set_item("unknowns", dual.unknowns)?;
+    let quantities = PyList::empty(py);
+    for answer in &answers {
+        quantities.append(quantity_entry(py, answer)?)?;
+    }
+    out.set_item("quantities", quantities)?;
     Ok(out)
+}
+
+fn quantity_entry<'py>(py: Python<'py>, answer: &study::Answer) -> PyResult<Bound<'py, PyDict>> {
+    let interval = &answer.interval;
+    let entry = PyDict::new(py);
+    entry.set_item("name", &answer.name)?;
+    entry.set_item("kind", answer.kind)?;
+    entry.set_item("value", Some(interval.value).filter(|value| value.is_finite()))?;
+    entry.set_item("lower", interval.ends[0])?;
+    entry.set_item("upper", interval.ends[1])?;
+    entry.set_item("first_order", interval.first_order)?;
+    entry.set_item("exact_by_statics", interval.exact_by_statics)?;
+    entry.set_item("reason", interval.reasons.iter().flatten().next())?;
+    Ok(entry)
 }
 
 /// A scene on its mesh: `points`, `triangles`, `body`, `edges`, `triangle_edges`, `conditions` of the edges,

@@ -30,7 +30,7 @@ pub fn certified() -> &'static Certified {
 pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
     let Certified { problem, dual, bracket, .. } = certified;
     let comparison = compare(problem, dual, bracket, candidates, &Allowances::default());
-    let fields = Fields::new(certified, &comparison);
+    let fields = Fields::new(certified, &comparison, &[]);
     let findings = Findings {
         command: "verify",
         certified,
@@ -45,8 +45,6 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         threads: 1,
         seconds: Vec::new(),
         components: Vec::new(),
-        diagnosis: Vec::new(),
-        is_claimed: false,
         failure: None,
     };
     let dossier = assemble(findings, &fields);

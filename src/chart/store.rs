@@ -43,7 +43,7 @@ pub(crate) fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), StoreEr
     let (Some(parent), Some(file)) = (path.parent(), path.file_name().and_then(|name| name.to_str())) else {
         return Err(io(std::io::ErrorKind::InvalidInput.into()));
     };
-    replace(parent, &[(file, bytes.to_vec())]).map_err(|e| io(std::io::Error::other(e)))
+    replace(parent, &[(file, bytes.to_vec())], &[]).map_err(|e| io(std::io::Error::other(e)))
 }
 
 /// Saves `chart.json`.

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use clap::ArgGroup;
+
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
@@ -22,6 +24,7 @@ const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
+#[command(group = ArgGroup::new("claim").required(true).multiple(true).args(["displacement", "value", "values"]))]
 pub struct Args {
     /// Scene files, and folders for the scenes in them: every .toml file but those without a table of a scene; folders below are
     /// not searched. Several scenes get a folder each, and one page for all
@@ -29,7 +32,7 @@ pub struct Args {
     pub scenes: Vec<PathBuf>,
     /// The displacement field, in any format that meshio reads; may be repeated, for one file a body; for several scenes also a
     /// folder with one for each, of the same name but for the ending
-    #[arg(long, value_name = "FILE", required_unless_present_any = ["value", "values"])]
+    #[arg(long, value_name = "FILE")]
     pub displacement: Vec<PathBuf>,
     /// Values without a field.
     #[command(flatten)]

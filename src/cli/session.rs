@@ -345,7 +345,7 @@ impl Session {
         });
         seconds.push(("total", self.start.elapsed().as_secs_f64()));
         let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
-        let fields = Fields::new(&certified, comparison).with_residual(residual);
+        let fields = Fields::new(&certified, comparison, &answers).with_residual(residual);
         let mut dossier = assemble(
             Findings {
                 command: self.command,
@@ -385,7 +385,7 @@ impl Session {
             let report = &dossier.report;
             say::line(&report.verdict);
             for quantity in &report.quantities {
-                say::line(&format!("  {}", quantity.in_words()));
+                say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
             }
             for check in report.checks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  failed: {}: {}", check.name, check.why));

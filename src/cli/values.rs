@@ -47,6 +47,9 @@ fn read(path: &Path) -> Result<Vec<GivenValue>, CliError> {
     } else {
         toml::from_str(&text).map_err(|e| refused(e.message().to_string(), shape))?
     };
+    if table.is_empty() {
+        return Err(refused("it holds no value".to_string(), shape));
+    }
     table
         .into_iter()
         .map(|(name, value)| {

@@ -38,6 +38,6 @@ pub fn write(gathered: &Gathered, out: &Path) -> Result<String, JobError> {
         }
         None => {}
     }
-    folder::replace(out, &files)?;
+    folder::replace(out, &files, &[])?;
     Ok(summary)
 }

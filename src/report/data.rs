@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{digits_to_tell, significant};
-
+pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
@@ -60,6 +59,13 @@ pub struct Report {
     pub history: Vec<HistoryRow>,
     /// What made the numbers.
     pub provenance: Provenance,
+}
+
+impl Report {
+    /// Whether bounds and intervals hold for the scene as written; otherwise notes say what weakens them.
+    pub fn is_guaranteed(&self) -> bool {
+        !self.notes.iter().any(|note| note.weakens_guarantee)
+    }
 }
 
 /// The verdict.
@@ -140,65 +146,6 @@ pub struct Energy {
     pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
-}
-
-/// A quantity of the scene, with an interval that holds its exact value.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct QuantitySummary {
-    /// Its name.
-    pub name: String,
-    /// `displacement`, `force`, `moment` or `stress`.
-    pub kind: String,
-    /// The value of the dual solution, for displacements that of the upper bound: nearer to the truth than the middle of
-    /// the interval.
-    pub value: f64,
-    /// The exact value is no less; `null` where nothing is guaranteed.
-    pub lower: f64,
-    /// The exact value is no more; `null` where nothing is guaranteed.
-    pub upper: f64,
-    /// The interval of first order, to compare with.
-    pub first_order: [f64; 2],
-    /// Whether equilibrium alone determines the value.
-    pub exact_by_statics: bool,
-    /// The values of the displacement models.
-    pub primal: Vec<QuantityOfModel>,
-    /// Why there is no interval, or only one end of it; `null` where there is one.
-    pub reason: Option<String>,
-}
-
-impl QuantitySummary {
-    /// The digits that tell the ends of the interval apart.
-    pub fn digits(&self) -> usize {
-        if self.lower.is_finite() && self.upper.is_finite() { digits_to_tell(self.lower, self.upper) } else { 6 }
-    }
-
-    /// The interval: `-0.57 … -0.56`, with a sign of infinity for an end that is missing.
-    pub fn interval(&self) -> String {
-        let end =
-            |x: f64, missing: &str| if x.is_finite() { significant(x, self.digits()) } else { missing.to_string() };
-        format!("{} … {}", end(self.lower, "−∞"), end(self.upper, "∞"))
-    }
-
-    /// One sentence.
-    pub fn in_words(&self) -> String {
-        let value = if self.value.is_finite() { significant(self.value, self.digits()) } else { "unknown".to_string() };
-        let how = if self.exact_by_statics { ", exact by statics" } else { "" };
-        let reason = self.reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
-        format!("{} ({}): {value}, guaranteed within {}{how}{reason}", self.name, self.kind, self.interval())
-    }
-}
-
-/// The value of a quantity in a displacement model.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct QuantityOfModel {
-    /// The model.
-    pub solver: String,
-    /// Polynomial degree.
-    pub degree: usize,
-    /// Its value; `null` where its displacement does not tell.
-    pub value: Option<f64>,
-    /// Whether it lies in the interval.
-    pub inside: Option<bool>,
 }
 
 /// The dual solve in numbers.
@@ -312,7 +259,7 @@ pub struct Map {
     /// Key used in the VTU.
     pub key: &'static str,
     /// Title in words.
-    pub title: &'static str,
+    pub title: String,
     /// One value per triangle.
     pub values: Vec<f64>,
 }

@@ -11,7 +11,7 @@
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -31,15 +31,35 @@ const POLL: Duration = Duration::from_millis(10);
 /// Name and content of a file.
 pub type NamedFile<'a> = (&'a str, Vec<u8>);
 
-/// Puts `files` into `dir`, which is made if need be, in the place of those of the same names.
+/// A file that one run leaves and the next may not.
+#[derive(Debug, Clone, Copy)]
+pub struct Passing<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// How it begins: a file of the user's that has the name begins otherwise, and stays.
+    pub begins: &'a [u8],
+}
+
+impl Passing<'_> {
+    fn is_in(&self, dir: &Path) -> bool {
+        let path = dir.join(self.name);
+        let mut start = vec![0; self.begins.len()];
+        fs::symlink_metadata(&path).is_ok_and(|m| m.is_file())
+            && File::open(&path).and_then(|mut file| file.read_exact(&mut start)).is_ok()
+            && start == self.begins
+    }
+}
+
+/// Puts `files` into `dir`, which is made if need be, in the place of those of the same names. Of the `passing` ones those go
+/// that are not among `files`.
 ///
 /// # Errors
 /// [`ReportError`]; the files of the run before are then still there.
-pub fn replace(dir: &Path, files: &[NamedFile]) -> Result<(), ReportError> {
-    replace_within(dir, files, PATIENCE)
+pub fn replace(dir: &Path, files: &[NamedFile], passing: &[Passing]) -> Result<(), ReportError> {
+    replace_within(dir, files, passing, PATIENCE)
 }
 
-fn replace_within(dir: &Path, files: &[NamedFile], patience: Duration) -> Result<(), ReportError> {
+fn replace_within(dir: &Path, files: &[NamedFile], passing: &[Passing], patience: Duration) -> Result<(), ReportError> {
     refuse(dir, files.iter().map(|(name, _)| *name))?;
     let create = |source| ReportError::Create { path: dir.to_path_buf(), source };
     let place = Place::of(dir).map_err(create)?;
@@ -52,15 +72,15 @@ fn replace_within(dir: &Path, files: &[NamedFile], patience: Duration) -> Result
     if let Some(parent) = &place.parent {
         sweep(parent);
     }
-    if exists && !place.is_exchangeable(files) {
+    if exists && !place.is_exchangeable(files, passing) {
         sweep(&place.dir);
-        return one_by_one(&place.dir, files);
+        return one_by_one(&place.dir, files, passing);
     }
-    let Some(parent) = &place.parent else { return one_by_one(&place.dir, files) };
+    let Some(parent) = &place.parent else { return one_by_one(&place.dir, files, passing) };
     let staging = match Staging::new(parent, files) {
         Ok(staging) => staging,
         // The folder may be open to us and the one around it not.
-        Err(_) if exists => return one_by_one(&place.dir, files),
+        Err(_) if exists => return one_by_one(&place.dir, files, passing),
         Err(source) => return Err(create(source)),
     };
     match staging.publish(&place.dir, exists) {
@@ -68,7 +88,7 @@ fn replace_within(dir: &Path, files: &[NamedFile], patience: Duration) -> Result
             let _ = File::open(parent).and_then(|f| f.sync_all());
             Ok(())
         }
-        Err(_) if exists => one_by_one(&place.dir, files),
+        Err(_) if exists => one_by_one(&place.dir, files, passing),
         Err(source) => Err(create(source)),
     }
 }
@@ -151,8 +171,9 @@ impl Place {
 
     /// Whether the folder is this program's alone: it holds nothing but `files` and leftovers, belongs to this user, and
     /// this process does not stand in it.
-    fn is_exchangeable(&self, files: &[NamedFile]) -> bool {
-        let ours = |name: &OsStr| files.iter().any(|(own, _)| name == *own) || is_unfinished(name);
+    fn is_exchangeable(&self, files: &[NamedFile], passing: &[Passing]) -> bool {
+        let went = |name: &OsStr| passing.iter().any(|own| name == own.name && own.is_in(&self.dir));
+        let ours = |name: &OsStr| files.iter().any(|(own, _)| name == *own) || is_unfinished(name) || went(name);
         let alone = fs::read_dir(&self.dir)
             .is_ok_and(|mut entries| entries.all(|entry| entry.is_ok_and(|entry| ours(&entry.file_name()))));
         let own = fs::metadata(&self.dir).is_ok_and(|m| m.uid() == rustix::process::geteuid().as_raw());
@@ -198,11 +219,14 @@ impl Staging {
 }
 
 /// Replaces the files of a folder that others use, too.
-fn one_by_one(dir: &Path, files: &[NamedFile]) -> Result<(), ReportError> {
+fn one_by_one(dir: &Path, files: &[NamedFile], passing: &[Passing]) -> Result<(), ReportError> {
     let failed = |name: &str, source| ReportError::Write { path: dir.join(name), source };
     let staging = Staging::new(dir, files).map_err(|e| failed(files.first().map_or("", |f| f.0), e))?;
     for (name, _) in files {
         fs::rename(staging.0.path().join(name), dir.join(name)).map_err(|e| failed(name, e))?;
+    }
+    for old in passing.iter().filter(|old| files.iter().all(|(name, _)| *name != old.name) && old.is_in(dir)) {
+        fs::remove_file(dir.join(old.name)).map_err(|e| failed(old.name, e))?;
     }
     let _ = File::open(dir).and_then(|f| f.sync_all());
     Ok(())

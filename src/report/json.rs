@@ -72,6 +72,13 @@ mod tests {
             "contact.0.pressure_l2_difference",
             "stress.relative_energy_norm_difference",
             "stress.worst_triangle",
+            "quantities.0.value",
+            "quantities.0.lower",
+            "quantities.0.upper",
+            "quantities.0.first_order.0",
+            "quantities.0.first_order.1",
+            "quantities.0.primal.0.degree",
+            "quantities.0.primal.0.value",
             "checks.0.value",
             "checks.0.reference",
             "checks.0.difference",
@@ -89,13 +96,18 @@ mod tests {
             "primal.0.solver",
             "primal.0.version",
             "contact.0.name",
+            "quantities.0.name",
+            "quantities.0.kind",
+            "quantities.0.primal.0.solver",
             "checks.0.name",
             "checks.0.why",
         ];
         for path in strings {
             assert!(get(&value, path).is_string(), "{path}");
         }
-        for path in ["primal.0.admissible", "checks.0.passed"] {
+        for path in
+            ["primal.0.admissible", "quantities.0.exact_by_statics", "quantities.0.primal.0.inside", "checks.0.passed"]
+        {
             assert!(get(&value, path).is_boolean(), "{path}");
         }
         assert_eq!(value["status"], "agree");
@@ -114,6 +126,25 @@ mod tests {
         let status = schema["$defs"]["Status"].to_string();
         for word in ["agree", "disagree", "infeasible", "failed"] {
             assert!(status.contains(&format!("\"{word}\"")), "{status}");
+        }
+    }
+
+    #[test]
+    fn an_end_that_is_missing_is_null_in_report_and_schema() {
+        let sample = Sample::new(1, Verdict::Agree);
+        let mut report = sample.dossier().report;
+        report.quantities[1].first_order = [f64::NEG_INFINITY, f64::INFINITY];
+        let value: Value = serde_json::from_str(&json(&report).unwrap()).unwrap();
+        let seat = &value["quantities"][1];
+        assert!(seat["lower"].is_number() && seat["upper"].is_null() && seat["reason"].is_string(), "{seat}");
+        assert_eq!(seat["first_order"], serde_json::json!([null, null]));
+        let properties = &schema()["$defs"]["QuantitySummary"]["properties"];
+        for key in ["value", "lower", "upper"] {
+            assert_eq!(properties[key]["type"], serde_json::json!(["number", "null"]), "{key}");
+        }
+        assert_eq!(properties["first_order"]["items"]["type"], serde_json::json!(["number", "null"]));
+        for key in seat.as_object().unwrap().keys() {
+            assert!(properties.get(key).is_some(), "{key} is missing in the schema");
         }
     }
 

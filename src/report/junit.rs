@@ -1,4 +1,4 @@
-//! `junit.xml`: one test case per check.
+//! `junit.xml`: one test case per check, and one per quantity.
 
 use std::time::Duration;
 
@@ -8,14 +8,16 @@ use quick_junit::{
 
 use super::number::{optional, significant};
 use super::words::worth_a_look;
-use super::{Report, Status};
+use super::{QuantitySummary, Report, Status};
 use crate::compare::Check;
 
-/// The checks as a JUnit test suite named after the scene, the notes and remarks as its output. A run that ends without
+/// The checks as a JUnit test suite named after the scene, the notes and remarks as its output; after the checks one test case
+/// per quantity, which succeeded where its interval has two ends and was skipped otherwise. A run that ends without
 /// agreement though no check failed (undecided, infeasible or failed) adds one test case that says so: a file without failures must mean agreement.
 pub fn junit(report: &Report) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(format!("hypercircle {} {}", report.command, report.scene));
     suite.add_test_cases(report.checks.iter().map(|check| case(check, &report.scene)));
+    suite.add_test_cases(report.quantities.iter().map(|quantity| quantity_case(quantity, report)));
     suite.add_property(("run", report.run.as_str()));
     let verdict = match report.status {
         Status::Infeasible | Status::Undecided => Some(NonSuccessKind::Failure),
@@ -90,6 +92,20 @@ pub(crate) fn case(check: &Check, scene: &str) -> TestCase {
     with_class(TestCase::new(check.name.as_str(), status), scene)
 }
 
+/// The interval of a quantity. Whether values lie in it is a matter of the checks.
+fn quantity_case(quantity: &QuantitySummary, report: &Report) -> TestCase {
+    let status = if quantity.is_enclosed() {
+        TestCaseStatus::success()
+    } else {
+        let mut status = TestCaseStatus::skipped();
+        status.set_message(quantity.reason.as_deref().unwrap_or("an end of its interval is missing"));
+        status
+    };
+    let mut case = TestCase::new(format!("quantity/{}", quantity.name), status);
+    case.set_system_out(quantity.in_words(report.is_guaranteed()));
+    with_class(case, &report.scene)
+}
+
 /// Time of the run, where it is one that a duration can hold.
 fn total_seconds(report: &Report) -> Option<Duration> {
     let whole = report.provenance.seconds.get("total").copied();
@@ -110,7 +126,7 @@ mod tests {
         assert!(!text.lines().nth(1).unwrap().contains("skipped"), "no attribute of <testsuites> in Jenkins' schema");
         let parsed = JunitReport::deserialize_from_str(&text).unwrap();
         let failing = report.checks.iter().filter(|c| !c.passed).count();
-        assert_eq!((parsed.tests, parsed.failures), (report.checks.len(), failing));
+        assert_eq!((parsed.tests, parsed.failures), (report.checks.len() + report.quantities.len(), failing));
         assert!(failing >= 2);
         for check in report.checks.iter().filter(|c| !c.passed) {
             let case = parsed.test_suites[0].test_cases.iter().find(|c| c.name.as_str() == check.name).unwrap();
@@ -120,6 +136,19 @@ mod tests {
             assert!(text.as_str().contains("allowed") && text.as_str().contains(&check.why));
         }
         assert!(parsed.test_suites[0].system_out.as_ref().unwrap().as_str().contains(&report.notes[0].text));
+    }
+
+    #[test]
+    fn quantities_succeed_with_two_ends_and_are_skipped_with_a_reason() {
+        let report = Sample::new(1, Verdict::Agree).dossier().report;
+        let parsed = JunitReport::deserialize_from_str(&junit(&report).unwrap()).unwrap();
+        let case = |name: &str| parsed.test_suites[0].test_cases.iter().find(|c| c.name.as_str() == name).unwrap();
+        assert!(matches!(case("quantity/tip <a&b>").status, TestCaseStatus::Success { .. }));
+        assert!(case("quantity/tip <a&b>").system_out.as_ref().unwrap().as_str().contains("0.79 … 0.81"));
+        let TestCaseStatus::Skipped { message: Some(reason), .. } = &case("quantity/seat").status else {
+            panic!("{:?}", case("quantity/seat").status)
+        };
+        assert_eq!(reason.as_str(), "nothing holds <it>");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::number::{clean, digits_to_tell, optional, percent, significant, vecto
 use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from, worth_a_look};
 use super::{Report, Status};
 
-/// How many failing checks are listed before the rest is only counted.
+/// How many failing checks and quantities are listed before the rest is only counted.
 const LISTED: usize = 12;
 
 /// The report as Markdown.
@@ -17,6 +17,7 @@ pub fn summary(report: &Report) -> String {
     let _ = writeln!(text, "## {symbol} {}: {}\n", cell(&report.title), headline(report));
     let _ = writeln!(text, "{}\n", cell(&report.verdict));
     bracket(&mut text, report);
+    quantities(&mut text, report);
     checks(&mut text, report);
     for diagnosis in &report.diagnosis {
         let _ = writeln!(text, "**What is wrong with {}:** {}\n", cell(&diagnosis.field), cell(&diagnosis.sentence));
@@ -51,6 +52,43 @@ fn bracket(text: &mut String, report: &Report) {
         cell(&upper_from(&energy.upper_from)),
         accuracy(report)
     );
+}
+
+fn quantities(text: &mut String, report: &Report) {
+    if report.quantities.is_empty() {
+        return;
+    }
+    let held = if report.is_guaranteed() { "guaranteed within" } else { "within, for the data on the mesh" };
+    let _ = writeln!(text, "| quantity | kind | value | {held} | half-width | | other values |");
+    let _ = writeln!(text, "|---|---|--:|--:|--:|---|---|");
+    for quantity in report.quantities.iter().take(LISTED) {
+        let others = quantity.held(report).into_iter().map(|held| {
+            let value = optional(held.value, quantity.digits());
+            match quantity.verdict_on(&held).as_str() {
+                "" => format!("{} {value}", cell(&held.of)),
+                verdict => format!("{} {value}, **{verdict}**", cell(&held.of)),
+            }
+        });
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {} | {} | {} | {} |",
+            code(&quantity.name),
+            cell(&quantity.kind),
+            significant(quantity.value, quantity.digits()),
+            quantity.interval(),
+            significant(quantity.half_width(), 3),
+            if quantity.exact_by_statics {
+                "exact by statics".to_string()
+            } else {
+                cell(quantity.reason.as_deref().unwrap_or(""))
+            },
+            others.collect::<Vec<_>>().join("; ")
+        );
+    }
+    if report.quantities.len() > LISTED {
+        let _ = writeln!(text, "\n{} more quantities in `report.html`.", report.quantities.len() - LISTED);
+    }
+    text.push('\n');
 }
 
 fn checks(text: &mut String, report: &Report) {
@@ -213,10 +251,23 @@ mod tests {
     }
 
     #[test]
+    fn quantities_are_listed_with_what_lies_outside() {
+        let mut report = Sample::new(2, Verdict::Agree).dossier().report;
+        report.quantities[0].primal[0].value = Some(0.85);
+        let text = summary(&report);
+        assert!(text.contains("| 0.801 | 0.79 … 0.81 | 0.01 |"), "{text}");
+        assert!(text.contains("FEniCSx P2 0.85, **outside by 0.04**"), "{text}");
+        assert!(text.contains("| 0.2 … ∞ | – | nothing holds &lt;it&gt; |"), "{text}");
+        assert!(text.contains("| exact by statics |"), "{text}");
+    }
+
+    #[test]
     fn tables_keep_their_columns_whatever_the_names() {
         let mut report = Sample::new(2, Verdict::Disagree).dossier().report;
         report.contact[0].name = "a|b`<script>".to_string();
         report.primal[0].name = "P1 | <img src=x>".to_string();
+        report.quantities[0].name = "a|b`c".to_string();
+        report.quantities[1].primal[0].solver = "P1 | <img src=x>".to_string();
         let text = summary(&report);
         assert!(!text.contains("<img") && text.contains("a\\|b'"));
         let mut columns = None;

@@ -1,6 +1,6 @@
 //! What a run leaves behind, all derived from one [`Dossier`].
 //!
-//! [`write()`] makes the five files; each of them is also a function here, from data to text, that knows nothing of files.
+//! [`write()`] makes the files; each of them is also a function here, from data to text, that knows nothing of files.
 
 mod data;
 pub(crate) mod document;
@@ -12,6 +12,8 @@ mod junit;
 mod lattice;
 pub(crate) mod markdown;
 pub(crate) mod number;
+mod quantities_csv;
+mod quantity;
 mod run;
 #[cfg(test)]
 mod sample;
@@ -29,7 +31,8 @@ pub use json::{json, schema};
 pub use junit::junit;
 pub(crate) use junit::{case, for_jenkins};
 pub use markdown::summary;
+pub use quantities_csv::quantities_csv;
 pub use run::run_of;
 pub use stored::*;
 pub use vtu::vtu;
-pub use write::{NAMES, ReportError, write};
+pub use write::{NAMES, QUANTITIES, ReportError, write};

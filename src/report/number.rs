@@ -23,7 +23,27 @@ pub(crate) fn significant(x: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
-/// The same for a number that may be missing.
+/// The end of an interval with `digits` significant digits, rounded away from the interval: what is written encloses
+/// what is known.
+pub(crate) fn outward(x: f64, digits: usize, upwards: bool) -> String {
+    let digits = digits.clamp(1, 17);
+    if !x.is_finite() || x == 0.0 {
+        return significant(x, digits);
+    }
+    let nearest = format!("{x:.*e}", digits - 1);
+    let exponent = nearest.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let nearest: f64 = nearest.parse().unwrap_or(x);
+    let step = 10f64.powi(exponent + 1 - digits as i32);
+    let outer = match upwards {
+        true if nearest < x => nearest + step,
+        false if nearest > x => nearest - step,
+        _ => nearest,
+    };
+    // A step down from a power of ten has one digit more.
+    if outer.abs() < 10f64.powi(exponent) { significant(outer, digits + 1) } else { significant(outer, digits) }
+}
+
+/// A number that may be missing.
 pub(crate) fn optional(x: Option<f64>, digits: usize) -> String {
     x.map_or_else(|| "–".to_string(), |x| significant(x, digits))
 }
@@ -115,6 +135,22 @@ mod tests {
         assert!(n < 10);
         assert_eq!(digits_to_tell(1.0, 1.0), 6);
         assert_eq!(digits_to_tell(f64::NAN, 1.0), 6);
+    }
+
+    #[test]
+    fn what_is_written_of_an_interval_encloses_it() {
+        let read = |text: &str| text.replace('−', "-").parse::<f64>().unwrap();
+        for x in [0.785_796_1, 0.808_001_6, -1.0e-4, 9.999_96, 0.999_999_99, -0.584_34, 1.0, 123_456.7, 1.0 / 3.0] {
+            for x in [x, -x] {
+                for digits in [3, 5, 9] {
+                    let [low, high] = [false, true].map(|upwards| read(&outward(x, digits, upwards)));
+                    assert!(low <= x && x <= high, "{low} {x} {high}");
+                    assert!(high - low <= 2.0 * x.abs() * 10f64.powi(1 - digits as i32), "{low} {x} {high}");
+                }
+            }
+        }
+        assert_eq!((outward(0.80801, 4, true).as_str(), outward(-0.5, 6, false).as_str()), ("0.8081", "−0.5"));
+        assert_eq!((outward(0.0, 6, true).as_str(), outward(f64::INFINITY, 6, true).as_str()), ("0", "–"));
     }
 
     #[test]

@@ -4,14 +4,15 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::ReportError;
+use super::{QUANTITIES, ReportError, quantities_csv};
 
 /// What stands before the identifier in the files that are no JSON, in their order in [`super::NAMES`].
-const BEFORE: [(&str, &str); 4] = [
+const BEFORE: [(&str, &str); 5] = [
     ("report.html", "<meta name=\"run\" content=\""),
     ("junit.xml", "<property name=\"run\" value=\""),
     ("summary.md", " · run "),
     ("fields.vtu", "<!-- run "),
+    (QUANTITIES, ","),
 ];
 
 /// The identifier of the run that made the report in `dir`, once all its files that are there have been seen to name the
@@ -30,6 +31,10 @@ pub fn run_of(dir: &Path) -> Result<String, ReportError> {
     for (name, before) in BEFORE {
         let path = dir.join(name);
         let Ok(bytes) = std::fs::read(&path) else { continue };
+        if name == QUANTITIES && !bytes.starts_with(quantities_csv::header().as_bytes()) {
+            // The user's, beside the report of a scene that has no quantities.
+            continue;
+        }
         // The program writes it first, or last; a name in the scene cannot stand in both places.
         let own = [before.as_bytes(), run.as_bytes()].concat();
         if !bytes.windows(own.len()).any(|part| part == own) {
@@ -55,13 +60,14 @@ mod tests {
             write(&dossier, dir.path()).expect("writable");
             assert_eq!(run_of(dir.path()).expect("one run"), run);
         }
-        for name in NAMES {
+        for name in NAMES.into_iter().chain([QUANTITIES]) {
             let kept = std::fs::read(dirs[0].path().join(name)).expect("there");
             std::fs::copy(dirs[1].path().join(name), dirs[0].path().join(name)).expect("writable");
             let error = run_of(dirs[0].path()).expect_err("a mixture");
             assert!(matches!(error, ReportError::Mixed { .. }), "{name}: {error}");
             std::fs::write(dirs[0].path().join(name), kept).expect("writable");
         }
+        std::fs::write(dirs[0].path().join(QUANTITIES), "mine").expect("writable");
         assert!(run_of(dirs[0].path()).is_ok());
     }
 

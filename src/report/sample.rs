@@ -65,9 +65,13 @@ impl Sample {
     /// The dossier, with a rigid motion if infeasible.
     pub fn dossier(&self) -> Dossier<'_> {
         let mesh = &self.problem.mesh;
-        let map = |key, title, f: &dyn Fn(f64, f64) -> f64| {
+        let map = |key, title: &str, f: &dyn Fn(f64, f64) -> f64| {
             let centre = |t: usize| [0, 1].map(|c| mesh.corners(t).iter().map(|p| p[c]).sum::<f64>() / 3.0);
-            Map { key, title, values: (0..mesh.triangles.len()).map(centre).map(|[x, y]| f(x, y)).collect() }
+            Map {
+                key,
+                title: title.to_string(),
+                values: (0..mesh.triangles.len()).map(centre).map(|[x, y]| f(x, y)).collect(),
+            }
         };
         let infeasible = self.verdict == Verdict::Infeasible;
         Dossier {

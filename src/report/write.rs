@@ -1,8 +1,8 @@
-//! The five files of a run.
+//! The files of a run.
 
 use std::path::{Path, PathBuf};
 
-use super::{Dossier, folder, html, json, junit, markdown, vtu};
+use super::{Dossier, folder, html, json, junit, markdown, quantities_csv, vtu};
 
 /// Why a report was not written.
 #[derive(Debug, thiserror::Error)]
@@ -61,31 +61,41 @@ pub enum ReportError {
     },
 }
 
-/// The names of the five files.
+/// The names of the files that every run leaves.
 pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 
-/// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be.
+/// The file that a run leaves where it has quantities.
+pub const QUANTITIES: &str = "quantities.csv";
+
+/// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be, and
+/// `quantities.csv` where there are quantities; one of an earlier run goes where there are none.
 ///
-/// All five are rendered before the first is written, and they take the place of an earlier run's at once (see
+/// All are rendered before the first is written, and they take the place of an earlier run's at once (see
 /// [`folder`]): a reader sees neither half a file nor the files of two runs.
 ///
 /// # Errors
 /// [`ReportError`]; an earlier report is then still there.
 pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
-    folder::replace(dir, &render(dossier)?)
+    let header = quantities_csv::header();
+    let passing = folder::Passing { name: QUANTITIES, begins: header.as_bytes() };
+    folder::replace(dir, &render(dossier)?, &[passing])
 }
 
-/// The five files by name.
-pub(super) fn render(dossier: &Dossier) -> Result<[(&'static str, Vec<u8>); 5], ReportError> {
+/// The files by name.
+pub(super) fn render(dossier: &Dossier) -> Result<Vec<(&'static str, Vec<u8>)>, ReportError> {
     let report = &dossier.report;
     let fail = |file, reason: String| ReportError::Render { file, reason };
-    Ok([
+    let mut files = vec![
         ("report.json", json::json(report).map_err(|e| fail("report.json", e.to_string()))?.into_bytes()),
         ("report.html", html::page(dossier).into_bytes()),
         ("junit.xml", junit::junit(report).map_err(|e| fail("junit.xml", e.to_string()))?.into_bytes()),
         ("summary.md", markdown::summary(report).into_bytes()),
         ("fields.vtu", vtu::vtu(dossier).map_err(|e| fail("fields.vtu", e.to_string()))?),
-    ])
+    ];
+    if !report.quantities.is_empty() {
+        files.push((QUANTITIES, quantities_csv::quantities_csv(report).into_bytes()));
+    }
+    Ok(files)
 }
 
 #[cfg(test)]
@@ -101,18 +111,24 @@ mod tests {
     }
 
     #[test]
-    fn five_files_and_nothing_else_twice_the_same() {
+    fn its_files_and_nothing_else_twice_the_same() {
         let dir = tempfile::tempdir().unwrap();
         let sample = Sample::new(3, Verdict::Disagree);
         let out = dir.path().join("deep/er");
         write(&sample.dossier(), &out).unwrap();
-        let mut expected = NAMES.map(String::from);
+        let mut expected: Vec<String> = NAMES.into_iter().chain([QUANTITIES]).map(String::from).collect();
         expected.sort();
         assert_eq!(listing(&out), expected);
-        let first = NAMES.map(|n| std::fs::read(out.join(n)).unwrap());
+        let read = || -> Vec<_> { expected.iter().map(|n| std::fs::read(out.join(n)).unwrap()).collect() };
+        let first = read();
         write(&Sample::new(3, Verdict::Disagree).dossier(), &out).unwrap();
         assert_eq!(listing(&out), expected);
-        assert!(first == NAMES.map(|n| std::fs::read(out.join(n)).unwrap()), "same input, other bytes");
+        assert!(first == read(), "same input, other bytes");
+        let mut without = sample.dossier();
+        without.report.quantities.clear();
+        write(&without, &out).unwrap();
+        expected.retain(|name| name != QUANTITIES);
+        assert_eq!(listing(&out), expected);
     }
 
     #[test]
@@ -143,7 +159,7 @@ mod tests {
         let files = render(&dossier).unwrap();
         let failing = crate::report::words::failing(&dossier.report);
         assert!(!failing.is_empty());
-        for (name, bytes) in files.iter().filter(|(name, _)| *name != "fields.vtu") {
+        for (name, bytes) in files.iter().filter(|(name, _)| !["fields.vtu", QUANTITIES].contains(name)) {
             let text = String::from_utf8(bytes.clone()).unwrap();
             let text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&").replace("\\|", "|");
             for check in &failing {
@@ -179,6 +195,11 @@ mod tests {
         let energy = dossier.report.energy.as_mut().unwrap();
         (energy.lower, energy.upper, energy.gap, energy.relative_error_bound) =
             (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
+        for quantity in &mut dossier.report.quantities {
+            (quantity.value, quantity.lower, quantity.upper) = (f64::NAN, f64::NAN, f64::NAN);
+            quantity.first_order = [f64::NAN; 2];
+            quantity.primal[0].value = Some(f64::NAN);
+        }
         for contact in &mut dossier.report.contact {
             for profile in &mut contact.profiles {
                 profile.points[0] = [f64::NAN, f64::INFINITY];

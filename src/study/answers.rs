@@ -86,13 +86,14 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
 pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
     let summary = |answer: &Answer| {
         let Interval { ends: [lower, upper], first_order, value, exact_by_statics, reasons, .. } = &answer.interval;
+        let known = lower.is_finite() || upper.is_finite();
         let primal = |judged: &Judged| {
             let value = value_in(certified, answer, judged);
             QuantityOfModel {
                 solver: judged.candidate.name.clone(),
                 degree: judged.candidate.degree,
                 value,
-                inside: value.map(|v| *lower <= v && v <= *upper),
+                inside: value.filter(|_| known).map(|v| *lower <= v && v <= *upper),
             }
         };
         QuantitySummary {

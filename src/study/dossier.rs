@@ -77,24 +77,24 @@ pub struct Fields {
 
 impl Fields {
     /// Computes the maps of a run.
-    pub fn new(certified: &Certified, comparison: &Comparison) -> Self {
+    pub fn new(certified: &Certified, comparison: &Comparison, answers: &[Answer]) -> Self {
         let Certified { problem, dual, bracket, .. } = certified;
         let count = problem.mesh.triangles.len();
         let means: Vec<[f64; 3]> = (0..count).map(|t| dual.stress.mean(t)).collect();
         let mut maps = vec![Map {
             key: "von_mises_dual",
-            title: "Von Mises stress, dual solution",
+            title: "Von Mises stress, dual solution".to_string(),
             values: von_mises_map(problem, &means),
         }];
         if let Some(best) = comparison.best.map(|b| &comparison.judged[b]) {
             maps.push(Map {
                 key: "von_mises_primal",
-                title: "Von Mises stress, best displacement solution",
+                title: "Von Mises stress, best displacement solution".to_string(),
                 values: von_mises_map(problem, &primal_means(problem, best)),
             });
             maps.push(Map {
                 key: "stress_difference",
-                title: "Stress difference: root of the energy density of λ_h − σ(u_h)",
+                title: "Stress difference: root of the energy density of λ_h − σ(u_h)".to_string(),
                 values: density(problem, &best.field.local.triangles),
             });
         }
@@ -103,10 +103,11 @@ impl Fields {
             mid = mid_field(problem, &dual.stress, &upper.displacement);
             maps.push(Map {
                 key: "error_contribution",
-                title: "Share of each triangle in the gap between the bounds",
+                title: "Share of each triangle in the gap between the bounds".to_string(),
                 values: shares(problem, upper),
             });
         }
+        maps.extend(widest(answers));
         Fields { maps, mid }
     }
 
@@ -114,12 +115,26 @@ impl Fields {
     pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
         let map = |values| Map {
             key: "residual",
-            title: "What the claimed solution misses of equilibrium, at its nodes",
+            title: "What the claimed solution misses of equilibrium, at its nodes".to_string(),
             values,
         };
         self.maps.splice(0..0, values.map(map));
         self
     }
+}
+
+/// What each triangle adds to the interval that is the widest relative to its value.
+fn widest(answers: &[Answer]) -> Option<Map> {
+    let width = |answer: &Answer| answer.interval.half_width() / answer.interval.value.abs();
+    let total = |answer: &Answer| answer.interval.shares.iter().sum::<f64>();
+    let known = answers.iter().filter(|answer| width(answer).is_finite() && width(answer) > 0.0);
+    let answer = known.max_by(|a, b| width(a).total_cmp(&width(b)))?;
+    let whole = total(answer);
+    (whole.is_finite() && whole > 0.0).then(|| Map {
+        key: "quantity_contribution",
+        title: format!("Share of each triangle in the interval of {}", answer.name),
+        values: answer.interval.shares.iter().map(|share| share / whole).collect(),
+    })
 }
 
 /// Square root of twice the term per area: the local size of a stress difference in energy units.

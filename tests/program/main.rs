@@ -15,6 +15,7 @@ mod jobs;
 mod malformed;
 mod malformed_meshes;
 mod memory;
+mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;

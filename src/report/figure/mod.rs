@@ -10,6 +10,7 @@ pub mod history;
 pub mod map;
 mod outline;
 pub mod pressure;
+pub mod quantity;
 mod raster;
 pub mod scene;
 mod svg;

@@ -1,15 +1,16 @@
 //! `report.html`: one page that stands alone, for a reader who does not know the program.
 
 mod pictures;
+mod quantities;
 mod style;
 mod tables;
 mod verdict;
 
 use maud::{Markup, html};
 
-use super::Dossier;
 use super::document::document;
 use super::number::{clean, grouped};
+use super::{Dossier, Report};
 pub(crate) use style::CSS;
 
 /// The page: no script, nothing loaded.
@@ -21,7 +22,7 @@ pub fn page(dossier: &Dossier) -> String {
         main {
             (pictures::pictures(dossier))
             (tables::tables(report))
-            (reading())
+            (reading(report))
         }
         footer {
             "Made by hypercircle " (clean(&report.provenance.version)) " (" (clean(&report.command)) ") from "
@@ -33,7 +34,7 @@ pub fn page(dossier: &Dossier) -> String {
 }
 
 /// What the words mean.
-fn reading() -> Markup {
+fn reading(report: &Report) -> Markup {
     html! {
         section #reading {
             h2 { "How to read this page" }
@@ -50,6 +51,14 @@ fn reading() -> Markup {
                     "Every equilibrated stress gives a number below the exact energy, every admissible displacement a number \
                     above it. The exact energy lies between, whatever the mesh. A short interval means that both models are accurate; \
                     an interval the wrong way round means that one of them is wrong."
+                }
+                @if !report.quantities.is_empty() {
+                    dt { "Intervals of quantities" }
+                    dd {
+                        "A displacement, a force or a stress that the scene asks for. The interval follows from the same two solutions as \
+                        the bracket, and from two more for the quantity itself. No correct solution of the scene has a value outside; \
+                        one on this mesh may miss it by its own error."
+                    }
                 }
                 dt { "Relative error in the energy norm" }
                 dd {
@@ -96,8 +105,8 @@ mod tests {
     #[test]
     fn every_picture_of_a_full_dossier_is_there() {
         let text = page(&Sample::new(3, Verdict::Agree).dossier());
-        // Bracket, scene, two shapes, pressure, von Mises, two maps, history.
-        assert_eq!(svgs(&text).len(), 9);
+        // Three quantities, bracket, scene, two shapes, pressure, von Mises, two maps, history.
+        assert_eq!(svgs(&text).len(), 12);
         assert_eq!(
             svgs(&page(&Sample::new(3, Verdict::Infeasible).dossier())).iter().filter(|s| s.contains("motion")).count(),
             1

@@ -103,8 +103,8 @@ fn maps(dossier: &Dossier) -> Markup {
         }
         @for field in &dossier.maps {
             figure {
-                (PreEscaped(map::map(problem, field.title, &field.values)))
-                figcaption { b { (field.title) ". " } (explanation(field.key)) (coarse) }
+                (PreEscaped(map::map(problem, &field.title, &field.values)))
+                figcaption { b { (clean(&field.title)) ". " } (explanation(field.key)) (coarse) }
             }
         }
     }
@@ -112,7 +112,9 @@ fn maps(dossier: &Dossier) -> Markup {
 
 /// What a map shows, where its key says so.
 fn explanation(key: &str) -> &'static str {
-    if key.contains("difference") {
+    if key.contains("quantity") {
+        "What each triangle adds to the width of the widest interval, relative to all of it."
+    } else if key.contains("difference") {
         "How far the stresses of the two models are apart, triangle by triangle."
     } else if key.contains("contribution") || key.contains("error") || key.contains("gap") {
         "What each triangle adds to the width of the bracket: light triangles are where a finer mesh pays."

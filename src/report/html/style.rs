@@ -32,6 +32,11 @@ code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhe
 .card{background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:14px 18px;min-width:0}
 .card p{margin:4px 0 6px}
 .card .big{font-size:1.7rem;font-weight:700;line-height:1.2;margin:2px 0 4px}
+.asked{margin-top:14px}
+.asked-for{display:grid;gap:10px 26px;grid-template-columns:repeat(auto-fit,minmax(min(100%,340px),1fr))}
+.asked-for>div{min-width:0}
+.asked-for h4{font-size:.95rem;font-weight:400;margin:6px 0 2px;overflow-wrap:anywhere}
+.asked-for p{font-size:.93rem}.asked-for .off b{color:var(--bad)}
 .first{display:grid;gap:14px;margin-top:14px;grid-template-columns:minmax(0,1fr)}
 @media(min-width:900px){.first{grid-template-columns:minmax(0,1.25fr) minmax(0,1fr)}}
 .first.alone{grid-template-columns:minmax(0,1fr)}.alone .answers{grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr))}
@@ -69,7 +74,7 @@ svg text[paint-order]{stroke:#151b23}svg .mesh{stroke:#8b98a5}svg .m{stroke:none
 }
 @media print{
 body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
-figure,.card,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
+figure,.card:not(.asked),.asked-for>div,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
 .scroll{overflow:visible}table{font-size:8.5pt}
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 }

@@ -12,6 +12,7 @@ pub(super) fn tables(report: &Report) -> Markup {
     html! {
         section #checks { h2 { "Checks" } (checks(report)) }
         @if !report.remarks.is_empty() { section #remarks { h2 { "Remarks" } (remarks(report)) } }
+        @if !report.quantities.is_empty() { section #quantities { h2 { "Quantities" } (super::quantities::table(report)) } }
         @if let Some(energy) = &report.energy { section #energy { h2 { "Energy" } (energies(report, energy)) } }
         @if !report.contact.is_empty() { section #contact { h2 { "Contact" } (contacts(report)) } }
         @if report.stress.is_some() { section #stress { h2 { "Stress" } (stress(report)) } }
@@ -23,7 +24,7 @@ pub(super) fn tables(report: &Report) -> Markup {
 }
 
 /// A table that scrolls sideways where it does not fit.
-fn scroll(label: &str, table: Markup) -> Markup {
+pub(super) fn scroll(label: &str, table: Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
 }
 

@@ -1,4 +1,4 @@
-//! The first screen: verdict, failures, bracket, three answers.
+//! The first screen: verdict, failures, quantities, bracket, three answers.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -26,6 +26,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
             }
             (failures(report))
             (diagnoses(report))
+            (super::quantities::card(report))
             div class=(if report.energy.is_some() { "first" } else { "first alone" }) {
                 @if report.energy.is_some() { (bracket_card(report)) }
                 div.answers {

@@ -1,0 +1,187 @@
+//! Quantities of a scene in the report: the interval that holds each, and the values that are held against it.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Report;
+use super::number::{digits_to_tell, outward, significant};
+
+/// Ends that are closer than this, relative to their size, differ by rounding.
+const A_POINT: f64 = 1e-9;
+/// Digits of a value that is known but for rounding.
+const DIGITS_OF_A_POINT: usize = 9;
+/// What stands for ends that are missing.
+const MISSING: [&str; 2] = ["−∞", "∞"];
+
+/// A quantity of the scene, with an interval that holds its exact value.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct QuantitySummary {
+    /// Its name.
+    pub name: String,
+    /// `displacement`, `force`, `moment` or `stress`.
+    pub kind: String,
+    /// The value of the dual solution, for displacements that of the upper bound: nearer to the truth than the middle of
+    /// the interval. `null` where it is not known.
+    pub value: f64,
+    /// The exact value is no less; `null` where nothing is guaranteed.
+    pub lower: f64,
+    /// The exact value is no more; `null` where nothing is guaranteed.
+    pub upper: f64,
+    /// The interval of first order, to compare with; `null` for an end that it does not have.
+    pub first_order: [f64; 2],
+    /// Whether equilibrium alone determines the value.
+    pub exact_by_statics: bool,
+    /// The values of the displacement models.
+    pub primal: Vec<QuantityOfModel>,
+    /// Why there is no interval, or only one end of it; `null` where there is one.
+    pub reason: Option<String>,
+}
+
+/// The value of a quantity in a displacement model.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct QuantityOfModel {
+    /// The model.
+    pub solver: String,
+    /// Polynomial degree.
+    pub degree: usize,
+    /// Its value; `null` where its displacement does not tell.
+    pub value: Option<f64>,
+    /// Whether it lies in the interval; `null` where there is no value or no interval.
+    pub inside: Option<bool>,
+}
+
+/// A value that is held against an interval.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Held {
+    /// Whose it is.
+    pub of: String,
+    /// Polynomial degree, where it is that of a field.
+    pub degree: Option<usize>,
+    /// The value; `None` where the field does not tell.
+    pub value: Option<f64>,
+    /// Whether its distance from the interval is within what its own error allows, where that was checked.
+    pub allowed: Option<bool>,
+}
+
+impl QuantitySummary {
+    /// Whether both ends are there.
+    pub fn is_enclosed(&self) -> bool {
+        self.lower.is_finite() && self.upper.is_finite()
+    }
+
+    /// Whether anything is guaranteed.
+    pub fn has_an_end(&self) -> bool {
+        self.lower.is_finite() || self.upper.is_finite()
+    }
+
+    /// Whether the ends differ by no more than rounding.
+    pub fn is_point(&self) -> bool {
+        self.is_enclosed() && self.upper - self.lower <= A_POINT * self.lower.abs().max(self.upper.abs())
+    }
+
+    /// Half of the width; infinite where an end is missing.
+    pub fn half_width(&self) -> f64 {
+        if self.is_enclosed() { 0.5 * (self.upper - self.lower) } else { f64::INFINITY }
+    }
+
+    /// Half of the width relative to the value.
+    pub fn relative_half_width(&self) -> f64 {
+        self.half_width() / self.value.abs()
+    }
+
+    /// By how much `x` lies outside; zero inside.
+    pub fn outside(&self, x: f64) -> f64 {
+        (self.lower - x).max(x - self.upper).max(0.0)
+    }
+
+    /// The digits that tell the ends of the interval apart.
+    pub fn digits(&self) -> usize {
+        match () {
+            _ if self.is_point() => DIGITS_OF_A_POINT,
+            _ if self.is_enclosed() => digits_to_tell(self.lower, self.upper),
+            _ => 6,
+        }
+    }
+
+    /// The lower and the upper end, rounded away from the interval, with a sign of infinity for one that is missing.
+    pub fn ends(&self) -> [String; 2] {
+        let end = |k: usize, x: f64| {
+            if x.is_finite() { outward(x, self.digits(), k == 1) } else { MISSING[k].to_string() }
+        };
+        [end(0, self.lower), end(1, self.upper)]
+    }
+
+    /// The interval: `−0.57 … −0.56`.
+    pub fn interval(&self) -> String {
+        self.ends().join(" … ")
+    }
+
+    /// One sentence; `guaranteed` where the interval holds for the scene as written.
+    pub fn in_words(&self, guaranteed: bool) -> String {
+        let value = if self.value.is_finite() { significant(self.value, self.digits()) } else { "unknown".to_string() };
+        let how = if self.exact_by_statics { ", exact by statics" } else { "" };
+        let reason = self.reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
+        let word = if guaranteed { "guaranteed" } else { "indicated" };
+        format!("{} ({}): {value}, {word} within {}{how}{reason}", self.name, self.kind, self.interval())
+    }
+
+    /// The values that are held against the interval: those of the displacement models, then those that came without a
+    /// field.
+    pub(crate) fn held(&self, report: &Report) -> Vec<Held> {
+        let checks = |last: &str| {
+            let name = format!("quantity/{}/{last}", self.name);
+            report.checks.iter().filter(move |check| check.name == name)
+        };
+        let of_model = |model: &QuantityOfModel| Held {
+            of: model.solver.clone(),
+            degree: Some(model.degree),
+            value: model.value,
+            allowed: checks(&model.solver).next().map(|check| check.passed),
+        };
+        let given = checks("given").map(|check| Held {
+            of: "given".to_string(),
+            degree: None,
+            value: check.value,
+            allowed: Some(check.passed),
+        });
+        self.primal.iter().map(of_model).chain(given).collect()
+    }
+
+    /// How a value that is held against the interval lies to it, in words; empty inside.
+    pub(crate) fn verdict_on(&self, held: &Held) -> String {
+        let Some(value) = held.value else { return "its displacement does not tell".to_string() };
+        let outside = self.outside(value);
+        if outside == 0.0 {
+            return String::new();
+        }
+        let own = if held.allowed == Some(true) { ", which its own error may explain" } else { "" };
+        format!("outside by {}{own}", significant(outside, 3))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::report::sample::{Sample, Verdict};
+
+    #[test]
+    fn a_sentence_says_what_is_known_and_why_not_more() {
+        let mut quantities = Sample::new(1, Verdict::Agree).dossier().report.quantities;
+        assert_eq!(quantities[0].in_words(true), "tip <a&b> (displacement): 0.801, guaranteed within 0.79 … 0.81");
+        assert_eq!(quantities[1].in_words(true), "seat (force): 0.25, guaranteed within 0.2 … ∞ (nothing holds <it>)");
+        assert!(quantities[2].in_words(true).ends_with("0.5 … 0.5, exact by statics"));
+        assert!(quantities[0].in_words(false).contains("indicated within"));
+        quantities[0].lower = 0.790_000_9;
+        quantities[0].upper = 0.810_000_1;
+        assert_eq!(quantities[0].interval(), "0.79 … 0.81001", "rounded away from what it holds");
+    }
+
+    #[test]
+    fn widths_and_distances_are_those_of_the_interval() {
+        let quantities = Sample::new(1, Verdict::Agree).dossier().report.quantities;
+        let [tip, seat, whole] = [0, 1, 2].map(|k| &quantities[k]);
+        assert!((tip.half_width() - 0.01).abs() < 1e-15 && (tip.relative_half_width() - 0.01 / 0.801).abs() < 1e-15);
+        assert!((tip.outside(0.85) - 0.04).abs() < 1e-15 && tip.outside(0.8) == 0.0);
+        assert!(!seat.is_enclosed() && seat.half_width().is_infinite() && seat.outside(1e9) == 0.0);
+        assert!(whole.is_point() && !tip.is_point());
+    }
+}
