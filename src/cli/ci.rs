@@ -4,6 +4,7 @@ use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::CliError;
 use super::say::shown;
@@ -13,6 +14,9 @@ use crate::report::{Report, Status, summary};
 const MOST: u64 = 1 << 20;
 /// Marks that GitHub shows of a step.
 const MARKS: usize = 10;
+
+/// Whether anything has been marked.
+static MARKED: AtomicBool = AtomicBool::new(false);
 
 /// One thing that is wrong with a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +46,7 @@ pub fn step_summary(summary: &str, short: &str) {
 pub fn annotate(complaints: &[Complaint]) {
     if env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         for complaint in complaints.iter().take(MARKS) {
+            MARKED.store(true, Ordering::Relaxed);
             let _ = writeln!(std::io::stdout(), "{}", mark(complaint, &workspace()));
         }
     }
@@ -57,8 +62,11 @@ pub fn report(report: &Report, scene: &Path) {
     }
 }
 
-/// Marks an error that a command ended with.
+/// Marks an error that a command ended with, unless the run has marked what was wrong already.
 pub fn annotate_error(error: &CliError) {
+    if MARKED.load(Ordering::Relaxed) {
+        return;
+    }
     let place = match error {
         CliError::Scene(error) => error.place(),
         CliError::Stopped { .. } => None,
