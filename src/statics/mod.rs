@@ -14,6 +14,7 @@ mod few;
 mod loads;
 mod many;
 mod pins;
+mod reach;
 mod restraint;
 mod span;
 mod sparse;

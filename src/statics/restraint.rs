@@ -6,6 +6,7 @@
 //! own; where contact acts along a given direction, the jump is linear across it however the sides run.
 
 use super::components::Components;
+use super::reach::{Degree, pressure_degree, reach};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
 use nalgebra::{DVector, Vector3};
@@ -27,7 +28,7 @@ pub(super) struct Run {
     pub turning: Option<[[f64; 2]; 2]>,
     /// The two ends.
     pub ends: [[f64; 2]; 2],
-    /// How far towards each end the resultant of a pressure on the last edge can move: see [`reach`]. The points stand for the
+    /// How far towards each end the resultant of a pressure on the last edge can move (`reach.rs`). The points stand for the
     /// ends where pressure is of a degree.
     pub reach: [[f64; 2]; 2],
     /// The degree of the pressure on the edges at the two ends.
@@ -66,9 +67,6 @@ impl Points {
         }
     }
 }
-
-/// The degree of the stresses on each triangle.
-pub(super) type Degree<'a> = &'a dyn Fn(usize) -> usize;
 
 /// The straight runs of all contacts, with stresses of these degrees. Contacts of a piece with itself ask nothing of a rigid
 /// motion and are left out.
@@ -123,20 +121,6 @@ fn continues_straight(problem: &Problem, interface: &Interface, start: usize, ne
 /// Whether contact acts along a direction that is not the normal of the pair.
 fn along_line(pair: &ContactPair) -> bool {
     pair.direction.is_constant() && pair.direction.ends[0] != pair.normal
-}
-
-/// The degree of t on a pair: what the stresses on both sides can carry, one less where the direction turns.
-fn pressure_degree(problem: &Problem, pair: &ContactPair, degree: Degree<'_>) -> usize {
-    let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
-    let carried = triangles.map(degree).min().unwrap_or(1);
-    pair.direction.columns(carried) - 1
-}
-
-/// The point nearest to `end` of an edge from there to `other` through which a pressure of degree k can act when none of its
-/// Bernstein coefficients pulls. That of coefficient j alone has its centroid at (j + 1)/(k + 2), so it is 1/(k + 2) of the
-/// edge from the end: a third for a linear pressure, the middle for a constant one.
-fn reach(end: [f64; 2], other: [f64; 2], k: usize) -> [f64; 2] {
-    [0, 1].map(|c| end[c] + (other[c] - end[c]) / (k + 2) as f64)
 }
 
 fn run(
