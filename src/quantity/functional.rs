@@ -8,8 +8,9 @@
 
 use std::collections::BTreeSet;
 
+use super::lift::{jumps, lift};
 use super::region::{Cut, cut, twice_area};
-use crate::bounds::{holds_at, openings, potential};
+use crate::bounds::{holds_at, potential};
 use crate::dual::Load;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Problem};
@@ -250,42 +251,6 @@ fn moment_of(problem: &Problem, pair: &ContactPair, about: [f64; 2]) -> Vec<f64>
     let cross = |r: [f64; 2], n: [f64; 2]| r[0] * n[1] - r[1] * n[0];
     // The product of two linear functions.
     vec![cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]
-}
-
-/// The displacement, linear on triangles, that has jumps −φ from the motion of first sides alone and meets the supports;
-/// `None` where no such one does.
-fn lift(problem: &Problem, weights: &[Vec<f64>]) -> Option<Displacement> {
-    let mesh = &problem.mesh;
-    let mut vertex = vec![[0.0; 2]; mesh.points.len()];
-    let pairs = || problem.interfaces.iter().flat_map(|i| &i.pairs).zip(weights);
-    for (pair, weights) in pairs().filter(|(_, weights)| !weights.is_empty()) {
-        for (end, weight) in [(0, weights[0]), (1, weights[weights.len() - 1])] {
-            let n = pair.direction.ends[end];
-            let by = -weight / (n[0] * n[0] + n[1] * n[1]);
-            vertex[pair.first[end]] = n.map(|n| by * n);
-        }
-    }
-    let holds = holds_at(problem, |_, _| [0.0; 2]).ok()?;
-    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let met = vertex.iter().zip(&holds.vertices).all(|(u, hold)| {
-        let held = hold.impose(*u);
-        (held[0] - u[0]).hypot(held[1] - u[1]) <= 1e-12 * size
-    });
-    let lift = Displacement::from_p1(mesh, &vertex);
-    // Linear weights along a direction that is constant are met exactly; others are not.
-    let exact = pairs().all(|(pair, weights)| {
-        let jumps = jumps(problem, &lift, pair);
-        let weights = if weights.is_empty() { vec![0.0; 2] } else { weights.clone() };
-        let degree = jumps.len().max(weights.len()) - 1;
-        let [jumps, weights] = [jumps, weights].map(|c| crate::element::side::elevate(&c, degree));
-        jumps.iter().zip(&weights).all(|(j, w)| (j + w).abs() <= 1e-9 * size)
-    });
-    (met && exact).then_some(lift)
-}
-
-/// The coefficients of (v' − v'')·n̂ along a pair.
-pub(super) fn jumps(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
-    openings(problem, v, &ContactPair { gap: [0.0; 2], ..*pair }).into_iter().map(|o| -o).collect()
 }
 
 /// The force or moment of a support, by the motion w that does unit work on it.

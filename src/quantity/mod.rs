@@ -3,10 +3,15 @@
 //! Displacement means, forces and moments of contacts and supports, stress means over regions: each a linear functional of
 //! the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]).
 
+mod end;
 mod functional;
 mod interval;
+mod lift;
 mod pass;
 mod region;
+mod search;
+mod value;
 
 pub use functional::{Functional, Kind, NotBounded};
-pub use interval::{Interval, Known, value_of};
+pub use interval::{Interval, Known};
+pub use value::value_of;

@@ -1,0 +1,137 @@
+//! The bound that one adjoint pair gives.
+
+use super::interval::{Known, pairs};
+use super::lift::jumps;
+use super::pass::{Fields, Pass, pass};
+use super::search::Search;
+use crate::bounds::{NodalValues, Sum, openings, work};
+use crate::dual::Response;
+use crate::dual::equilibrium::edge_traction;
+use crate::element::{Displacement, side};
+use crate::problem::Condition;
+
+/// Relative error that the evaluation of a term can pick up.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Jumps beyond their bound by this part of the largest displacement are rounding, and enclosed as such.
+const BEYOND: f64 = 1e-11;
+
+/// A bound from one pair.
+pub(super) struct End {
+    /// Lower bound of sign · Q, per unit scale.
+    pub bound: f64,
+    /// sign · Q_h.
+    pub centre: f64,
+    /// Bound and Q_h from z = 0, or a lift, where that has a finite one.
+    pub first_order: Option<(f64, f64)>,
+    /// D, rounding included.
+    pub distance: f64,
+    /// The ratio that s and k ask for.
+    pub ratio: f64,
+    pub pass: Pass,
+    /// sign · z.
+    pub nodes: NodalValues,
+}
+
+impl End {
+    /// The ρ that makes ρH + D²/(4ρ) the width: at least the one that costs nothing.
+    pub fn weight(&self, square: f64) -> f64 {
+        let free = self.distance / (2.0 * square.sqrt());
+        let ratio = self.ratio.max(free);
+        if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
+    }
+}
+
+impl Search<'_, '_> {
+    /// The bound of a pair; z is `lifted` times its sign, zero where there is none.
+    pub fn measured(&self, response: &Response, lifted: Option<(&Displacement, f64)>, sign: f64) -> End {
+        let Known { problem, dual, upper, square, pressure, .. } = self.known;
+        let turned;
+        let lifted = match lifted {
+            Some((z, factor)) if factor < 0.0 => {
+                turned = z.negated();
+                Some(&turned)
+            }
+            other => other.map(|(z, _)| z),
+        };
+        let fields =
+            Fields { stress: &dual.stress, displacement: &upper.displacement, adjoint: &response.stress, lifted };
+        let pass = pass(problem, self.functional, fields);
+        let slip = [0, 1].map(|i| ROUNDING * pass.uncancelled[i].sqrt());
+        let distance = pass.square.max(0.0).sqrt() + slip[0];
+        let mut rounding = distance * slip[1] + slip[0] * pass.middle.max(0.0).sqrt() + response.remainder;
+
+        let mut sum = Sum::default();
+        sum.add(self.functional.constant);
+        sum.add(pass.work);
+        if let Some(z) = lifted {
+            let work = work(problem, z);
+            sum.add(work.value());
+            rounding += ROUNDING * work.magnitude();
+        }
+        for (pair, s) in pairs(problem).zip(response.contact.iter()) {
+            sum.add(-pair.length * side::integral(s, &pair.gap));
+        }
+        for (e, condition) in problem.conditions.iter().enumerate() {
+            let Condition::Clamped(u0) = condition else { continue };
+            if *u0 != [0.0; 2] {
+                let (length, _) = problem.mesh.edge_frame(e);
+                let degree = problem.mesh.edges[e].triangles[0].map_or(1, |t| response.stress.degree(t));
+                let tractions = edge_traction(problem, &response.stress, e, 0, degree);
+                let share = length / tractions.len() as f64;
+                tractions.iter().for_each(|t| sum.add(-share * (t[0] * u0[0] + t[1] * u0[1])));
+            }
+        }
+        rounding += ROUNDING * sum.magnitude();
+
+        let ratio = |over: f64, of: f64| {
+            if over <= 0.0 {
+                0.0
+            } else if of > 0.0 {
+                over / of
+            } else {
+                f64::INFINITY
+            }
+        };
+        let mut asked = 0.0_f64;
+        for (s, t) in response.contact.values().iter().zip(pressure) {
+            asked = asked.max(ratio(-sign * s, -t));
+        }
+        // Jumps beyond their bound by rounding do work on the exact pressure, of the size of that of λ.
+        let size = lifted.map_or(0.0, |z| (0..z.len()).map(|t| z.largest(t)).fold(0.0, f64::max));
+        let mut excess = Vec::with_capacity(pressure.len());
+        let pressures = dual.contact_traction.iter().flat_map(|of| of.iter());
+        for ((pair, weights), t) in pairs(problem).zip(&self.functional.load.weights).zip(pressures) {
+            let jumps = lifted.map_or_else(|| vec![0.0], |z| jumps(problem, z, pair));
+            let open = openings(problem, &upper.displacement, pair);
+            let degree = jumps.len().max(open.len()).max(weights.len()) - 1;
+            let [jumps, open] = [jumps, open].map(|c| side::elevate(&c, degree));
+            let weights = if weights.is_empty() { vec![0.0; degree + 1] } else { side::elevate(weights, degree) };
+            let slack = BEYOND * weights.iter().fold(size, |m, w| m.max(w.abs()));
+            let force = 2.0 * pair.length * t.iter().map(|t| t.abs()).sum::<f64>() / t.len().max(1) as f64;
+            for ((j, w), o) in jumps.iter().zip(&weights).zip(&open) {
+                let (k, o) = (sign * (j + w), o.max(0.0));
+                asked = asked.max(ratio(k - slack, o));
+                excess.push((k, o, force));
+            }
+        }
+        if asked.is_finite() {
+            // Of the coefficients of a pair the largest excess counts; their sum is more.
+            rounding += excess.iter().map(|(k, o, force)| (k - asked * o).max(0.0) * force).sum::<f64>();
+        }
+        let centre = sign * sum.value();
+        let bound = centre - width(distance, *square, asked) - rounding;
+        End { bound, centre, first_order: None, distance, ratio: asked, pass, nodes: NodalValues::none() }
+    }
+}
+
+/// The largest D √(H − X) + ρX for 0 ≤ X ≤ H.
+fn width(distance: f64, square: f64, ratio: f64) -> f64 {
+    if square == 0.0 {
+        return if ratio.is_finite() { 0.0 } else { f64::INFINITY };
+    }
+    if 2.0 * ratio * square.sqrt() <= distance {
+        return distance * square.sqrt();
+    }
+    ratio * square + distance * distance / (4.0 * ratio)
+}

@@ -1,0 +1,75 @@
+//! Quantities of fields that are known.
+
+use std::cell::RefCell;
+
+use super::functional::Functional;
+use super::pass::strained;
+use crate::bounds::strain::{Strains, sub_area};
+use crate::bounds::{Sum, work, work_on_edge};
+use crate::dual::modes::materials;
+use crate::element::Displacement;
+use crate::element::quadrature::triangle_rule;
+use crate::problem::Problem;
+
+/// ∫ q·v.
+pub(super) fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
+    let mesh = &problem.mesh;
+    let mut sum = Sum::default();
+    for (e, ends) in &functional.load.tractions {
+        sum.add(work_on_edge(problem, v, *e, *ends));
+    }
+    for t in 0..mesh.triangles.len() {
+        let force = functional.load.force[mesh.body[t]];
+        if force != [0.0; 2] {
+            // Every Bernstein polynomial has the same mean.
+            let values: Vec<[f64; 2]> = (0..3).flat_map(|sub| v.sub(t, sub)).collect();
+            let count = values.len() as f64;
+            let [x, y] = values.iter().fold([0.0; 2], |[x, y], u| [x + u[0], y + u[1]]);
+            sum.add(mesh.area(t) / count * (force[0] * x + force[1] * y));
+        }
+    }
+    sum.value()
+}
+
+/// The quantity of an admissible displacement alone: means of it and of its stress, and forces by the work that they do on
+/// the motion which lifts them; `None` where no such motion meets the supports.
+pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) -> Option<f64> {
+    let materials = materials(problem);
+    let mut strains = Strains::default();
+    let mut stress = |t: usize, sub: usize, l: [f64; 3]| {
+        let material = &materials[problem.mesh.body[t]];
+        material.stress(strains.on(problem.mesh.corners(t), v, t, sub).at(l))
+    };
+    let cell = RefCell::new(&mut stress);
+    let at = |t: usize, sub: usize, l: [f64; 3]| (cell.borrow_mut())(t, sub, l);
+    let mut sum = functional.constant + displaced(problem, functional, v);
+    sum += strained(problem, functional, |t| v.degree(t) - 1, at);
+    if functional.load.weights.iter().any(|w| !w.is_empty()) {
+        // ∫ φ t = −∫ t j(w̃) = F(w̃) − ∫ σ(v) : e(w̃).
+        let lift = functional.lift.as_ref()?;
+        sum += work(problem, lift).value() - product(problem, v, lift);
+    }
+    Some(functional.scale * sum)
+}
+
+/// ∫ σ(v) : e(w).
+fn product(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 {
+    let materials = materials(problem);
+    let (mut of_v, mut of_w) = (Strains::default(), Strains::default());
+    let mut sum = Sum::default();
+    for t in 0..problem.mesh.triangles.len() {
+        if w.largest(t) == 0.0 {
+            continue;
+        }
+        let corners = problem.mesh.corners(t);
+        for sub in 0..3 {
+            of_v.on(corners, v, t, sub);
+            of_w.on(corners, w, t, sub);
+            for (l, weight) in triangle_rule(v.degree(t) + w.degree(t) - 2) {
+                let product = materials[problem.mesh.body[t]].strain_product(of_v.at(*l), of_w.at(*l));
+                sum.add(weight * sub_area(corners) * product);
+            }
+        }
+    }
+    sum.value()
+}
