@@ -8,7 +8,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::problem::Problem;
 use hypercircle::report;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Certified, Fields, Findings, assemble, certify};
+use hypercircle::study::{Certified, Fields, Findings, answers, assemble, certify};
 
 /// Two blocks of unequal material in contact, four triangles; the corpora of `exchange` and `field` belong to it.
 pub const SCENE: &str = include_str!("setting.toml");
@@ -30,12 +30,13 @@ pub fn certified() -> &'static Certified {
 pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
     let Certified { problem, dual, bracket, .. } = certified;
     let comparison = compare(problem, dual, bracket, candidates, &Allowances::default());
-    let fields = Fields::new(certified, &comparison, &[]);
+    let answers = answers(certified, &Options::default(), |_| true);
+    let fields = Fields::new(certified, &comparison, &answers);
     let findings = Findings {
         command: "verify",
         certified,
         comparison: &comparison,
-        answers: &[],
+        answers: &answers,
         diagnosis: Vec::new(),
         is_claimed: false,
         finer: None,
@@ -53,5 +54,6 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
     report::page(&dossier);
     report::junit(&dossier.report).expect("every report can be written");
     report::summary(&dossier.report);
+    report::quantities_csv(&dossier.report);
     report::vtu(&dossier).expect("every field can be written");
 }

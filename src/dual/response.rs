@@ -137,9 +137,8 @@ impl System {
             for (i, own) in moments.chunks_exact_mut(2 * (p + 1)).enumerate() {
                 let [a, b] = [i + 1, i + 2].map(|j| corners[j % 3]);
                 let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-                let ends = [at(i + 1), at(i + 2)];
-                for c in 0..2 {
-                    let along = side::moments(&[ends[0][c], ends[1][c]], p);
+                for (c, (first, last)) in at(i + 1).into_iter().zip(at(i + 2)).enumerate() {
+                    let along = side::moments(&[first, last], p);
                     own.iter_mut().skip(c).step_by(2).zip(along).for_each(|(m, v)| *m = -length * v);
                 }
             }

@@ -4,12 +4,15 @@ use super::Certified;
 use super::adaptive::Wanted;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
-use crate::problem::Problem;
+use crate::problem::{Problem, Scales};
 use crate::quantity::{Functional, Interval, Known, NotBounded, value_of};
 use crate::report::{QuantityOfModel, QuantitySummary};
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
 const OWN_ERROR: f64 = 2.0;
+
+/// What solvers leave of a value, relative to what such a quantity can be.
+const SOLVED: f64 = 1e-8;
 
 /// A quantity and what is guaranteed of it.
 #[derive(Debug, Clone)]
@@ -135,6 +138,7 @@ pub fn quantity_checks(
     allow: &Allowances,
 ) -> Vec<Check> {
     let mut checks = Vec::new();
+    let scales = Scales::new(&certified.problem);
     for answer in answers.iter().filter(|answer| answer.interval.ends.iter().any(|end| end.is_finite())) {
         for judged in &comparison.judged {
             let field = &judged.candidate.name;
@@ -143,12 +147,16 @@ pub fn quantity_checks(
                 Meant::Exact => 0.0,
                 Meant::Discrete => OWN_ERROR * own_error(certified, answer, judged),
             };
+            if !own.is_finite() {
+                continue;
+            }
             let whose = if own > 0.0 {
                 format!("{field} may miss it by what its own energy leaves open")
             } else {
                 format!("no correct value lies outside, and that of {field} has to lie inside")
             };
-            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, own, &whose));
+            let allowed = own + SOLVED * size(&scales, &certified.problem, answer);
+            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
         }
     }
     allow.apply(&mut checks);
@@ -203,6 +211,16 @@ fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) ->
     let nearest = value.max(lower).min(upper);
     let why = format!("The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.", answer.kind, answer.name);
     Check::with_difference(name, value, nearest, outside, allowed, Basis::Guaranteed, why)
+}
+
+/// What such a quantity can be at most, in order of magnitude.
+fn size(scales: &Scales, problem: &Problem, answer: &Answer) -> f64 {
+    match answer.kind {
+        "displacement" => scales.data.displacement,
+        "stress" => scales.data.stress,
+        "moment" => scales.data.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
+        _ => scales.data.force,
+    }
 }
 
 /// What the energy of a displacement leaves open of its value: the width of first order belongs to H, its own error to its
