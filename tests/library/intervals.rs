@@ -165,9 +165,9 @@ fn exact_fields_give_intervals_of_rounding() {
     let exact = [1.0, 0.125, 2.0 * 0.75 * 0.5, 4.0 * 0.5, -1.0];
     for (answer, exact) in found.iter().zip(exact) {
         let [low, high] = answer.interval.ends;
-        let size = 1e-9;
         assert!(low <= exact + 1e-12 && exact <= high + 1e-12, "{}: {exact} in [{low}, {high}]", answer.name);
-        assert!(high - low < size, "{}: [{low}, {high}]", answer.name);
+        // The radius of the ball is the root of a gap that is known to rounding.
+        assert!(high - low < 1e-7, "{}: [{low}, {high}]", answer.name);
     }
 }
 
@@ -270,7 +270,10 @@ fn intervals_of_two_degrees_never_contradict_each_other_at_the_extremes() {
             };
             let (Some(one), Some(two)) = (interval(1), interval(2)) else { continue };
             met += 1;
-            without += usize::from(one.ends.iter().any(|end| end.is_infinite()));
+            if let Some(reason) = one.reasons.iter().flatten().next() {
+                println!("{} at {value}: {reason}", regime.id);
+                without += 1;
+            }
             let ([a, b], [c, d]) = (one.ends, two.ends);
             assert!(a <= b && c <= d && a <= d && c <= b, "{} at {value}: [{a}, {b}] and [{c}, {d}]", regime.id);
             for (end, reason) in one.ends.iter().zip(&one.reasons) {
