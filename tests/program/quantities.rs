@@ -128,7 +128,6 @@ fn unknown_names_and_broken_numbers_are_refused_before_anything_is_solved() {
         (&["certify", "scene.toml", "--values", "nowhere.toml"], &["nowhere.toml"]),
         (&["certify", "scene.toml", "--values", "."], &["regular file"]),
         (&["certify", "scene.toml"], &["--value"]),
-        (&["certify", "scene.toml", "--displacement", "u.vtu", "--tolerance-of", "tip=1"], &["--tolerance-of", "mesh"]),
     ] {
         ended(&arguments.join(" "), &call(folder.path(), arguments), 2, fragments);
     }
