@@ -14,4 +14,4 @@ mod value;
 
 pub use functional::{Functional, Kind, NotBounded};
 pub use interval::{Interval, Known};
-pub use value::value_of;
+pub use value::{displaced, value_of};

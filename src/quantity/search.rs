@@ -18,6 +18,9 @@ const FACTORS: [f64; 2] = [2.0, 0.5];
 /// Tries in either direction at most.
 const MOST_TRIES: usize = 3;
 
+/// The largest weight of the stress of the scene in the pull at z, relative to that of the adjoint stress.
+const HEAVIEST: f64 = 100.0;
+
 /// Part of the width that a sweep over z has to gain for another one to follow.
 const WORTH_A_SWEEP: f64 = 0.01;
 
@@ -39,12 +42,15 @@ impl Search<'_, '_> {
         let begun = self.measured(neutral, Some((&begun, sign)), sign);
         // The ratio at which the contact begins to cost width.
         let free = |distance: f64| distance / (2.0 * known.square.sqrt());
+        // Beyond that the stress of the scene leaves no digits of the adjoint one.
+        let most = HEAVIEST * (begun.pass.uncancelled[0] / begun.pass.middle).sqrt();
+        let most = if most > 0.0 { most } else { f64::INFINITY };
         let mut best: Option<End> = None;
         let mut first_order = None;
         let mut attempt = |ratio: f64, best: &mut Option<End>| -> Result<bool, String> {
             let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
             let response = known.respond(self.loaded, &floor, sign)?;
-            let end = self.end(&response, sign, ratio, start.clone())?;
+            let end = self.end(&response, sign, [ratio, ratio.min(most)], start.clone())?;
             first_order = first_order.into_iter().chain(end.first_order).reduce(better_of);
             let better = best.as_ref().is_none_or(|best| end.bound > best.bound);
             if better {
@@ -117,10 +123,17 @@ impl Search<'_, '_> {
     }
 
     /// The bound of `response` with the best z for `ratio`: the one that makes Q_h − ρH − D²/(4ρ) largest, which has the least
-    /// energy under the pull of σ_z − 2ρm and of the loads of the scene times 2ρ.
-    fn end(&self, response: &Response, sign: f64, ratio: f64, start: NodalValues) -> Result<End, String> {
+    /// energy under the pull of σ_z − 2ρm and of the loads of the scene times 2ρ; with another `weight` in the place of ρ it
+    /// is nearly as good.
+    fn end(
+        &self,
+        response: &Response,
+        sign: f64,
+        [ratio, weight]: [f64; 2],
+        start: NodalValues,
+    ) -> Result<End, String> {
         let known = self.known;
-        let stress = less(self.stress(&response.stress, sign), 2.0 * ratio, &known.middle);
+        let stress = less(self.stress(&response.stress, sign), 2.0 * weight, &known.middle);
         let bounds: Vec<Vec<f64>> = known
             .openings
             .iter()
@@ -131,8 +144,8 @@ impl Search<'_, '_> {
                 open.iter().zip(weights).map(|(o, w)| ratio * o - sign * w).collect()
             })
             .collect();
-        let pull = Pull { scene: 2.0 * ratio, stress: Some(&stress) };
-        let until = Until::Gains(WORTH_A_SWEEP * 4.0 * ratio * ratio * known.square);
+        let pull = Pull { scene: 2.0 * weight, stress: Some(&stress) };
+        let until = Until::Gains(WORTH_A_SWEEP * 4.0 * weight * weight * known.square);
         let (z, nodes) = known.nearest.to(pull, &bounds, vec![start], until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"

@@ -11,8 +11,8 @@ use crate::element::Displacement;
 use crate::element::quadrature::triangle_rule;
 use crate::problem::Problem;
 
-/// ∫ q·v.
-pub(super) fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
+/// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
+pub fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
     let mesh = &problem.mesh;
     let mut sum = Sum::default();
     for (e, ends) in &functional.load.tractions {

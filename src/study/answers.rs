@@ -4,8 +4,9 @@ use super::Certified;
 use super::adaptive::Wanted;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
+use crate::element::Displacement;
 use crate::problem::{Problem, Scales};
-use crate::quantity::{Functional, Interval, Known, NotBounded, value_of};
+use crate::quantity::{Functional, Interval, Known, NotBounded, displaced, value_of};
 use crate::report::{QuantityOfModel, QuantitySummary};
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
@@ -71,6 +72,10 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
     let answer = |quantity: &&crate::scene::Quantity| {
         let name = quantity.name.clone();
         match (Functional::new(problem, quantity), &known) {
+            (Ok(functional), _) if motions.iter().any(|motion| changes(problem, &functional, motion)) => {
+                let reason = "a motion that neither supports nor closed contacts resist changes it";
+                Answer { name, kind: functional.kind.name(), interval: Interval::unknown(reason) }
+            }
             (Ok(functional), Ok(known)) => {
                 let interval = known.interval(&functional);
                 Answer { name, kind: functional.kind.name(), interval }
@@ -83,6 +88,18 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
         }
     };
     quantities.iter().map(answer).collect()
+}
+
+/// Part of the largest displacement of a motion that is none.
+const UNMOVED: f64 = 1e-9;
+
+/// Whether a rigid motion changes a quantity.
+fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool {
+    let largest = motion.iter().fold(0.0_f64, |m, u| m.max(u[0].hypot(u[1])));
+    let load = &functional.load;
+    let is_displacement = !load.tractions.is_empty() || load.force.iter().any(|f| *f != [0.0; 2]);
+    is_displacement
+        && displaced(problem, functional, &Displacement::from_p1(&problem.mesh, motion)).abs() > UNMOVED * largest
 }
 
 /// The rows of the report: every answer with the values of the displacement models that were `compared`.

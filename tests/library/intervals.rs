@@ -271,8 +271,9 @@ fn intervals_of_two_degrees_never_contradict_each_other_at_the_extremes() {
             let (Some(one), Some(two)) = (interval(1), interval(2)) else { continue };
             met += 1;
             if let Some(reason) = one.reasons.iter().flatten().next() {
+                // A body that slides freely is nowhere in particular.
                 println!("{} at {value}: {reason}", regime.id);
-                without += 1;
+                without += usize::from(!reason.contains("neither supports nor closed contacts resist"));
             }
             let ([a, b], [c, d]) = (one.ends, two.ends);
             assert!(a <= b && c <= d && a <= d && c <= b, "{} at {value}: [{a}, {b}] and [{c}, {d}]", regime.id);
@@ -282,5 +283,5 @@ fn intervals_of_two_degrees_never_contradict_each_other_at_the_extremes() {
         }
     }
     println!("{met} problems, {without} without an end");
-    assert!(met > 40 && 5 * without < met, "{met} problems, {without} without an end");
+    assert!(met > 40 && 20 * without < met, "{met} problems, {without} without an end");
 }
