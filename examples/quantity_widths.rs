@@ -13,7 +13,7 @@ use std::time::Instant;
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{Component, Extent, Quantity, Region, Scene, Target};
+use hypercircle::scene::{Component, Extent, Gap, Kinematics, Quantity, Region, Scene, Target};
 use hypercircle::study::{Answer, Certified, answers, certify_divided};
 use serde_json::{Value, json};
 use support::Blocks;
@@ -28,9 +28,11 @@ const FINE: usize = 6000;
 fn main() -> std::io::Result<()> {
     let scenes: usize = std::env::args().nth(1).map_or(Ok(40), |n| n.parse()).expect("a number of scenes");
     let blocks = two_blocks();
+    let mistakes = mistakes();
     let kinds = random_scenes(scenes);
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/data/quantities.json");
-    let data = json!({ "command": COMMAND, "two_blocks": blocks, "scenes": scenes, "kinds": kinds });
+    let data =
+        json!({ "command": COMMAND, "two_blocks": blocks, "mistakes": mistakes, "scenes": scenes, "kinds": kinds });
     std::fs::write(&file, format!("{data:#}\n"))?;
     println!("wrote docs/data/quantities.json");
     Ok(())
@@ -44,6 +46,49 @@ fn of_degree(degree: usize) -> Options {
     Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() }
 }
 
+/// What the two blocks are asked.
+fn asked(problem: &mut Problem) {
+    let of = Extent::Boundary("left_west".to_string());
+    let square = vec![[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]];
+    let window = Some([0.125, 0.25, 0.375, 0.5]);
+    let (region, component) = (Region::Polygon(square), Component([1.0, 0.0, 0.0]));
+    problem.scene.quantities = vec![
+        quantity("displacement", Target::Displacement { of, direction: [1.0, 0.0] }),
+        quantity("force", Target::ContactForce { contact: 0, window }),
+        quantity("stress", Target::Stress { body: 0, region, component }),
+    ];
+}
+
+/// By how much mistakes change what the two blocks are asked: an interval of less than half of that tells them.
+fn mistakes() -> Vec<Value> {
+    let values = |blocks: Blocks| {
+        let mut problem = Blocks { n: 32, ..blocks }.problem();
+        asked(&mut problem);
+        let options = of_degree(2);
+        let certified = certify_divided(problem, &Condensed::default(), &options).expect("an answer");
+        answers(&certified, &options, |_| true).iter().map(|answer| answer.interval.value).collect::<Vec<f64>>()
+    };
+    let right = values(Blocks::default());
+    let both = |young, poisson| [(young, poisson); 2];
+    let list = [
+        ("E of both bodies 5 % too large", Blocks { materials: both(1.05, 0.3), ..Blocks::default() }),
+        ("E of the left body 5 % too large", Blocks { materials: [(1.05, 0.3), (1.0, 0.3)], ..Blocks::default() }),
+        ("ν = 0.35 in the left body", Blocks { materials: [(1.0, 0.35), (1.0, 0.3)], ..Blocks::default() }),
+        ("load 1 % too large", Blocks { load: (4.04, -7.07), ..Blocks::default() }),
+        ("plane stress for plane strain", Blocks { kinematics: Kinematics::PlaneStress, ..Blocks::default() }),
+        ("a gap of 0.01 that is not there", Blocks { gap: Gap::Constant(0.01), ..Blocks::default() }),
+    ];
+    println!("\n| mistake | mean displacement | weighted force | mean stress |\n|---|--:|--:|--:|");
+    let mut rows = Vec::new();
+    for (name, blocks) in list {
+        let changes: Vec<f64> = values(blocks).iter().zip(&right).map(|(wrong, right)| wrong / right - 1.0).collect();
+        let [a, b, c] = [0, 1, 2].map(|i| format!("{:+.2} %", 100.0 * changes[i]));
+        println!("| {name} | {a} | {b} | {c} |");
+        rows.push(json!({ "mistake": name, "changes": changes }));
+    }
+    rows
+}
+
 /// Half-widths, and seconds beside those of the solve with its bracket.
 fn two_blocks() -> Vec<Value> {
     println!("| degree | triangles | mean displacement | weighted force | mean stress | seconds a quantity / solve |");
@@ -52,15 +97,7 @@ fn two_blocks() -> Vec<Value> {
     for (degree, sizes) in [(1, [8, 16, 32, 64]), (2, [4, 8, 16, 32]), (3, [4, 8, 16, 32])] {
         for n in sizes {
             let mut problem = Blocks { n, ..Blocks::default() }.problem();
-            let of = Extent::Boundary("left_west".to_string());
-            let square = vec![[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]];
-            let window = Some([0.125, 0.25, 0.375, 0.5]);
-            let (region, component) = (Region::Polygon(square), Component([1.0, 0.0, 0.0]));
-            problem.scene.quantities = vec![
-                quantity("displacement", Target::Displacement { of, direction: [1.0, 0.0] }),
-                quantity("force", Target::ContactForce { contact: 0, window }),
-                quantity("stress", Target::Stress { body: 0, region, component }),
-            ];
+            asked(&mut problem);
             let start = Instant::now();
             let certified = certify_divided(problem, &Condensed::default(), &of_degree(degree)).expect("an answer");
             let solve = start.elapsed().as_secs_f64();
