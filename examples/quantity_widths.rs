@@ -23,7 +23,7 @@ use support::scenes::sample;
 const COMMAND: &str = "cargo run --release --example quantity_widths";
 
 /// Meshes of random scenes are refined until one has more triangles than this.
-const FINE: usize = 6000;
+const FINE: usize = 2500;
 
 fn main() -> std::io::Result<()> {
     let scenes: usize = std::env::args().nth(1).map_or(Ok(40), |n| n.parse()).expect("a number of scenes");

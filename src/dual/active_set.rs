@@ -9,7 +9,7 @@ use super::ends::{Ends, GRAZING, next_state};
 use super::equilibrium::Equilibrium;
 use super::factor::Factor;
 use super::hybrid::{Motion, explain, held_unknowns, structure};
-use super::refinement::{Refined, Refinement};
+use super::refinement::{ROUND_OFF, Refined, Refinement};
 use super::system::{System, isolate};
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
@@ -88,6 +88,7 @@ impl DualMethod for ActiveSet {
                 system: &system,
                 fixed: &is_fixed,
                 solve: &correction,
+                enough: ROUND_OFF,
                 most_steps: self.most_refinements,
             };
             let now = refinement.run(Refined::new(problem, &system, x))?;

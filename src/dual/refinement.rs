@@ -11,9 +11,9 @@ use super::hybrid::{parameters, residual};
 use super::system::System;
 use crate::problem::Problem;
 
-/// Refinement ends when traction jumps and their resultants are this small against the loads …
-const ROUND_OFF: f64 = 2e-14;
-/// … or when they are as small as they must be at least, and have not become smaller for some steps …
+/// Traction jumps and their resultants that are no more than round-off against the loads.
+pub const ROUND_OFF: f64 = 2e-14;
+/// Refinement ends when they are as small as was asked for, or when they are as small as they must be at least, and have not become smaller for some steps …
 const ENOUGH: f64 = 1e-11;
 const PATIENCE: usize = 4;
 /// … or for this many steps: where the factor is a poor one, residuals rise and fall on their way.
@@ -32,6 +32,8 @@ pub struct Refinement<'a> {
     pub fixed: &'a [bool],
     /// Approximate solution of Kd = r with the fixed unknowns at zero.
     pub solve: &'a Correction<'a>,
+    /// Traction jumps, and their resultants, against the loads at which it ends.
+    pub enough: f64,
     /// Limit of steps.
     pub most_steps: usize,
 }
@@ -81,7 +83,7 @@ impl Refinement<'_> {
         let mut stale = 0;
         for _ in 0..self.most_steps {
             let patience = if least <= ENOUGH { PATIENCE } else { MOST_PATIENCE };
-            if least <= ROUND_OFF || stale >= patience {
+            if least <= self.enough || stale >= patience {
                 break;
             }
             // Fixed unknowns do not move: d is zero there, and so is their part of every product with r.

@@ -24,6 +24,10 @@ const MOST_STEPS: usize = 30;
 /// Refinements on the stresses at most.
 const MOST_REFINEMENTS: usize = 30;
 
+/// Remainders of equilibrium, relative to the load, that cost an interval no digit that anybody reads: they are weighed and
+/// widen it.
+const ENOUGH: f64 = 1e-12;
+
 /// Remainders of equilibrium, relative to the largest of load and traction, beyond which a stress balances something else.
 const UNBALANCED: f64 = 1e-8;
 
@@ -200,8 +204,14 @@ impl Loaded<'_> {
             Ok(reduced.expand(y, &jumps))
         };
         let fixed = reduced.fixed(&held);
-        let refinement =
-            Refinement { problem, system: &system, fixed: &fixed, solve: &correction, most_steps: MOST_REFINEMENTS };
+        let refinement = Refinement {
+            problem,
+            system: &system,
+            fixed: &fixed,
+            solve: &correction,
+            enough: ENOUGH,
+            most_steps: MOST_REFINEMENTS,
+        };
         let now = refinement.run(Refined { x, s, r })?;
 
         // Where a jump is held its residual is minus the traction; all others are remainders, those of motions that nothing

@@ -11,7 +11,7 @@ use super::equilibrium::{Equilibrium, load_scale};
 use super::hybrid::parameters;
 use super::qp::ContactState;
 use super::reduced::{Contact, Reduced};
-use super::refinement::{Refined, Refinement};
+use super::refinement::{ROUND_OFF, Refined, Refinement};
 use super::system::System;
 use crate::element::{SideValues, StressField};
 use crate::problem::{Problem, Scales};
@@ -120,6 +120,7 @@ impl Settling<'_> {
             system: self.system,
             fixed: &self.reduced.fixed(closed),
             solve: &correction,
+            enough: ROUND_OFF,
             most_steps: self.most_steps,
         };
         refinement.run(now)

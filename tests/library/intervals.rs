@@ -166,8 +166,8 @@ fn exact_fields_give_intervals_of_rounding() {
     for (answer, exact) in found.iter().zip(exact) {
         let [low, high] = answer.interval.ends;
         assert!(low <= exact + 1e-12 && exact <= high + 1e-12, "{}: {exact} in [{low}, {high}]", answer.name);
-        // The radius of the ball is the root of a gap that is known to rounding.
-        assert!(high - low < 1e-6, "{}: [{low}, {high}]", answer.name);
+        // The radius of the ball is the root of a gap that is known to rounding, times the error of the adjoint pair.
+        assert!(high - low < 1e-5, "{}: [{low}, {high}]", answer.name);
     }
 }
 
