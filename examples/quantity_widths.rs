@@ -1,38 +1,29 @@
-//! How wide guaranteed intervals of quantities are: mesh by mesh on the two blocks, and on random scenes against far finer
-//! meshes. Writes `docs/data/quantities.json` and prints the tables of `docs/quantities.md`.
+//! How wide guaranteed intervals of quantities are on the two blocks, mesh by mesh, and what mistakes change. Writes
+//! `docs/data/quantities.json` and prints the tables of `docs/quantities.md`.
 //!
-//! `cargo run --release --example quantity_widths -- 200`, with the number of random scenes
+//! `cargo run --release --example quantity_widths`
 
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{Component, Extent, Gap, Kinematics, Quantity, Region, Scene, Target};
-use hypercircle::study::{Answer, Certified, answers, certify_divided};
+use hypercircle::scene::{Component, Extent, Gap, Kinematics, Quantity, Region, Target};
+use hypercircle::study::{answers, certify_divided};
 use serde_json::{Value, json};
 use support::Blocks;
-use support::random::Random;
-use support::scenes::sample;
 
 const COMMAND: &str = "cargo run --release --example quantity_widths";
 
-/// Meshes of random scenes are refined until one has more triangles than this.
-const FINE: usize = 2500;
-
 fn main() -> std::io::Result<()> {
-    let scenes: usize = std::env::args().nth(1).map_or(Ok(40), |n| n.parse()).expect("a number of scenes");
     let blocks = two_blocks();
     let mistakes = mistakes();
-    let kinds = random_scenes(scenes);
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/data/quantities.json");
-    let data =
-        json!({ "command": COMMAND, "two_blocks": blocks, "mistakes": mistakes, "scenes": scenes, "kinds": kinds });
+    let data = json!({ "command": COMMAND, "two_blocks": blocks, "mistakes": mistakes });
     std::fs::write(&file, format!("{data:#}\n"))?;
     println!("wrote docs/data/quantities.json");
     Ok(())
@@ -111,77 +102,5 @@ fn two_blocks() -> Vec<Value> {
             rows.push(json!({ "degree": degree, "triangles": triangles, "half_widths": widths, "cost": each / solve }));
         }
     }
-    rows
-}
-
-/// Half-width over the distance of the value from that of the finest mesh, by kind.
-fn random_scenes(wanted: usize) -> Vec<Value> {
-    let mut found: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
-    let (mut met, mut open, mut outside, mut seed) = (0, 0, 0, 20_000);
-    while met < wanted {
-        seed += 1;
-        let folder = tempfile::tempdir().expect("a folder");
-        let Ok(scene) = Scene::read(&sample(seed).write(folder.path())) else { continue };
-        let Ok(mut problem) = Problem::load(scene) else { continue };
-        if problem.contact_turns() || problem.mesh.triangles.len() > FINE / 4 {
-            continue;
-        }
-        let mut random = Random::new(seed);
-        let angle = random.between(0.0, 6.3);
-        let direction = [angle.cos(), angle.sin()];
-        let component = Component::along(direction);
-        problem.scene.quantities =
-            vec![quantity("displacement", Target::Displacement { of: Extent::Body(0), direction })];
-        problem.scene.quantities.push(match problem.interfaces.first().map_or(0, |i| i.pairs.len()) {
-            0..4 => quantity("force", Target::SupportForce { support: 0, direction }),
-            count => {
-                let window = [0, 1, 2, 3].map(|i| problem.interfaces[0].pairs[i * count / 4].arc[0]);
-                quantity("weighted force", Target::ContactForce { contact: 0, window: Some(window) })
-            }
-        });
-        problem.scene.quantities.push(quantity("stress", Target::Stress { body: 0, region: Region::Whole, component }));
-        let options = of_degree(1);
-        let solve = |problem: Problem| -> Option<(Certified, Vec<Answer>)> {
-            let certified = certify_divided(problem, &Condensed::default(), &options).ok()?;
-            let found = answers(&certified, &options, |_| true);
-            Some((certified, found))
-        };
-        let Some((coarse, first)) = solve(problem) else { continue };
-        let mut last = first.clone();
-        let mut finer = coarse;
-        while finer.problem.mesh.triangles.len() <= FINE {
-            let next = finer.problem.refine_uniform(1).expect("a finer mesh");
-            let Some((certified, found)) = solve(next) else { break };
-            (finer, last) = (certified, found);
-        }
-        met += 1;
-        for (coarse, fine) in first.iter().zip(&last) {
-            let ([low, high], [least, most]) = (coarse.interval.ends, fine.interval.ends);
-            if !(high - low).is_finite() || !(most - least).is_finite() {
-                open += 1;
-                continue;
-            }
-            outside += usize::from(low > most || least > high);
-            let (width, error) = (0.5 * (high - low), (coarse.interval.value - fine.interval.value).abs());
-            let known = 0.5 * (most - least);
-            // What is exact, or not known far better on the finest mesh, has no error to compare with.
-            if known < 0.25 * width && error > 4.0 * known && width > 1e-9 * coarse.interval.value.abs() {
-                found.entry(coarse.kind).or_default().push(width / error);
-            }
-        }
-    }
-    println!(
-        "\n{met} random scenes, {open} quantities without an end, {outside} intervals that contradict a finer one\n"
-    );
-    println!("| kind | compared | least | median | nine tenths below |");
-    println!("|---|--:|--:|--:|--:|");
-    let mut rows = Vec::new();
-    for (kind, mut list) in found {
-        list.sort_by(f64::total_cmp);
-        let at = |part: f64| list[((list.len() - 1) as f64 * part).round() as usize];
-        println!("| {kind} | {} | {:.1} | {:.1} | {:.0} |", list.len(), at(0.0), at(0.5), at(0.9));
-        rows.push(json!({ "kind": kind, "compared": list.len(), "least": at(0.0), "median": at(0.5), "nine_tenths": at(0.9) }));
-    }
-    rows.push(json!({ "open": open, "outside": outside }));
     rows
 }
