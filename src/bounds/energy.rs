@@ -76,7 +76,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         }
     }
     let mut gap = Sum::default();
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+    for pair in problem.pairs() {
         let t = contact_traction(problem, stress, pair);
         gap.add(pair.length * side::integral(&t, &pair.gap));
     }

@@ -133,7 +133,7 @@ impl Solution<'_> {
         }
         let vertices = self.problem.mesh.points.len();
         let within = self.closed_within();
-        for pair in self.problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for pair in self.problem.pairs() {
             if !pair.direction.is_constant() {
                 self.take_turning(pair, within, rest);
                 continue;
@@ -232,7 +232,7 @@ impl Solution<'_> {
 
     /// The vertices of Γ_K, those that contacts tie to each other in one group.
     fn groups(&self) -> Vec<Group> {
-        let ends = || self.problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(End::of);
+        let ends = || self.problem.pairs().flat_map(End::of);
         let mut sets = DisjointSets::new(self.problem.mesh.points.len());
         for end in ends() {
             if let Some(second) = end.second {

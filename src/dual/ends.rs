@@ -26,7 +26,7 @@ pub struct Ends<'a> {
 impl<'a> Ends<'a> {
     pub fn new(problem: &'a Problem, system: &'a System) -> Self {
         let scales = Scales::new(problem);
-        let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+        let pairs = problem.pairs();
         let jumps = system.unknowns.jump_blocks();
         let round_off = pairs
             .zip(jumps)

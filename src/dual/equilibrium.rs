@@ -107,7 +107,7 @@ impl Equilibrium {
                 }
             }
         }
-        for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for pair in problem.pairs() {
             let Some(a) = pair.edges[0] else { continue };
             let degree = moments.of(a).len() - 1;
             let along = Along::new(pair, degree);

@@ -116,7 +116,7 @@ impl Responses<'_> {
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
         let (y, c) = reduced.condense(&r);
-        let pairs = self.problem.interfaces.iter().flat_map(|i| &i.pairs).zip(&load.weights);
+        let pairs = self.problem.pairs().zip(&load.weights);
         let held = pairs.zip(system.unknowns.jump_blocks()).flat_map(|((pair, weights), block)| {
             let moments = side::moments(if weights.is_empty() { &[0.0] } else { weights }, block.len - 1);
             moments.into_iter().map(|m| -pair.length * m)

@@ -78,7 +78,7 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
 /// The jump moments of a motion of one piece.
 fn jumps(problem: &Problem, unknowns: &Unknowns, pieces: &Components, piece: usize, motion: &Vector3<f64>) -> Vec<f64> {
     let mesh = &problem.mesh;
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    let pairs = problem.pairs();
     pairs
         .zip(unknowns.jump_blocks())
         .flat_map(|(pair, block)| {

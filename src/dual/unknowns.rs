@@ -283,14 +283,14 @@ impl Unknowns {
 pub fn contact_coefficients(problem: &Problem, elements: &Elements) -> Vec<usize> {
     let degree = edge_degrees(problem, elements);
     let of = |pair: &ContactPair| pair.direction.columns(pair.edges[0].map_or(1, |e| degree[e].into()));
-    problem.interfaces.iter().flat_map(|i| &i.pairs).map(of).collect()
+    problem.pairs().map(of).collect()
 }
 
 /// The degree of the traction on every edge: the larger one of its triangles, on a contact pair that of both sides.
 pub fn edge_degrees(problem: &Problem, elements: &Elements) -> Vec<u8> {
     let largest = |edge: &crate::mesh::Edge| edge.triangles.iter().flatten().map(|&t| elements.degree(t)).max();
     let mut degree: Vec<u8> = problem.mesh.edges.iter().map(|e| largest(e).unwrap_or(1) as u8).collect();
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+    for pair in problem.pairs() {
         let both = pair.edges.iter().flatten().map(|&e| degree[e]).max().unwrap_or(1);
         pair.edges.iter().flatten().for_each(|&e| degree[e] = both);
     }

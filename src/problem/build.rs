@@ -134,18 +134,18 @@ impl Problem {
 
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
     pub fn is_cone(&self) -> bool {
-        let no_gap = self.interfaces.iter().flat_map(|i| &i.pairs).all(|p| p.gap == [0.0; 2]);
+        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2]);
         no_gap && self.conditions.iter().all(|c| !matches!(c, Condition::Clamped(u) if *u != [0.0; 2]))
     }
 
     /// Whether the direction of contact turns along any edge.
     pub fn contact_turns(&self) -> bool {
-        self.interfaces.iter().flat_map(|i| &i.pairs).any(|pair| !pair.direction.is_constant())
+        self.pairs().any(|pair| !pair.direction.is_constant())
     }
 
     /// The edges of the two sides of all contacts between bodies, facing each other.
     pub fn facing_edges(&self) -> Vec<[usize; 2]> {
-        let pairs = self.interfaces.iter().flat_map(|interface| &interface.pairs);
+        let pairs = self.pairs();
         pairs.filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?])).collect()
     }
 

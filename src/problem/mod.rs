@@ -36,6 +36,13 @@ pub struct Problem {
     pub refinement: Refinement,
 }
 
+impl Problem {
+    /// The pairs of all contacts, one interface after the other.
+    pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
+        self.interfaces.iter().flat_map(|interface| &interface.pairs)
+    }
+}
+
 /// What refinement makes of edges and gaps that stand for a curve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Refinement {

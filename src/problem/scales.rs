@@ -85,7 +85,7 @@ impl Scales {
     /// back leaves a rounding error of it, even where the gap has no part in the answer. An energy at its minimum sees the
     /// square of that.
     pub fn from_closed_contacts(mut self, problem: &Problem) -> Self {
-        let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+        let pairs = problem.pairs();
         let widest = pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max);
         let hardest = self.modulus.iter().copied().fold(0.0, f64::max);
         let stiffness = problem.scene.thickness * hardest;
@@ -213,7 +213,7 @@ fn imposed(problem: &Problem) -> f64 {
 }
 
 fn widest_gap(problem: &Problem) -> f64 {
-    let pairs = problem.interfaces.iter().flat_map(|interface| &interface.pairs);
+    let pairs = problem.pairs();
     pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
 }
 

@@ -1,6 +1,6 @@
 //! The bound that one adjoint pair gives.
 
-use super::interval::{Known, pairs};
+use super::interval::Known;
 use super::lift::jumps;
 use super::pass::{Fields, Pass, pass};
 use super::search::Search;
@@ -69,7 +69,7 @@ impl Search<'_, '_> {
             sum.add(work.value());
             rounding += ROUNDING * work.magnitude();
         }
-        for (pair, s) in pairs(problem).zip(response.contact.iter()) {
+        for (pair, s) in problem.pairs().zip(response.contact.iter()) {
             sum.add(-pair.length * side::integral(s, &pair.gap));
         }
         for (e, condition) in problem.conditions.iter().enumerate() {
@@ -101,7 +101,7 @@ impl Search<'_, '_> {
         let size = lifted.map_or(0.0, |z| (0..z.len()).map(|t| z.largest(t)).fold(0.0, f64::max));
         let mut excess = Vec::with_capacity(pressure.len());
         let pressures = dual.contact_traction.iter().flat_map(|of| of.iter());
-        for ((pair, weights), t) in pairs(problem).zip(&self.functional.load.weights).zip(pressures) {
+        for ((pair, weights), t) in problem.pairs().zip(&self.functional.load.weights).zip(pressures) {
             let jumps = lifted.map_or_else(|| vec![0.0], |z| jumps(problem, z, pair));
             let open = openings(problem, &upper.displacement, pair);
             let degree = jumps.len().max(open.len()).max(weights.len()) - 1;

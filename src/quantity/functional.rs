@@ -293,7 +293,7 @@ fn on_support(
         functional.load.strains.push((t, e.map(|e| -e)));
         functional.natural += young[mesh.body[t]] * mesh.area(t) * e.iter().map(|e| e * e).sum::<f64>();
     }
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    let pairs = problem.pairs();
     for (weights, pair) in functional.load.weights.iter_mut().zip(pairs) {
         let along = jumps(problem, &moved, pair);
         if along.iter().any(|w| *w != 0.0) {

@@ -109,7 +109,7 @@ impl<'a> Known<'a> {
             upper,
             square,
             responses: factorised.responses(problem, LONGEST_DENSE, options),
-            openings: pairs(problem).zip(nearest.counts()).map(open).collect(),
+            openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
             middle: mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?,
             pressure: dual.contact_traction.iter().flat_map(|of| of.values()).map(|t| t.min(0.0)).collect(),
@@ -187,7 +187,7 @@ impl<'a> Known<'a> {
         let mut sum = functional.constant
             + strained(self.problem, functional, |t| stress.degree(t), |t, s, l| stress.at(t, s, l));
         let pressures = self.dual.contact_traction.iter().flat_map(|of| of.iter());
-        for ((pair, weights), t) in pairs(self.problem).zip(&functional.load.weights).zip(pressures) {
+        for ((pair, weights), t) in self.problem.pairs().zip(&functional.load.weights).zip(pressures) {
             sum += pair.length * side::integral(weights, t);
         }
         sum + displaced(self.problem, functional, &self.upper.displacement)
@@ -201,11 +201,6 @@ impl<'a> Known<'a> {
             *share += 0.5 * (ratio * 0.5 * gap.max(0.0) / thickness + square.max(0.0) / (4.0 * ratio));
         }
     }
-}
-
-/// All pairs, one interface after the other.
-pub(super) fn pairs(problem: &Problem) -> impl Iterator<Item = &ContactPair> {
-    problem.interfaces.iter().flat_map(|i| &i.pairs)
 }
 
 /// The coefficients of degree `degree` of a polynomial of no higher degree.

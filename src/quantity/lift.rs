@@ -9,7 +9,7 @@ use crate::problem::{ContactPair, Problem};
 pub(super) fn lift(problem: &Problem, weights: &[Vec<f64>]) -> Option<Displacement> {
     let mesh = &problem.mesh;
     let mut vertex = vec![[0.0; 2]; mesh.points.len()];
-    let pairs = || problem.interfaces.iter().flat_map(|i| &i.pairs).zip(weights);
+    let pairs = || problem.pairs().zip(weights);
     for (pair, weights) in pairs().filter(|(_, weights)| !weights.is_empty()) {
         for (end, weight) in [(0, weights[0]), (1, weights[weights.len() - 1])] {
             let n = pair.direction.ends[end];

@@ -63,7 +63,7 @@ fn turning(problem: &Problem) -> bool {
     let along = |pair: &ContactPair| {
         pair.direction.ends.iter().all(|n| (n[0] - pair.normal[0]).hypot(n[1] - pair.normal[1]) < 1e-9)
     };
-    !problem.interfaces.iter().flat_map(|i| &i.pairs).all(along)
+    !problem.pairs().all(along)
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn lower(problem: &Problem, stress: &StressField) -> Dd {
         }
     }
     let mut gap = Dd::default();
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+    for pair in problem.pairs() {
         let e = pair.edges[0].expect("two bodies");
         let t = problem.mesh.edges[e].triangles[0].expect("a triangle");
         let sub = problem.mesh.triangle_edges[t].iter().position(|&x| x == e).expect("its edge");

@@ -191,7 +191,7 @@ fn degrees_that_differ_meet_without_a_gap() {
                 }
             }
         }
-        for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for pair in problem.pairs() {
             assert!(openings(&problem, v, pair).iter().all(|g| *g >= -1e-13 * size), "{name}");
         }
     }

@@ -63,7 +63,7 @@ impl<'a> Jump<'a> {
 
     /// All of them.
     fn all(problem: &'a Problem, nodes: &'a Nodes) -> impl Iterator<Item = Jump<'a>> {
-        problem.interfaces.iter().flat_map(|i| &i.pairs).filter_map(move |pair| Jump::new(problem, pair, nodes))
+        problem.pairs().filter_map(move |pair| Jump::new(problem, pair, nodes))
     }
 
     /// The coefficients of the jump less the gap.
@@ -160,7 +160,7 @@ fn match_mean(jump: &Jump<'_>, mean: f64, values: &mut [[f64; 2]]) {
 /// Draws inner coefficients that are above zero down to it; `groups` are the rows of every pair.
 pub fn restrict_inside(problem: &Problem, groups: &[Vec<Row>], field: &mut NodalValues) {
     let size = field.vertices().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs).zip(groups);
+    let pairs = problem.pairs().zip(groups);
     for (jump, rows) in pairs.filter_map(|(pair, rows)| Some((Jump::new(problem, pair, &field.nodes)?, rows))) {
         let k = jump.degree;
         for (j, row) in rows.iter().enumerate().take(rows.len() - 1).skip(1) {

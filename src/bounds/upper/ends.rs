@@ -98,7 +98,7 @@ fn excess(end: &End<'_>, vertex: &[[f64; 2]]) -> f64 {
 
 /// Both ends of all pairs, bounded by their rows alone.
 fn ends_below<'a>(problem: &'a Problem, groups: &[Vec<Row>]) -> Vec<End<'a>> {
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    let pairs = problem.pairs();
     pairs
         .zip(groups)
         .filter_map(|(pair, rows)| Some((pair, [rows.first()?.bound(), rows.last()?.bound()])))

@@ -23,7 +23,7 @@ pub struct Group {
 pub fn groups(problem: &Problem, most: usize) -> Vec<Group> {
     let mesh = &problem.mesh;
     let mut sets = Sets::new(mesh.points.len());
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+    for pair in problem.pairs() {
         for (v, w) in pair.second.iter().flat_map(|second| pair.first.iter().zip(second)) {
             sets.unite(*v, *w, usize::MAX);
         }

@@ -154,7 +154,7 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
         let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];
         (left[0].hypot(left[1]) <= PARALLEL).then_some(own)
     };
-    for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+    for pair in problem.pairs() {
         for end in 0..2 {
             let n = pair.direction.ends[end];
             let first = held(pair.first[end], n);

@@ -36,8 +36,7 @@ pub fn lifted(problem: &Problem, holds: &Holds, vertex: &[[f64; 2]], middle: &[[
     for (value, hold) in values.iter_mut().zip(holds.vertices.iter().chain(&holds.edges)) {
         *value = hold.impose(*value);
     }
-    let rows: Vec<Row> =
-        problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(|pair| bernstein(pair, vertices)).collect();
+    let rows: Vec<Row> = problem.pairs().flat_map(|pair| bernstein(pair, vertices)).collect();
     let model = Model::new(problem, holds);
     let size = values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let enough = 16.0 * f64::EPSILON * size;

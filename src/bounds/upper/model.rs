@@ -140,7 +140,7 @@ impl Directions {
 fn rows_at(problem: &Problem, groups: &[Vec<Row>]) -> Vec<Vec<usize>> {
     let mut at = vec![Vec::new(); problem.mesh.points.len()];
     let mut next = 0;
-    for (pair, rows) in problem.interfaces.iter().flat_map(|i| &i.pairs).zip(groups) {
+    for (pair, rows) in problem.pairs().zip(groups) {
         let rows = next..next + rows.len();
         next = rows.end;
         for &v in pair.first.iter().chain(pair.second.iter().flatten()) {

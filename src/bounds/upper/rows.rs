@@ -54,7 +54,7 @@ pub fn sides(pair: &ContactPair, mesh: &Triangulation, nodes: &Nodes) -> [Option
 
 /// The coefficients of every pair, one group a pair.
 pub fn rows(problem: &Problem, nodes: &Nodes) -> Vec<Vec<Row>> {
-    let pairs = problem.interfaces.iter().flat_map(|i| &i.pairs);
+    let pairs = problem.pairs();
     pairs.map(|pair| of_pair(pair, &sides(pair, &problem.mesh, nodes))).collect()
 }
 

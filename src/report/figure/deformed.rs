@@ -90,7 +90,7 @@ pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Dis
     }
     for side in 0..2 {
         let mut d = String::new();
-        for pair in problem.interfaces.iter().flat_map(|i| &i.pairs) {
+        for pair in problem.pairs() {
             if let Some((e, t)) = pair.edges[side].and_then(|e| Some((e, mesh.edges[e].triangles[0]?))) {
                 let _ = write!(d, "{}", curve(&curved(e, t), &view, true));
             }

@@ -34,7 +34,7 @@ pub fn scene(problem: &Problem) -> String {
 /// The factor by which the picture exaggerates the gap of the contacts, or `None` where every gap is zero.
 pub fn gap_exaggeration(problem: &Problem) -> Option<f64> {
     let (view, _) = View::fit(problem.mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
-    let largest = problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(|p| p.gap).fold(0.0, f64::max);
+    let largest = problem.pairs().flat_map(|p| p.gap).fold(0.0, f64::max);
     let page = largest * view.scale;
     if !(page.is_finite() && page > 0.0) {
         None

@@ -54,7 +54,7 @@ fn scene_figure(dossier: &Dossier) -> Markup {
 fn shapes(dossier: &Dossier) -> Markup {
     let all: Vec<&Displacement> = dossier.displacements.iter().map(|(_, field)| *field).collect();
     let scale = deformed::deformation_scale(dossier.problem, &all);
-    let gap = dossier.problem.interfaces.iter().flat_map(|i| &i.pairs).flat_map(|p| p.gap).any(|g| g > 0.0);
+    let gap = dossier.problem.pairs().flat_map(|p| p.gap).any(|g| g > 0.0);
     html! {
         @for (name, field) in &dossier.displacements {
             @let name = if name == "free" { "from the dual model (free upper bound)".to_string() } else { clean(name) };

@@ -32,7 +32,7 @@ fn largest_work(problem: &Problem) -> f64 {
         }
     }
     let mut limited = Vec::new();
-    for pair in problem.interfaces.iter().flat_map(|interface| &interface.pairs) {
+    for pair in problem.pairs() {
         for end in 0..2 {
             let first = row(pair.first[end], pair.normal);
             let second = pair.second.map_or(vec![0.0; n], |second| row(second[end], pair.normal));

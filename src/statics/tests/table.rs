@@ -76,7 +76,7 @@ fn motion_is_allowed_and_its_work_is_positive() {
         let statics = check(&problem).unwrap();
         let Equilibrium::Impossible { motion, work, .. } = &statics.equilibrium else { panic!("{}", case.name) };
         let u = motion.at_vertices(&problem, &statics.components);
-        for pair in problem.interfaces.iter().flat_map(|interface| &interface.pairs) {
+        for pair in problem.pairs() {
             for end in 0..2 {
                 let v = u[pair.first[end]];
                 let w = pair.second.map_or([0.0; 2], |second| u[second[end]]);
