@@ -25,7 +25,7 @@ use crate::problem::{Problem, Scales};
 
 /// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
 /// error of at most half a unit.
-const ROUNDING_PER_TERM: f64 = 16.0 * f64::EPSILON;
+pub const ROUNDING_PER_TERM: f64 = 16.0 * f64::EPSILON;
 
 /// Relative error of a nodal stress in the balance of its triangle, or of a displacement in a support or contact.
 const ROUNDING_PER_VALUE: f64 = 8.0 * f64::EPSILON;

@@ -64,17 +64,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         .collect();
     let strain: Sum = terms.iter().map(|t| t.0).collect();
     let sensitivity: f64 = terms.iter().map(|t| t.1).sum();
-    let mut support = Sum::default();
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Clamped(u0) = condition {
-            let (length, _) = mesh.edge_frame(e);
-            let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
-            let tractions = edge_traction(problem, stress, e, 0, degree);
-            for t in &tractions {
-                support.add(length / tractions.len() as f64 * (t[0] * u0[0] + t[1] * u0[1]));
-            }
-        }
-    }
+    let support = support_work(problem, stress);
     let mut gap = Sum::default();
     for pair in problem.pairs() {
         let t = contact_traction(problem, stress, pair);
@@ -88,6 +78,23 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
         sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
     }
+}
+
+/// ∫_{Γu} T·u0 of a stress, per unit thickness.
+pub fn support_work(problem: &Problem, stress: &StressField) -> Sum {
+    let mesh = &problem.mesh;
+    let mut work = Sum::default();
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        if let Condition::Clamped(u0) = condition {
+            let (length, _) = mesh.edge_frame(e);
+            let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
+            let tractions = edge_traction(problem, stress, e, 0, degree);
+            for t in &tractions {
+                work.add(length / tractions.len() as f64 * (t[0] * u0[0] + t[1] * u0[1]));
+            }
+        }
+    }
+    work
 }
 
 /// Potential energy of a displacement.
@@ -149,10 +156,21 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
 
 /// The work of the loads on `v`, ∫F·v + ∫P·v, per unit thickness.
 pub fn work(problem: &Problem, v: &Displacement) -> Sum {
+    work_of(problem, v, |body| problem.scene.bodies[body].body_force, problem.tractions())
+}
+
+/// The work on `v` of a body force of each body, and of tractions given by their values at the ends of edges, per unit
+/// thickness.
+pub fn work_of(
+    problem: &Problem,
+    v: &Displacement,
+    force: impl Fn(usize) -> [f64; 2],
+    tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
+) -> Sum {
     let mesh = &problem.mesh;
     let mut work = Sum::default();
     for t in 0..mesh.triangles.len() {
-        let force = problem.scene.bodies[mesh.body[t]].body_force;
+        let force = force(mesh.body[t]);
         if force != [0.0; 2] {
             // Every Bernstein polynomial has the same mean.
             let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
@@ -161,16 +179,12 @@ pub fn work(problem: &Problem, v: &Displacement) -> Sum {
             }
         }
     }
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Traction(ends) = condition {
-            work.add(work_on_edge(problem, v, e, *ends));
-        }
-    }
+    tractions.for_each(|(e, ends)| work.add(work_on_edge(problem, v, e, ends)));
     work
 }
 
 /// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness.
-pub fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> f64 {
+fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> f64 {
     if a == [0.0; 2] && b == [0.0; 2] {
         return 0.0;
     }
@@ -186,7 +200,7 @@ fn absolute(s: [f64; 3]) -> f64 {
 
 /// What relative errors of the edge vectors do to the area, relative to it: one for a good triangle, its aspect ratio
 /// for a sliver.
-fn shape(corners: [[f64; 2]; 3]) -> f64 {
+pub fn shape(corners: [[f64; 2]; 3]) -> f64 {
     let square = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
     let [a, b, c] = corners;
     let longest = square(a, b).max(square(b, c)).max(square(c, a));

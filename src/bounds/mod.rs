@@ -10,8 +10,10 @@ mod sum;
 pub mod upper;
 
 pub use at_rest::without_stress;
-pub use bracket::{Bracket, UpperBound};
-pub use energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential, work, work_on_edge};
+pub use bracket::{Bracket, ROUNDING_PER_TERM, UpperBound};
+pub use energy::{
+    Complementary, LocalGap, Potential, complementary, local_gap, potential, support_work, work, work_of,
+};
 pub use jump::{openings, side_coefficients};
 pub use mid::mid_field;
 pub use sum::Sum;

@@ -16,7 +16,7 @@ use super::modes::ModeTable;
 use super::rows::Sides;
 use super::unknowns::{Component, Unknowns};
 use crate::element::side;
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 
 /// The assembled problem. Copies share what does not depend on the loads.
 #[derive(Debug, Clone)]
@@ -72,12 +72,10 @@ impl System {
                 debug_assert_eq!(mesh.triangle_edges[t], sides.edges);
             }
         }
-        let external = external_load(problem, &unknowns);
+        let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = problem
-            .interfaces
-            .iter()
-            .flat_map(|i| &i.pairs)
+            .pairs()
             .zip(unknowns.jump_blocks())
             .flat_map(|(pair, jumps)| {
                 let moments = side::moments(&pair.gap, jumps.len - 1);
@@ -108,15 +106,6 @@ pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> b
             }
         }
     }
-}
-
-/// The coefficients of P on every unknown of Γ_τ, by the choice of the moments.
-fn external_load(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
-    let applied = |(e, condition): (usize, &Condition)| match condition {
-        Condition::Traction(ends) => Some((e, *ends)),
-        _ => None,
-    };
-    load_of_tractions(problem, unknowns, problem.conditions.iter().enumerate().filter_map(applied))
 }
 
 /// The coefficients, on every unknown, of tractions given by their values at the ends of edges.

@@ -41,6 +41,14 @@ impl Problem {
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)
     }
+
+    /// The edges of Γ_τ, each with P at its two ends.
+    pub fn tractions(&self) -> impl Iterator<Item = (usize, [[f64; 2]; 2])> + '_ {
+        self.conditions.iter().enumerate().filter_map(|(e, condition)| match condition {
+            Condition::Traction(ends) => Some((e, *ends)),
+            _ => None,
+        })
+    }
 }
 
 /// What refinement makes of edges and gaps that stand for a curve.

@@ -4,14 +4,9 @@ use super::interval::Known;
 use super::lift::jumps;
 use super::pass::{Fields, Pass, pass};
 use super::search::Search;
-use crate::bounds::{NodalValues, Sum, openings, work};
+use crate::bounds::{NodalValues, ROUNDING_PER_TERM, Sum, openings, support_work, work};
 use crate::dual::Response;
-use crate::dual::equilibrium::edge_traction;
 use crate::element::{Displacement, side};
-use crate::problem::Condition;
-
-/// Relative error that the evaluation of a term can pick up.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Jumps beyond their bound by this part of the largest displacement are rounding, and enclosed as such.
 const BEYOND: f64 = 1e-11;
@@ -57,7 +52,7 @@ impl Search<'_, '_> {
         let fields =
             Fields { stress: &dual.stress, displacement: &upper.displacement, adjoint: &response.stress, lifted };
         let pass = pass(problem, self.functional, fields);
-        let slip = [0, 1].map(|i| ROUNDING * pass.uncancelled[i].sqrt());
+        let slip = [0, 1].map(|i| ROUNDING_PER_TERM * pass.uncancelled[i].sqrt());
         let distance = pass.square.max(0.0).sqrt() + slip[0];
         let mut rounding = distance * slip[1] + slip[0] * pass.middle.max(0.0).sqrt() + response.remainder;
 
@@ -67,22 +62,15 @@ impl Search<'_, '_> {
         if let Some(z) = lifted {
             let work = work(problem, z);
             sum.add(work.value());
-            rounding += ROUNDING * work.magnitude();
+            rounding += ROUNDING_PER_TERM * work.magnitude();
         }
         for (pair, s) in problem.pairs().zip(response.contact.iter()) {
             sum.add(-pair.length * side::integral(s, &pair.gap));
         }
-        for (e, condition) in problem.conditions.iter().enumerate() {
-            let Condition::Clamped(u0) = condition else { continue };
-            if *u0 != [0.0; 2] {
-                let (length, _) = problem.mesh.edge_frame(e);
-                let degree = problem.mesh.edges[e].triangles[0].map_or(1, |t| response.stress.degree(t));
-                let tractions = edge_traction(problem, &response.stress, e, 0, degree);
-                let share = length / tractions.len() as f64;
-                tractions.iter().for_each(|t| sum.add(-share * (t[0] * u0[0] + t[1] * u0[1])));
-            }
-        }
-        rounding += ROUNDING * sum.magnitude();
+        let supports = support_work(problem, &response.stress);
+        sum.add(-supports.value());
+        rounding += ROUNDING_PER_TERM * supports.magnitude();
+        rounding += ROUNDING_PER_TERM * sum.magnitude();
 
         let ratio = |over: f64, of: f64| {
             if over <= 0.0 {

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use super::lift::{jumps, lift};
 use super::region::{Cut, cut, twice_area};
-use crate::bounds::{holds_at, potential};
+use crate::bounds::{holds_at, work};
 use crate::dual::Load;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Problem};
@@ -279,7 +279,7 @@ fn on_support(
     }
     let moved = Displacement::from_p1(mesh, &vertex);
     let mut functional = Functional::empty(problem, kind);
-    functional.constant = potential(problem, &moved).work / problem.scene.thickness;
+    functional.constant = work(problem, &moved).value();
     let materials = problem.scene.bodies.iter();
     let young: Vec<f64> = materials.map(|body| body.young).collect();
     for (t, triangle) in mesh.triangles.iter().enumerate() {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::functional::Functional;
 use super::region::{Cut, Piece};
 use crate::bounds::Sum;
+use crate::bounds::energy::shape;
 use crate::bounds::strain::{Strains, sub_area};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
@@ -142,7 +143,7 @@ fn triangle(problem: &Problem, material: &Compliance, t: usize, strain: Strain<'
 }
 
 /// Points of a piece, in the barycentric coordinates of its subtriangle, with weights for polynomials up to `degree`.
-pub fn points(piece: &Piece, degree: usize) -> impl Iterator<Item = ([f64; 3], f64)> {
+fn points(piece: &Piece, degree: usize) -> impl Iterator<Item = ([f64; 3], f64)> {
     triangle_rule(degree).iter().map(move |(m, weight)| {
         let l = [0, 1, 2].map(|c| (0..3).map(|i| m[i] * piece.corners[i][c]).sum());
         (l, weight * piece.area)
@@ -157,28 +158,23 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// What relative errors of the edge vectors do to the area, relative to it.
-fn shape(corners: [[f64; 2]; 3]) -> f64 {
-    let square = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
-    let [a, b, c] = corners;
-    (square(a, b).max(square(b, c)).max(square(c, a)) / (6.0 * sub_area(corners))).max(1.0)
-}
-
-/// ∫ χ:σ with the stress that `at` gives at points of subtriangles, of degree `degree` on each triangle.
+/// ∫ χ:σ with the stress that `at` gives at points of subtriangles, of degree `degree` on each triangle; the points of a
+/// subtriangle come one after the other.
 pub fn strained(
     problem: &Problem,
     functional: &Functional,
     degree: impl Fn(usize) -> usize,
-    at: impl Fn(usize, usize, [f64; 3]) -> [f64; 3],
+    mut at: impl FnMut(usize, usize, [f64; 3]) -> [f64; 3],
 ) -> f64 {
-    let work = |chi: &[f64; 3], s: [f64; 3]| chi[0] * s[0] + chi[1] * s[1] + 2.0 * chi[2] * s[2];
     let mut sum = Sum::default();
+    let mut add = |t: usize, sub: usize, l: [f64; 3], by: f64, chi: &[f64; 3]| {
+        let s = at(t, sub, l);
+        sum.add(by * (chi[0] * s[0] + chi[1] * s[1] + 2.0 * chi[2] * s[2]));
+    };
     let mut whole = |t: usize, chi: &[f64; 3]| {
         let area = problem.mesh.area(t) / 3.0;
         for sub in 0..3 {
-            for (l, weight) in triangle_rule(degree(t)) {
-                sum.add(weight * area * work(chi, at(t, sub, *l)));
-            }
+            triangle_rule(degree(t)).iter().for_each(|(l, weight)| add(t, sub, *l, weight * area, chi));
         }
     };
     match &functional.region {
@@ -187,9 +183,7 @@ pub fn strained(
             cuts.iter().filter(|cut| cut.pieces.is_empty()).for_each(|cut| whole(cut.triangle, chi));
             for cut in cuts {
                 for piece in &cut.pieces {
-                    for (l, by) in points(piece, degree(cut.triangle)) {
-                        sum.add(by * work(chi, at(cut.triangle, piece.sub, l)));
-                    }
+                    points(piece, degree(cut.triangle)).for_each(|(l, by)| add(cut.triangle, piece.sub, l, by, chi));
                 }
             }
         }

@@ -1,11 +1,9 @@
 //! Quantities of fields that are known.
 
-use std::cell::RefCell;
-
 use super::functional::Functional;
 use super::pass::strained;
 use crate::bounds::strain::{Strains, sub_area};
-use crate::bounds::{Sum, work, work_on_edge};
+use crate::bounds::{Sum, work, work_of};
 use crate::dual::modes::materials;
 use crate::element::Displacement;
 use crate::element::quadrature::triangle_rule;
@@ -13,35 +11,21 @@ use crate::problem::Problem;
 
 /// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
 pub fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
-    let mesh = &problem.mesh;
-    let mut sum = Sum::default();
-    for (e, ends) in &functional.load.tractions {
-        sum.add(work_on_edge(problem, v, *e, *ends));
-    }
-    for t in 0..mesh.triangles.len() {
-        let force = functional.load.force[mesh.body[t]];
-        if force != [0.0; 2] {
-            // Every Bernstein polynomial has the same mean.
-            let values: Vec<[f64; 2]> = (0..3).flat_map(|sub| v.sub(t, sub)).collect();
-            let count = values.len() as f64;
-            let [x, y] = values.iter().fold([0.0; 2], |[x, y], u| [x + u[0], y + u[1]]);
-            sum.add(mesh.area(t) / count * (force[0] * x + force[1] * y));
-        }
-    }
-    sum.value()
+    let load = &functional.load;
+    work_of(problem, v, |body| load.force[body], load.tractions.iter().copied()).value()
 }
 
 /// The quantity of an admissible displacement alone: means of it and of its stress, and forces by the work that they do on
 /// the motion which lifts them; `None` where no such motion meets the supports.
 pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) -> Option<f64> {
     let materials = materials(problem);
-    let mut strains = Strains::default();
-    let mut stress = |t: usize, sub: usize, l: [f64; 3]| {
-        let material = &materials[problem.mesh.body[t]];
-        material.stress(strains.on(problem.mesh.corners(t), v, t, sub).at(l))
+    let (mut strains, mut on) = (Strains::default(), None);
+    let at = |t: usize, sub: usize, l: [f64; 3]| {
+        if on.replace((t, sub)) != Some((t, sub)) {
+            strains.on(problem.mesh.corners(t), v, t, sub);
+        }
+        materials[problem.mesh.body[t]].stress(strains.at(l))
     };
-    let cell = RefCell::new(&mut stress);
-    let at = |t: usize, sub: usize, l: [f64; 3]| (cell.borrow_mut())(t, sub, l);
     let mut sum = functional.constant + displaced(problem, functional, v);
     sum += strained(problem, functional, |t| v.degree(t) - 1, at);
     if functional.load.weights.iter().any(|w| !w.is_empty()) {

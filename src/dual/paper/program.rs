@@ -76,9 +76,7 @@ impl Program {
         let mut g = auxiliary.excess.clone();
         g.extend(&auxiliary.normal_traction);
         let gap_moments = problem
-            .interfaces
-            .iter()
-            .flat_map(|i| &i.pairs)
+            .pairs()
             .flat_map(|p| [0, 1].map(|end| p.length * (2.0 * p.gap[end] + p.gap[1 - end]) / 6.0))
             .collect();
         let scales = Scales::new(problem);
