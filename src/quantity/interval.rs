@@ -59,10 +59,25 @@ impl Interval {
         }
     }
 
+    /// Whether anything is guaranteed.
+    pub fn has_an_end(&self) -> bool {
+        self.ends.iter().any(|end| end.is_finite())
+    }
+
+    /// By how much `x` lies outside; zero inside.
+    pub fn outside(&self, x: f64) -> f64 {
+        outside(self.ends, x)
+    }
+
     /// Half of the width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])
     }
+}
+
+/// By how much `x` lies outside of an interval; zero inside.
+pub fn outside([lower, upper]: [f64; 2], x: f64) -> f64 {
+    (lower - x).max(x - upper).max(0.0)
 }
 
 /// What is known of a problem that was solved.

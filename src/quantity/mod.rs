@@ -13,5 +13,5 @@ mod search;
 mod value;
 
 pub use functional::{Functional, Kind, NotBounded};
-pub use interval::{Interval, Known};
+pub use interval::{Interval, Known, outside};
 pub use value::{displaced, value_of};

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::Report;
 use super::number::{digits_to_tell, outward, significant};
+use crate::quantity::outside;
 
 /// Ends that are closer than this, relative to their size, differ by rounding.
 const A_POINT: f64 = 1e-9;
@@ -91,7 +92,7 @@ impl QuantitySummary {
 
     /// By how much `x` lies outside; zero inside.
     pub fn outside(&self, x: f64) -> f64 {
-        (self.lower - x).max(x - self.upper).max(0.0)
+        outside([self.lower, self.upper], x)
     }
 
     /// The digits that tell the ends of the interval apart.

@@ -106,15 +106,12 @@ fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool 
 pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
     let summary = |answer: &Answer| {
         let Interval { ends: [lower, upper], first_order, value, exact_by_statics, reasons, .. } = &answer.interval;
-        let known = lower.is_finite() || upper.is_finite();
-        let primal = |judged: &Judged| {
-            let value = value_in(certified, answer, judged);
-            QuantityOfModel {
-                solver: judged.candidate.name.clone(),
-                degree: judged.candidate.degree,
-                value,
-                inside: value.filter(|_| known).map(|v| *lower <= v && v <= *upper),
-            }
+        let known = answer.interval.has_an_end();
+        let primal = |(judged, value): (&Judged, Option<f64>)| QuantityOfModel {
+            solver: judged.candidate.name.clone(),
+            degree: judged.candidate.degree,
+            value,
+            inside: value.filter(|_| known).map(|v| answer.interval.outside(v) == 0.0),
         };
         QuantitySummary {
             name: answer.name.clone(),
@@ -124,17 +121,22 @@ pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Compari
             upper: *upper,
             first_order: *first_order,
             exact_by_statics: *exact_by_statics,
-            primal: comparison.judged.iter().map(primal).collect(),
+            primal: comparison.judged.iter().zip(values_in(certified, answer, comparison)).map(primal).collect(),
             reason: reasons.iter().flatten().next().cloned(),
         }
     };
     answers.iter().map(summary).collect()
 }
 
-fn value_in(certified: &Certified, answer: &Answer, judged: &Judged) -> Option<f64> {
-    let quantity = certified.problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name)?;
-    let functional = Functional::new(&certified.problem, quantity).ok()?;
-    value_of(&certified.problem, &functional, &judged.field.displacement).filter(|value| value.is_finite())
+/// The values of a quantity in the displacement models, on their own mesh.
+fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) -> Vec<Option<f64>> {
+    let problem = &certified.problem;
+    let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
+    let functional = quantity.and_then(|quantity| Functional::new(problem, quantity).ok());
+    let value = |judged: &Judged| {
+        value_of(problem, functional.as_ref()?, &judged.field.displacement).filter(|value| value.is_finite())
+    };
+    comparison.judged.iter().map(value).collect()
 }
 
 /// How a value outside an interval is judged.
@@ -156,10 +158,10 @@ pub fn quantity_checks(
 ) -> Vec<Check> {
     let mut checks = Vec::new();
     let scales = Scales::new(&certified.problem);
-    for answer in answers.iter().filter(|answer| answer.interval.ends.iter().any(|end| end.is_finite())) {
-        for judged in &comparison.judged {
+    for answer in answers.iter().filter(|answer| answer.interval.has_an_end()) {
+        for (judged, value) in comparison.judged.iter().zip(values_in(certified, answer, comparison)) {
             let field = &judged.candidate.name;
-            let Some(value) = value_in(certified, answer, judged) else { continue };
+            let Some(value) = value else { continue };
             let own = match meant {
                 Meant::Exact => 0.0,
                 Meant::Discrete => OWN_ERROR * own_error(certified, answer, judged),
@@ -185,7 +187,7 @@ pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances
     let check = |given: &GivenValue| {
         let name = format!("quantity/{}/given", given.name);
         match answers.iter().find(|answer| answer.name == given.name) {
-            Some(answer) if answer.interval.ends.iter().any(|end| end.is_finite()) => {
+            Some(answer) if answer.interval.has_an_end() => {
                 inside(&name, answer, given.value, 0.0, "no correct value lies outside")
             }
             Some(answer) => {
@@ -224,10 +226,9 @@ pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) 
 /// A check that `value` lies in the interval, or outside by no more than `allowed`.
 fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) -> Check {
     let [lower, upper] = answer.interval.ends;
-    let outside = (lower - value).max(value - upper).max(0.0);
     let nearest = value.max(lower).min(upper);
     let why = format!("The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.", answer.kind, answer.name);
-    Check::with_difference(name, value, nearest, outside, allowed, Basis::Guaranteed, why)
+    Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
 }
 
 /// What such a quantity can be at most, in order of magnitude.
