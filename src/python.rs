@@ -193,7 +193,7 @@ fn quantity_entry<'py>(py: Python<'py>, answer: &study::Answer) -> PyResult<Boun
     let interval = &answer.interval;
     let entry = PyDict::new(py);
     entry.set_item("name", &answer.name)?;
-    entry.set_item("kind", answer.kind)?;
+    entry.set_item("kind", answer.kind.name())?;
     entry.set_item("value", Some(interval.value).filter(|value| value.is_finite()))?;
     entry.set_item("lower", interval.ends[0])?;
     entry.set_item("upper", interval.ends[1])?;

@@ -65,14 +65,7 @@ pub struct Args {
 /// # Errors
 /// The scene or the field is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    match args.scenes.as_slice() {
-        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
-        _ => several(args, given),
-    }
-}
-
-fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    job::run(&Order {
+    let order = Order {
         command: "certify",
         scenes: &args.scenes,
         job: &args.job,
@@ -82,7 +75,8 @@ fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
         judge: Some(&args.judge),
         run: &args.run,
         own: &|scene| own(args, scene),
-    })
+    };
+    job::run(&order, |scene| one(args, scene))
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {

@@ -59,7 +59,7 @@ pub struct JobOptions {
 
 impl JobOptions {
     /// Whether `scenes` are a job, and not one scene.
-    pub fn are_job(&self, scenes: &[PathBuf]) -> bool {
+    fn are_job(&self, scenes: &[PathBuf]) -> bool {
         self.part.is_none()
             && (scenes.len() > 1 || self.resume || self.shard.is_some() || scenes.iter().any(|path| path.is_dir()))
     }
@@ -113,11 +113,19 @@ pub fn refused(error: JobError) -> CliError {
     CliError::stopped(exit, error.to_string(), "")
 }
 
-/// Runs the scenes, and makes one page of them.
+/// Does what was ordered: `one` where there is one scene, a job with one page where there are several.
 ///
 /// # Errors
-/// The job cannot be begun, or its files not be written; a scene that fails is a result.
-pub fn run(order: &Order<'_>) -> Result<Exit, CliError> {
+/// Those of `one`; a job cannot be begun, or its files not be written. A scene of a job that fails is a result.
+pub fn run(order: &Order<'_>, one: impl FnOnce(&Path) -> Result<Exit, CliError>) -> Result<Exit, CliError> {
+    match order.scenes {
+        [scene] if !order.job.are_job(order.scenes) => one(scene),
+        _ => several(order),
+    }
+}
+
+/// Runs the scenes, and makes one page of them.
+fn several(order: &Order<'_>) -> Result<Exit, CliError> {
     let plan = plan(order)?;
     let out = order.run.out.clone().unwrap_or_else(|| PathBuf::from("out"));
     report::folder::refuse(&out, job::FILES).map_err(|e| refused(e.into()))?;

@@ -36,14 +36,7 @@ pub struct Args {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    match args.scenes.as_slice() {
-        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
-        _ => several(args, given),
-    }
-}
-
-fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    job::run(&Order {
+    let order = Order {
         command: "solve",
         scenes: &args.scenes,
         job: &args.job,
@@ -53,7 +46,8 @@ fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
         judge: None,
         run: &args.run,
         own: &|_| Ok(Own::default()),
-    })
+    };
+    job::run(&order, |scene| one(args, scene))
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {

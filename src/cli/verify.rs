@@ -62,14 +62,7 @@ pub enum Planted {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    match args.scenes.as_slice() {
-        [scene] if !args.job.are_job(&args.scenes) => one(args, scene),
-        _ => several(args, given),
-    }
-}
-
-fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    job::run(&Order {
+    let order = Order {
         command: "verify",
         scenes: &args.scenes,
         job: &args.job,
@@ -79,7 +72,8 @@ fn several(args: &Args, given: &Given) -> Result<Exit, CliError> {
         judge: Some(&args.judge),
         run: &args.run,
         own: &|_| Ok(Own { fields: FIELDS.map(String::from).to_vec(), ..Own::default() }),
-    })
+    };
+    job::run(&order, |scene| one(args, scene))
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {

@@ -57,6 +57,13 @@ pub struct Statics {
     pub notes: Vec<String>,
 }
 
+impl Statics {
+    /// The motions of `held` as displacements of every vertex.
+    pub fn held_at_vertices(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
+        self.held.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
+    }
+}
+
 /// Whether (1.16) holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Equilibrium {

@@ -6,7 +6,7 @@ use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::Displacement;
 use crate::problem::{Problem, Scales};
-use crate::quantity::{Functional, Interval, Known, NotBounded, displaced, value_of};
+use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced, value_of};
 use crate::report::{QuantityOfModel, QuantitySummary};
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
@@ -22,8 +22,8 @@ pub struct Answer {
     pub name: String,
     /// Its interval; both ends infinite, with the reason, where none is known.
     pub interval: Interval,
-    /// What it is, in a word.
-    pub kind: &'static str,
+    /// What it is.
+    pub kind: Kind,
 }
 
 /// A value of a quantity that comes without a field.
@@ -56,7 +56,7 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
     if quantities.is_empty() {
         return Vec::new();
     }
-    let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(problem, &statics.components)).collect();
+    let motions = statics.held_at_vertices(problem);
     let own;
     let factorised: Result<&Factorised, String> = match &dual.factorised {
         Some(kept) => Ok(kept),
@@ -74,17 +74,17 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
         match (Functional::new(problem, quantity), &known) {
             (Ok(functional), _) if motions.iter().any(|motion| changes(problem, &functional, motion)) => {
                 let reason = "a motion that neither supports nor closed contacts resist changes it";
-                Answer { name, kind: functional.kind.name(), interval: Interval::unknown(reason) }
+                Answer { name, kind: functional.kind, interval: Interval::unknown(reason) }
             }
             (Ok(functional), Ok(known)) => {
                 let interval = known.interval(&functional);
-                Answer { name, kind: functional.kind.name(), interval }
+                Answer { name, kind: functional.kind, interval }
             }
             (Ok(functional), Err(reason)) => {
-                let kind = functional.kind.name();
+                let kind = functional.kind;
                 Answer { name, kind, interval: Interval::unknown(reason) }
             }
-            (Err(error), _) => Answer { name, kind: "force", interval: Interval::unknown(&error.to_string()) },
+            (Err(error), _) => Answer { name, kind: Kind::Force, interval: Interval::unknown(&error.to_string()) },
         }
     };
     quantities.iter().map(answer).collect()
@@ -115,7 +115,7 @@ pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Compari
         };
         QuantitySummary {
             name: answer.name.clone(),
-            kind: answer.kind.to_string(),
+            kind: answer.kind.name().to_string(),
             value: *value,
             lower: *lower,
             upper: *upper,
@@ -227,17 +227,21 @@ pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) 
 fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) -> Check {
     let [lower, upper] = answer.interval.ends;
     let nearest = value.max(lower).min(upper);
-    let why = format!("The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.", answer.kind, answer.name);
+    let why = format!(
+        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
+        answer.kind.name(),
+        answer.name
+    );
     Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
 }
 
 /// What such a quantity can be at most, in order of magnitude.
 fn size(scales: &Scales, problem: &Problem, answer: &Answer) -> f64 {
     match answer.kind {
-        "displacement" => scales.data.displacement,
-        "stress" => scales.data.stress,
-        "moment" => scales.data.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
-        _ => scales.data.force,
+        Kind::Displacement => scales.data.displacement,
+        Kind::Stress => scales.data.stress,
+        Kind::Moment => scales.data.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
+        Kind::Force => scales.data.force,
     }
 }
 

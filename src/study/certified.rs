@@ -114,7 +114,7 @@ pub(super) fn solve_balanced(
         };
         return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part });
     }
-    let motions: Vec<Motion> = statics.held.iter().map(|m| m.at_vertices(&problem, &statics.components)).collect();
+    let motions = statics.held_at_vertices(&problem);
     let mut dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
     let bracket = Bracket::from_start(&problem, &dual, start);
     dual.seconds.total = began.elapsed().as_secs_f64();

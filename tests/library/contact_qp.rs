@@ -204,8 +204,7 @@ fn no_contact_at_all() {
 }
 
 fn motions(problem: &Problem) -> Vec<Motion> {
-    let found = statics::check(problem).expect("statics are decided");
-    found.held.iter().map(|m| m.at_vertices(problem, &found.components)).collect()
+    statics::check(problem).expect("statics are decided").held_at_vertices(problem)
 }
 
 fn run(method: &dyn DualMethod, problem: &Problem, options: &Options) -> DualSolution {

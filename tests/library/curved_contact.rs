@@ -14,8 +14,7 @@ fn problem(text: &str) -> Problem {
 
 /// The motions that nothing holds, as displacements of the vertices.
 fn motions(problem: &Problem) -> Vec<Vec<[f64; 2]>> {
-    let statics = statics::check(problem).expect("decided");
-    statics.held.iter().map(|motion| motion.at_vertices(problem, &statics.components)).collect()
+    statics::check(problem).expect("decided").held_at_vertices(problem)
 }
 
 fn solve(problem: &Problem, method: &dyn DualMethod) -> DualSolution {

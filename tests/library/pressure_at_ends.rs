@@ -72,7 +72,7 @@ fn every_degree_reaches_its_part_of_the_edge_and_no_farther() {
         assert!(matches!(outcome, Err(StudyError::BeyondMesh { .. })), "{p}: {outcome:?}");
         // Asked all the same, no method finds a stress: there is none.
         let held = statics::check(&outside).expect("decided");
-        let motions: Vec<_> = held.held.iter().map(|m| m.at_vertices(&outside, &held.components)).collect();
+        let motions = held.held_at_vertices(&outside);
         for method in [&Condensed::default() as &dyn DualMethod, &Clarabel::default()] {
             let outcome = dual::solve(method, &outside, &motions, &of_degree(p));
             assert!(outcome.is_err(), "{p}: {} found a stress", method.name());

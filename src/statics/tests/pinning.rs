@@ -16,7 +16,7 @@ fn conditioning(rows: usize, held: usize, entry: impl Fn(usize, usize) -> f64) -
 fn assert_pinned(problem: &Problem, freedom: usize) -> Statics {
     let statics = check(problem).unwrap();
     assert_eq!(statics.held.len(), freedom);
-    let u: Vec<_> = statics.held.iter().map(|y| y.at_vertices(problem, &statics.components)).collect();
+    let u = statics.held_at_vertices(problem);
     let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
     let vertex = conditioning(statics.vertex_pins.len(), freedom, |i, j| {
         let pin = statics.vertex_pins[i];
