@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use clap::ArgGroup;
 
+use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
-use super::session::{Particulars, Session};
+use super::session::Session;
 use super::values::ValueOptions;
 use super::{CliError, Exit};
 use crate::compare::{Candidate, Comparison, compare};

@@ -6,6 +6,7 @@
 pub mod certify;
 pub mod chart;
 pub mod ci;
+mod conclude;
 pub mod diff;
 pub mod error;
 pub mod exit;

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{Limits, RunOptions, SolveOptions};
-use super::session::{Particulars, Session};
+use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::{Allowances, compare};
 use crate::study::{tolerance_check, wanted_checks};

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
-use super::session::{Particulars, Session};
+use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, PrimalError};

@@ -1,0 +1,141 @@
+//! The end of a solving command: from results to files, a verdict and an exit code.
+
+use std::path::Path;
+
+use super::session::{DualRun, Session};
+use super::{CliError, Exit, ci, say};
+use crate::compare::Comparison;
+use crate::diagnose::Diagnosis;
+use crate::problem::Note;
+use crate::report::{self, BaselineRow, Dossier, Status};
+use crate::study::{Answer, Certified, Fields, Findings, Sharpened, assemble};
+
+/// What a command tells beside the dual run and its comparison.
+#[derive(Default)]
+pub struct Particulars {
+    /// A sharper bracket, where that of the run could not tell two models apart.
+    pub sharpened: Option<Sharpened>,
+    /// The guaranteed relative error that can, where models are compared.
+    pub enough: Option<f64>,
+    /// The intervals of the quantities.
+    pub answers: Vec<Answer>,
+    /// Remarks of its own.
+    pub notes: Vec<Note>,
+    /// Its phases.
+    pub seconds: Vec<(&'static str, f64)>,
+    /// What else took part, with versions.
+    pub components: Vec<(String, String)>,
+    /// What explains that a field is not the discrete solution it claims to be.
+    pub diagnosis: Vec<Diagnosis>,
+    /// Its residual, triangle by triangle, where a field is handed in as the discrete solution of its mesh.
+    pub residual: Option<Vec<f64>>,
+    /// Why the displacement model gave no answer.
+    pub failure: Option<String>,
+    /// Its numbers beside those of the baseline.
+    pub baseline: Vec<BaselineRow>,
+}
+
+impl Session {
+    /// Assembles the dossier of a run with its comparison, writes the files and says the verdict.
+    ///
+    /// # Errors
+    /// The files cannot be written.
+    pub fn conclude(
+        &self,
+        run: DualRun,
+        comparison: &Comparison,
+        particulars: Particulars,
+        folder: &Path,
+    ) -> Result<Exit, CliError> {
+        let DualRun { certified, mut history, stopped } = run;
+        let Particulars {
+            sharpened,
+            enough,
+            answers,
+            mut notes,
+            mut seconds,
+            components,
+            diagnosis,
+            residual,
+            failure,
+            baseline,
+        } = particulars;
+        let is_claimed = residual.is_some();
+        let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
+            notes.push(sharpened_note(&certified, stopped));
+            history.extend(meshes);
+            certified
+        });
+        seconds.push(("total", self.start.elapsed().as_secs_f64()));
+        let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
+        let fields = Fields::new(&certified, comparison, &answers).with_residual(residual);
+        let mut dossier = assemble(
+            Findings {
+                command: self.command,
+                certified: &certified,
+                comparison,
+                answers: &answers,
+                finer: finer.as_ref(),
+                enough,
+                history,
+                notes: stopped.into_iter().chain(notes).collect(),
+                threads: self.threads,
+                seconds,
+                components,
+                diagnosis,
+                is_claimed,
+                failure,
+            },
+            &fields,
+        );
+        dossier.report.baseline = baseline;
+        self.sign(&mut dossier);
+        self.close(&dossier, folder)
+    }
+
+    /// Gives the report the identifier of this run, where one was given.
+    pub(super) fn sign(&self, dossier: &mut Dossier<'_>) {
+        if let Some(run) = &self.run {
+            dossier.report.run.clone_from(run);
+        }
+    }
+
+    fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
+        self.progress.phase("writing the report");
+        report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
+        ci::report(&dossier.report, &self.scene.path);
+        if !self.quiet {
+            let report = &dossier.report;
+            say::line(&report.verdict);
+            for quantity in &report.quantities {
+                say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
+            }
+            for check in report.checks.iter().filter(|c| !c.passed) {
+                say::line(&format!("  failed: {}: {}", check.name, check.why));
+            }
+            for diagnosis in &report.diagnosis {
+                say::line(&format!("  {}", diagnosis.sentence));
+            }
+            for remark in report.remarks.iter().filter(|c| !c.passed) {
+                say::line(&format!("  worth a look: {}", remark.name));
+            }
+            say::line(&format!("report: {}", folder.join("report.html").display()));
+        }
+        Ok(match dossier.report.status {
+            Status::Agree => Exit::Agree,
+            Status::Disagree | Status::Undecided => Exit::Disagree,
+            Status::Infeasible => Exit::NoEquilibrium,
+            Status::Failed => Exit::Failed,
+        })
+    }
+}
+
+/// How the sharper bracket came about.
+fn sharpened_note(finer: &Certified, stopped: Option<String>) -> Note {
+    let triangles = finer.problem.mesh.triangles.len();
+    let how = format!(
+        "The bracket of the mesh as given could not tell two models apart. The stress side alone was refined to {triangles} \
+         triangles; the energy bounds are from there, contacts and stresses are compared on the mesh as given."
+    );
+    Note { weakens_guarantee: false, text: stopped.map_or(how.clone(), |reason| format!("{how} {reason}")) }
+}
