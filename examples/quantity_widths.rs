@@ -12,10 +12,11 @@ use std::time::Instant;
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{Component, Extent, Gap, Kinematics, Quantity, Region, Target};
+use hypercircle::scene::{Component, Extent, Gap, Kinematics, Region, Target};
 use hypercircle::study::{answers, certify_divided};
 use serde_json::{Value, json};
 use support::Blocks;
+use support::asked::quantity;
 
 const COMMAND: &str = "cargo run --release --example quantity_widths";
 
@@ -27,10 +28,6 @@ fn main() -> std::io::Result<()> {
     std::fs::write(&file, format!("{data:#}\n"))?;
     println!("wrote docs/data/quantities.json");
     Ok(())
-}
-
-fn quantity(name: &str, target: Target) -> Quantity {
-    Quantity { name: name.to_string(), target }
 }
 
 fn of_degree(degree: usize) -> Options {

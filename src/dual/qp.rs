@@ -36,13 +36,14 @@ pub const GRAZING: f64 = 1e-13;
 /// all pivots positive.
 const REGULAR: [f64; 3] = [1e-13, 1e-11, 1e-9];
 
-/// Solves the bound-constrained problem; `start` gives a first guess of the closed ends (all, where there is none).
+/// Solves the bound-constrained problem; `start` gives a first guess of the closed ends (all that have a bound, where there is
+/// none). Infinite bounds are none.
 ///
 /// # Errors
 /// [`DualError::ContactUndetermined`] where the energy has no minimum, [`DualError::NotConverged`] where round-off keeps
 /// the state from settling.
 pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> Result<ContactState, DualError> {
-    let mut closed = start.map_or_else(|| vec![true; c.len()], <[bool]>::to_vec);
+    let mut closed = start.map_or_else(|| bound.iter().map(|g| g.is_finite()).collect(), <[bool]>::to_vec);
     let mut seen = HashSet::new();
     while seen.len() < BLOCK_STEPS && seen.insert(closed.clone()) {
         let Some(jumps) = with_closed_or_springs(s, c, bound, &closed) else { break };
@@ -60,7 +61,7 @@ pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> 
 
 /// The primal–dual step: closed ends under more tension than their `slack` open, open ends that penetrate close.
 pub fn next_state(tension: &[f64], jumps: &[f64], bound: &[f64], slack: &[f64], closed: &[bool]) -> Vec<bool> {
-    let depth = GRAZING * largest(jumps).max(largest(bound));
+    let depth = GRAZING * largest(jumps).max(largest_finite(bound));
     let end = |i: usize| if closed[i] { tension[i] <= slack[i] } else { jumps[i] > bound[i] + depth };
     (0..tension.len()).map(end).collect()
 }
@@ -80,6 +81,11 @@ fn slack(s: &Mat<f64>, c: &[f64], jumps: &[f64], closed: &[bool]) -> Vec<f64> {
 
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// The largest of the bounds that there are.
+fn largest_finite(bounds: &[f64]) -> f64 {
+    bounds.iter().filter(|g| g.is_finite()).fold(0.0, |m, g| m.max(g.abs()))
 }
 
 /// Normal tractions S j − c: the derivative of the energy with respect to the jumps.
@@ -134,7 +140,8 @@ const MOST_LENIENT: f64 = 1e-6;
 /// to start from, feasible or not.
 pub fn one_by_one(s: &Mat<f64>, c: &[f64], bound: &[f64], near: Option<&[f64]>) -> Result<ContactState, DualError> {
     let m = c.len();
-    let mut jumps = near.map_or_else(|| bound.to_vec(), |j| j.iter().zip(bound).map(|(j, g)| j.min(*g)).collect());
+    let at_bound = || bound.iter().map(|g| if g.is_finite() { *g } else { 0.0 }).collect();
+    let mut jumps: Vec<f64> = near.map_or_else(at_bound, |j| j.iter().zip(bound).map(|(j, g)| j.min(*g)).collect());
     let mut closed: Vec<bool> = jumps.iter().zip(bound).map(|(j, g)| j == g).collect();
     let most_steps = 20 * m + 400;
     let mut barred = vec![false; m];

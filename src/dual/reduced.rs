@@ -106,9 +106,7 @@ impl Reduced {
         for (i, t) in traction.iter().enumerate() {
             left[self.first_jump + i] -= self.shift[i] * x[self.first_jump + i] + t;
         }
-        let columns = system.matrix.symbolic().col_ptr();
-        let diagonal = columns[..x.len()].iter().fold(0.0_f64, |m, &k| m.max(system.matrix.val()[k]));
-        let size = diagonal * largest(x) + largest(&system.rhs);
+        let size = system.size_of_terms(x) + largest(&system.rhs);
         // A sum notices what a maximum passes over: values that are not numbers.
         let found = left.iter().map(|l| l.abs()).sum::<f64>() / left.len() as f64 / size.max(f64::MIN_POSITIVE);
         if found <= BROKEN {
@@ -188,6 +186,16 @@ impl<'a> Contact<'a> {
             }
             Contact::Long(s, _) => s.solve(c, bound, warm),
         }
+    }
+
+    /// [`Self::solve`] where bounds may be infinite; `None` where S is not dense.
+    pub fn solve_bounded(
+        &self,
+        c: &[f64],
+        bound: &[f64],
+        start: Option<&[bool]>,
+    ) -> Option<Result<ContactState, DualError>> {
+        matches!(self, Contact::Dense(_)).then(|| self.solve(c, bound, start))
     }
 
     /// S j − c.

@@ -13,6 +13,7 @@ use super::hybrid::{Motion, parameters, residual};
 use super::modes::ModeTable;
 use super::reduced::{Contact, Reduced};
 use super::refinement::{Refined, Refinement};
+use super::rigid::unsupported;
 use super::system::{System, load_of_tractions};
 use super::{DualError, Options};
 use crate::element::{SideValues, StressField, side};
@@ -30,6 +31,10 @@ const ENOUGH: f64 = 1e-12;
 
 /// Remainders of equilibrium, relative to the largest of load and traction, beyond which a stress balances something else.
 const UNBALANCED: f64 = 1e-8;
+
+/// Remainders below this part of the terms of Kx for the jumps that are held are rounding: of jumps without a stress there is nothing
+/// else.
+const NOISE: f64 = 1e-13;
 
 /// K and its factor, ready for further loads.
 #[derive(Debug)]
@@ -57,7 +62,9 @@ impl Factorised {
     /// The responses to other loads on `problem`, which K belongs to, per unit thickness. Contacts of up to `longest_dense`
     /// jumps have a dense Schur complement.
     pub fn responses<'a>(&'a self, problem: &'a Problem, longest_dense: usize, options: &Options) -> Responses<'a> {
-        let contact = Contact::new(&self.reduced, longest_dense, options.budget, |_| Vec::new());
+        let contact = Contact::new(&self.reduced, longest_dense, options.budget, |most| {
+            unsupported(problem, &self.system.unknowns, most)
+        });
         Responses { problem, factorised: self, contact }
     }
 }
@@ -234,7 +241,8 @@ impl Loaded<'_> {
             remainder += left.abs() * weight;
             largest = largest.max(left.abs());
         }
-        if !largest.is_finite() || largest > UNBALANCED * scale {
+        let noise = NOISE * system.size_of_terms(&self.held);
+        if !largest.is_finite() || largest > (UNBALANCED * scale).max(noise) {
             return Err(DualError::NotConverged {
                 method: "response to another load",
                 iterations: MOST_REFINEMENTS,
@@ -255,11 +263,12 @@ impl Loaded<'_> {
     fn released(&self, Bounds { closed, floor, sign }: Bounds<'_>) -> Result<(Vec<bool>, Vec<f64>), DualError> {
         let contact = &self.responses.contact;
         let mut released = vec![false; closed.len()];
-        for step in 1.. {
+        let mut latest = None;
+        for _ in 0..MOST_STEPS {
             let load = |(i, c): (usize, &f64)| if released[i] { c + sign * floor[i] } else { *c };
             let loaded: Vec<f64> = self.c.iter().enumerate().map(load).collect();
             let held: Vec<bool> = closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
-            let jumps = contact.with_closed(&loaded, &self.held, &held).ok_or(DualError::ContactUndetermined)?;
+            let Some(jumps) = contact.with_closed(&loaded, &self.held, &held) else { break };
             let traction = contact.gradient(&self.c, &jumps);
             let next: Vec<bool> = (0..closed.len())
                 .map(|i| {
@@ -271,11 +280,33 @@ impl Loaded<'_> {
                         }
                 })
                 .collect();
-            if next == released || step == MOST_STEPS {
+            if next == released {
                 return Ok((released, jumps));
             }
-            released = next;
+            latest = Some((std::mem::replace(&mut released, next), jumps));
         }
-        unreachable!("the last step returns")
+        match self.released_one_by_one(Bounds { closed, floor, sign }) {
+            Some(found) => found,
+            None => latest.ok_or(DualError::ContactUndetermined),
+        }
+    }
+
+    /// [`Self::released`] where steps of many coefficients at a time do not end, as where contact alone holds a body: the same
+    /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, by steps that each lower it. `None` where S is not
+    /// dense.
+    fn released_one_by_one(&self, bounds: Bounds<'_>) -> Option<Result<(Vec<bool>, Vec<f64>), DualError>> {
+        let Bounds { closed, floor, sign } = bounds;
+        let floored = |i: usize| if closed[i] { floor[i] } else { 0.0 };
+        if (0..closed.len()).any(|i| floored(i).is_infinite()) {
+            return None;
+        }
+        let load: Vec<f64> = self.c.iter().enumerate().map(|(i, c)| -sign * c - floored(i)).collect();
+        let bound = |i: usize| if closed[i] { -sign * self.held[i] } else { f64::INFINITY };
+        let bound: Vec<f64> = (0..closed.len()).map(bound).collect();
+        let state = self.responses.contact.solve_bounded(&load, &bound, None)?;
+        Some(state.map(|state| {
+            let released = closed.iter().zip(&state.closed).map(|(closed, held)| *closed && !held).collect();
+            (released, state.jumps.into_iter().map(|j| -sign * j).collect())
+        }))
     }
 }

@@ -88,6 +88,13 @@ impl System {
         System { unknowns: Arc::new(unknowns), modes: Arc::new(modes), matrix, rhs, external, jump_bound }
     }
 
+    /// The size of the terms of K x: the largest entry of the diagonal times that of x, all of it or a part.
+    pub fn size_of_terms(&self, x: &[f64]) -> f64 {
+        let columns = self.matrix.symbolic().col_ptr();
+        let diagonal = columns[..self.unknowns.count].iter().fold(0.0_f64, |m, &k| m.max(self.matrix.val()[k]));
+        diagonal * x.iter().fold(0.0_f64, |m, v| m.max(v.abs()))
+    }
+
     /// y = K x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         symmetric_multiply((*self.matrix).as_ref(), x)

@@ -114,7 +114,7 @@ impl Search<'_, '_> {
 }
 
 /// The largest D √(H − X) + ρX for 0 ≤ X ≤ H.
-fn width(distance: f64, square: f64, ratio: f64) -> f64 {
+pub(super) fn width(distance: f64, square: f64, ratio: f64) -> f64 {
     if square == 0.0 {
         return if ratio.is_finite() { 0.0 } else { f64::INFINITY };
     }

@@ -15,7 +15,7 @@ use super::pass::{Pass, strained};
 use super::search::Search;
 use super::value::displaced;
 use crate::bounds::{Bracket, Nearest, UpperBound, mid_field, openings};
-use crate::dual::{Bounds, DualSolution, Factorised, Loaded, Options, Response, Responses};
+use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
 use crate::element::{StressField, side};
 use crate::problem::{ContactPair, Problem};
 
@@ -24,6 +24,10 @@ const NO_STRESS: f64 = 1e-18;
 
 /// Contacts of up to so many jumps have a dense Schur complement.
 const LONGEST_DENSE: usize = 6000;
+
+/// Why no multiple of the pressure is enough.
+const NOT_HELD: &str = "no multiple of the pressure in the contacts balances what is asked: something is not held in that \
+                        direction, or by contact alone that carries nothing";
 
 /// Pressures below this part of the largest are none.
 const NO_PRESSURE: f64 = 1e-9;
@@ -93,7 +97,7 @@ pub struct Known<'a> {
     pub(super) openings: Vec<Vec<f64>>,
     /// m, of the degree of λ.
     pub(super) middle: StressField,
-    /// Coefficients of t(λ) one after the other.
+    /// Coefficients of t(λ) one after the other, zero where nothing presses.
     pub(super) pressure: Vec<f64>,
 }
 
@@ -127,7 +131,7 @@ impl<'a> Known<'a> {
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
             middle: mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?,
-            pressure: dual.contact_traction.iter().flat_map(|of| of.values()).map(|t| t.min(0.0)).collect(),
+            pressure: pressing(dual),
         })
     }
 
@@ -173,6 +177,17 @@ impl<'a> Known<'a> {
                 }
             }
         }
+        let [no_less, no_more] = functional.cannot_be();
+        if no_less {
+            ends[0] = ends[0].max(ends[1].min(0.0));
+            first_order[0] = first_order[0].max(first_order[1].min(0.0));
+            reasons[0] = None;
+        }
+        if no_more {
+            ends[1] = ends[1].min(ends[0].max(0.0));
+            first_order[1] = first_order[1].min(first_order[0].max(0.0));
+            reasons[1] = None;
+        }
         let scaled = |v: f64| functional.scale * v;
         Interval {
             ends: ends.map(scaled),
@@ -186,13 +201,15 @@ impl<'a> Known<'a> {
 
     pub(super) fn respond(&self, loaded: &Loaded<'_>, floor: &[f64], sign: f64) -> Result<Response, String> {
         let bounds = Bounds { closed: self.dual.closed.values(), floor, sign };
-        loaded.respond(bounds, &self.dual.moments).map_err(|error| error.to_string())
+        loaded.respond(bounds, &self.dual.moments).map_err(|error| match error {
+            DualError::NotConverged { .. } | DualError::ContactUndetermined => NOT_HELD.to_string(),
+            other => other.to_string(),
+        })
     }
 
     /// The ratio that the traction of `response` asks for where the contact presses.
     pub(super) fn needed(&self, response: &Response, sign: f64) -> f64 {
-        let most = self.pressure.iter().fold(0.0_f64, |m, t| m.max(-t));
-        let pressing = self.pressure.iter().zip(response.contact.values()).filter(|(t, _)| -**t > NO_PRESSURE * most);
+        let pressing = self.pressure.iter().zip(response.contact.values()).filter(|(t, _)| **t < 0.0);
         pressing.map(|(t, s)| sign * s / t).fold(0.0, f64::max)
     }
 
@@ -216,6 +233,13 @@ impl<'a> Known<'a> {
             *share += 0.5 * (ratio * 0.5 * gap.max(0.0) / thickness + square.max(0.0) / (4.0 * ratio));
         }
     }
+}
+
+/// The coefficients of t(λ), zero where there is no pressure: rounding holds nothing.
+fn pressing(dual: &DualSolution) -> Vec<f64> {
+    let all = || dual.contact_traction.iter().flat_map(|of| of.values());
+    let most = all().fold(0.0_f64, |m, t| m.max(-t));
+    all().map(|t| if -t > NO_PRESSURE * most { *t } else { 0.0 }).collect()
 }
 
 /// The coefficients of degree `degree` of a polynomial of no higher degree.

@@ -10,6 +10,7 @@ mod lift;
 mod pass;
 mod region;
 mod search;
+mod tried;
 mod value;
 
 pub use functional::{Functional, Kind, NotBounded};

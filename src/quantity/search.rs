@@ -1,8 +1,11 @@
 //! The search for the best adjoint pair for one end of an interval.
 
+use std::cell::RefCell;
+
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
+use super::tried::Tried;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
 use crate::dual::modes::materials;
 use crate::dual::{Loaded, Response};
@@ -12,10 +15,7 @@ use crate::element::{SideValues, StressField, triangle};
 const MOST_RAISES: usize = 8;
 const RAISE: f64 = 4.0;
 
-/// Factors of the ratio at which the contact costs nothing that are tried, beside one.
-const FACTORS: [f64; 2] = [2.0, 0.5];
-
-/// Tries in either direction at most.
+/// Tries at most after the first that gives a bound.
 const MOST_TRIES: usize = 3;
 
 /// The largest weight of the stress of the scene in the pull at z, relative to that of the adjoint stress.
@@ -38,32 +38,32 @@ impl Search<'_, '_> {
         let sigma = self.stress(&neutral.stress, sign);
         let moments = if sign < 0.0 { negated(neutral.moments.clone()) } else { neutral.moments.clone() };
         let mut start = known.nearest.start(&sigma, &moments);
-        let begun = known.nearest.filled(&start, Pull { scene: 0.0, stress: Some(&sigma) });
-        let begun = self.measured(neutral, Some((&begun, sign)), sign);
-        // The ratio at which the contact begins to cost width.
-        let free = |distance: f64| distance / (2.0 * known.square.sqrt());
+        let alone = self.measured(neutral, None, sign);
         // Beyond that the stress of the scene leaves no digits of the adjoint one.
-        let most = HEAVIEST * (begun.pass.uncancelled[0] / begun.pass.middle).sqrt();
+        let sizes = [alone.pass.uncancelled[0], alone.pass.middle].map(f64::sqrt);
+        let most = HEAVIEST * sizes[0] / sizes[1];
         let most = if most > 0.0 { most } else { f64::INFINITY };
-        let mut best: Option<End> = None;
-        let mut first_order = None;
-        let mut attempt = |ratio: f64, best: &mut Option<End>| -> Result<bool, String> {
+        let mut best: Option<(End, Response)> = None;
+        let tried = RefCell::new(Tried::default());
+        let mut attempt = |ratio: f64, best: &mut Option<(End, Response)>| -> Result<(), String> {
             let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
             let response = known.respond(self.loaded, &floor, sign)?;
             let end = self.end(&response, sign, [ratio, ratio.min(most)], start.clone())?;
-            first_order = first_order.into_iter().chain(end.first_order).reduce(better_of);
-            let better = best.as_ref().is_none_or(|best| end.bound > best.bound);
-            if better {
-                start.clone_from(&end.nodes);
-                *best = Some(end);
+            if end.bound.is_finite() && end.ratio > 0.0 {
+                tried.borrow_mut().add([ratio, end.ratio], end.distance);
             }
-            Ok(better)
+            if best.as_ref().is_none_or(|(best, _)| end.bound > best.bound) {
+                start.clone_from(&end.nodes);
+                *best = Some((end, response));
+            }
+            Ok(())
         };
-        let first = free(begun.distance);
+        // As if what is clipped, D² = c/ρ, had the size of the stresses: the least of ρH + D²/(4ρ).
+        let first = sizes[0] / (2.0 * sizes[1] * known.square).cbrt();
         let first = if first.is_finite() && first > 0.0 { first } else { 1.0 };
         let mut reason = attempt(first, &mut best).err();
         // A body that contact alone holds needs a pressure to take off from.
-        let finite = |best: &Option<End>| best.as_ref().is_some_and(|end| end.bound.is_finite());
+        let finite = |best: &Option<(End, Response)>| best.as_ref().is_some_and(|(end, _)| end.bound.is_finite());
         let needed = known.needed(neutral, sign);
         let mut ratio = first.max(needed);
         for _ in 0..MOST_RAISES {
@@ -73,23 +73,20 @@ impl Search<'_, '_> {
             ratio *= RAISE;
             reason = attempt(ratio, &mut best).err().or(reason);
         }
-        let costs = |best: &Option<End>| best.as_ref().is_none_or(|end| end.ratio > free(end.distance));
-        for factor in FACTORS {
-            let mut ratio = first;
-            for _ in 0..MOST_TRIES {
-                if best.as_ref().is_some_and(|end| end.bound.is_finite()) && !costs(&best) {
-                    break;
-                }
-                ratio *= factor;
-                match attempt(ratio, &mut best) {
-                    Ok(true) => {}
-                    Ok(false) => break,
-                    Err(why) => reason = Some(why),
-                }
+        for _ in 0..MOST_TRIES {
+            let Some(next) = tried.borrow().next(known.square) else { break };
+            if let Err(why) = attempt(next, &mut best) {
+                reason = Some(why);
+                break;
             }
         }
-        match best.filter(|best| best.bound.is_finite()) {
-            Some(best) => Ok(End { first_order, ..best }),
+        match best.filter(|(best, _)| best.bound.is_finite()) {
+            Some((best, response)) => {
+                let lift = self.functional.lift.as_ref().map(|lift| (lift, 1.0));
+                let first = self.measured(&response, lift, sign);
+                let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
+                Ok(End { first_order, ..best })
+            }
             None => Err(reason.unwrap_or_else(unbounded)),
         }
     }
@@ -151,10 +148,7 @@ impl Search<'_, '_> {
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
         })?;
-        let end = self.measured(response, Some((&z, sign)), sign);
-        let first = self.measured(response, self.functional.lift.as_ref().map(|lift| (lift, 1.0)), sign);
-        let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
-        Ok(End { nodes, first_order, ..end })
+        Ok(End { nodes, ..self.measured(response, Some((&z, sign)), sign) })
     }
 }
 
@@ -179,11 +173,6 @@ fn less(sigma: StressField, factor: f64, middle: &StressField) -> StressField {
 fn negated(mut moments: SideValues<[f64; 2]>) -> SideValues<[f64; 2]> {
     moments.values_mut().as_flattened_mut().iter_mut().for_each(|m| *m = -*m);
     moments
-}
-
-/// The one with the larger bound.
-fn better_of(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    if b.0 > a.0 { b } else { a }
 }
 
 fn unbounded() -> String {

@@ -16,6 +16,11 @@ use crate::problem::Problem;
 /// if a solve costs in proportion to its unknowns, and less where it costs more.
 const GROWTH: f64 = 2.4;
 
+/// Widths and errors fall at least like this power of the unknowns, turned round, and a mesh may have so much more than that
+/// takes: predictions that fail near the tolerance would make it far too large.
+const SLOWEST: f64 = 0.75;
+const MORE: f64 = 1.15;
+
 /// The bound aimed at, relative to the tolerance: a mesh that misses it narrowly costs one more solve.
 const AIM: f64 = 0.9;
 
@@ -40,6 +45,17 @@ pub struct Rounds<'a> {
     kept: Size,
     /// No triangle of less area is refined.
     smallest: f64,
+}
+
+/// How far a mesh is to go.
+#[derive(Clone, Copy)]
+struct Aim {
+    /// What of the terms may stay.
+    enough: f64,
+    /// Unknowns of the mesh that was solved.
+    solved: f64,
+    /// Unknowns of the next one.
+    most: f64,
 }
 
 /// What a round came to.
@@ -70,14 +86,14 @@ impl<'a> Rounds<'a> {
     /// # Errors
     /// [`StudyError::Mesh`].
     pub fn next(&self, solved: &Solved, terms: &Indicators, left: f64) -> Result<Result<Stage, String>, StudyError> {
-        // What of the terms may stay.
-        let enough = terms.total() * AIM * AIM / left;
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
         stage.ways.clone_from(&solved.ways);
         let solved = unknowns(&stage);
+        let growth = GROWTH.min(MORE * (left / (AIM * AIM)).powf(SLOWEST));
+        let aim = Aim { enough: terms.total() * AIM * AIM / left, solved, most: growth * solved };
         let mut terms = terms.clone();
         loop {
-            match self.round(&stage, &terms, enough, solved)? {
+            match self.round(&stage, &terms, aim)? {
                 Round::Finer(next, predicted) => (stage, terms) = (*next, predicted),
                 Round::Last(reason, worth) => {
                     let useful = unknowns(&stage) >= worth * solved && unknowns(&stage) > solved;
@@ -85,8 +101,7 @@ impl<'a> Rounds<'a> {
                 }
             }
             let count = unknowns(&stage);
-            if count >= (1.0 - SLACK) * GROWTH * solved || (count >= WORTH_A_SOLVE * solved && terms.total() <= enough)
-            {
+            if count >= (1.0 - SLACK) * aim.most || (count >= WORTH_A_SOLVE * solved && terms.total() <= aim.enough) {
                 return Ok(Ok(stage));
             }
         }
@@ -94,7 +109,7 @@ impl<'a> Rounds<'a> {
 
     /// One round of marking. The last one is tried with smaller parts of the gap, down to a sixteenth, while it would
     /// overshoot.
-    fn round(&self, stage: &Stage, terms: &Indicators, enough: f64, solved: f64) -> Result<Round, StudyError> {
+    fn round(&self, stage: &Stage, terms: &Indicators, aim: Aim) -> Result<Round, StudyError> {
         let area = |t: usize| stage.problem.mesh.area(t);
         let may = |t: usize| area(t) > DEEPEST * self.problem.mesh.area(stage.parent[t]) && area(t) > self.smallest;
         let mut bulk = self.goal.bulk;
@@ -104,8 +119,8 @@ impl<'a> Rounds<'a> {
             let count = unknowns(&next);
             let beyond = self.beyond(&next);
             let enough_already =
-                predicted.total() < (1.0 - SLACK) * enough && count > (1.0 + SLACK) * WORTH_A_SOLVE * solved;
-            let too_far = count > (1.0 + SLACK) * GROWTH * solved || enough_already;
+                predicted.total() < (1.0 - SLACK) * aim.enough && count > (1.0 + SLACK) * WORTH_A_SOLVE * aim.solved;
+            let too_far = count > (1.0 + SLACK) * aim.most || enough_already;
             bulk *= 0.5;
             if (beyond.is_some() || too_far) && bulk > self.goal.bulk / 20.0 {
                 continue;

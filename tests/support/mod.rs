@@ -1,6 +1,7 @@
 //! Scenes that several tests share, built without the mesher of the library.
 #![allow(dead_code)]
 
+pub mod asked;
 pub mod blocks;
 pub mod double_double;
 pub mod element;

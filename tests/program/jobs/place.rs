@@ -65,7 +65,7 @@ impl Place {
         }
         let go = self.path("go");
         let body = format!(
-            "case \"$*\" in *crashes.mesh*) kill -KILL $PPID ;; esac\nwhile [ ! -e '{}' ]; do sleep 0.05; done; exit 1",
+            "case \"$*\" in *crashes.mesh*) kill -KILL $PPID; exit 1 ;; esac\nwhile [ ! -e '{}' ]; do sleep 0.05; done; exit 1",
             go.display()
         );
         script(self.path("python3"), &body)

@@ -1,0 +1,40 @@
+//! Quantities that scenes are asked for.
+
+use hypercircle::problem::Problem;
+use hypercircle::scene::{Component, Extent, Quantity, Region, Target};
+
+use super::random::Random;
+
+pub fn quantity(name: &str, target: Target) -> Quantity {
+    Quantity { name: name.to_string(), target }
+}
+
+/// Everything that can be asked of a scene without knowing it.
+pub fn everything(problem: &Problem, random: &mut Random) -> Vec<Quantity> {
+    let scene = &problem.scene;
+    let angle = random.between(0.0, 6.3);
+    let direction = [angle.cos(), angle.sin()];
+    let mut all = vec![quantity("body", Target::Displacement { of: Extent::Body(0), direction })];
+    for traction in scene.tractions.iter().take(1) {
+        let of = Extent::Boundary(traction.on.clone());
+        all.push(quantity("loaded", Target::Displacement { of, direction }));
+    }
+    for (contact, interface) in problem.interfaces.iter().enumerate().take(2) {
+        all.push(quantity(&format!("contact {contact}"), Target::ContactForce { contact, window: None }));
+        // Where a window bends there is a vertex, on this mesh and on finer ones.
+        let count = interface.pairs.len();
+        if count >= 4 {
+            let window = Some([0, 1, 2, 3].map(|i| interface.pairs[i * count / 4].arc[0]));
+            all.push(quantity(&format!("window {contact}"), Target::ContactForce { contact, window }));
+        }
+    }
+    for support in 0..scene.supports.len().min(2) {
+        all.push(quantity(&format!("support {support}"), Target::SupportForce { support, direction }));
+    }
+    let component = Component::along(direction);
+    all.push(quantity("stress", Target::Stress { body: 0, region: Region::Whole, component }));
+    let t = (0..problem.mesh.triangles.len()).find(|&t| problem.mesh.body[t] == 0).expect("a triangle");
+    let region = Region::Polygon(problem.mesh.corners(t).to_vec());
+    all.push(quantity("corner", Target::Stress { body: 0, region, component }));
+    all
+}
