@@ -55,6 +55,7 @@
 
 pub mod bounds;
 pub mod budget;
+pub mod cause;
 pub mod chart;
 pub mod cli;
 pub mod compare;

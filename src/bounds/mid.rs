@@ -22,24 +22,43 @@ pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> O
     if stress.len() != v.len() {
         return None;
     }
+    let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
+    let mean = |at: (usize, usize), l, other: [f64; 3]| {
+        let own = stress.at(at.0, at.1, l);
+        [0, 1, 2].map(|c| 0.5 * (own[c] + other[c]))
+    };
+    Some(with_stresses(problem, v, degree, mean))
+}
+
+/// The stress of a displacement, of its degree less one.
+pub fn stress_of(problem: &Problem, v: &Displacement) -> StressField {
+    with_stresses(problem, v, |t| v.degree(t) - 1, |_, _, stress| stress)
+}
+
+/// The field of the given degrees whose value at a node follows from triangle and subtriangle, barycentric coordinates, and the
+/// stress of `v` there.
+fn with_stresses(
+    problem: &Problem,
+    v: &Displacement,
+    degree: impl Fn(usize) -> usize,
+    value_of: impl Fn((usize, usize), [f64; 3], [f64; 3]) -> [f64; 3],
+) -> StressField {
     let mesh = &problem.mesh;
     let materials = materials(problem);
-    let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
-    let mut mid = StressField::of_degrees((0..v.len()).map(degree));
+    let mut field = StressField::of_degrees((0..v.len()).map(&degree));
     let mut strains = Strains::default();
     for t in 0..v.len() {
         let corners = mesh.corners(t);
         let (material, degree) = (&materials[mesh.body[t]], degree(t));
-        for (sub, values) in mid.block_mut(t).chunks_exact_mut(triangle::len(degree)).enumerate() {
+        for (sub, values) in field.block_mut(t).chunks_exact_mut(triangle::len(degree)).enumerate() {
             strains.on(corners, v, t, sub);
             for (value, node) in values.iter_mut().zip(triangle::indices(degree)) {
                 let l = node.map(|i| if degree == 0 { 1.0 / 3.0 } else { i as f64 / degree as f64 });
-                let (own, other) = (stress.at(t, sub, l), material.stress(strains.at(l)));
-                *value = [0, 1, 2].map(|c| 0.5 * (own[c] + other[c]));
+                *value = value_of((t, sub), l, material.stress(strains.at(l)));
             }
         }
     }
-    Some(mid)
+    field
 }
 
 impl UpperBound {

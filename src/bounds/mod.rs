@@ -15,7 +15,7 @@ pub use energy::{
     Complementary, LocalGap, Potential, complementary, local_gap, potential, support_work, work, work_of,
 };
 pub use jump::{openings, side_coefficients};
-pub use mid::mid_field;
+pub use mid::{mid_field, stress_of};
 pub use sum::Sum;
 pub use upper::{
     Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Pull, Repair, Until, Violation, admissible, bernstein,

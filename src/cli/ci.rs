@@ -56,8 +56,7 @@ pub fn annotate(complaints: &[Complaint]) {
 pub fn report(report: &Report, scene: &Path) {
     step_summary(&summary(report), &report.verdict);
     if report.status != Status::Agree {
-        let first = report.checks.iter().find(|check| !check.passed);
-        let message = first.map_or(report.verdict.clone(), |check| format!("{}: {}", check.name, check.why));
+        let message = report.causes.first().map_or(report.verdict.clone(), |cause| cause.sentence.clone());
         annotate(&[Complaint { file: Some(scene.to_path_buf()), line: None, title: report.scene.clone(), message }]);
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::session::{DualRun, Session};
 use super::{CliError, Exit, ci, say};
+use crate::cause::{outcome, told};
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::problem::Note;
@@ -95,6 +96,7 @@ impl Session {
 
     /// Gives the report the identifier of this run, where one was given.
     pub(super) fn sign(&self, dossier: &mut Dossier<'_>) {
+        dossier.report.provenance.command_line = command_line();
         if let Some(run) = &self.run {
             dossier.report.run.clone_from(run);
         }
@@ -110,11 +112,14 @@ impl Session {
             for quantity in &report.quantities {
                 say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
             }
-            for check in report.checks.iter().filter(|c| !c.passed) {
-                say::line(&format!("  failed: {}: {}", check.name, check.why));
+            for cause in &report.causes {
+                say::line(&format!("  {} {} {}", cause.sentence, cause.suggests, cause.remedy));
+                for check in report.checks.iter().filter(|check| cause.checks.contains(&check.name)) {
+                    say::line(&format!("    {}: {}: {}", outcome(check), check.name, told(check)));
+                }
             }
             for diagnosis in &report.diagnosis {
-                say::line(&format!("  {}", diagnosis.sentence));
+                say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
                 say::line(&format!("  worth a look: {}", remark.name));
@@ -128,6 +133,17 @@ impl Session {
             Status::Failed => Exit::Failed,
         })
     }
+}
+
+/// The command of this process, with quotes around what a shell would take apart.
+fn command_line() -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
+    let quoted = |word: String| match word.is_empty() || !word.chars().all(plain) {
+        true => format!("'{}'", word.replace('\'', r"'\''")),
+        false => word,
+    };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("hypercircle".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
 /// How the sharper bracket came about.

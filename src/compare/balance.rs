@@ -44,6 +44,8 @@ pub struct Balance {
     pub energy_rounding: f64,
     /// The node with the largest remainder: where it is, and the force that is left.
     pub worst: Option<([f64; 2], [f64; 2])>,
+    /// This node: vertices, then edge midpoints.
+    pub worst_node: Option<usize>,
     /// Largest difference of a reported reaction, or resultant, from what the displacement asks for; one for each interface.
     pub reactions: Vec<f64>,
     /// What rounding can leave in a reaction, interface by interface.
@@ -100,6 +102,7 @@ impl Balance {
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
             worst: worst.map(|i| (place(problem, i), rest[i])),
+            worst_node: worst,
             reactions,
             reaction_rounding,
             carried,

@@ -66,8 +66,8 @@ pub fn primal_checks(problem: &Problem, scales: &Scales, bracket: &Bracket, judg
         ADMISSIBLE,
         if judged.candidate.is_solution { Basis::RoundOff } else { Basis::Claimed },
         format!(
-            "Supports are met (off by {support:.1e}) and nothing penetrates, {where_to}, relative to the largest \
-             displacement.{}",
+            "An admissible displacement meets its supports (off by {support:.1e}) and penetrates nowhere, {where_to}, \
+             relative to the largest displacement.{}",
             deepest(problem, &judged.candidate)
         ),
     ));

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
+pub use crate::cause::{Cause, Place};
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
@@ -30,6 +31,8 @@ pub struct Report {
     pub status: Status,
     /// One sentence that says the verdict in words.
     pub verdict: String,
+    /// What the checks that did not pass have in common: why, where, and what to try.
+    pub causes: Vec<Cause>,
     /// The energy bracket; `null` where no dual solution exists.
     pub energy: Option<Energy>,
     /// The dual solve.
@@ -230,6 +233,10 @@ pub struct Provenance {
     pub lock_sha256: String,
     /// Threads used.
     pub threads: usize,
+    /// The command that made them, as typed; empty where it is not known.
+    pub command_line: String,
+    /// The date on which it was run, of the meridian of Greenwich.
+    pub date: String,
     /// Seconds by phase of the whole run.
     pub seconds: std::collections::BTreeMap<String, f64>,
 }
@@ -247,7 +254,9 @@ pub struct Dossier<'a> {
     pub displacements: Vec<(String, &'a Displacement)>,
     /// The stress half-way between λ_h and that of the best displacement.
     pub mid: Option<&'a StressField>,
-    /// Scalar fields on triangles for maps and VTU: name, one value per triangle.
+    /// Stresses of the displacement models, by name.
+    pub stresses: Vec<(String, &'a StressField)>,
+    /// Scalar fields on triangles for maps and VTU.
     pub maps: Vec<Map>,
     /// A rigid motion to show, for a scene without equilibrium: displacement per vertex.
     pub motion: Option<Vec<[f64; 2]>>,
@@ -257,9 +266,60 @@ pub struct Dossier<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map {
     /// Key used in the VTU.
-    pub key: &'static str,
-    /// Title in words.
+    pub key: String,
+    /// Whose it is: a model, a quantity.
     pub title: String,
+    /// What it shows; maps of one kind share a scale.
+    pub kind: MapKind,
     /// One value per triangle.
     pub values: Vec<f64>,
+}
+
+/// What a map shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapKind {
+    /// What a claimed solution misses of equilibrium.
+    Residual,
+    /// How far two stresses are apart: the root of twice the density of the energy of their difference.
+    Difference,
+    /// Von Mises stress of the mean over each triangle.
+    VonMises,
+    /// What each triangle adds to the gap between the lower bound and an upper one, relative to the whole.
+    GapShare,
+    /// What each triangle adds to the width of the interval of a quantity, relative to the whole.
+    QuantityShare,
+}
+
+impl MapKind {
+    /// All of them; the first that there is is shown first.
+    pub const ALL: [MapKind; 5] =
+        [Self::Residual, Self::Difference, Self::VonMises, Self::GapShare, Self::QuantityShare];
+
+    /// Its name in words.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Residual => "Missing equilibrium",
+            Self::Difference => "Stress difference",
+            Self::VonMises => "Von Mises stress",
+            Self::GapShare => "Share in the gap",
+            Self::QuantityShare => "Share in the interval",
+        }
+    }
+
+    /// What it shows, in a sentence.
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Residual => {
+                "What equilibrium misses at the nodes of each triangle, relative to the whole: next to nothing everywhere for a discrete solution."
+            }
+            Self::Difference => {
+                "How far the stresses of two models are apart: the root of twice the energy density of their difference."
+            }
+            Self::VonMises => "Von Mises stress of the mean stress over each triangle.",
+            Self::GapShare => {
+                "What each triangle adds to the width of the bracket with this upper bound: large where a finer mesh pays."
+            }
+            Self::QuantityShare => "What each triangle adds to the width of the interval of this quantity.",
+        }
+    }
 }

@@ -9,6 +9,7 @@ use quick_junit::{
 use super::number::{optional, significant};
 use super::words::worth_a_look;
 use super::{QuantitySummary, Report, Status};
+use crate::cause::told;
 use crate::compare::Check;
 
 /// The checks as a JUnit test suite named after the scene, the notes and remarks as its output; after the checks one test case
@@ -71,16 +72,17 @@ pub(crate) fn case(check: &Check, scene: &str) -> TestCase {
         let message = match check.difference {
             Some(difference) => {
                 format!(
-                    "difference {} exceeds the allowed {}",
+                    "{} (difference {}, allowed {})",
+                    told(check),
                     significant(difference, 6),
                     significant(check.allowed, 6)
                 )
             }
-            None => "the check could not be made, so it has not passed".to_string(),
+            None => told(check),
         };
         status.set_message(message).set_type(super::words::basis_word(check.basis));
         status.set_description(format!(
-            "value {}\nreference {}\ndifference {}\nallowed {}\n{}",
+            "value {}\nreference {}\ndifference {}\nallowed {}\nwhat it asks: {}",
             optional(check.value, 12),
             optional(check.reference, 12),
             optional(check.difference, 6),

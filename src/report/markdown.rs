@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
 use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from, worth_a_look};
 use super::{Report, Status};
+use crate::cause::told;
 
 /// How many failing checks and quantities are listed before the rest is only counted.
 const LISTED: usize = 12;
@@ -18,6 +19,7 @@ pub fn summary(report: &Report) -> String {
     let _ = writeln!(text, "{}\n", cell(&report.verdict));
     bracket(&mut text, report);
     quantities(&mut text, report);
+    causes(&mut text, report);
     checks(&mut text, report);
     for diagnosis in &report.diagnosis {
         let _ = writeln!(text, "**What is wrong with {}:** {}\n", cell(&diagnosis.field), cell(&diagnosis.sentence));
@@ -91,6 +93,26 @@ fn quantities(text: &mut String, report: &Report) {
     text.push('\n');
 }
 
+/// Why checks did not pass, before they are listed.
+fn causes(text: &mut String, report: &Report) {
+    for cause in report.causes.iter().take(LISTED) {
+        let _ = writeln!(
+            text,
+            "- **{}** {} *Try:* {} ({} checks)",
+            cell(&cause.sentence),
+            cell(&cause.suggests),
+            cell(&cause.remedy),
+            cause.checks.len()
+        );
+    }
+    if report.causes.len() > LISTED {
+        let _ = writeln!(text, "- and {} more", report.causes.len() - LISTED);
+    }
+    if !report.causes.is_empty() {
+        text.push('\n');
+    }
+}
+
 fn checks(text: &mut String, report: &Report) {
     let failing = failing(report);
     if report.checks.is_empty() {
@@ -98,8 +120,8 @@ fn checks(text: &mut String, report: &Report) {
     } else if failing.is_empty() {
         let _ = writeln!(text, "All {} checks passed.\n", report.checks.len());
     } else {
-        let _ = writeln!(text, "**{} of {} checks failed:**\n", failing.len(), report.checks.len());
-        let _ = writeln!(text, "| check | value | reference | difference | allowed | basis | why |");
+        let _ = writeln!(text, "**{} of {} checks did not pass:**\n", failing.len(), report.checks.len());
+        let _ = writeln!(text, "| check | value | reference | difference | allowed | basis | what came of it |");
         let _ = writeln!(text, "|---|--:|--:|--:|--:|---|---|");
         for check in failing.iter().take(LISTED) {
             let _ = writeln!(
@@ -111,7 +133,7 @@ fn checks(text: &mut String, report: &Report) {
                 check.difference.map_or("not made".to_string(), |d| significant(d, 4)),
                 significant(check.allowed, 4),
                 basis_word(check.basis),
-                cell(&check.why)
+                cell(&told(check))
             );
         }
         if failing.len() > LISTED {

@@ -34,5 +34,5 @@ pub use markdown::summary;
 pub use quantities_csv::quantities_csv;
 pub use run::run_of;
 pub use stored::*;
-pub use vtu::vtu;
+pub use vtu::{plain, vtu};
 pub use write::{NAMES, QUANTITIES, ReportError, write};

@@ -65,11 +65,12 @@ impl Sample {
     /// The dossier, with a rigid motion if infeasible.
     pub fn dossier(&self) -> Dossier<'_> {
         let mesh = &self.problem.mesh;
-        let map = |key, title: &str, f: &dyn Fn(f64, f64) -> f64| {
+        let map = |key: &str, kind, title: &str, f: &dyn Fn(f64, f64) -> f64| {
             let centre = |t: usize| [0, 1].map(|c| mesh.corners(t).iter().map(|p| p[c]).sum::<f64>() / 3.0);
             Map {
-                key,
+                key: key.to_string(),
                 title: title.to_string(),
+                kind,
                 values: (0..mesh.triangles.len()).map(centre).map(|[x, y]| f(x, y)).collect(),
             }
         };
@@ -80,11 +81,12 @@ impl Sample {
             dual: (!infeasible).then_some(&self.dual),
             displacements: self.displacements.iter().map(|(name, field)| (name.clone(), field)).collect(),
             mid: None,
+            stresses: Vec::new(),
             maps: vec![
-                map("stress_difference", "Difference of the stresses", &|x, y| {
+                map("stress_difference", MapKind::Difference, "dual less FEniCSx P2 <a&b>", &|x, y| {
                     (x - 1.0).powi(2) + 0.1 * (9.0 * y).sin().abs()
                 }),
-                map("error_contribution", "Contribution to the error bound", &|x, y| {
+                map("error_contribution", MapKind::GapShare, "free upper bound", &|x, y| {
                     1e-6 / ((x - 1.0).powi(2) + (y - 0.6).powi(2) + 1e-4)
                 }),
             ],

@@ -57,6 +57,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         run: "0123456789abcdef".into(),
         status: verdict,
         verdict: verdict_text.into(),
+        causes: if failed { causes() } else { Vec::new() },
         energy: solved.then_some(energy),
         dual: solved.then(|| DualSummary {
             method: "condensed".into(),
@@ -104,6 +105,8 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
             mesh_sha256: "fedcba9876543210".repeat(4),
             lock_sha256: "00ff".repeat(16),
             threads: 1,
+            command_line: "hypercircle verify two_blocks.toml".into(),
+            date: "2026-01-31".into(),
             seconds: BTreeMap::from([("dual".into(), 0.11), ("primal".into(), 1.9), ("total".into(), 2.1)]),
         },
     }
@@ -175,6 +178,25 @@ fn checks(failed: bool, lower: f64, p2: f64) -> Vec<Check> {
             "The gap computed from energies and from local terms.",
         ),
     ]
+}
+
+/// What the two failing checks have in common.
+fn causes() -> Vec<Cause> {
+    vec![Cause {
+        name: "contact/left_face|right_face/in-part".to_string(),
+        sentence: "In FEniCSx P2 contact left_face|right_face does not act at (1, 0) of <a&b>.".to_string(),
+        place: Some(Place {
+            at: [1.0, 0.0],
+            vertex: Some(1),
+            triangle: Some(0),
+            body: "left <a&b>".to_string(),
+            contact: Some("left_face|right_face".to_string()),
+            boundary: None,
+        }),
+        suggests: "A row is missing.".to_string(),
+        remedy: "Count the rows.".to_string(),
+        checks: ["energy.order.P2", "contact.left_face|right_face.resultant <a&b>"].map(String::from).to_vec(),
+    }]
 }
 
 /// One as usual, one that is worth a look.

@@ -4,83 +4,96 @@
 //! inner segments, is drawn as it is. Where stresses have degree p these are the nodes of the lattice of degree p, and p² plain
 //! triangles between them: every program reads them, and what they show is exact at the nodes.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
+mod sheet;
 
 use super::Dossier;
 use super::lattice::Lattice;
 use crate::problem::Problem;
 use crate::scene::Kinematics;
+pub(super) use sheet::shortened;
+use sheet::{Precision, Sheet};
 
-/// From this many triangles on, fields are stored in single precision: the file would otherwise be several hundred
-/// megabytes, and is for looking at.
-const SINGLE_PRECISION_FROM: usize = 100_000;
+/// From this many triangles on fields keep four digits: the file would otherwise be tens of megabytes, and is for looking at.
+const FOR_LOOKING_FROM: usize = 10_000;
+/// The components of a symmetric tensor in the order of VTK.
+const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+/// Those of a vector.
+const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 
 /// The VTK unstructured grid: for every triangle of degree p three times p² cells.
 ///
-/// Point data: `dual_stress` (xx, yy, xy), `von_mises` and `pressure` of λ_h, `mid_stress` (xx, yy, xy), `displacement_…` of every model and the
-/// rigid `motion` where there is one (three components, the last zero). Cell data: `triangle`, `body`, `degree` of the stresses where it is not
-/// one everywhere, and the maps.
+/// Point data: `dual_stress`, `mid_stress`, `stress_…` of every displacement model and `stress_difference_…`, λ_h less that, as
+/// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
+/// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
+/// everywhere, and the maps. Field data: `scene`, `scene_sha256` and `run`, as UTF-8.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
     let run = format!(" run {} ", dossier.report.run);
-    let single = mesh.triangles.len() >= SINGLE_PRECISION_FROM;
+    let precision = if mesh.triangles.len() >= FOR_LOOKING_FROM { Precision::ForLooking } else { Precision::Whole };
     let lattice = Lattice::new(dossier);
     let cells: usize = (0..mesh.triangles.len()).map(|t| lattice.cells(t)).sum();
     let points = lattice.values(|t, sub, l| {
         let [x, y] = dossier.problem.scene.as_written(within(mesh.corners(t), sub, l));
         [x, y, 0.0]
     });
-    let mut out = Sheet { xml: Writer::new_with_indent(Vec::new(), b' ', 1), single };
-    out.xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    out.xml.write_event(Event::Comment(BytesText::new(&run)))?;
-    out.open(
-        "VTKFile",
-        &[("type", "UnstructuredGrid"), ("version", "1.0"), ("byte_order", "LittleEndian"), ("header_type", "UInt64")],
-    )?;
+    let mut out = Sheet::new(&run, precision)?;
     out.open("UnstructuredGrid", &[])?;
+    out.open("FieldData", &[])?;
+    out.text("scene", &dossier.report.scene)?;
+    out.text("scene_sha256", &dossier.report.provenance.scene_sha256)?;
+    out.text("run", &dossier.report.run)?;
+    out.close("FieldData")?;
     out.open("Piece", &[("NumberOfPoints", &(points.len() / 3).to_string()), ("NumberOfCells", &cells.to_string())])?;
     point_data(&mut out, dossier, &lattice)?;
     cell_data(&mut out, dossier, &lattice)?;
     out.open("Points", &[])?;
-    out.array("Points", "Float64", 3, points.iter().flat_map(|x| x.to_le_bytes()))?;
+    out.array("Points", "Float64", &VECTOR, points.iter().flat_map(|x| x.to_le_bytes()).collect())?;
     out.close("Points")?;
     out.open("Cells", &[])?;
-    out.array("connectivity", "Int64", 1, lattice.connectivity().flat_map(i64::to_le_bytes))?;
-    out.array("offsets", "Int64", 1, (1..=cells as i64).flat_map(|k| (3 * k).to_le_bytes()))?;
+    out.array("connectivity", "Int64", &[], lattice.connectivity().flat_map(i64::to_le_bytes).collect())?;
+    out.array("offsets", "Int64", &[], (1..=cells as i64).flat_map(|k| (3 * k).to_le_bytes()).collect())?;
     const VTK_TRIANGLE: u8 = 5;
-    out.array("types", "UInt8", 1, std::iter::repeat_n(VTK_TRIANGLE, cells))?;
-    for name in ["Cells", "Piece", "UnstructuredGrid", "VTKFile"] {
+    out.array("types", "UInt8", &[], vec![VTK_TRIANGLE; cells])?;
+    for name in ["Cells", "Piece", "UnstructuredGrid"] {
         out.close(name)?;
     }
-    let mut bytes = out.xml.into_inner();
-    bytes.push(b'\n');
-    Ok(bytes)
+    out.finish()
 }
 
 fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::Result<()> {
     let problem = dossier.problem;
     let mesh = &problem.mesh;
-    out.open("PointData", &[])?;
-    if let Some(dual) = dossier.dual.filter(|dual| dual.stress.len() == mesh.triangles.len()) {
-        let stress = |t, sub, l| dual.stress.at(t, sub, l);
-        out.field("dual_stress", 3, &lattice.values(stress))?;
-        out.field("von_mises", 1, &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]))?;
-        out.field("pressure", 1, &lattice.values(|t, sub, l| [mean_pressure(problem, t, stress(t, sub, l))]))?;
+    let dual = dossier.dual.map(|dual| &dual.stress).filter(|stress| stress.len() == mesh.triangles.len());
+    let tensor = |t: usize, s: [f64; 3]| [s[0], s[1], out_of_plane(problem, t, s), s[2], 0.0, 0.0];
+    out.open("PointData", &dual.map(|_| ("Tensors", "dual_stress")).into_iter().collect::<Vec<_>>())?;
+    if let Some(dual) = dual {
+        let stress = |t, sub, l| dual.at(t, sub, l);
+        out.field("dual_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress(t, sub, l))))?;
+        out.field("von_mises", &[], &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]))?;
+        out.field("mean_stress", &[], &lattice.values(|t, sub, l| [mean_stress(problem, t, stress(t, sub, l))]))?;
     }
     if let Some(mid) = dossier.mid.filter(|mid| mid.len() == mesh.triangles.len()) {
-        out.field("mid_stress", 3, &lattice.values(|t, sub, l| mid.at(t, sub, l)))?;
+        out.field("mid_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, mid.at(t, sub, l))))?;
     }
     let mut names = Vec::new();
+    for (name, stress) in dossier.stresses.iter().filter(|(_, stress)| stress.len() == mesh.triangles.len()) {
+        let key = unique_key("stress", name, &mut names);
+        out.field(&key, &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress.at(t, sub, l))))?;
+        if let Some(dual) = dual {
+            let apart = lattice.values(|t, sub, l| {
+                let (own, other) = (dual.at(t, sub, l), stress.at(t, sub, l));
+                tensor(t, [0, 1, 2].map(|c| own[c] - other[c]))
+            });
+            out.field(&unique_key("stress_difference", name, &mut names), &TENSOR, &apart)?;
+        }
+    }
     for (name, displacement) in &dossier.displacements {
         if displacement.len() == mesh.triangles.len() {
             let values = lattice.values(|t, sub, l| {
                 let [x, y] = displacement.at(t, on_triangle(sub, l));
                 [x, y, 0.0]
             });
-            out.field(&unique_key(name, &mut names), 3, &values)?;
+            out.field(&unique_key("displacement", name, &mut names), &VECTOR, &values)?;
         }
     }
     if let Some(motion) = dossier.motion.as_ref().filter(|motion| motion.len() == mesh.points.len()) {
@@ -88,7 +101,7 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
             let [x, y] = within(mesh.triangles[t].map(|v| motion[v]), sub, l);
             [x, y, 0.0]
         });
-        out.field("motion", 3, &values)?;
+        out.field("motion", &VECTOR, &values)?;
     }
     out.close("PointData")
 }
@@ -100,65 +113,17 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
         (0..mesh.triangles.len()).flat_map(of).flat_map(i64::to_le_bytes).collect()
     };
     out.open("CellData", &[])?;
-    out.array("triangle", "Int64", 1, on_cells(&|t| t as i64))?;
-    out.array("body", "Int64", 1, on_cells(&|t| mesh.body[t] as i64))?;
+    out.array("triangle", "Int64", &[], on_cells(&|t| t as i64))?;
+    out.array("body", "Int64", &[], on_cells(&|t| mesh.body[t] as i64))?;
     if lattice.degrees.iter().any(|p| *p != 1) {
-        out.array("degree", "Int64", 1, on_cells(&|t| lattice.degrees[t] as i64))?;
+        out.array("degree", "Int64", &[], on_cells(&|t| lattice.degrees[t] as i64))?;
     }
     for map in dossier.maps.iter().filter(|map| map.values.len() == mesh.triangles.len()) {
         let of = |(t, v): (usize, &f64)| std::iter::repeat_n(*v, lattice.cells(t));
         let values: Vec<f64> = map.values.iter().enumerate().flat_map(of).collect();
-        out.field(map.key, 1, &values)?;
+        out.field(&map.key, &[], &values)?;
     }
     out.close("CellData")
-}
-
-/// The XML under construction.
-struct Sheet {
-    xml: Writer<Vec<u8>>,
-    single: bool,
-}
-
-impl Sheet {
-    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) -> std::io::Result<()> {
-        let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
-        self.xml.write_event(Event::Start(start))
-    }
-
-    fn close(&mut self, name: &str) -> std::io::Result<()> {
-        self.xml.write_event(Event::End(BytesEnd::new(name)))
-    }
-
-    /// A field of floating-point numbers in the precision of this file.
-    fn field(&mut self, name: &str, components: usize, values: &[f64]) -> std::io::Result<()> {
-        if self.single {
-            self.array(name, "Float32", components, values.iter().flat_map(|&x| (x as f32).to_le_bytes()))
-        } else {
-            self.array(name, "Float64", components, values.iter().flat_map(|x| x.to_le_bytes()))
-        }
-    }
-
-    /// Inline binary: the number of bytes and the bytes, in one base64 text.
-    fn array(
-        &mut self,
-        name: &str,
-        kind: &str,
-        components: usize,
-        data: impl IntoIterator<Item = u8>,
-    ) -> std::io::Result<()> {
-        let mut bytes = vec![0; 8];
-        bytes.extend(data);
-        let length = bytes.len() as u64 - 8;
-        bytes[..8].copy_from_slice(&length.to_le_bytes());
-        let attributes = [("type", kind), ("Name", name), ("format", "binary")];
-        let mut element = self.xml.create_element("DataArray").with_attributes(attributes);
-        // Scalars go without the count, as VTK itself writes them: some readers make a column of one otherwise.
-        if components > 1 {
-            element = element.with_attribute(("NumberOfComponents", components.to_string().as_str()));
-        }
-        element.write_text_content(BytesText::from_escaped(STANDARD.encode(bytes)))?;
-        Ok(())
-    }
 }
 
 /// What is linear on subtriangle `sub`, from its values at the corners of the triangle, with their mean at the centroid.
@@ -194,20 +159,24 @@ pub(crate) fn von_mises(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
     (0.5 * differences + 3.0 * s[2] * s[2]).sqrt()
 }
 
-/// −tr σ / 3.
-fn mean_pressure(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    -(s[0] + s[1] + out_of_plane(problem, t, s)) / 3.0
+/// tr σ / 3.
+fn mean_stress(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
+    (s[0] + s[1] + out_of_plane(problem, t, s)) / 3.0
 }
 
-/// `displacement_` and the name in letters that every program reads, made unique.
-fn unique_key(name: &str, taken: &mut Vec<String>) -> String {
-    let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    let mut key = format!("displacement_{plain}");
+/// `kind` and the name in letters that every program reads, made unique.
+fn unique_key(kind: &str, name: &str, taken: &mut Vec<String>) -> String {
+    let mut key = format!("{kind}_{}", plain(name));
     while taken.contains(&key) {
         key.push('_');
     }
     taken.push(key.clone());
     key
+}
+
+/// A name in letters that every program reads.
+pub fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
 #[cfg(test)]

@@ -3,15 +3,17 @@
 use super::Certified;
 use super::answers::{Answer, summaries};
 use super::curves;
+use super::maps::Fields;
 use super::provenance::{identifier, provenance};
 use super::verdict::verdict;
-use crate::bounds::{Bracket, UpperBound, mid_field};
-use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::bounds::{Bracket, UpperBound};
+use crate::cause::causes;
+use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
-use crate::element::{Displacement, StressField};
+use crate::element::Displacement;
 use crate::problem::{Note, Problem};
-use crate::report::{Dossier, DualSummary, Energy, HistoryRow, Map, PrimalSummary, Report, SCHEMA_VERSION, Status};
+use crate::report::{Dossier, DualSummary, Energy, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status};
 
 /// What a run found.
 #[derive(Debug)]
@@ -63,100 +65,10 @@ pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
         dual: Some(dual),
         displacements,
         mid: fields.mid.as_ref(),
+        stresses: fields.stresses.iter().map(|(name, stress)| (name.clone(), stress)).collect(),
         maps: fields.maps.clone(),
         motion: None,
     }
-}
-
-/// Scalar fields for pictures and VTU.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fields {
-    maps: Vec<Map>,
-    mid: Option<StressField>,
-}
-
-impl Fields {
-    /// Computes the maps of a run.
-    pub fn new(certified: &Certified, comparison: &Comparison, answers: &[Answer]) -> Self {
-        let Certified { problem, dual, bracket, .. } = certified;
-        let count = problem.mesh.triangles.len();
-        let means: Vec<[f64; 3]> = (0..count).map(|t| dual.stress.mean(t)).collect();
-        let mut maps = vec![Map {
-            key: "von_mises_dual",
-            title: "Von Mises stress, dual solution".to_string(),
-            values: von_mises_map(problem, &means),
-        }];
-        if let Some(best) = comparison.best.map(|b| &comparison.judged[b]) {
-            maps.push(Map {
-                key: "von_mises_primal",
-                title: "Von Mises stress, best displacement solution".to_string(),
-                values: von_mises_map(problem, &primal_means(problem, best)),
-            });
-            maps.push(Map {
-                key: "stress_difference",
-                title: "Stress difference: root of the energy density of λ_h − σ(u_h)".to_string(),
-                values: density(problem, &best.field.local.triangles),
-            });
-        }
-        let mut mid = None;
-        if let Some((upper, _)) = comparison.upper(bracket) {
-            mid = mid_field(problem, &dual.stress, &upper.displacement);
-            maps.push(Map {
-                key: "error_contribution",
-                title: "Share of each triangle in the gap between the bounds".to_string(),
-                values: shares(problem, upper),
-            });
-        }
-        maps.extend(widest(answers));
-        Fields { maps, mid }
-    }
-
-    /// The same with the residual of a claimed solution, triangle by triangle.
-    pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
-        let map = |values| Map {
-            key: "residual",
-            title: "What the claimed solution misses of equilibrium, at its nodes".to_string(),
-            values,
-        };
-        self.maps.splice(0..0, values.map(map));
-        self
-    }
-}
-
-/// What each triangle adds to the interval that is the widest relative to its value.
-fn widest(answers: &[Answer]) -> Option<Map> {
-    let width = |answer: &Answer| answer.interval.half_width() / answer.interval.value.abs();
-    let total = |answer: &Answer| answer.interval.shares.iter().sum::<f64>();
-    let known = answers.iter().filter(|answer| width(answer).is_finite() && width(answer) > 0.0);
-    let answer = known.max_by(|a, b| width(a).total_cmp(&width(b)))?;
-    let whole = total(answer);
-    (whole.is_finite() && whole > 0.0).then(|| Map {
-        key: "quantity_contribution",
-        title: format!("Share of each triangle in the interval of {}", answer.name),
-        values: answer.interval.shares.iter().map(|share| share / whole).collect(),
-    })
-}
-
-/// Square root of twice the term per area: the local size of a stress difference in energy units.
-fn density(problem: &Problem, terms: &[f64]) -> Vec<f64> {
-    terms.iter().enumerate().map(|(t, v)| (2.0 * v.max(0.0) / problem.mesh.area(t)).sqrt()).collect()
-}
-
-/// Local terms of the gap relative to their sum; those of a contact pair go to the triangle on its first side.
-pub fn shares(problem: &Problem, upper: &UpperBound) -> Vec<f64> {
-    let mut terms = upper.local.triangles.clone();
-    for (interface, values) in problem.interfaces.iter().zip(&upper.local.pairs) {
-        for (pair, value) in interface.pairs.iter().zip(values) {
-            if let Some(t) = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]) {
-                terms[t] += value;
-            }
-        }
-    }
-    let total = upper.local.total;
-    if total > 0.0 {
-        terms.iter_mut().for_each(|v| *v /= total);
-    }
-    terms
 }
 
 fn report(findings: &Findings<'_>) -> Report {
@@ -181,6 +93,7 @@ fn report(findings: &Findings<'_>) -> Report {
         (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
         (None, true) => Status::Agree,
     };
+    let causes = causes(problem, comparison, &findings.diagnosis);
     let (checks, remarks) = comparison.checks.iter().cloned().partition(|check| check.decides());
     let mut provenance = provenance(problem, findings.threads);
     provenance.components.extend(findings.components.iter().cloned());
@@ -192,7 +105,8 @@ fn report(findings: &Findings<'_>) -> Report {
         command: findings.command.to_string(),
         run: identifier(),
         status,
-        verdict: verdict(findings, status, energy.as_ref()),
+        verdict: verdict(findings, status, energy.as_ref(), &causes),
+        causes,
         energy,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
@@ -296,6 +210,7 @@ pub fn infeasible<'a>(
             run: identifier(),
             status: Status::Infeasible,
             verdict: sentence.to_string(),
+            causes: Vec::new(),
             energy: None,
             dual: None,
             primal: Vec::new(),
@@ -314,6 +229,7 @@ pub fn infeasible<'a>(
         dual: None,
         displacements: Vec::new(),
         mid: None,
+        stresses: Vec::new(),
         maps: Vec::new(),
         motion: Some(motion),
     }

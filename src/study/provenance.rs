@@ -28,6 +28,8 @@ pub fn provenance(problem: &Problem, threads: usize) -> Provenance {
         mesh_sha256: mesh_hash(problem),
         lock_sha256: hash(LOCK.as_bytes()),
         threads,
+        command_line: String::new(),
+        date: super::date::today(),
         seconds: BTreeMap::new(),
     }
 }

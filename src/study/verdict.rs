@@ -1,11 +1,12 @@
 //! The verdict in words.
 
 use super::dossier::{Findings, in_numbers};
+use crate::cause::Cause;
 use crate::report::number::{digits_to_tell, percent, significant};
 use crate::report::{Energy, Status};
 
 /// The verdict in one sentence.
-pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>) -> String {
+pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&Energy>, causes: &[Cause]) -> String {
     if let Some(failure) = &findings.failure {
         return format!("No comparison was made: {failure}");
     }
@@ -27,7 +28,12 @@ pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&E
         names => format!(", with what was allowed for {}", names.join(", ")),
     };
     let bound = if findings.command == "certify" { of_field(findings, energy) } else { bound };
-    let told: String = findings.diagnosis.iter().map(|d| format!(" {}", d.sentence)).collect();
+    let told = causes.first().map_or(String::new(), |cause| format!("{} ", cause.sentence));
+    let told = match causes.len() {
+        0 | 1 => told,
+        2 => format!("{told}There is one more cause. "),
+        n => format!("{told}There are {} more causes. ", n - 1),
+    };
     let models = findings.comparison.judged.len();
     match (failed.as_slice(), models) {
         ([], _) if status == Status::Undecided => {
@@ -39,8 +45,8 @@ pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&E
             format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")
         }
         ([], _) => format!("The stress and displacement models agree{allowances}.{bound}"),
-        ([one], _) => format!("One check failed: {one}.{told}{bound}"),
-        (several, _) => format!("{} checks failed, first {}.{told}{bound}", several.len(), several[0]),
+        ([one], _) => format!("{told}One check failed: {one}.{bound}"),
+        (several, _) => format!("{told}{} checks failed, first {}.{bound}", several.len(), several[0]),
     }
 }
 

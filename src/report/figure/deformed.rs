@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::mark::{Mark, draw};
 use super::outline::{View, loops, outline, polyline};
 use super::svg::{Svg, look, px};
 use super::symbols;
@@ -39,7 +40,14 @@ fn round_down(x: f64) -> f64 {
 
 /// The bodies displaced by `scale` times `field`, over their undeformed outlines. All pictures with equal `scale` and
 /// `all` (the fields that have to fit) have the same frame, so that they can be laid side by side.
-pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Displacement], scale: f64) -> String {
+pub fn deformed(
+    problem: &Problem,
+    name: &str,
+    field: &Displacement,
+    all: &[&Displacement],
+    scale: f64,
+    marks: &[Mark],
+) -> String {
     let mesh = &problem.mesh;
     let bodies = problem.scene.bodies.len();
     let moved = |t: usize, k: usize, f: &Displacement| {
@@ -98,7 +106,18 @@ pub fn deformed(problem: &Problem, name: &str, field: &Displacement, all: &[&Dis
         let dash = if side == 0 { "" } else { r#" stroke-dasharray="7 3""# };
         svg.path(look::CONTACT, &format!(r#"stroke-width="2.4"{dash}"#), &d);
     }
+    draw(&mut svg, marks, |mark| view.at(displaced(problem, field, scale, mark)));
     svg.finish()
+}
+
+/// Where a mark is once its triangle has been displaced.
+fn displaced(problem: &Problem, field: &Displacement, scale: f64, mark: &Mark) -> [f64; 2] {
+    let Some(t) = mark.triangle.filter(|t| *t < field.len()) else { return mark.at };
+    let [a, b, c] = problem.mesh.corners(t);
+    let twice = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let area = twice(a, b, c);
+    let u = field.at(t, [twice(mark.at, b, c) / area, twice(a, mark.at, c) / area, twice(a, b, mark.at) / area]);
+    [0, 1].map(|k| mark.at[k] + scale * u[k])
 }
 
 /// The rigid motion that nothing stops: outlines before and after, and arrows.

@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
+use super::mark::{Mark, draw};
 use super::outline::{View, outline, polyline};
 use super::raster::raster;
 use super::svg::{Anchor, Svg, look, px};
 use super::viridis::{LEVELS, colour, level};
 use crate::problem::Problem;
 
-const WIDTH: f64 = 560.0;
+pub(crate) const WIDTH: f64 = 560.0;
 /// Height of the colour bar with its numbers.
 const BAR: f64 = 58.0;
 /// With more triangles than this the map is drawn on a grid, to keep the page small.
@@ -64,21 +65,34 @@ pub fn is_coarsened(problem: &Problem) -> bool {
     problem.mesh.triangles.len() > DRAWN_TRIANGLES
 }
 
-/// The map of `values`, one per triangle, with a colour bar; triangles whose value is no number stay blank.
-pub fn map(problem: &Problem, title: &str, values: &[f64]) -> String {
-    let mesh = &problem.mesh;
-    let (view, height) = View::fit(mesh.points.iter().copied(), WIDTH, 420.0, 8.0);
-    let scale = Scale::of(values);
-    let mut svg = Svg::new(WIDTH, height + BAR, format!("{title}: a map over the bodies with a colour bar"));
+/// Where the bodies are on a map, and its height.
+pub(crate) fn view(problem: &Problem) -> (View, f64) {
+    View::fit(problem.mesh.points.iter().copied(), WIDTH, 420.0, 8.0)
+}
+
+/// The map of `values`, one per triangle, on `scale`; triangles whose value is no number stay blank. What is coloured is a group of
+/// the class `cells`.
+pub fn map(problem: &Problem, title: &str, values: &[f64], scale: &Scale, marks: &[Mark]) -> String {
+    let (view, height) = view(problem);
+    let mut svg = Svg::new(WIDTH, height, format!("{title}: a map over the bodies"));
+    svg.raw(format_args!(r#"<g class="cells">"#));
     if is_coarsened(problem) {
-        cells(&mut svg, problem, values, &view, height, &scale);
+        cells(&mut svg, problem, values, &view, height, scale);
     } else {
-        triangles(&mut svg, problem, values, &view, &scale);
+        triangles(&mut svg, problem, values, &view, scale);
     }
+    svg.raw(format_args!("</g>"));
     for body in 0..problem.scene.bodies.len() {
-        svg.path(look::LINE, r#"stroke-width="1""#, &outline(mesh, body, &view));
+        svg.path(look::LINE, r#"stroke-width="1""#, &outline(&problem.mesh, body, &view));
     }
-    bar(&mut svg, height, &scale);
+    draw(&mut svg, marks, |mark| view.at(mark.at));
+    svg.finish()
+}
+
+/// The colours of a scale with its numbers.
+pub fn bar(title: &str, scale: &Scale) -> String {
+    let mut svg = Svg::new(WIDTH, BAR, format!("Colours of the map, {title}"));
+    colours(&mut svg, scale);
     svg.finish()
 }
 
@@ -133,8 +147,8 @@ fn cells(svg: &mut Svg, problem: &Problem, values: &[f64], view: &View, height: 
     }
 }
 
-fn bar(svg: &mut Svg, top: f64, scale: &Scale) {
-    let (left, right, y) = (40.0, WIDTH - 40.0, top + 12.0);
+fn colours(svg: &mut Svg, scale: &Scale) {
+    let (left, right, y) = (40.0, WIDTH - 40.0, 8.0);
     let step = (right - left) / LEVELS as f64;
     for l in 0..LEVELS {
         svg.rect(
@@ -179,7 +193,10 @@ mod tests {
     #[test]
     fn few_triangles_are_drawn_one_by_one() {
         let sample = Sample::new(3, Verdict::Agree);
-        let text = map(&sample.problem, "<von Mises>", &(0..36).map(f64::from).collect::<Vec<_>>());
+        let text = {
+            let values: Vec<f64> = (0..36).map(f64::from).collect();
+            map(&sample.problem, "<von Mises>", &values, &Scale::of(&values), &[])
+        };
         assert_well_formed(&text);
         // 36 triangles, 2 outlines, and the ticks are single lines without a z.
         assert_eq!(text.matches('z').count() - text.matches("size").count(), 38);
@@ -190,11 +207,11 @@ mod tests {
         let sample = Sample::new(96, Verdict::Agree);
         assert!(is_coarsened(&sample.problem));
         let noise: Vec<f64> = (0..sample.problem.mesh.triangles.len()).map(|t| ((t * 7919) % 1009) as f64).collect();
-        let text = map(&sample.problem, "noise", &noise);
+        let text = map(&sample.problem, "noise", &noise, &Scale::of(&noise), &[]);
         assert!(text.len() < 700_000, "{}", text.len());
         let smooth: Vec<f64> =
             sample.problem.mesh.triangles.iter().map(|t| sample.problem.mesh.points[t[0]][0]).collect();
-        let text = map(&sample.problem, "smooth", &smooth);
+        let text = map(&sample.problem, "smooth", &smooth, &Scale::of(&smooth), &[]);
         assert!(text.len() < 150_000, "{}", text.len());
     }
 }

@@ -8,13 +8,14 @@ pub mod bracket;
 pub mod deformed;
 pub mod history;
 pub mod map;
-mod outline;
+pub mod mark;
+pub(crate) mod outline;
 pub mod pressure;
 pub mod quantity;
-mod raster;
+pub(crate) mod raster;
 pub mod scene;
 mod svg;
 mod symbols;
-mod viridis;
+pub(crate) mod viridis;
 
 pub(crate) use svg::escape;

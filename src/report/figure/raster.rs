@@ -12,23 +12,26 @@ pub(crate) struct Raster {
     pub cell: f64,
     /// Row by row.
     pub values: Vec<f64>,
+    /// The triangle that each is of.
+    pub triangles: Vec<usize>,
 }
 
 /// Fills a grid of cells of page length `cell` over a picture of the given size.
 pub(crate) fn raster(mesh: &Triangulation, values: &[f64], view: &View, width: f64, height: f64, cell: f64) -> Raster {
     let columns = (width / cell).ceil().max(1.0) as usize;
     let rows = (height / cell).ceil().max(1.0) as usize;
-    let mut grid = Raster { columns, rows, cell, values: vec![f64::NAN; columns * rows] };
+    let mut grid =
+        Raster { columns, rows, cell, values: vec![f64::NAN; columns * rows], triangles: vec![0; columns * rows] };
     for (t, &value) in values.iter().enumerate().take(mesh.triangles.len()) {
         let corners = mesh.corners(t).map(|p| view.at(p).map(|x| x / cell));
-        grid.cover(corners, value);
+        grid.cover(corners, value, t);
     }
     grid
 }
 
 impl Raster {
     /// Raises the cells of one triangle, given in units of cells, to `value`.
-    fn cover(&mut self, [a, b, c]: [[f64; 2]; 3], value: f64) {
+    fn cover(&mut self, [a, b, c]: [[f64; 2]; 3], value: f64, t: usize) {
         if !value.is_finite() {
             return;
         }
@@ -43,20 +46,22 @@ impl Raster {
                 let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
                 let sides = [side(a, b, x, y), side(b, c, x, y), side(c, a, x, y)];
                 if sides.iter().all(|s| *s >= 0.0) || sides.iter().all(|s| *s <= 0.0) {
-                    self.raise(column, row, value);
+                    self.raise(column, row, value, t);
                 }
             }
         }
         let centre = [0, 1].map(|k| (a[k] + b[k] + c[k]) / 3.0);
         if centre.iter().all(|x| *x >= 0.0) {
-            self.raise(centre[0] as usize, centre[1] as usize, value);
+            self.raise(centre[0] as usize, centre[1] as usize, value, t);
         }
     }
 
-    fn raise(&mut self, column: usize, row: usize, value: f64) {
+    fn raise(&mut self, column: usize, row: usize, value: f64, t: usize) {
         if column < self.columns && row < self.rows {
-            let cell = &mut self.values[row * self.columns + column];
-            *cell = cell.max(value);
+            let cell = row * self.columns + column;
+            if self.values[cell].is_nan() || self.values[cell] < value {
+                (self.values[cell], self.triangles[cell]) = (value, t);
+            }
         }
     }
 }

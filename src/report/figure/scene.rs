@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::mark::{Mark, draw};
 use super::outline::{self, View, chains, edge_chains, polyline, stations};
 use super::svg::{Anchor, Svg, look};
 use super::symbols;
@@ -14,7 +15,7 @@ const MARGIN: f64 = 58.0;
 const LONGEST_ARROW: f64 = 44.0;
 
 /// The bodies in their undeformed state with everything that holds, loads or meets them.
-pub fn scene(problem: &Problem) -> String {
+pub fn scene(problem: &Problem, marks: &[Mark]) -> String {
     let mesh = &problem.mesh;
     let (view, height) = View::fit(mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
     let mut svg =
@@ -28,6 +29,7 @@ pub fn scene(problem: &Problem) -> String {
     contacts(&mut svg, problem, &view);
     tractions(&mut svg, problem, &view);
     labels(&mut svg, problem, &view);
+    draw(&mut svg, marks, |mark| view.at(mark.at));
     svg.finish()
 }
 

@@ -1,24 +1,34 @@
 //! `report.html`: one page that stands alone, for a reader who does not know the program.
 
+mod causes;
+mod checks;
+mod links;
+mod map;
 mod pictures;
 mod quantities;
+mod scene;
 mod style;
 mod tables;
+mod values;
 mod verdict;
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::document::document;
 use super::number::{clean, grouped};
 use super::{Dossier, Report};
 pub(crate) use style::CSS;
 
-/// The page: no script, nothing loaded.
+/// Reading values off the map, zooming, sorting: a comfort, and nothing else.
+const SCRIPT: &str = include_str!("page.js");
+
+/// The page: nothing loaded, and complete where its one script does not run.
 pub fn page(dossier: &Dossier) -> String {
     let report = &dossier.report;
     let title = format!("{} · {}", clean(&report.title), super::words::headline(report));
     let body = html! {
-        (verdict::first_screen(report))
+        a.skip href="#pictures" { "To the pictures" }
+        (verdict::first_screen(dossier))
         main {
             (pictures::pictures(dossier))
             (tables::tables(report))
@@ -29,6 +39,7 @@ pub fn page(dossier: &Dossier) -> String {
             (grouped(dossier.problem.mesh.triangles.len())) " triangles. "
             code { "report.json" } " holds every number of this page, " code { "fields.vtu" } " the fields for ParaView."
         }
+        script { (PreEscaped(SCRIPT)) }
     };
     document(&title, &[style::CSS], Some(&report.run), body)
 }

@@ -2,18 +2,21 @@
 
 use maud::{Markup, PreEscaped, html};
 
+use super::links;
+use super::tables::scroll;
 use crate::element::Displacement;
-use crate::report::figure::{deformed, history, map, pressure, scene};
-use crate::report::number::{clean, percent, significant};
-use crate::report::vtu::von_mises;
+use crate::report::figure::mark::{Mark, marks};
+use crate::report::figure::{deformed, history, pressure, scene};
+use crate::report::number::{clean, optional, percent, significant};
 use crate::report::{ContactSummary, Dossier};
 
 pub(super) fn pictures(dossier: &Dossier) -> Markup {
+    let marks = marks(dossier.problem, &dossier.report);
     html! {
         section #pictures {
             h2 { "Pictures" }
             div.gallery {
-                (scene_figure(dossier))
+                (scene_figure(dossier, &marks))
                 @if let Some(motion) = &dossier.motion {
                     figure {
                         (PreEscaped(deformed::motion(dossier.problem, motion)))
@@ -24,19 +27,19 @@ pub(super) fn pictures(dossier: &Dossier) -> Markup {
                         }
                     }
                 }
-                @for contact in &dossier.report.contact { (pressure_figure(contact)) }
-                (shapes(dossier))
-                (maps(dossier))
+                (super::map::figure(dossier, &marks))
+                @for i in 0..dossier.report.contact.len() { (pressure_figure(dossier, i)) }
+                (shapes(dossier, &marks))
                 @if !dossier.report.history.is_empty() { (history_figure(dossier)) }
             }
         }
     }
 }
 
-fn scene_figure(dossier: &Dossier) -> Markup {
+fn scene_figure(dossier: &Dossier, marks: &[Mark]) -> Markup {
     html! {
-        figure {
-            (PreEscaped(scene::scene(dossier.problem)))
+        figure #scene-picture {
+            (PreEscaped(scene::scene(dossier.problem, marks)))
             figcaption {
                 b { "The scene. " }
                 "Hatching: held in place. Circles: free to slide along, not to leave or enter. Orange arrows: applied forces. Red: contact, \
@@ -51,15 +54,15 @@ fn scene_figure(dossier: &Dossier) -> Markup {
     }
 }
 
-fn shapes(dossier: &Dossier) -> Markup {
+fn shapes(dossier: &Dossier, marks: &[Mark]) -> Markup {
     let all: Vec<&Displacement> = dossier.displacements.iter().map(|(_, field)| *field).collect();
     let scale = deformed::deformation_scale(dossier.problem, &all);
     let gap = dossier.problem.pairs().flat_map(|p| p.gap).any(|g| g > 0.0);
     html! {
-        @for (name, field) in &dossier.displacements {
+        @for (i, (name, field)) in dossier.displacements.iter().enumerate() {
             @let name = if name == "free" { "from the dual model (free upper bound)".to_string() } else { clean(name) };
-            figure {
-                (PreEscaped(deformed::deformed(dossier.problem, &name, field, &all, scale)))
+            figure id=[(i == 0).then_some("shapes")] {
+                (PreEscaped(deformed::deformed(dossier.problem, &name, field, &all, scale, marks)))
                 figcaption {
                     b { "Deformed shape, " (name) ". " }
                     "Displacements times " b { (significant(scale, 3)) } ". Dashed grey: undeformed. Red: the two sides of the contact; where they part, \
@@ -67,62 +70,79 @@ fn shapes(dossier: &Dossier) -> Markup {
                     @if gap && scale > 1.0 {
                         " The bodies start with a gap that is not drawn to this scale, so the sides may seem to overlap."
                     }
+                    @if i == 0 { (links::checks_of("shapes", &dossier.report)) }
                 }
             }
         }
     }
 }
 
-fn pressure_figure(contact: &ContactSummary) -> Markup {
+fn pressure_figure(dossier: &Dossier, index: usize) -> Markup {
+    let contact = &dossier.report.contact[index];
+    let [from, to] = pressure::extent(contact);
+    let id = format!("pressure-{index}");
     html! {
-        figure {
-            (PreEscaped(pressure::pressure(contact)))
+        figure id=(id) {
+            (PreEscaped(pressure::pressure(contact, &arc_marks(dossier, index))))
             figcaption {
-                b { "Pressure on " code { (clean(&contact.name)) } ". " }
+                b { "Pressure on " bdi { code { (clean(&contact.name)) } } ". " }
                 "The dual pressure may jump from edge to edge. Zero: the contact is open; it is open on "
                 (percent(contact.open_fraction)) " of its length."
                 @if !contact.contact_ends.is_empty() { " Dotted upright: end of contact." }
+                @if to - from < contact.length {
+                    " Shown from " (significant(from, 4)) " to " (significant(to, 4)) " of the length " (significant(contact.length, 4))
+                    "; no model has a pressure beyond."
+                }
+                (pressures(contact, [from, to]))
+                (links::checks_of(&id, &dossier.report))
             }
         }
     }
 }
 
-fn maps(dossier: &Dossier) -> Markup {
-    let problem = dossier.problem;
-    let triangles = problem.mesh.triangles.len();
-    let own = dossier.maps.iter().any(|map| map.key.contains("von_mises"));
-    let dual = dossier.dual.filter(|dual| !own && dual.stress.len() == triangles);
-    let coarse = if map::is_coarsened(problem) { " Each cell shows the largest value in it." } else { "" };
+/// The pressures of all models at equal distances along a contact.
+fn pressures(contact: &ContactSummary, [from, to]: [f64; 2]) -> Markup {
+    const ROWS: usize = 16;
+    let at = |k: usize| from + (to - from) * k as f64 / ROWS as f64;
     html! {
-        @if let Some(dual) = dual {
-            @let values: Vec<f64> = (0..triangles).map(|t| von_mises(problem, t, dual.stress.mean(t))).collect();
-            figure {
-                (PreEscaped(map::map(problem, "Von Mises stress", &values)))
-                figcaption { b { "Von Mises stress " } "of the dual model, of the mean over each triangle." (coarse) }
-            }
-        }
-        @for field in &dossier.maps {
-            figure {
-                (PreEscaped(map::map(problem, &field.title, &field.values)))
-                figcaption { b { (clean(&field.title)) ". " } (explanation(field.key)) (coarse) }
+        @if !contact.profiles.is_empty() && to > from {
+            details {
+                summary { "Values" }
+                (scroll("pressures along the contact", html! { table {
+                    thead { tr { th.n { "arc length" } @for profile in &contact.profiles { th.n { (clean(&profile.model)) } } } }
+                    tbody { @for k in 0..=ROWS { tr {
+                        td.n { (significant(at(k), 4)) }
+                        @for profile in &contact.profiles { td.n { (optional(value(&profile.points, at(k)), 4)) } }
+                    } } }
+                } }))
             }
         }
     }
 }
 
-/// What a map shows, where its key says so.
-fn explanation(key: &str) -> &'static str {
-    if key.contains("quantity") {
-        "What each triangle adds to the width of the widest interval, relative to all of it."
-    } else if key.contains("difference") {
-        "How far the stresses of the two models are apart, triangle by triangle."
-    } else if key.contains("contribution") || key.contains("error") || key.contains("gap") {
-        "What each triangle adds to the width of the bracket: light triangles are where a finer mesh pays."
-    } else if key.contains("residual") {
-        "What equilibrium misses at the nodes of each triangle, relative to the whole: next to nothing everywhere for a discrete solution."
-    } else {
-        ""
-    }
+/// A pressure at arc length `s`, between the points around it; at a jump the first of the two.
+fn value(points: &[[f64; 2]], s: f64) -> Option<f64> {
+    let pair = points.windows(2).find(|w| w[0][0] <= s && s <= w[1][0] && w[1][0] > w[0][0])?;
+    let part = (s - pair[0][0]) / (pair[1][0] - pair[0][0]);
+    Some((1.0 - part) * pair[0][1] + part * pair[1][1])
+}
+
+/// The marks that are on contact `index`, by arc length.
+fn arc_marks(dossier: &Dossier, index: usize) -> Vec<(f64, usize)> {
+    let Some(interface) = dossier.problem.interfaces.get(index) else { return Vec::new() };
+    let points = &dossier.problem.mesh.points;
+    let on = |at: [f64; 2]| {
+        interface.pairs.iter().find_map(|pair| {
+            let [a, b] = pair.first.map(|v| points[v]);
+            let along = [b[0] - a[0], b[1] - a[1]];
+            let part = ((at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1]) / (along[0].powi(2) + along[1].powi(2));
+            let off = [0, 1].map(|c| at[c] - a[c] - part * along[c]);
+            let near = (-1e-6..=1.000_001).contains(&part) && off[0].hypot(off[1]) <= 1e-6 * pair.length;
+            near.then(|| pair.arc[0] + part * (pair.arc[1] - pair.arc[0]))
+        })
+    };
+    let all = marks(dossier.problem, &dossier.report);
+    all.into_iter().filter_map(|mark| Some((on(mark.at)?, mark.number))).collect()
 }
 
 fn history_figure(dossier: &Dossier) -> Markup {

@@ -17,7 +17,7 @@ pub(super) fn card(report: &Report) -> Markup {
         @if !all.is_empty() {
             section.card.asked aria-label="what was asked for" {
                 h3 { "What was asked for" }
-                div.asked-for { @for summary in all.iter().take(SHOWN) { (one(summary, report)) } }
+                div.asked-for { @for (i, summary) in all.iter().take(SHOWN).enumerate() { (one(i, summary, report)) } }
                 @if all.len() > SHOWN {
                     p { (all.len() - SHOWN) " more are in the " a href="#quantities" { "table" } "." }
                 }
@@ -26,10 +26,11 @@ pub(super) fn card(report: &Report) -> Markup {
     }
 }
 
-fn one(summary: &QuantitySummary, report: &Report) -> Markup {
+fn one(index: usize, summary: &QuantitySummary, report: &Report) -> Markup {
     let word = if report.is_guaranteed() { "guaranteed" } else { "for the data as represented on the mesh" };
+    let id = format!("quantity-{index}");
     html! {
-        div {
+        div id=(id) {
             h4 { code { (clean(&summary.name)) } " · " (clean(&summary.kind)) }
             @if let Some(figure) = quantity(summary, report) { (PreEscaped(figure)) }
             p {

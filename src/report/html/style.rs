@@ -60,6 +60,22 @@ tr.no td{background:var(--bad-bg)}
 .key{display:flex;flex-wrap:wrap;gap:2px 16px;font-size:.85rem;color:var(--dim);padding:0;margin:0 0 14px;list-style:none}
 .key i{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:6px;border:1px solid var(--rule)}
 .p0{background:#0072b2}.p1{background:#e69f00}.p2{background:#009e73}.p3{background:#cc79a7}.p4{background:#56b4e9}.p5{background:#d55e00}.p6{background:#8c959f}
+.skip{position:absolute;left:-999px}.skip:focus{left:8px;top:8px;background:var(--paper);padding:6px 10px;z-index:2}
+a{color:var(--accent)}:focus-visible{outline:3px solid var(--accent);outline-offset:2px}
+summary{cursor:pointer}details{margin:6px 0}.back ul,.scene ul{margin:2px 0;padding-left:18px}.back li{overflow-wrap:anywhere}
+.cause{font-size:1.06rem;margin-bottom:4px}.fact{margin:8px 0 12px;overflow-wrap:anywhere}.dim,.asks{color:var(--dim)}
+:target{outline:3px solid var(--warn);outline-offset:2px}
+#scene{margin-top:14px}dl.scene{display:grid;grid-template-columns:max-content minmax(0,1fr);gap:4px 16px;margin:0;font-size:.93rem}
+dl.scene dt{color:var(--dim)}dl.scene dd{margin:0;overflow-wrap:anywhere}dl.scene ul{list-style:none;padding:0}
+.gallery>#map{grid-column:1/-1}#map svg{max-width:none}#map .bar{max-width:640px;margin:6px auto 0}
+.stage{position:relative;overflow:hidden;max-width:900px;margin:0 auto;touch-action:pan-y}.stage svg{position:relative}
+.stage canvas{position:absolute;inset:0;width:100%;height:100%}.stage path{vector-effect:non-scaling-stroke}
+.chosen{fill:none;stroke:#fff;stroke-width:2.5;paint-order:stroke;filter:drop-shadow(0 0 1px #000)}
+.tools{display:flex;flex-wrap:wrap;gap:8px;align-items:center;margin-bottom:10px}.tools[hidden]{display:none}
+.tools select,.tools button{font:inherit;font-size:.9rem;padding:3px 8px;max-width:100%;color:var(--ink);background:var(--paper);border:1px solid var(--dim);border-radius:5px}
+th button{all:unset;cursor:pointer;font:inherit}th button:focus-visible{outline:3px solid var(--accent)}
+th[aria-sort=ascending] button::after{content:" ▲"}th[aria-sort=descending] button::after{content:" ▼"}
+#map output{display:grid;gap:2px;font-size:.9rem;margin-top:8px;min-height:6.6em;align-content:start;font-variant-numeric:tabular-nums}#map output[hidden]{display:none}
 .notes li{margin-bottom:6px}
 .words dt{font-weight:600;margin-top:10px}.words dd{margin:2px 0 0;max-width:78ch;color:var(--dim)}
 footer{color:var(--dim);font-size:.88rem;padding-top:30px;padding-bottom:40px}
@@ -75,7 +91,8 @@ svg text[paint-order]{stroke:#151b23}svg .mesh{stroke:#8b98a5}svg .m{stroke:none
 @media print{
 body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
 figure,.card:not(.asked),.asked-for>div,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
-.scroll{overflow:visible}table{font-size:8.5pt}
+.scroll{overflow:visible}table{font-size:8.5pt}.tools,.how,.skip,#map output{display:none!important}
+figcaption,p,li{orphans:3;widows:3}thead{display:table-header-group}td.why,td.w{min-width:0}td,th{overflow-wrap:anywhere}.gallery{display:block}.gallery figure{margin-bottom:12px}
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 }
 "#;

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
-use crate::report::words::{basis_word, upper_from};
-use crate::report::{Check, DualSummary, Energy, Report};
+use crate::report::words::upper_from;
+use crate::report::{DualSummary, Energy, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
     html! {
-        section #checks { h2 { "Checks" } (checks(report)) }
-        @if !report.remarks.is_empty() { section #remarks { h2 { "Remarks" } (remarks(report)) } }
+        section #checks { h2 { "Checks" } (super::checks::checks(report)) }
+        @if !report.remarks.is_empty() { section #remarks { h2 { "Remarks" } (super::checks::remarks(report)) } }
         @if !report.quantities.is_empty() { section #quantities { h2 { "Quantities" } (super::quantities::table(report)) } }
         @if let Some(energy) = &report.energy { section #energy { h2 { "Energy" } (energies(report, energy)) } }
         @if !report.contact.is_empty() { section #contact { h2 { "Contact" } (contacts(report)) } }
@@ -26,60 +26,6 @@ pub(super) fn tables(report: &Report) -> Markup {
 /// A table that scrolls sideways where it does not fit.
 pub(super) fn scroll(label: &str, table: Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
-}
-
-fn checks(report: &Report) -> Markup {
-    html! {
-        @if report.checks.is_empty() { p { "No check was made." } } @else {
-            p { "Margin: how far the difference is from what is allowed. A check that could not be made does not count as passed." }
-            (check_table("checks", "passed", &report.checks, |check| html! {
-                @if check.passed { span.yes { "✔ yes" } }
-                @else if check.difference.is_none() { span.not { "✘ not made" } }
-                @else { span.not { "✘ no" } }
-            }))
-        }
-    }
-}
-
-/// Comparisons with tolerances that theory does not set.
-fn remarks(report: &Report) -> Markup {
-    html! {
-        p {
-            "Theory sets no limit to these differences. What exceeds the usual size is worth a look and turns no verdict; "
-            code { "--allow NAME=VALUE" } " makes a check of a remark."
-        }
-        (check_table("remarks", "usual", &report.remarks, |remark| html! {
-            @if remark.passed { "yes" } @else { b { "worth a look" } }
-        }))
-    }
-}
-
-/// The failing ones first, otherwise in the order of the report.
-fn check_table(label: &str, passed: &str, all: &[Check], word: impl Fn(&Check) -> Markup) -> Markup {
-    let mut list: Vec<&Check> = all.iter().collect();
-    list.sort_by_key(|check| check.passed);
-    scroll(
-        label,
-        html! {
-            table {
-                thead { tr {
-                    th { (label.trim_end_matches('s')) } th { (passed) } th.n { "value" } th.n { "held against" }
-                    th.n { "difference" } th.n { "allowed" }
-                    th.n { "margin" } th { "basis" } th { "why" }
-                } }
-                tbody { @for check in list {
-                    tr.no[!check.passed && check.decides()] {
-                        td.long { code { (clean(&check.name)) } }
-                        td { (word(check)) }
-                        td.n { (optional(check.value, 8)) } td.n { (optional(check.reference, 8)) }
-                        td.n { (optional(check.difference, 3)) } td.n { (significant(check.allowed, 3)) }
-                        td.n { (optional(check.margin, 3)) } td { (basis_word(check.basis)) }
-                        td.why { (clean(&check.why)) }
-                    }
-                } }
-            }
-        },
-    )
 }
 
 fn energies(report: &Report, energy: &Energy) -> Markup {

@@ -3,18 +3,17 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
-use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, significant, vector};
-use crate::report::words::{
-    accuracy, basis_word, failing, headline, meaning, status_symbol, status_word, upper_from, worth_a_look,
-};
-use crate::report::{Report, Status};
+use crate::report::number::{clean, digits_to_tell, grouped, percent, significant, vector};
+use crate::report::words::{accuracy, failing, headline, status_symbol, status_word, upper_from, worth_a_look};
+use crate::report::{Dossier, Report, Status};
 
-pub(super) fn first_screen(report: &Report) -> Markup {
+pub(super) fn first_screen(dossier: &Dossier) -> Markup {
+    let report = &dossier.report;
     html! {
         header {
-            h1 { (clean(&report.title)) }
+            h1 { bdi { (clean(&report.title)) } }
             p.sub {
-                "Scene " code { (clean(&report.scene)) }
+                "Scene " bdi { code { (clean(&report.scene)) } }
                 @if let Some(dual) = &report.dual { " · " (grouped(dual.triangles)) " triangles" }
             }
             div class=(format!("verdict {}", status_word(report.status))) role="status" {
@@ -24,8 +23,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
                     p { (clean(&report.verdict)) }
                 }
             }
-            (failures(report))
-            (diagnoses(report))
+            (super::causes::causes(report))
             (super::quantities::card(report))
             div class=(if report.energy.is_some() { "first" } else { "first alone" }) {
                 @if report.energy.is_some() { (bracket_card(report)) }
@@ -35,6 +33,7 @@ pub(super) fn first_screen(report: &Report) -> Markup {
                     (differences(report))
                 }
             }
+            (super::scene::card(dossier))
         }
     }
 }
@@ -50,62 +49,9 @@ fn gloss(report: &Report) -> &'static str {
     }
 }
 
-/// The failing checks, each with its numbers and what it means.
-fn failures(report: &Report) -> Markup {
-    let failing = failing(report);
-    let mut meanings: Vec<&str> = failing.iter().map(|check| meaning(check)).collect();
-    meanings.sort_unstable();
-    meanings.dedup();
-    html! {
-        @if !failing.is_empty() {
-            section.failures aria-label="failing checks" {
-                h2 { "✘ " (failing.len()) " of " (report.checks.len()) " checks did not pass" }
-                ol {
-                    @for check in &failing {
-                        li {
-                            span.name { (clean(&check.name)) }
-                            @if let Some(difference) = check.difference {
-                                div.facts {
-                                    span { "found " b { (optional(check.value, 9)) } }
-                                    span { "held against " b { (optional(check.reference, 9)) } }
-                                    span { "difference " b { (significant(difference, 4)) } }
-                                    span { "allowed " b { (significant(check.allowed, 4)) } " (" (basis_word(check.basis)) ")" }
-                                }
-                            }
-                            div { (clean(&check.why)) }
-                        }
-                    }
-                }
-                h3 { "What it means" }
-                @for meaning in meanings { p { (meaning) } }
-            }
-        }
-    }
-}
-
-/// What explains that a field is not what it claims to be.
-fn diagnoses(report: &Report) -> Markup {
-    html! {
-        @for diagnosis in &report.diagnosis {
-            section.failures.diagnosis aria-label="diagnosis" {
-                h2 { "What is wrong with " (clean(&diagnosis.field)) }
-                @if diagnosis.findings.is_empty() { p { (clean(&diagnosis.sentence)) } } @else {
-                    ul { @for finding in &diagnosis.findings { li { (clean(&finding.sentence)) } } }
-                    @if let Some(explained) = diagnosis.explained {
-                        p {
-                            "Together they explain " b { (percent(explained)) } " of the squared residual; "
-                            (diagnosis.tried) " hypotheses were held against it."
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
 fn bracket_card(report: &Report) -> Markup {
     html! {
-        section.card aria-label="energy bracket" {
+        section.card #bracket aria-label="energy bracket" {
             h3 { "Where the exact energy lies" }
             (PreEscaped(bracket(report)))
             @if let Some(energy) = &report.energy {
@@ -118,6 +64,7 @@ fn bracket_card(report: &Report) -> Markup {
                     @else { b { "That is the wrong way round, which cannot be: one of the models is wrong." } }
                 }
             }
+            (super::links::checks_of("bracket", report))
         }
     }
 }

@@ -1,0 +1,150 @@
+//! What each kind of failure suggests, and what to try.
+
+/// What sort of thing is wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A contact is missing, incomplete or another one.
+    Contact,
+    /// A support.
+    Support,
+    /// A load.
+    Load,
+    /// Elastic constants or the plane state.
+    Material,
+    /// The thickness.
+    Thickness,
+    /// A triangle, a vertex or an equation.
+    Local,
+    /// Displacements at the wrong nodes.
+    Values,
+    /// Equilibrium is missing for a reason that is not known.
+    Equilibrium,
+    /// An energy that is reported.
+    Reported,
+    /// Contact forces that are reported.
+    Reactions,
+    /// The bracket or the distance of the stresses.
+    Bound,
+    /// A quantity or a tolerance.
+    Value,
+}
+
+impl Kind {
+    /// The kind of a finding of a diagnosis, by its name.
+    pub fn of_finding(name: &str) -> Self {
+        match name.split('/').next().unwrap_or(name) {
+            "contact" => Kind::Contact,
+            "support" => Kind::Support,
+            "load" | "loads" => Kind::Load,
+            "body" if name.ends_with("/body_force") => Kind::Load,
+            "body" | "bodies" | "stiffness" | "kinematics" => Kind::Material,
+            "thickness" => Kind::Thickness,
+            "displacement" | "value" => Kind::Values,
+            _ => Kind::Local,
+        }
+    }
+
+    /// Whether it is wrong at the place that is named, and not only seen best there.
+    pub fn is_local(self) -> bool {
+        matches!(self, Kind::Contact | Kind::Support | Kind::Local | Kind::Load)
+    }
+}
+
+/// Of a check that fails without any other.
+pub const ALONE: [&str; 2] = [
+    "Nothing else fails with it, so the models agree in the rest.",
+    "Look at the picture of this check, and whether both models ask for the same thing.",
+];
+
+/// What a kind suggests, and what to try; `name` is that of the finding.
+pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
+    let last = name.rsplit('/').next().unwrap_or(name);
+    match (kind, last) {
+        (Kind::Contact, "missing") => [
+            "The rows of this contact are not in the system, or its two sides were not paired.",
+            "Count the rows of the contact constraint: one for each vertex of the first side, and for degree 2 one for each edge. Look whether the \
+             names of both boundaries were found.",
+        ],
+        (Kind::Contact, "in-part") => [
+            "Rows of the contact constraint are missing at the marked nodes, or their nodes are paired with others.",
+            "Print the pairs of this contact around the marked vertex. First and last vertex of a side, and those shared with a support, are lost most \
+             often.",
+        ],
+        (Kind::Contact, "gap") => [
+            "The right-hand side of the contact constraint is not the gap of the scene.",
+            "Compare the gap at the marked vertex with `gap` of the scene: a gap that is ignored counts as zero, and one of a mesh may be counted twice.",
+        ],
+        (Kind::Contact, "penalty") => [
+            "Contact is enforced by a penalty, which gives way.",
+            "Raise the stiffness until the penetration no longer matters, or use multipliers.",
+        ],
+        (Kind::Contact, "glued" | "pulling") => [
+            "The constraint is an equation where it should be an inequality.",
+            "Look at the active set: nodes whose force pulls have to leave it.",
+        ],
+        (Kind::Contact, "tied" | "friction") => [
+            "The sides cannot slide along each other.",
+            "Constrain the jump along the direction of contact alone, and give the two sides vertices of their own.",
+        ],
+        (Kind::Contact, _) => [
+            "The contact constraint is not met: the set of active nodes is not the right one, or a direction or gap differs.",
+            "Compare direction, gap and reaction at the marked node with those of the scene.",
+        ],
+        (Kind::Support, "displacement") => [
+            "The prescribed displacement is not that of the scene.",
+            "Compare `displacement` of the support with what the model sets at the marked node.",
+        ],
+        (Kind::Support, _) => [
+            "The support is not in the system, or on other nodes.",
+            "Look whether its boundary was found by name and its nodes collected, and whether a later step overwrites them.",
+        ],
+        (Kind::Load, _) => [
+            "The right-hand side is not that of the scene.",
+            "Compare the sum of the nodal forces with the resultant of the load; then sign, direction, unit and thickness.",
+        ],
+        (Kind::Material, "kinematics") => [
+            "The stiffness is that of the other plane state.",
+            "Look at `kinematics` of the scene, and which λ the model uses.",
+        ],
+        (Kind::Material, "lambda" | "shear") => [
+            "The elastic law in the stiffness has a wrong sign or factor.",
+            "Check λ = Eν/((1 + ν)(1 − 2ν)) and σ = λ tr(e) 1 + 2μ e, and half or whole shear strains.",
+        ],
+        (Kind::Material, _) => [
+            "The stiffness has other elastic constants than the scene.",
+            "Print E and ν of each body as the model uses them; names of bodies, order of materials and units are what is mistaken most often.",
+        ],
+        (Kind::Thickness, _) => [
+            "Displacements do not depend on the thickness where it multiplies stiffness and loads alike; energies and forces do.",
+            "Multiply energies, loads and reactions by `thickness` of the scene.",
+        ],
+        (Kind::Values, _) => [
+            "The displacements are those of a solution, but not at the nodes they are given for.",
+            "Compare numbering of nodes and order of components of the two programs.",
+        ],
+        (Kind::Local, _) => [
+            "All but a few equations are met: the assembly goes wrong at one spot.",
+            "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
+        ],
+        (Kind::Equilibrium, _) => [
+            "The displacement minimises another energy than that of the scene, or the solver stopped early. No single mistake that is looked for explains it.",
+            "Begin at the marked node; make the scene smaller until the failure goes away, and see what went last.",
+        ],
+        (Kind::Reported, _) => [
+            "The displacement is right and the number beside it is not: the field passes its own checks.",
+            "Look at how the energy is summed: 𝓛 = ½a(u, u) − L(u), times the thickness.",
+        ],
+        (Kind::Reactions, _) => [
+            "The displacement is right and the forces reported with it are not: a sign, an order of nodes, or a factor.",
+            "Compare the reactions with K u − f at the nodes of the contact.",
+        ],
+        (Kind::Bound, _) => [
+            "No pair of correct solutions can do this. As nothing fails that asks about the field alone, the two models were given different scenes.",
+            "Compare what both were given: loads, materials, supports, gaps, thickness.",
+        ],
+        (Kind::Value, _) => [
+            "The value is no value of a correct solution of this scene, or is asked for another place or direction.",
+            "Compare boundary, direction, window and sign of the quantity in the two programs.",
+        ],
+    }
+}

@@ -1,0 +1,167 @@
+//! Causes that lie in displacement fields: all of a field's failures have one.
+
+use super::advice::{self, Kind};
+use super::place::{self, Place};
+use super::{Cause, names, taken};
+use crate::compare::{Check, Comparison, Judged};
+use crate::diagnose::{Diagnosis, Finding};
+use crate::problem::Problem;
+
+/// What is wrong with one field.
+struct Fault {
+    /// Name of the field.
+    field: String,
+    kind: Kind,
+    /// Name of the finding, or of the kind.
+    name: String,
+    /// What is wrong, as the end of a sentence that begins with "In FIELD".
+    what: String,
+    place: Option<Place>,
+    checks: Vec<String>,
+}
+
+/// One cause for every kind of fault; fields with the same one share it. What it explains is removed from `failing`.
+pub fn causes(
+    problem: &Problem,
+    comparison: &Comparison,
+    diagnosis: &[Diagnosis],
+    failing: &mut Vec<&Check>,
+) -> Vec<Cause> {
+    let best = comparison.best.map(|b| comparison.judged[b].candidate.name.as_str());
+    let mut faults: Vec<Fault> = Vec::new();
+    for judged in &comparison.judged {
+        let who = judged.candidate.name.as_str();
+        let mut own = taken(failing, |check| is_of(check, who) && check.difference.is_some());
+        if own.is_empty() {
+            continue;
+        }
+        if Some(who) == best {
+            own.extend(taken(failing, |check| is_of_best(check) && check.difference.is_some()));
+        }
+        let told = diagnosis.iter().find(|d| d.field == who).map_or([].as_slice(), |d| d.findings.as_slice());
+        faults.push(fault(problem, judged, told, &own));
+    }
+    // What compares the best field with the stresses alone is its own fault where no other check is.
+    let of_contact = taken(failing, |check| check.name.starts_with("contact/") && check.difference.is_some());
+    if let (Some(best), false) = (comparison.best.map(|b| &comparison.judged[b]), of_contact.is_empty()) {
+        faults.push(fault(problem, best, &[], &of_contact));
+    }
+    together(faults)
+}
+
+/// Whether a check asks about the field `who` alone.
+fn is_of(check: &Check, who: &str) -> bool {
+    check.name.strip_suffix(who).is_some_and(|rest| rest.ends_with('/'))
+        || check.name.starts_with(&format!("certified/{who}/"))
+        || check.name.starts_with("solution/")
+}
+
+/// Whether a check asks about the best field without its name.
+fn is_of_best(check: &Check) -> bool {
+    check.name.starts_with("contact/") || check.name == "energy/p1-above-p2"
+}
+
+fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check]) -> Fault {
+    let candidate = &judged.candidate;
+    let has = |start: &str| own.iter().find(|check| check.name.starts_with(start));
+    let made = |kind, name: &str, what: String, place: Option<Place>| Fault {
+        field: candidate.name.clone(),
+        kind,
+        name: name.to_string(),
+        what,
+        place,
+        checks: names(own),
+    };
+    if let Some(first) = findings.first() {
+        let place = place::of_finding(problem, judged, &first.name);
+        let said: Vec<&str> = findings.iter().map(|finding| finding.sentence.as_str()).collect();
+        return made(Kind::of_finding(&first.name), &first.name, said.join("; "), place);
+    }
+    let violation = judged.violation;
+    if has("admissible/").is_some() && violation.support >= violation.penetration.max(violation.at_vertices) {
+        let what = "supports do not have their prescribed displacements".to_string();
+        let place = judged.balance.as_ref().and_then(|b| b.worst_node).map(|node| Place::of(problem, node, None));
+        return made(Kind::Support, "support", what, place);
+    }
+    if has("admissible/").is_some()
+        && let Some((node, interface, depth)) = place::deepest(problem, candidate, None)
+    {
+        let place = Place::of(problem, node, Some(interface));
+        let what = format!("contact {} is penetrated by {depth:.2e}", problem.interfaces[interface].name);
+        return made(
+            Kind::Contact,
+            &format!("contact/{}/penetration", problem.interfaces[interface].name),
+            what,
+            Some(place),
+        );
+    }
+    let worst = || judged.balance.as_ref().and_then(|b| b.worst_node).map(|node| Place::of(problem, node, None));
+    if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
+        let what = "stresses do not balance the loads".to_string();
+        return made(Kind::Equilibrium, "equilibrium", what, worst());
+    }
+    if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {
+        let what = format!(
+            "the energy reported, {}, is not that of its displacement, {}",
+            super::told::number(check.value),
+            super::told::number(check.reference)
+        );
+        return made(Kind::Reported, "reported-energy", what, None);
+    }
+    let reactions = |check: &&&Check| {
+        let end = ["/reactions", "/resultant"].iter().any(|end| check.name.ends_with(end));
+        check.name.starts_with("primal/reactions/") || check.name.starts_with("contact/") && end
+    };
+    if let Some(check) = own.iter().find(reactions) {
+        let named = problem.interfaces.iter().position(|i| check.name.starts_with(&format!("contact/{}/", i.name)));
+        let interface = named.or((!problem.interfaces.is_empty()).then_some(0));
+        let place = interface.and_then(|i| {
+            place::deepest(problem, candidate, Some(i)).map(|(node, ..)| Place::of(problem, node, Some(i)))
+        });
+        let on = named.map_or(String::new(), |i| format!(" of contact {}", problem.interfaces[i].name));
+        let what = format!("the forces{on} that are reported are not those of its stresses");
+        return made(Kind::Reactions, "reported-reactions", what, place);
+    }
+    let first = own.first().map_or(String::new(), |check| super::told(check));
+    let asked = own.iter().all(|check| check.name.starts_with("quantity/") || check.name.starts_with("certified/"));
+    let kind = if asked { Kind::Value } else { Kind::Bound };
+    made(kind, if asked { "value" } else { "bound" }, first.trim_end_matches('.').to_string(), None)
+}
+
+/// Faults of one name as one cause, told with the place of the field of highest degree, the last.
+fn together(faults: Vec<Fault>) -> Vec<Cause> {
+    let mut groups: Vec<Vec<Fault>> = Vec::new();
+    for fault in faults {
+        match groups.iter_mut().find(|group| group[0].name == fault.name && group[0].kind == fault.kind) {
+            Some(group) => group.push(fault),
+            None => groups.push(vec![fault]),
+        }
+    }
+    let mut causes = Vec::new();
+    for group in groups {
+        let mut fields: Vec<&str> = group.iter().map(|fault| fault.field.as_str()).collect();
+        fields.dedup();
+        let fields = fields.join(" and ");
+        let checks = group.iter().flat_map(|fault| fault.checks.clone()).collect();
+        let Some(Fault { kind, name, what, place, .. }) = group.into_iter().next_back() else { continue };
+        let where_to = place.as_ref().filter(|_| !says_where(&what)).map_or(String::new(), |place| {
+            let most = if kind.is_local() { "" } else { ", most to be seen" };
+            format!("{most} {}", place.in_words())
+        });
+        let [suggests, remedy] = advice::of(kind, &name).map(str::to_string);
+        causes.push(Cause {
+            name,
+            sentence: format!("In {fields} {what}{where_to}."),
+            place,
+            suggests,
+            remedy,
+            checks,
+        });
+    }
+    causes
+}
+
+/// Whether a sentence has coordinates of its own.
+fn says_where(what: &str) -> bool {
+    what.contains("at (") || what.contains("around (") || what.contains("corners") || what.contains("of the file")
+}

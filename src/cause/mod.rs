@@ -1,0 +1,129 @@
+//! What fails together, said as one thing: the cause, where it is, what it suggests and what to try.
+//!
+//! A mistake rarely fails one check. A displacement model that misses a row of a contact is not admissible, has an energy
+//! below the bound, stresses too far from those in equilibrium, and other reactions. Read one by one such failures contradict each
+//! other; read together they have a field in common, and the one of them that asks most directly says what is wrong with it. Where
+//! a [`Diagnosis`] found the mistake, it is the cause.
+
+mod advice;
+mod field;
+mod place;
+mod told;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::compare::{Basis, Check, Comparison};
+use crate::diagnose::Diagnosis;
+use crate::problem::Problem;
+pub use place::Place;
+pub use told::{outcome, told};
+
+/// One reason for checks that did not pass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Cause {
+    /// Stable name: that of the diagnosis where there is one, otherwise of the kind of failure.
+    pub name: String,
+    /// What failed and where.
+    pub sentence: String,
+    /// Where; `null` where it concerns the whole scene or no place at all.
+    pub place: Option<Place>,
+    /// What it suggests.
+    pub suggests: String,
+    /// What to try.
+    pub remedy: String,
+    /// The checks that it explains, in the order of the report.
+    pub checks: Vec<String>,
+}
+
+/// The causes of all checks that decide and did not pass: first what is wrong with this program's own solution, then
+/// with the displacement fields, then what is left. Every such check is in one of them.
+pub fn causes(problem: &Problem, comparison: &Comparison, diagnosis: &[Diagnosis]) -> Vec<Cause> {
+    let mut failing: Vec<&Check> = comparison.checks.iter().filter(|c| !c.passed && c.decides()).collect();
+    let mut causes = Vec::new();
+    let own = taken(&mut failing, |check| check.name == "dual/equilibrium" || check.name.ends_with("/free bound"));
+    causes.extend(of_stresses(problem, &own));
+    causes.extend(field::causes(problem, comparison, diagnosis, &mut failing));
+    let stored = taken(&mut failing, |check| check.name.starts_with("baseline/"));
+    let missing = taken(&mut failing, |check| check.difference.is_none());
+    causes.extend(of_baseline(&stored));
+    causes.extend(missing.into_iter().map(not_made));
+    causes.extend(failing.into_iter().map(alone));
+    causes
+}
+
+/// Removes from `failing` the checks for which `is` holds.
+fn taken<'a>(failing: &mut Vec<&'a Check>, is: impl Fn(&Check) -> bool) -> Vec<&'a Check> {
+    let (own, rest) = failing.drain(..).partition(|check| is(check));
+    *failing = rest;
+    own
+}
+
+fn names(checks: &[&Check]) -> Vec<String> {
+    checks.iter().map(|check| check.name.clone()).collect()
+}
+
+/// Failures that no displacement field takes part in.
+fn of_stresses(problem: &Problem, own: &[&Check]) -> Option<Cause> {
+    let first = own.iter().find(|check| check.name == "dual/equilibrium").or(own.first())?;
+    Some(Cause {
+        name: "stresses".to_string(),
+        sentence: format!("The stress solution of this program does not hold: {}", told(first)),
+        place: None,
+        suggests: "No displacement model takes part in this. Digits were lost in the solve, or this is a defect of the program."
+            .to_string(),
+        remedy: format!(
+            "Run the scene with another --method; if that passes, report the defect with the scene {}.",
+            problem.scene.name
+        ),
+        checks: names(own),
+    })
+}
+
+fn of_baseline(stored: &[&Check]) -> Option<Cause> {
+    let excess = |check: &&&Check| check.difference.map_or(f64::INFINITY, |d| d / check.allowed.max(f64::MIN_POSITIVE));
+    let worst = stored.iter().max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let rest = match stored.len() - 1 {
+        0 => String::new(),
+        1 => " One other number differs too.".to_string(),
+        n => format!(" {n} other numbers differ too."),
+    };
+    Some(Cause {
+        name: "baseline".to_string(),
+        sentence: format!("The run is not what the baseline has: {}{rest}", told(worst)),
+        place: None,
+        suggests: "The scene, the mesh or a program has changed since the baseline was accepted.".to_string(),
+        remedy: "Look at what changed; if it is meant to be so, accept the numbers with --accept.".to_string(),
+        checks: names(stored),
+    })
+}
+
+fn not_made(check: &Check) -> Cause {
+    Cause {
+        name: "not-made".to_string(),
+        sentence: format!("{} was not made: {}", check.name, check.why),
+        place: None,
+        suggests: "Nothing is known of what this check asks, so it does not count as passed.".to_string(),
+        remedy: "Remove the reason that is given, and run the scene again.".to_string(),
+        checks: vec![check.name.clone()],
+    }
+}
+
+/// A failure that goes with no other.
+fn alone(check: &Check) -> Cause {
+    let [suggests, remedy] = match check.basis {
+        Basis::Asked => [
+            "What was asked for was not reached; theory allows it.",
+            "Refine further, with a larger --max-triangles or --max-seconds, or ask for less.",
+        ],
+        _ => advice::ALONE,
+    };
+    Cause {
+        name: check.name.clone(),
+        sentence: told(check),
+        place: None,
+        suggests: suggests.to_string(),
+        remedy: remedy.to_string(),
+        checks: vec![check.name.clone()],
+    }
+}

@@ -1,0 +1,121 @@
+//! Where something is wrong: a node, and what it belongs to.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::bounds::holds;
+use crate::compare::solution::{Sites, place};
+use crate::compare::{Candidate, Judged};
+use crate::problem::Problem;
+
+/// A point of the scene and what it belongs to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Place {
+    /// Its coordinates, as in the file.
+    pub at: [f64; 2],
+    /// The vertex of the mesh there, counted from zero; `null` at the midpoint of an edge.
+    pub vertex: Option<usize>,
+    /// A triangle that has it, counted from zero as in `fields.vtu`.
+    pub triangle: Option<usize>,
+    /// The body of this triangle.
+    pub body: String,
+    /// The contact it is on.
+    pub contact: Option<String>,
+    /// The named boundary it is on.
+    pub boundary: Option<String>,
+}
+
+impl Place {
+    /// The place of a node: vertices, then edge midpoints; `contact` where it is looked at as a node of this interface.
+    pub fn of(problem: &Problem, node: usize, contact: Option<usize>) -> Self {
+        let mesh = &problem.mesh;
+        let vertex = (node < mesh.points.len()).then_some(node);
+        let has = |t: &usize| match node.checked_sub(mesh.points.len()) {
+            None => mesh.triangles[*t].contains(&node),
+            Some(e) => mesh.triangle_edges[*t].contains(&e),
+        };
+        let triangle = (0..mesh.triangles.len()).find(has);
+        let at_edge = |e: &usize| match vertex {
+            Some(v) => mesh.edges[*e].vertices.contains(&v),
+            None => node == mesh.points.len() + e,
+        };
+        let named = (0..mesh.edges.len()).filter(at_edge).filter_map(|e| mesh.edges[e].name);
+        let body = triangle.map_or(String::new(), |t| problem.scene.bodies[mesh.body[t]].name.clone());
+        Place {
+            at: problem.scene.as_written(place(problem, node)),
+            vertex,
+            triangle,
+            body,
+            contact: contact.map(|i| problem.interfaces[i].name.clone()),
+            boundary: named.map(|name| mesh.names[name].clone()).next(),
+        }
+    }
+
+    /// `at (1, 0.5): vertex 12 of triangle 7, on left_face, in left`.
+    pub fn in_words(&self) -> String {
+        let [x, y] = self.at.map(short);
+        let node = match (self.vertex, self.triangle) {
+            (Some(v), Some(t)) => format!(", vertex {v} of triangle {t}"),
+            (None, Some(t)) => format!(", an edge midpoint of triangle {t}"),
+            _ => String::new(),
+        };
+        let on = self.boundary.as_ref().map_or(String::new(), |name| format!(" on {name}"));
+        format!("at ({x}, {y}){node}{on} in {}", self.body)
+    }
+}
+
+/// A coordinate with six digits.
+fn short(x: f64) -> f64 {
+    let rounded = format!("{x:.5e}").parse().unwrap_or(x);
+    if rounded == 0.0 { 0.0 } else { rounded }
+}
+
+/// The node at which `candidate` is deepest in contact `interface`, or in any where none is named.
+pub(super) fn deepest(
+    problem: &Problem,
+    candidate: &Candidate,
+    interface: Option<usize>,
+) -> Option<(usize, usize, f64)> {
+    let sites = Sites::new(problem, candidate.degree, &holds(problem).ok()?);
+    let own = sites.list.iter().filter(|site| interface.is_none_or(|i| site.interface == i));
+    let depth = |node| candidate.value(node);
+    let deepest = own.max_by(|a, b| a.excess(depth).total_cmp(&b.excess(depth)))?;
+    Some((deepest.first, deepest.interface, deepest.excess(depth)))
+}
+
+/// The place that a finding of the given name is about, where its name has one; otherwise where most of equilibrium is
+/// missing.
+pub(super) fn of_finding(problem: &Problem, judged: &Judged, name: &str) -> Option<Place> {
+    let interface = problem.interfaces.iter().position(|i| name.starts_with(&format!("contact/{}/", i.name)));
+    if let Some(i) = interface {
+        return deepest(problem, &judged.candidate, Some(i)).map(|(node, ..)| Place::of(problem, node, Some(i)));
+    }
+    let worst = judged.balance.as_ref().and_then(|balance| balance.worst_node);
+    let nodes = named(problem, name);
+    let node = match worst {
+        Some(worst) if nodes.is_empty() || nodes.contains(&worst) => Some(worst),
+        _ => nodes.get(nodes.len() / 2).copied(),
+    };
+    node.map(|node| Place::of(problem, node, None))
+}
+
+/// The vertices of the boundary or body that the name of a finding has.
+fn named(problem: &Problem, finding: &str) -> Vec<usize> {
+    let mesh = &problem.mesh;
+    let within = |kind: &str, name: &str| {
+        finding
+            .strip_prefix(kind)
+            .and_then(|rest| rest.strip_prefix(name))
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    };
+    let on = |name: &str| ["support/", "load/", "boundary/"].iter().any(|kind| within(kind, name));
+    let of_edge = |e: &crate::mesh::Edge| e.name.is_some_and(|n| on(&mesh.names[n]));
+    let mut nodes: Vec<usize> = mesh.edges.iter().filter(|e| of_edge(e)).flat_map(|e| e.vertices).collect();
+    let body = problem.scene.bodies.iter().position(|body| within("body/", &body.name));
+    nodes.extend((0..mesh.triangles.len()).filter(|t| Some(mesh.body[*t]) == body).flat_map(|t| mesh.triangles[t]));
+    nodes.sort_by(|a, b| {
+        mesh.points[*a][1].total_cmp(&mesh.points[*b][1]).then(mesh.points[*a][0].total_cmp(&mesh.points[*b][0]))
+    });
+    nodes.dedup();
+    nodes
+}

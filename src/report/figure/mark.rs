@@ -1,0 +1,56 @@
+//! Marks where something is wrong, the same in every picture.
+
+use super::svg::{Anchor, Svg, look};
+use crate::problem::Problem;
+use crate::report::Report;
+
+/// A place with the number of its cause.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// In the coordinates of the problem.
+    pub at: [f64; 2],
+    /// Counted from one.
+    pub number: usize,
+    /// A triangle that has it.
+    pub triangle: Option<usize>,
+}
+
+/// The places of all causes that have one.
+pub fn marks(problem: &Problem, report: &Report) -> Vec<Mark> {
+    let places = report.causes.iter().enumerate().filter_map(|(i, cause)| Some((i + 1, cause.place.as_ref()?)));
+    let own = |at: [f64; 2]| [0, 1].map(|c| at[c] - problem.scene.origin[c]);
+    places.map(|(number, place)| Mark { at: own(place.at), number, triangle: place.triangle }).collect()
+}
+
+/// Draws a ring with its number around each, at the place on the page that `at` gives.
+pub(super) fn draw(svg: &mut Svg, marks: &[Mark], at: impl Fn(&Mark) -> [f64; 2]) {
+    for mark in marks {
+        let [x, y] = at(mark);
+        svg.raw(format_args!(r#"<g class="place" data-cause="{}">"#, mark.number));
+        svg.circle(RING, [x, y], 9.0);
+        svg.text(
+            &format!("{} {}", look::BAD, look::HALO),
+            [x + 11.0, y - 8.0],
+            Anchor::Start,
+            &mark.number.to_string(),
+        );
+        svg.raw(format_args!("</g>"));
+    }
+}
+
+/// A ring that is seen on any ground.
+const RING: &str = r##"class="ring" fill="none" stroke="#cf222e" stroke-width="3""##;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample::{Sample, Verdict};
+
+    #[test]
+    fn causes_with_a_place_are_marked_where_the_bodies_are_drawn() {
+        let mut sample = Sample::new(2, Verdict::Disagree);
+        sample.problem.scene.origin = [100.0, 0.0];
+        let report = sample.dossier().report;
+        assert_eq!(marks(&sample.problem, &report), [Mark { at: [-99.0, 0.0], number: 1, triangle: Some(0) }]);
+    }
+}

@@ -1,0 +1,67 @@
+//! From every check to its picture, and back.
+
+use maud::{Markup, html};
+
+use crate::report::number::clean;
+use crate::report::{Check, Report};
+
+/// The id of the row of a check.
+pub(super) fn row(report: &Report, check: &Check) -> String {
+    let position = |list: &[Check]| list.iter().position(|other| other.name == check.name);
+    match (position(&report.checks), position(&report.remarks)) {
+        (Some(i), _) => format!("check-{i}"),
+        (None, i) => format!("remark-{}", i.unwrap_or(0)),
+    }
+}
+
+/// The id of the picture that shows what a check is about; `None` where there is none.
+pub(super) fn picture(report: &Report, check: &Check) -> Option<String> {
+    let name = check.name.as_str();
+    let contact = |start: &str| {
+        report.contact.iter().position(|c| name.strip_prefix(start).is_some_and(|rest| rest.starts_with(&c.name)))
+    };
+    if let Some(i) = contact("contact/").or_else(|| contact("solution/contact/")) {
+        return Some(format!("pressure-{i}"));
+    }
+    let quantity = |q: &crate::report::QuantitySummary| {
+        name.strip_prefix("quantity/")
+            .and_then(|rest| rest.strip_prefix(q.name.as_str()))
+            .is_some_and(|r| r.starts_with('/'))
+    };
+    if let Some(i) = report.quantities.iter().position(quantity) {
+        return Some(format!("quantity-{i}"));
+    }
+    let energy = report.energy.is_some();
+    match name.split('/').next().unwrap_or(name) {
+        "energy" | "bracket" | "certified" => energy.then(|| "bracket".to_string()),
+        "primal" | "stress" | "solution" | "dual" => report.stress.as_ref().map(|_| "map".to_string()),
+        "admissible" => Some("shapes".to_string()),
+        _ => None,
+    }
+}
+
+/// Which checks a picture is about, the failing ones first.
+pub(super) fn checks_of(id: &str, report: &Report) -> Markup {
+    let mut own: Vec<&Check> = report
+        .checks
+        .iter()
+        .chain(&report.remarks)
+        .filter(|check| picture(report, check).as_deref() == Some(id))
+        .collect();
+    own.sort_by_key(|check| (check.passed, !check.decides()));
+    let failed = own.iter().filter(|check| !check.passed && check.decides()).count();
+    html! {
+        @if !own.is_empty() {
+            details.back open[failed > 0] {
+                summary {
+                    (own.len()) @if own.len() == 1 { " check of this" } @else { " checks of this" }
+                    @if failed > 0 { ", " b.not { (failed) " not passed" } }
+                }
+                ul { @for check in own {
+                    li { a href={ "#" (row(report, check)) } { code { (clean(&check.name)) } }
+                        @if !check.passed && check.decides() { b.not { " ✘" } } }
+                } }
+            }
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! What was computed: the scene in words and numbers.
+
+use maud::{Markup, html};
+
+use crate::problem::Problem;
+use crate::report::number::{clean, grouped, significant, vector};
+use crate::report::{Dossier, Report};
+use crate::scene::{Gap, Kinematics, Load, Scene, SupportKind};
+
+/// The box with everything a reader has to know of the scene.
+pub(super) fn card(dossier: &Dossier) -> Markup {
+    let (report, problem) = (&dossier.report, dossier.problem);
+    let scene = &problem.scene;
+    let kinematics = match scene.kinematics {
+        Kinematics::PlaneStrain => "plane strain",
+        Kinematics::PlaneStress => "plane stress",
+    };
+    html! {
+        section.card #scene aria-label="the scene in numbers" {
+            h3 { "What was computed" }
+            dl.scene {
+                dt { "State" } dd { (kinematics) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
+                dt { "Materials" }
+                dd { ul { @for body in &scene.bodies { li {
+                    bdi { (clean(&body.name)) } ": E = " (significant(body.young, 6)) ", ν = " (significant(body.poisson, 6))
+                    @if body.body_force != [0.0; 2] { ", body force " (vector(body.body_force, 5)) }
+                } } } }
+                dt { "Loads" } dd { (loads(scene)) }
+                dt { "Supports" } dd { (supports(scene)) }
+                @if !scene.contacts.is_empty() { dt { "Contact" } dd { (contacts(problem)) } }
+                dt { "Mesh" } dd { (counts(report, problem)) }
+                @if !report.provenance.command_line.is_empty() {
+                    dt { "Command" } dd { code { (clean(&report.provenance.command_line)) } }
+                }
+                dt { "Made" } dd { (report.provenance.date) " by hypercircle " (clean(&report.provenance.version)) }
+            }
+        }
+    }
+}
+
+fn loads(scene: &Scene) -> Markup {
+    let forces = scene.bodies.iter().any(|body| body.body_force != [0.0; 2]);
+    html! {
+        @if scene.tractions.is_empty() { (if forces { "body forces alone" } else { "none" }) } @else {
+            ul { @for traction in &scene.tractions { li {
+                bdi { (clean(&traction.on)) } ": "
+                @match traction.load {
+                    Load::Pressure(p) => { "pressure " (significant(p, 5)) }
+                    Load::Affine { value, gradient } => {
+                        (vector(value, 5))
+                        @if gradient != [[0.0; 2]; 2] { " + [" (vector(gradient[0], 5)) ", " (vector(gradient[1], 5)) "] · x" }
+                    }
+                }
+            } } }
+        }
+    }
+}
+
+fn supports(scene: &Scene) -> Markup {
+    html! {
+        @if scene.supports.is_empty() { "none" } @else {
+            ul { @for support in &scene.supports { li {
+                bdi { (clean(&support.on)) } ": "
+                @match support.kind {
+                    SupportKind::Roller => "roller",
+                    SupportKind::Clamped { displacement } if displacement == [0.0; 2] => "clamped",
+                    SupportKind::Clamped { displacement } => { "clamped, moved by " (vector(displacement, 5)) }
+                }
+            } } }
+        }
+    }
+}
+
+fn contacts(problem: &Problem) -> Markup {
+    html! {
+        ul { @for (contact, interface) in problem.scene.contacts.iter().zip(&problem.interfaces) { li {
+            bdi { code { (clean(&interface.name)) } } ": " (grouped(interface.pairs.len())) " pairs of edges, gap "
+            @match &contact.gap {
+                Gap::Constant(g) => (significant(*g, 5)),
+                Gap::Table(rows) => { "from a table of " (rows.len()) " rows" }
+                Gap::Circle(touching) => { "of a circle of radius " (significant(touching.radius, 5)) }
+                Gap::Parabola(touching) => { "of a parabola of radius " (significant(touching.radius, 5)) }
+            }
+            @if contact.direction.is_some() { ", matched along a direction" }
+        } } }
+    }
+}
+
+fn counts(report: &Report, problem: &Problem) -> Markup {
+    let mesh = &problem.mesh;
+    html! {
+        (grouped(mesh.triangles.len())) " triangles, " (grouped(mesh.points.len())) " vertices"
+        @if let Some(dual) = &report.dual {
+            ", " (grouped(dual.unknowns)) " unknowns in stresses of degree " (dual.degree_min)
+            @if dual.degree_max > dual.degree_min { " to " (dual.degree_max) }
+        }
+        @for primal in &report.primal { ", " (grouped(primal.unknowns)) " in " (clean(&primal.name)) }
+    }
+}
