@@ -54,6 +54,6 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
     report::page(&dossier);
     report::junit(&dossier.report).expect("every report can be written");
     report::summary(&dossier.report);
-    report::quantities_csv(&dossier.report);
+    report::tables(&dossier.report);
     report::vtu(&dossier).expect("every field can be written");
 }

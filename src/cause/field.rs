@@ -16,6 +16,8 @@ struct Fault {
     name: String,
     /// What is wrong, as the end of a sentence that begins with "In FIELD".
     what: String,
+    /// What else is wrong with it.
+    more: Vec<String>,
     place: Option<Place>,
     checks: Vec<String>,
 }
@@ -69,13 +71,16 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         kind,
         name: name.to_string(),
         what,
+        more: Vec::new(),
         place,
         checks: names(own),
     };
     if let Some(first) = findings.first() {
-        let place = place::of_finding(problem, judged, &first.name);
-        let said: Vec<&str> = findings.iter().map(|finding| finding.sentence.as_str()).collect();
-        return made(Kind::of_finding(&first.name), &first.name, said.join("; "), place);
+        let kind = Kind::of_finding(&first.name);
+        let place = place::of_finding(problem, judged, &first.name).filter(|_| kind != Kind::Thickness);
+        let mut fault = made(kind, &first.name, first.sentence.clone(), place);
+        fault.more = findings[1..].iter().map(|finding| finding.sentence.clone()).collect();
+        return fault;
     }
     let violation = judged.violation;
     if has("admissible/").is_some() && violation.support >= violation.penetration.max(violation.at_vertices) {
@@ -143,15 +148,23 @@ fn together(faults: Vec<Fault>) -> Vec<Cause> {
         fields.dedup();
         let fields = fields.join(" and ");
         let checks = group.iter().flat_map(|fault| fault.checks.clone()).collect();
-        let Some(Fault { kind, name, what, place, .. }) = group.into_iter().next_back() else { continue };
-        let where_to = place.as_ref().filter(|_| !says_where(&what)).map_or(String::new(), |place| {
-            let most = if kind.is_local() { "" } else { ", most to be seen" };
-            format!("{most} {}", place.in_words())
-        });
+        let Some(Fault { kind, name, what, more, place, .. }) = group.into_iter().next_back() else { continue };
+        let where_to = match &place {
+            Some(_) if says_where(&what) => String::new(),
+            Some(place) if kind.is_local() => format!(" {}", place.in_words()),
+            Some(place) => format!(", most to be seen {}", place.in_words()),
+            None if kind == Kind::Thickness => ", in the whole scene".to_string(),
+            None => String::new(),
+        };
+        let also = match more.len() {
+            0 => String::new(),
+            1 | 2 => format!("; {}", more.join("; ")),
+            n => format!("; {}, and {} more of the kind", more[0], n - 1),
+        };
         let [suggests, remedy] = advice::of(kind, &name).map(str::to_string);
         causes.push(Cause {
             name,
-            sentence: format!("In {fields} {what}{where_to}."),
+            sentence: format!("In {fields} {what}{where_to}{also}."),
             place,
             suggests,
             remedy,

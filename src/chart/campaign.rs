@@ -149,7 +149,8 @@ impl Campaign<'_> {
                 store::save(chart, self.folder)?;
             }
         }
-        Ok(())
+        chart.scenes.last_mut().into_iter().for_each(SceneChart::sharpen);
+        Ok(store::save(chart, self.folder)?)
     }
 
     fn without_numbers(&self, method: Method, level: usize, status: Status) -> Run {

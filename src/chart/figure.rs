@@ -81,11 +81,15 @@ pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError>
             let fitted = slope(&known).filter(|_| known.len() > 2);
             let fitted = fitted.map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
             let spread = scene.done(method).filter(|(_, p)| error(p).is_some_and(|e| e > 0.0));
+            // A finer run may have been the quicker one: the line goes on from left to right all the same.
+            let mut both: Vec<_> = points.into_iter().zip(spread.map(|(_, p)| axis.spread(p))).collect();
+            both.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
+            let (points, spread) = both.into_iter().unzip();
             series.push(Series {
                 label: format!("{}, {name}{fitted}", method.name()),
                 ink: method.index(),
                 secondary,
-                spread: spread.map(|(_, p)| axis.spread(p)).collect(),
+                spread,
                 points,
             });
         }

@@ -4,24 +4,27 @@ use maud::{Markup, PreEscaped, html};
 
 use super::choice::{WANTED, fastest};
 use super::data::{Chart, Run, SceneChart, Spread, Status};
-use crate::report::document::{PLAIN, document};
+use crate::report::CSS;
+use crate::report::document::{PLOTS, document};
 use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
 
 /// The page; `figures` are named SVG texts, of which those of a scene are shown with it.
 pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {
     let machine = &chart.machine;
     let body = html! {
-        h1 { "Accuracy against time" }
-        p.dim {
+        header { h1 { "Accuracy against time" }
+        p.sub {
             "hypercircle " (machine.version) @if !machine.optimised { " (a build without optimisation)" } ", "
             (machine.processor.as_deref().unwrap_or("unknown processor")) ", " (chart.threads) " of "
             (machine.processors) " processors in use. Medians of " (chart.repeats) " runs, each in a process of its own; "
             "a run is ended after " (seconds(chart.budget)) ". Made by " code { (chart.command) } "."
+        } }
+        main {
+            @for scene in &chart.scenes { (one(scene, figures)) }
+            (reading())
         }
-        @for scene in &chart.scenes { (one(scene, figures)) }
-        (reading())
     };
-    document("Accuracy against time", &[PLAIN], None, body)
+    document("Accuracy against time", &[CSS, PLOTS], None, body)
 }
 
 fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {
@@ -39,7 +42,7 @@ fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {
                 },
                 Err(reason) => p { "There is no reference bracket, so no true errors: " (clean(reason)) },
             }
-            @for (_, svg) in own { figure { (PreEscaped(svg)) } }
+            @for (_, svg) in own { figure.plot { (PreEscaped(svg)) } }
             @if !scene.cold.is_empty() {
                 p {
                     "First use of FEniCSx on a machine: "
@@ -59,7 +62,7 @@ fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {
 
 fn choices(scene: &SceneChart) -> Markup {
     html! {
-        div.scroll { table {
+        div.scroll role="region" aria-label={ "fastest methods, " (clean(&scene.name)) } tabindex="0" { table {
             thead { tr { th.n { "wanted" } th { "fastest with a guarantee" } th { "fastest by true error" } } }
             tbody {
                 @for wanted in WANTED {
@@ -92,7 +95,7 @@ fn table(scene: &SceneChart) -> Markup {
     let spread =
         |s: Spread| format!("{} ({}–{})", significant(s.median, 3), significant(s.least, 3), significant(s.most, 3));
     html! {
-        div.scroll { table {
+        div.scroll role="region" aria-label={ "runs, " (clean(&scene.name)) } tabindex="0" { table {
             thead { tr {
                 th { "run" } th.n { "triangles" } th.n { "unknowns" } th.n { "whole process, s" } th.n { "solving, s" }
                 th.n { "peak memory, MiB" } th.n { "guaranteed error" } th.n { "true error" }

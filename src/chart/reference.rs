@@ -1,6 +1,6 @@
 //! The tight bracket that true errors are measured against.
 
-use super::data::Reference;
+use super::data::{Reference, SceneChart};
 use crate::measure::{Ended, Measured, Method};
 
 /// Guaranteed relative error that the reference of a chart is refined to …
@@ -57,5 +57,76 @@ pub fn from_runs(runs: &[(String, Ended)]) -> Result<Reference, String> {
     }
 }
 
+impl SceneChart {
+    /// Narrows the reference by the bounds of all runs that have both, and measures every error against it anew: no run may
+    /// know more than what it is measured against.
+    pub(super) fn sharpen(&mut self) {
+        let Ok(reference) = &mut self.reference else { return };
+        let bounds = self.runs.iter().filter_map(|run| {
+            let plot = run.plot.as_ref()?;
+            Some((run, plot.lower?, plot.upper?))
+        });
+        let mut by = Vec::new();
+        for (run, lower, upper) in bounds {
+            let [low, high] = [reference.lower.max(lower), reference.upper.min(upper)];
+            if low <= high && [low, high] != [reference.lower, reference.upper] {
+                [reference.lower, reference.upper] = [low, high];
+                by.push(format!("{} at level {}", run.method.name(), run.level));
+            }
+        }
+        if !by.is_empty() {
+            reference.how = format!("{}; narrowed by {}", reference.how, by.join(", "));
+        }
+        let reference = &*reference;
+        for plot in self.runs.iter_mut().filter_map(|run| run.plot.as_mut()) {
+            plot.true_error = plot.lower.or(plot.upper).map(|energy| reference.error(energy));
+        }
+    }
+}
+
 /// Names of the methods that a reference is made of.
 pub(super) const OF: [Method; 2] = [Method::Adaptive, Method::FenicsP2];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chart::{Plot, Run, Spread, Status};
+
+    #[test]
+    fn no_run_knows_more_than_what_it_is_measured_against() {
+        let spread = Spread { least: 1.0, median: 1.0, most: 1.0 };
+        let run = |method, lower: Option<f64>, upper| Run {
+            method,
+            level: 2,
+            tolerance: None,
+            status: Status::Done,
+            plot: Some(Plot {
+                triangles: 1,
+                unknowns: 1,
+                whole: spread,
+                solve: spread,
+                phases: Vec::new(),
+                peak_memory: None,
+                lower,
+                upper: Some(upper),
+                guaranteed: None,
+                true_error: Some(0.5),
+            }),
+        };
+        let mut scene = SceneChart {
+            name: "s".into(),
+            title: "s".into(),
+            sha256: String::new(),
+            reference: Ok(Reference { lower: -1.02, upper: -0.98, strain: 1.0, how: "first".into() }),
+            cold: Vec::new(),
+            // A displacement may lie below the exact energy where it is not admissible.
+            runs: vec![run(Method::Condensed, Some(-1.0001), -0.9999), run(Method::FenicsP2, None, -1.01)],
+        };
+        scene.sharpen();
+        let reference = scene.reference.as_ref().expect("a bracket");
+        assert_eq!([reference.lower, reference.upper], [-1.0001, -0.9999]);
+        assert!(reference.how.contains("narrowed by condensed at level 2"), "{}", reference.how);
+        let errors: Vec<f64> = scene.runs.iter().filter_map(|run| run.plot.as_ref()?.true_error).collect();
+        assert!((errors[0] - 0.01).abs() < 1e-9 && (errors[1] - 0.1).abs() < 1e-9, "{errors:?}");
+    }
+}

@@ -212,12 +212,12 @@ fn complaints(gathered: &Gathered) -> Vec<ci::Complaint> {
     let bad = job.worst_first().into_iter().filter(|i| job.scenes[*i].exit != 0);
     let complaint = |i: usize| {
         let entry = &job.scenes[i];
-        let first = gathered.reports[i].as_ref().and_then(|report| report.checks.iter().find(|check| !check.passed));
+        let first = gathered.reports[i].as_ref().and_then(|report| report.causes.first());
         ci::Complaint {
             file: Some(PathBuf::from(&entry.scene)),
             line: entry.line,
             title: format!("{}: {}", entry.name, job.word(entry.status)),
-            message: first.map_or(entry.verdict.clone(), |check| format!("{}: {}", check.name, check.why)),
+            message: first.map_or(entry.verdict.clone(), |cause| cause.sentence.clone()),
         }
     };
     bad.map(complaint).collect()

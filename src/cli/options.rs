@@ -152,8 +152,7 @@ impl RunOptions {
     pub fn report_folder(&self, scene: &Scene) -> Result<PathBuf, CliError> {
         let folder = self.folder(scene);
         let refused = |e: report::ReportError| CliError::stopped(Exit::BadInput, e.to_string(), "");
-        let of_quantities = (!scene.quantities.is_empty()).then_some(report::QUANTITIES);
-        report::folder::refuse(&folder, report::NAMES.into_iter().chain(of_quantities)).map_err(refused)?;
+        report::folder::refuse(&folder, report::NAMES.into_iter().chain(report::tables_of(scene))).map_err(refused)?;
         report::folder::wait(&folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         Ok(folder)
     }

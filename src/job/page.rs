@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use super::data::{Entry, Gathered, Job};
+use crate::cause::told;
 use crate::report::CSS;
 use crate::report::Stored;
 use crate::report::document::document;
@@ -136,8 +137,9 @@ fn row(gathered: &Gathered, i: usize) -> Markup {
 fn said(entry: &Entry, report: Option<&Stored>) -> Markup {
     let first = report.and_then(|report| report.checks.iter().find(|check| !check.passed));
     html! {
+        @if let Some(cause) = report.and_then(|report| report.causes.first()) { p { b { (clean(&cause.sentence)) } } }
         @if let Some(check) = first {
-            code { (clean(&check.name)) } ": " (clean(&check.why))
+            code { (clean(&check.name)) } ": " (clean(&told(check)))
             @if entry.failing.len() > 1 {
                 " "
                 details {

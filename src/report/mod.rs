@@ -2,6 +2,7 @@
 //!
 //! [`write()`] makes the files; each of them is also a function here, from data to text, that knows nothing of files.
 
+mod csv;
 mod data;
 pub(crate) mod document;
 pub mod figure;
@@ -24,6 +25,7 @@ mod vtu;
 pub(crate) mod words;
 mod write;
 
+pub use csv::{tables, tables_of};
 pub use data::*;
 pub(crate) use html::CSS;
 pub use html::page;
@@ -31,8 +33,7 @@ pub use json::{json, schema};
 pub use junit::junit;
 pub(crate) use junit::{case, for_jenkins};
 pub use markdown::summary;
-pub use quantities_csv::quantities_csv;
 pub use run::run_of;
 pub use stored::*;
 pub use vtu::{plain, vtu};
-pub use write::{NAMES, QUANTITIES, ReportError, write};
+pub use write::{NAMES, ReportError, write};

@@ -82,13 +82,12 @@ pub(crate) fn seconds(s: f64) -> String {
     if s.is_finite() && s < 0.001 && s > 0.0 { "< 1 ms".to_string() } else { format!("{} s", significant(s, 3)) }
 }
 
-/// User text without the control characters that neither XML nor a terminal should meet.
+/// User text without the control characters that neither XML nor a terminal should meet, nor those that turn the direction
+/// of what follows: each is shown as `\u{fffd}`.
 pub(crate) fn clean(text: &str) -> String {
-    text.chars()
-        .map(|c| {
-            if c.is_control() && c != '\n' && c != '\t' || c == '\u{fffe}' || c == '\u{ffff}' { '\u{fffd}' } else { c }
-        })
-        .collect()
+    let turns = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let hidden = |c: char| c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{fffe}' | '\u{ffff}') || turns(c);
+    text.chars().map(|c| if hidden(c) { '\u{fffd}' } else { c }).collect()
 }
 
 /// A power as superscript digits.
@@ -155,6 +154,6 @@ mod tests {
 
     #[test]
     fn control_characters_are_replaced() {
-        assert_eq!(clean("a\u{1}b\nc"), "a\u{fffd}b\nc");
+        assert_eq!(clean("a\u{1}b\nc\u{202e}d"), "a\u{fffd}b\nc\u{fffd}d");
     }
 }

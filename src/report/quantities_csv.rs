@@ -1,9 +1,9 @@
-//! `quantities.csv`: one line for every value of every quantity, comma-separated as in RFC 4180.
+//! `quantities.csv`: one line for every value of every quantity, with its interval.
 
-use super::number::clean;
+use super::csv::cell;
 use super::{QuantitySummary, Report};
 
-const COLUMNS: [&str; 16] = [
+pub(super) const COLUMNS: [&str; 16] = [
     "quantity",
     "kind",
     "source",
@@ -25,28 +25,20 @@ const COLUMNS: [&str; 16] = [
 /// How the source of the value that belongs to the interval is called.
 const OWN_SOURCE: &str = "hypercircle";
 
-/// The first line.
-pub(super) fn header() -> String {
-    COLUMNS.join(",") + "\r\n"
-}
-
-/// The whole file. The first line of a quantity has the value that belongs to the interval, those after it have the values
-/// of displacement models and those that were given; all of them repeat the interval. What is missing or infinite is an
-/// empty cell.
-pub fn quantities_csv(report: &Report) -> String {
-    let mut text = header();
+/// The rows. The first of a quantity has the value that belongs to the interval, those after it have the values of
+/// displacement models and those that were given; all of them repeat the interval. What is missing or infinite is an empty cell.
+pub(super) fn rows(report: &Report) -> Vec<Vec<String>> {
+    let mut rows = Vec::new();
     for quantity in &report.quantities {
-        let mut line = |source: &str, degree: Option<usize>, value: Option<f64>| {
-            let cells = cells(quantity, source, degree, value.filter(|v| v.is_finite()), &report.run);
-            text.push_str(&cells.map(|cell| quoted(&cell)).join(","));
-            text.push_str("\r\n");
+        let mut row = |source: &str, degree: Option<usize>, value: Option<f64>| {
+            rows.push(cells(quantity, source, degree, value.filter(|v| v.is_finite()), &report.run).to_vec());
         };
-        line(OWN_SOURCE, None, Some(quantity.value));
+        row(OWN_SOURCE, None, Some(quantity.value));
         for held in quantity.held(report) {
-            line(&held.of, held.degree, held.value);
+            row(&held.of, held.degree, held.value);
         }
     }
-    text
+    rows
 }
 
 fn cells(
@@ -56,7 +48,7 @@ fn cells(
     value: Option<f64>,
     run: &str,
 ) -> [String; 16] {
-    let number = |x: f64| if x.is_finite() { format!("{x:?}") } else { String::new() };
+    let number = |x: f64| cell(Some(x));
     let outside = value.filter(|_| quantity.has_an_end()).map(|v| quantity.outside(v));
     [
         quantity.name.clone(),
@@ -78,15 +70,10 @@ fn cells(
     ]
 }
 
-/// A cell on one line, in quotes where it needs them.
-fn quoted(cell: &str) -> String {
-    let cell = clean(cell).replace(['\n', '\t'], " ");
-    if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::csv::TABLES;
     use crate::report::sample::{Sample, Verdict};
 
     /// The cells of a line, read as a spreadsheet does.
@@ -113,7 +100,7 @@ mod tests {
         report.quantities[0].name = "a, \"b\"\n".to_string();
         report.quantities[0].primal[0].value = Some(0.85);
         report.quantities[2].primal[0].value = None;
-        let text = quantities_csv(&report);
+        let text = TABLES[0].of(&report).expect("rows");
         let lines: Vec<Vec<String>> = text.trim_end().split("\r\n").map(read).collect();
         assert_eq!(lines.len(), 1 + 2 * report.quantities.len());
         assert!(lines.iter().all(|cells| cells.len() == COLUMNS.len()), "{text}");

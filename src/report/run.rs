@@ -4,15 +4,15 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{QUANTITIES, ReportError, quantities_csv};
+use super::ReportError;
+use super::csv::TABLES;
 
 /// What stands before the identifier in the files that are no JSON, in their order in [`super::NAMES`].
-const BEFORE: [(&str, &str); 5] = [
+const BEFORE: [(&str, &str); 4] = [
     ("report.html", "<meta name=\"run\" content=\""),
     ("junit.xml", "<property name=\"run\" value=\""),
     ("summary.md", " · run "),
     ("fields.vtu", "<!-- run "),
-    (QUANTITIES, ","),
 ];
 
 /// The identifier of the run that made the report in `dir`, once all its files that are there have been seen to name the
@@ -28,11 +28,12 @@ pub fn run_of(dir: &Path) -> Result<String, ReportError> {
     let Some(run) = report["run"].as_str() else {
         return Err(ReportError::Read { path, reason: "it has no `run`".to_string() });
     };
-    for (name, before) in BEFORE {
+    for (name, before) in BEFORE.into_iter().chain(TABLES.map(|table| (table.name, ","))) {
         let path = dir.join(name);
         let Ok(bytes) = std::fs::read(&path) else { continue };
-        if name == QUANTITIES && !bytes.starts_with(quantities_csv::header().as_bytes()) {
-            // The user's, beside the report of a scene that has no quantities.
+        let table = TABLES.into_iter().find(|table| table.name == name);
+        if table.is_some_and(|table| !bytes.starts_with(table.header().as_bytes())) {
+            // The user's, beside a report that has no such table.
             continue;
         }
         // The program writes it first, or last; a name in the scene cannot stand in both places.
@@ -60,14 +61,14 @@ mod tests {
             write(&dossier, dir.path()).expect("writable");
             assert_eq!(run_of(dir.path()).expect("one run"), run);
         }
-        for name in NAMES.into_iter().chain([QUANTITIES]) {
+        for name in NAMES.into_iter().chain(TABLES.map(|table| table.name)) {
             let kept = std::fs::read(dirs[0].path().join(name)).expect("there");
             std::fs::copy(dirs[1].path().join(name), dirs[0].path().join(name)).expect("writable");
             let error = run_of(dirs[0].path()).expect_err("a mixture");
             assert!(matches!(error, ReportError::Mixed { .. }), "{name}: {error}");
             std::fs::write(dirs[0].path().join(name), kept).expect("writable");
         }
-        std::fs::write(dirs[0].path().join(QUANTITIES), "mine").expect("writable");
+        std::fs::write(dirs[0].path().join("quantities.csv"), "mine").expect("writable");
         assert!(run_of(dirs[0].path()).is_ok());
     }
 

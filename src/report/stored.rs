@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::{BaselineRow, ReportError, Status, run_of};
+use crate::cause::Cause;
 use crate::compare::{Basis, Check};
 
 /// A stored report. Numbers that were not finite when it was written are missing.
@@ -25,6 +26,9 @@ pub struct Stored {
     pub status: Status,
     /// The verdict in words.
     pub verdict: String,
+    /// Why checks did not pass.
+    #[serde(default)]
+    pub causes: Vec<Cause>,
     /// The energy bracket.
     pub energy: Option<StoredEnergy>,
     /// The dual solve.

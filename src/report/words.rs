@@ -91,7 +91,13 @@ pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
         }
     }
     for primal in &report.primal {
-        let suffix = if primal.admissible { "" } else { " (not admissible)" };
+        let recomputed = format!("energy/recomputed/{}", primal.name);
+        let reported = report.checks.iter().any(|check| check.name == recomputed && !check.passed);
+        let suffix = match (primal.admissible, reported) {
+            (_, true) => " (as reported)",
+            (true, _) => "",
+            (false, _) => " (not admissible)",
+        };
         list.push((format!("{}{suffix}", primal.name), primal.energy));
     }
     list

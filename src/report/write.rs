@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Dossier, folder, html, json, junit, markdown, quantities_csv, vtu};
+use super::csv::{TABLES, tables};
+use super::{Dossier, folder, html, json, junit, markdown, vtu};
 
 /// Why a report was not written.
 #[derive(Debug, thiserror::Error)]
@@ -64,11 +65,8 @@ pub enum ReportError {
 /// The names of the files that every run leaves.
 pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 
-/// The file that a run leaves where it has quantities.
-pub const QUANTITIES: &str = "quantities.csv";
-
 /// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be, and
-/// `quantities.csv` where there are quantities; one of an earlier run goes where there are none.
+/// `checks.csv`, `contacts.csv` and `quantities.csv` where they have rows; those of an earlier run go where they have none.
 ///
 /// All are rendered before the first is written, and they take the place of an earlier run's at once (see
 /// [`folder`]): a reader sees neither half a file nor the files of two runs.
@@ -76,9 +74,13 @@ pub const QUANTITIES: &str = "quantities.csv";
 /// # Errors
 /// [`ReportError`]; an earlier report is then still there.
 pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
-    let header = quantities_csv::header();
-    let passing = folder::Passing { name: QUANTITIES, begins: header.as_bytes() };
-    folder::replace(dir, &render(dossier)?, &[passing])
+    let headers = TABLES.map(|table| table.header());
+    let passing: Vec<folder::Passing> = TABLES
+        .iter()
+        .zip(&headers)
+        .map(|(table, header)| folder::Passing { name: table.name, begins: header.as_bytes() })
+        .collect();
+    folder::replace(dir, &render(dossier)?, &passing)
 }
 
 /// The files by name.
@@ -92,9 +94,7 @@ pub(super) fn render(dossier: &Dossier) -> Result<Vec<(&'static str, Vec<u8>)>, 
         ("summary.md", markdown::summary(report).into_bytes()),
         ("fields.vtu", vtu::vtu(dossier).map_err(|e| fail("fields.vtu", e.to_string()))?),
     ];
-    if !report.quantities.is_empty() {
-        files.push((QUANTITIES, quantities_csv::quantities_csv(report).into_bytes()));
-    }
+    files.extend(tables(report).into_iter().map(|(name, text)| (name, text.into_bytes())));
     Ok(files)
 }
 
@@ -116,7 +116,8 @@ mod tests {
         let sample = Sample::new(3, Verdict::Disagree);
         let out = dir.path().join("deep/er");
         write(&sample.dossier(), &out).unwrap();
-        let mut expected: Vec<String> = NAMES.into_iter().chain([QUANTITIES]).map(String::from).collect();
+        let mut expected: Vec<String> =
+            NAMES.into_iter().chain(TABLES.map(|table| table.name)).map(String::from).collect();
         expected.sort();
         assert_eq!(listing(&out), expected);
         let read = || -> Vec<_> { expected.iter().map(|n| std::fs::read(out.join(n)).unwrap()).collect() };
@@ -127,7 +128,7 @@ mod tests {
         let mut without = sample.dossier();
         without.report.quantities.clear();
         write(&without, &out).unwrap();
-        expected.retain(|name| name != QUANTITIES);
+        expected.retain(|name| name != "quantities.csv");
         assert_eq!(listing(&out), expected);
     }
 
@@ -159,7 +160,9 @@ mod tests {
         let files = render(&dossier).unwrap();
         let failing = crate::report::words::failing(&dossier.report);
         assert!(!failing.is_empty());
-        for (name, bytes) in files.iter().filter(|(name, _)| !["fields.vtu", QUANTITIES].contains(name)) {
+        for (name, bytes) in
+            files.iter().filter(|(name, _)| *name != "fields.vtu" && (*name == "checks.csv" || !name.ends_with(".csv")))
+        {
             let text = String::from_utf8(bytes.clone()).unwrap();
             let text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&").replace("\\|", "|");
             for check in &failing {

@@ -4,25 +4,28 @@ use maud::{Markup, PreEscaped, html};
 
 use super::data::{Cell, Matrix, Outcome, Row};
 use super::markdown::shortened;
-use crate::report::document::{PLAIN, document};
+use crate::report::CSS;
+use crate::report::document::{PLOTS, document};
 use crate::report::number::{clean, percent};
 
-const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{background:#e6f6ea}.inaccurate{background:#fff6db}.refused{background:#eef1f5}\
-.no-convergence{background:#f3e8d8}.crash,.wrong{background:#ffdcd8;font-weight:700}.not-applicable{color:#8c959f}details{margin:4px 0}";
+const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{background:var(--good-bg)}.inaccurate,.no-convergence{background:var(--warn-bg)}\
+.refused{background:var(--sheet)}.crash,.wrong{background:var(--bad-bg);font-weight:700}.not-applicable{color:var(--dim)}";
 
 /// The page; `figures` are the curves by name.
 pub fn page(matrix: &Matrix, figures: &[(String, String)]) -> String {
     let body = html! {
-        h1 { "Which method can be trusted where" }
-        p.dim {
+        header { h1 { "Which method can be trusted where" }
+        p.sub {
             "hypercircle " (matrix.machine.version) @if matrix.reduced { ", reduced sweeps" }
             ". Every row is a family of scenes swept through one parameter; a cell shows the worst outcome, in brackets the last \
             value before the first that was not correct."
+        } }
+        main {
+            section aria-label="all regimes" { (table(matrix)) }
+            @for row in &matrix.rows { (details(row, figures)) }
         }
-        (table(matrix))
-        @for row in &matrix.rows { (details(row, figures)) }
     };
-    document("Stability matrix", &[PLAIN, MORE_CSS], None, body)
+    document("Stability matrix", &[CSS, PLOTS, MORE_CSS], None, body)
 }
 
 fn class(outcome: Outcome) -> &'static str {
@@ -39,7 +42,7 @@ fn class(outcome: Outcome) -> &'static str {
 
 fn table(matrix: &Matrix) -> Markup {
     html! {
-        div.scroll { table {
+        div.scroll role="region" aria-label="methods and regimes" tabindex="0" { table {
             thead { tr {
                 th { "regime" }
                 @if let Some(row) = matrix.rows.first() { @for cell in &row.cells { th { (cell.method.name()) } } }
@@ -76,11 +79,11 @@ fn details(row: &Row, figures: &[(String, String)]) -> Markup {
         section id=(row.id) {
             h2 { (clean(&row.title)) }
             p { "Swept: " (row.parameter) ". Truth: " (row.truth) "." @if !row.reported.is_empty() { " Reported in " (row.reported) "." } }
-            @for (_, svg) in figures.iter().filter(|(n, _)| *n == name) { figure { (PreEscaped(svg)) } }
+            @for (_, svg) in figures.iter().filter(|(n, _)| *n == name) { figure.plot { (PreEscaped(svg)) } }
             @for cell in &row.cells {
                 details id=(format!("{}-{}", row.id, cell.method.index())) open[cell.worst > Outcome::Correct] {
                     summary { (cell.method.name()) ": " (cell.worst.words()) }
-                    div.scroll { table {
+                    div.scroll role="region" aria-label={ (row.title) ", " (cell.method.name()) } tabindex="0" { table {
                         thead { tr { th { "value" } th { "outcome" } th.n { "guaranteed" } th.n { "true" } th { "why" } } }
                         tbody {
                             @for (value, step) in row.values.iter().zip(&cell.steps) {

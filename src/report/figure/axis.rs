@@ -3,6 +3,9 @@
 use super::svg::{Anchor, Svg, look};
 use crate::report::number::superscript;
 
+/// Page length of a digit.
+const DIGIT: f64 = 8.2;
+
 /// Maps numbers between `from` and `to` to page coordinates between `start` and `end`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis {
@@ -117,7 +120,10 @@ impl Axis {
         for (x, label) in self.ticks(if self.end - self.start < 340.0 { 4 } else { 6 }) {
             let at = self.at(x);
             svg.line(look::GRID, "", [at, top], [at, y + 4.0]);
-            svg.text(&format!("{} {}", look::DIM, look::HALO), [at, y + 18.0], Anchor::Middle, &label);
+            // A label near the edge of the page keeps to it.
+            let half = 0.5 * DIGIT * label.chars().count() as f64;
+            let inside = at.min(svg.width - half).max(half);
+            svg.text(&format!("{} {}", look::DIM, look::HALO), [inside, y + 18.0], Anchor::Middle, &label);
         }
         svg.line(look::LINE, "", [self.start, y], [self.end, y]);
         let middle = 0.5 * (self.start + self.end);

@@ -226,7 +226,7 @@ mod tests {
         assert_eq!(deformation_scale(&sample.problem, &[]), 1.0);
         assert_eq!(round_down(0.3), 0.2);
         assert_eq!(round_down(1000.0), 1000.0);
-        let text = deformed(&sample.problem, "<free>", fields[0], &fields, 0.1);
+        let text = deformed(&sample.problem, "<free>", fields[0], &fields, 0.1, &[]);
         assert_well_formed(&text);
         assert_eq!(text.matches("class=\"contact\"").count(), 2);
     }
@@ -237,7 +237,7 @@ mod tests {
         let mesh = &sample.problem.mesh;
         let edge = vec![[0.0, 0.5]; mesh.edges.len()];
         let field = Displacement::from_p2(mesh, &vec![[0.0; 2]; mesh.points.len()], &edge);
-        let text = deformed(&sample.problem, "bow", &field, &[&field], 1.0);
+        let text = deformed(&sample.problem, "bow", &field, &[&field], 1.0, &[]);
         assert!(text.contains('Q'));
     }
 

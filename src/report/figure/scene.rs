@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn every_condition_has_its_symbol() {
         let problem = Sample::new(4, Verdict::Agree).problem;
-        let text = scene(&problem);
+        let text = scene(&problem, &[]);
         assert_well_formed(&text);
         for class in ["b0", "b1", "support", "contact", "load"] {
             assert!(text.contains(&format!("class=\"{class}\"")), "{class}");
@@ -220,13 +220,13 @@ mod tests {
     fn a_gap_is_drawn_as_a_second_line() {
         let mut problem = Sample::new(4, Verdict::Agree).problem;
         assert_eq!(gap_exaggeration(&problem), None);
-        let without = scene(&problem).matches("stroke-dasharray").count();
+        let without = scene(&problem, &[]).matches("stroke-dasharray").count();
         for pair in &mut problem.interfaces[0].pairs {
             pair.gap = [1e-3, 1e-3];
         }
         let factor = gap_exaggeration(&problem).unwrap();
         assert!(factor > 10.0 && factor < 1000.0, "{factor}");
-        assert_eq!(scene(&problem).matches("stroke-dasharray").count(), without + 1);
+        assert_eq!(scene(&problem, &[]).matches("stroke-dasharray").count(), without + 1);
         for pair in &mut problem.interfaces[0].pairs {
             pair.gap = [0.5, 0.5];
         }

@@ -15,7 +15,8 @@ fn ordered<'a>(dossier: &'a Dossier) -> Vec<&'a Map> {
     let best = dossier.report.stress.as_ref().map_or("", |stress| stress.against.as_str());
     let mut maps: Vec<&Map> = dossier.maps.iter().filter(|map| map.values.len() == triangles).collect();
     let kind = |map: &Map| MapKind::ALL.iter().position(|kind| *kind == map.kind);
-    maps.sort_by_key(|map| (kind(map), best.is_empty() || !map.title.ends_with(best)));
+    let of_best = |map: &Map| map.kind == MapKind::Difference && !best.is_empty() && map.title.ends_with(best);
+    maps.sort_by_key(|map| (kind(map), !of_best(map)));
     maps
 }
 

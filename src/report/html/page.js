@@ -28,10 +28,10 @@ const unfold = () => {
 };
 addEventListener("hashchange", unfold);
 unfold();
-// What is folded is printed too.
+// The checks are printed, folded or not.
 const opened = [];
 addEventListener("beforeprint", () => {
-  for (const folded of document.querySelectorAll("details:not([open])")) { folded.open = true; opened.push(folded); }
+  for (const folded of document.querySelectorAll(".failures details:not([open]), .passing:not([open])")) { folded.open = true; opened.push(folded); }
 });
 addEventListener("afterprint", () => { for (const folded of opened.splice(0)) folded.open = false; });
 

@@ -27,8 +27,8 @@ pub(super) fn pictures(dossier: &Dossier) -> Markup {
                         }
                     }
                 }
-                (super::map::figure(dossier, &marks))
                 @for i in 0..dossier.report.contact.len() { (pressure_figure(dossier, i)) }
+                (super::map::figure(dossier, &marks))
                 (shapes(dossier, &marks))
                 @if !dossier.report.history.is_empty() { (history_figure(dossier)) }
             }

@@ -11,7 +11,7 @@ h1{font-size:clamp(1.25rem,3.4vw,1.75rem);line-height:1.25;margin:0 0 2px;overfl
 h2{font-size:1.3rem;margin:44px 0 10px;padding-bottom:6px;border-bottom:1px solid var(--rule)}
 h3{font-size:1rem;margin:0 0 6px;overflow-wrap:anywhere}
 p{margin:6px 0 10px;max-width:76ch}
-code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhere}
+code,svg text{unicode-bidi:isolate}code{font:0.9em ui-monospace,SFMono-Regular,Menlo,monospace;overflow-wrap:anywhere}
 .sub{color:var(--dim);margin:0 0 18px}
 .verdict{display:flex;gap:18px;align-items:center;padding:16px 20px;border:2px solid;border-left-width:12px;border-radius:8px}
 .verdict .symbol{font-size:2.5rem;line-height:1}
@@ -92,7 +92,7 @@ svg text[paint-order]{stroke:#151b23}svg .mesh{stroke:#8b98a5}svg .m{stroke:none
 body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
 figure,.card:not(.asked),.asked-for>div,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
 .scroll{overflow:visible}table{font-size:8.5pt}.tools,.how,.skip,#map output{display:none!important}
-figcaption,p,li{orphans:3;widows:3}thead{display:table-header-group}td.why,td.w{min-width:0}td,th{overflow-wrap:anywhere}.gallery{display:block}.gallery figure{margin-bottom:12px}
+figcaption,p,li{orphans:3;widows:3}thead{display:table-header-group}td.why{min-width:240px}td.long{min-width:120px}td.n,th.n{white-space:normal}.back,figcaption details{display:none}.gallery{display:block}.gallery figure{margin-bottom:12px}
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 }
 "#;

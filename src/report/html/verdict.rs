@@ -142,7 +142,11 @@ fn distance(report: &Report) -> Markup {
             }
             @for primal in &report.primal {
                 @if let Some(bound) = primal.relative_error_bound {
-                    p { (clean(&primal.name)) ": at most " b { (percent(bound)) } "." }
+                    p {
+                        (clean(&primal.name))
+                        @if !primal.admissible { " is not admissible and has no bound; the nearest field that is" }
+                        ": at most " b { (percent(bound)) } "."
+                    }
                 } @else {
                     p { (clean(&primal.name)) ": no bound, its energy does not lie above the lower bound or it is not admissible." }
                 }

@@ -78,26 +78,32 @@ impl Sheet {
 
     /// Text as an array of its bytes in UTF-8, which every reader takes.
     pub fn text(&mut self, name: &str, text: &str) -> std::io::Result<()> {
-        self.array(name, "UInt8", &[], text.as_bytes().to_vec())
+        let tuples = text.len().to_string();
+        self.element(name, "UInt8", &[("NumberOfTuples", tuples.as_str())], text.as_bytes())
+    }
+
+    /// An array whose components have these names; one of a single component has none.
+    pub fn array(&mut self, name: &str, kind: &str, components: &[&str], data: Vec<u8>) -> std::io::Result<()> {
+        let count = components.len().to_string();
+        let keys: Vec<String> = (0..components.len()).map(|k| format!("ComponentName{k}")).collect();
+        let mut attributes: Vec<(&str, &str)> =
+            keys.iter().map(String::as_str).zip(components.iter().copied()).collect();
+        // Scalars go without the count, as VTK itself writes them: some readers make a column of one otherwise.
+        if !components.is_empty() {
+            attributes.push(("NumberOfComponents", &count));
+        }
+        self.element(name, kind, &attributes, &data)
     }
 
     /// Inline binary, compressed in blocks: numbers of blocks and bytes in base64, and the blocks in base64.
-    pub fn array(&mut self, name: &str, kind: &str, components: &[&str], data: Vec<u8>) -> std::io::Result<()> {
+    fn element(&mut self, name: &str, kind: &str, more: &[(&str, &str)], data: &[u8]) -> std::io::Result<()> {
         let blocks: Vec<Vec<u8>> = data.chunks(BLOCK).map(|block| compress_to_vec_zlib(block, LEVEL)).collect();
         let counts = [blocks.len(), BLOCK, data.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
         let head: Vec<u8> = counts.flat_map(|n| (n as u64).to_le_bytes()).collect();
-        let count = components.len().to_string();
-        let named: Vec<(String, &str)> =
-            components.iter().enumerate().map(|(k, name)| (format!("ComponentName{k}"), *name)).collect();
         let attributes = [("type", kind), ("Name", name), ("format", "binary")];
-        let mut element = self.xml.create_element("DataArray").with_attributes(attributes);
-        // Scalars go without the count, as VTK itself writes them: some readers make a column of one otherwise.
-        if !components.is_empty() {
-            element = element.with_attribute(("NumberOfComponents", count.as_str()));
-            element = element.with_attributes(named.iter().map(|(key, name)| (key.as_str(), *name)));
-        }
+        let element = self.xml.create_element("DataArray").with_attributes(attributes);
         let text = STANDARD.encode(head) + &STANDARD.encode(blocks.concat());
-        element.write_text_content(BytesText::from_escaped(text))?;
+        element.with_attributes(more.iter().copied()).write_text_content(BytesText::from_escaped(text))?;
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! Every scene in `cases/`, end to end: both models, the comparison, the report. What is asserted comes from closed
 //! formulas and from statics by hand.
 
+mod causes;
 mod curved;
 mod discs;
 mod exact;

@@ -111,6 +111,41 @@ def contact_glued(problem, rng):
     problem["roller"].append({"edge": pair["edges"][0], "normal": pair["normal"]})
 
 
+def gap_ignored(problem, rng):
+    if not any(any(pair["gap"]) for _, pair in pairs(problem)):
+        no_place()
+    for _, pair in pairs(problem):
+        pair["gap"] = [0.0 for _ in pair["gap"]]
+
+
+def rollers_missing(problem, rng):
+    """All of the first direction."""
+    first = pick(rng, problem["roller"])["normal"]
+    problem["roller"] = [e for e in problem["roller"] if abs(e["normal"][0] * first[1] - e["normal"][1] * first[0]) > 1e-9]
+
+
+def thickness_ignored(problem, rng):
+    if problem["thickness"] == 1.0:
+        no_place()
+    problem["thickness"] = 1.0
+
+
+def materials_swapped(problem, rng):
+    if len(problem["bodies"]) < 2:
+        no_place()
+    first, second = problem["bodies"][:2]
+    for key in ("young", "poisson"):
+        first[key], second[key] = second[key], first[key]
+
+
+def contact_at_one_node(problem, rng):
+    """Everything but the first node of the first pair is out of reach."""
+    contact = pick(rng, [c for c in problem["contacts"] if len(c["pairs"]) > 2])
+    far = 1e3 * max(abs(x) for point in problem["points"] for x in point)
+    for k, pair in enumerate(contact["pairs"]):
+        pair["gap"] = [pair["gap"][0] if k == 0 else far, far]
+
+
 def triangle_of_another_body(problem, rng):
     if len(problem["bodies"]) < 2:
         no_place()
@@ -138,5 +173,6 @@ BUGS = [
     poisson_sign, modulus, poisson, thickness, kinematics, weight_missing, weight_sideways, load_larger,
     load_missing_on_an_edge, load_constant_on_an_edge, clamp_missing_on_an_edge, roller_missing_on_an_edge,
     roller_turned, clamp_for_roller, displacement_larger, pair_missing, gap_larger, gap_swapped, contact_glued,
-    triangle_of_another_body, vertex_moved,
+    triangle_of_another_body, vertex_moved, gap_ignored, rollers_missing, thickness_ignored, materials_swapped,
+    contact_at_one_node,
 ]  # fmt: skip

@@ -1,0 +1,39 @@
+"""Every kind of page: who cannot see, who has a small screen, who reads at night."""
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+
+PAGES = ["agree", "drop", "fine", "odd", "job", "chart", "stability"]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", PAGES)
+def test_nothing_stands_in_the_way_of_a_reader(opened, pages, name, scheme):
+    page = opened(pages[name], color_scheme=scheme)
+    violations = Axe().run(page).response["violations"]
+    told = [(v["id"], v["nodes"][0]["html"][:200], v["nodes"][0].get("failureSummary")) for v in violations]
+    assert told == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_telephone_shows_all_of_it(opened, pages, name):
+    page = opened(pages[name], width=390)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    # Figures fit, and their letters can be read.
+    for svg in page.locator("main figure:visible > svg, main .stage svg").all():
+        box = svg.bounding_box()
+        assert box["x"] + box["width"] <= 390
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_there_is_one_heading_and_one_main_part(opened, pages, name):
+    page = opened(pages[name], java_script_enabled=False)
+    assert page.locator("h1").count() == 1 and page.locator("main").count() == 1
+    assert page.locator("html[lang]").count() == 1
+
+
+def test_names_that_run_from_right_to_left_turn_nothing(opened, pages):
+    page = opened(pages["odd"])
+    title = page.locator("h1")
+    assert "<b>" in title.inner_text() and "\u202e" not in title.inner_text() and "\ufffd" in title.inner_text()
+    assert title.locator("bdi").count() == 1
