@@ -25,6 +25,12 @@ impl Lattice {
         3 * self.degrees[t] * self.degrees[t]
     }
 
+    /// Number of nodes of triangle `t`.
+    pub fn nodes(&self, t: usize) -> usize {
+        let p = self.degrees[t];
+        3 * (p + 1) * (p + 2) / 2
+    }
+
     /// The value of a field at every node, from triangle, subtriangle and barycentric coordinates there.
     pub fn values<const N: usize>(&self, value: impl Fn(usize, usize, [f64; 3]) -> [f64; N]) -> Vec<f64> {
         let mut values = Vec::new();

@@ -15,6 +15,8 @@ use sheet::{Precision, Sheet};
 
 /// From this many triangles on fields keep four digits: the file would otherwise be tens of megabytes, and is for looking at.
 const FOR_LOOKING_FROM: usize = 10_000;
+/// Stresses are then multiples of this part of the largest in their triangle, or of up to twice that.
+const STEP: f64 = 1.0 / 4096.0;
 /// The components of a symmetric tensor in the order of VTK.
 const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 /// Those of a vector.
@@ -66,25 +68,36 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
     let dual = dossier.dual.map(|dual| &dual.stress).filter(|stress| stress.len() == mesh.triangles.len());
     let tensor = |t: usize, s: [f64; 3]| [s[0], s[1], out_of_plane(problem, t, s), s[2], 0.0, 0.0];
     out.open("PointData", &dual.map(|_| ("Tensors", "dual_stress")).into_iter().collect::<Vec<_>>())?;
+    let steps = steps(dossier, lattice);
     if let Some(dual) = dual {
         let stress = |t, sub, l| dual.at(t, sub, l);
-        out.field("dual_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress(t, sub, l))))?;
-        out.field("von_mises", &[], &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]))?;
-        out.field("mean_stress", &[], &lattice.values(|t, sub, l| [mean_stress(problem, t, stress(t, sub, l))]))?;
+        out.stresses("dual_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress(t, sub, l))), &steps)?;
+        out.stresses(
+            "von_mises",
+            &[],
+            &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]),
+            &steps,
+        )?;
+        out.stresses(
+            "mean_stress",
+            &[],
+            &lattice.values(|t, sub, l| [mean_stress(problem, t, stress(t, sub, l))]),
+            &steps,
+        )?;
     }
     if let Some(mid) = dossier.mid.filter(|mid| mid.len() == mesh.triangles.len()) {
-        out.field("mid_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, mid.at(t, sub, l))))?;
+        out.stresses("mid_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, mid.at(t, sub, l))), &steps)?;
     }
     let mut names = Vec::new();
     for (name, stress) in dossier.stresses.iter().filter(|(_, stress)| stress.len() == mesh.triangles.len()) {
         let key = unique_key("stress", name, &mut names);
-        out.field(&key, &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress.at(t, sub, l))))?;
+        out.stresses(&key, &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress.at(t, sub, l))), &steps)?;
         if let Some(dual) = dual {
             let apart = lattice.values(|t, sub, l| {
                 let (own, other) = (dual.at(t, sub, l), stress.at(t, sub, l));
                 tensor(t, [0, 1, 2].map(|c| own[c] - other[c]))
             });
-            out.field(&unique_key("stress_difference", name, &mut names), &TENSOR, &apart)?;
+            out.stresses(&unique_key("stress_difference", name, &mut names), &TENSOR, &apart, &steps)?;
         }
     }
     for (name, displacement) in &dossier.displacements {
@@ -104,6 +117,19 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
         out.field("motion", &VECTOR, &values)?;
     }
     out.close("PointData")
+}
+
+/// The steps of stresses at every node: a power of two for each triangle, from the largest stress in it of any model.
+fn steps(dossier: &Dossier, lattice: &Lattice) -> Vec<f64> {
+    let all =
+        || dossier.dual.map(|dual| &dual.stress).into_iter().chain(dossier.stresses.iter().map(|(_, stress)| *stress));
+    let step = |t: usize| {
+        let values = all().filter(|stress| t < stress.len()).flat_map(|stress| stress.block(t).as_flattened());
+        let largest = values.filter(|x| x.is_finite()).fold(0.0_f64, |m, x| m.max(x.abs()));
+        if largest > 0.0 { STEP * largest.log2().floor().exp2() } else { 0.0 }
+    };
+    let of = |t: usize| std::iter::repeat_n(step(t), lattice.nodes(t));
+    (0..lattice.degrees.len()).flat_map(of).collect()
 }
 
 fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::Result<()> {

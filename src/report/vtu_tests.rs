@@ -175,6 +175,22 @@ fn stresses_of_a_degree_for_each_triangle_are_exact_at_all_points() {
 }
 
 #[test]
+fn stresses_for_looking_at_are_right_to_a_part_of_the_largest() {
+    let mut sheet = Sheet::new("", Precision::ForLooking).unwrap();
+    let values = [4.0, 1e-4, -0.123456, 1.0, f64::NAN, 2e-9, 0.5, 7.0, 0.0, 1.0, 1.0, 1.0];
+    sheet.stresses("s", &TENSOR, &values, &[STEP, 0.0]).unwrap();
+    let bytes = sheet.finish().unwrap();
+    let arrays = arrays(std::str::from_utf8(&bytes).unwrap());
+    let found: Vec<f32> = arrays["s"].2.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    assert_eq!(found.len(), values.len());
+    for (k, (x, found)) in values.iter().zip(&found).enumerate().filter(|(k, _)| *k != 4) {
+        let allowed = if k < 6 { 0.5 * STEP } else { 1e-7 };
+        assert!((x - f64::from(*found)).abs() <= allowed, "{x} {found}");
+    }
+    assert!(found[4].is_nan());
+}
+
+#[test]
 fn von_mises_of_known_states() {
     let mut sample = Sample::new(1, Verdict::Agree);
     // Plane strain, ν = 0.3, uniaxial 1: σ_33 = 0.3, ½(1² + 0.3² + 0.7²) = 0.79.

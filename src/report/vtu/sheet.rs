@@ -18,7 +18,7 @@ const KEPT_BITS: u32 = 13;
 pub(super) enum Precision {
     /// As they are, in double precision.
     Whole,
-    /// Four digits, in single precision.
+    /// In single precision with four digits, stresses to a part of the largest in their triangle.
     ForLooking,
 }
 
@@ -74,6 +74,19 @@ impl Sheet {
                 self.array(name, "Float32", components, bytes)
             }
         }
+    }
+
+    /// A field of stresses, one tensor or scalar at every node; for looking at they are rounded to the steps of the nodes.
+    pub fn stresses(&mut self, name: &str, components: &[&str], values: &[f64], steps: &[f64]) -> std::io::Result<()> {
+        if self.precision == Precision::Whole {
+            return self.field(name, components, values);
+        }
+        let round = |(values, step): (&[f64], &f64)| {
+            let step = *step;
+            values.iter().map(move |x| if step > 0.0 { (x / step).round() * step } else { *x }).collect::<Vec<f64>>()
+        };
+        let rounded = values.chunks(components.len().max(1)).zip(steps).flat_map(round);
+        self.array(name, "Float32", components, rounded.flat_map(|x| (x as f32).to_le_bytes()).collect())
     }
 
     /// Text as an array of its bytes in UTF-8, which every reader takes.
