@@ -116,6 +116,7 @@ fn alone(check: &Check) -> Cause {
             "What was asked for was not reached; theory allows it.",
             "Refine further, with a larger --max-triangles or --max-seconds, or ask for less.",
         ],
+        _ if check.name.starts_with("quantity/") => advice::of(advice::Kind::Value, ""),
         _ => advice::ALONE,
     };
     Cause {

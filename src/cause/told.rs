@@ -124,9 +124,16 @@ fn failed(check: &Check) -> String {
                 "The half-width of the interval of {name} is {value} of its value, and {allowed} was to be reached."
             )
         }
-        ("quantity", name, source) => format!(
-            "The value {value} of {name} ({source}) is {difference} outside its interval, which {allowed} of its own error does not explain."
-        ),
+        ("quantity", name, source) => {
+            let own = if check.allowed > 0.0 {
+                format!(", and {allowed} is all that its own error explains")
+            } else {
+                String::new()
+            };
+            format!(
+                "The value {value} of {name} ({source}) is {difference} beyond the end {reference} of its interval{own}."
+            )
+        }
         ("baseline", ..) => {
             let what = check.name.strip_prefix("baseline/").unwrap_or(&check.name);
             format!("{what} is {value} and was {reference}: {difference} apart, {allowed} at most.")

@@ -16,7 +16,7 @@ use sheet::{Precision, Sheet};
 /// From this many triangles on fields keep four digits: the file would otherwise be tens of megabytes, and is for looking at.
 const FOR_LOOKING_FROM: usize = 10_000;
 /// Stresses are then multiples of this part of the largest in their triangle, or of up to twice that.
-const STEP: f64 = 1.0 / 4096.0;
+const STEP: f64 = 1.0 / 2048.0;
 /// The components of a symmetric tensor in the order of VTK.
 const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 /// Those of a vector.
@@ -27,7 +27,7 @@ const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 /// Point data: `dual_stress`, `mid_stress`, `stress_…` of every displacement model and `stress_difference_…`, λ_h less that, as
 /// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
 /// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
-/// everywhere, and the maps. Field data: `scene`, `scene_sha256` and `run`, as UTF-8.
+/// everywhere, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
     let run = format!(" run {} ", dossier.report.run);
@@ -43,7 +43,6 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     out.open("FieldData", &[])?;
     out.text("scene", &dossier.report.scene)?;
     out.text("scene_sha256", &dossier.report.provenance.scene_sha256)?;
-    out.text("run", &dossier.report.run)?;
     out.close("FieldData")?;
     out.open("Piece", &[("NumberOfPoints", &(points.len() / 3).to_string()), ("NumberOfCells", &cells.to_string())])?;
     point_data(&mut out, dossier, &lattice)?;

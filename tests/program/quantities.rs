@@ -159,7 +159,7 @@ fn values_from_elsewhere_are_held_against_the_intervals() {
         let expected: Vec<String> = wrong.iter().map(|name| format!("quantity/{name}/given")).collect();
         assert_eq!(failed, expected, "{arguments:?}");
         if let Some(name) = wrong {
-            assert!(said.contains(&format!("'{name}' lies between")), "{said}");
+            assert!(said.contains(&format!(" of {name} (given) is ")) && said.contains("beyond the end"), "{said}");
             let rows = written(folder.path(), "quantities.csv");
             let row = rows.lines().find(|row| row.starts_with(&format!("{name},")) && row.contains(",given,"));
             assert_eq!(row.expect("a row").split(',').nth(5), Some("false"));

@@ -16,7 +16,7 @@ pub(super) fn card(report: &Report) -> Markup {
     html! {
         @if !all.is_empty() {
             section.card.asked aria-label="what was asked for" {
-                h3 { "What was asked for" }
+                h2 { "What was asked for" }
                 div.asked-for { @for (i, summary) in all.iter().take(SHOWN).enumerate() { (one(i, summary, report)) } }
                 @if all.len() > SHOWN {
                     p { (all.len() - SHOWN) " more are in the " a href="#quantities" { "table" } "." }
@@ -31,7 +31,7 @@ fn one(index: usize, summary: &QuantitySummary, report: &Report) -> Markup {
     let id = format!("quantity-{index}");
     html! {
         div id=(id) {
-            h4 { code { (clean(&summary.name)) } " · " (clean(&summary.kind)) }
+            h3 { code { (clean(&summary.name)) } " · " (clean(&summary.kind)) }
             @if let Some(figure) = quantity(summary, report) { (PreEscaped(figure)) }
             p {
                 @if summary.value.is_finite() { b { (significant(summary.value, summary.digits())) } }

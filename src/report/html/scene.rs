@@ -17,7 +17,7 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
     };
     html! {
         section.card #scene aria-label="the scene in numbers" {
-            h3 { "What was computed" }
+            h2 { "What was computed" }
             dl.scene {
                 dt { "State" } dd { (kinematics) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
                 dt { "Materials" }

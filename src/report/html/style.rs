@@ -30,12 +30,12 @@ code,svg text{unicode-bidi:isolate}code{font:0.9em ui-monospace,SFMono-Regular,M
 .facts span b{font-weight:600}
 .answers{display:grid;grid-template-columns:minmax(0,1fr);gap:14px;align-content:start}
 .card{background:var(--sheet);border:1px solid var(--rule);border-radius:8px;padding:14px 18px;min-width:0}
-.card p{margin:4px 0 6px}
+.card h2{font-size:1rem;margin:0 0 6px;padding:0;border:0}.card p{margin:4px 0 6px}
 .card .big{font-size:1.7rem;font-weight:700;line-height:1.2;margin:2px 0 4px}
 .asked{margin-top:14px}
 .asked-for{display:grid;gap:10px 26px;grid-template-columns:repeat(auto-fit,minmax(min(100%,340px),1fr))}
 .asked-for>div{min-width:0}
-.asked-for h4{font-size:.95rem;font-weight:400;margin:6px 0 2px;overflow-wrap:anywhere}
+.asked-for h3{font-size:.95rem;font-weight:400;margin:6px 0 2px;overflow-wrap:anywhere}
 .asked-for p{font-size:.93rem}.asked-for .off b{color:var(--bad)}
 .first{display:grid;gap:14px;margin-top:14px;grid-template-columns:minmax(0,1fr)}
 @media(min-width:900px){.first{grid-template-columns:minmax(0,1.25fr) minmax(0,1fr)}}
@@ -79,7 +79,7 @@ th[aria-sort=ascending] button::after{content:" ▲"}th[aria-sort=descending] bu
 .notes li{margin-bottom:6px}
 .words dt{font-weight:600;margin-top:10px}.words dd{margin:2px 0 0;max-width:78ch;color:var(--dim)}
 footer{color:var(--dim);font-size:.88rem;padding-top:30px;padding-bottom:40px}
-@media(max-width:560px){figure,.card{padding:10px 8px}svg{font-size:15.5px}.card h3,.card p,.card .big,figcaption{padding:0 6px}}
+@media(max-width:560px){figure,.card{padding:10px 8px}svg{font-size:15.5px}.card h2,.card p,.card .big,figcaption{padding:0 6px}}
 @media(prefers-color-scheme:dark){
 :root{--paper:#0d1117;--sheet:#151b23;--ink:#e6edf3;--dim:#9aa4af;--rule:#30363d;--good:#3fb950;--bad:#ff7b72;--warn:#d29922;--accent:#58a6ff;--good-bg:#12261a;--bad-bg:#2d1618;--warn-bg:#2b2413}
 svg .ink{fill:#e6edf3}svg .dim{fill:#9aa4af}svg .line{stroke:#e6edf3}svg .grid{stroke:#363d47}svg .support{stroke:#aab4bf}

@@ -52,7 +52,7 @@ fn gloss(report: &Report) -> &'static str {
 fn bracket_card(report: &Report) -> Markup {
     html! {
         section.card #bracket aria-label="energy bracket" {
-            h3 { "Where the exact energy lies" }
+            h2 { "Where the exact energy lies" }
             (PreEscaped(bracket(report)))
             @if let Some(energy) = &report.energy {
                 @let digits = digits_to_tell(energy.lower, energy.upper);
@@ -73,7 +73,7 @@ fn agreement(report: &Report) -> Markup {
     let (passed, all) = (report.checks.len() - failing(report).len(), report.checks.len());
     html! {
         section.card {
-            h3 { (if of_field(report) { "Is the field what it is handed in as?" } else { "Do the two models agree?" }) }
+            h2 { (if of_field(report) { "Is the field what it is handed in as?" } else { "Do the two models agree?" }) }
             div.big {
                 @match report.status {
                     Status::Agree if report.primal.is_empty() => "No second model",
@@ -108,7 +108,7 @@ fn of_field(report: &Report) -> bool {
 fn distance_of_field(report: &Report) -> Markup {
     html! {
         section.card {
-            h3 { "How far can the field be from the truth?" }
+            h2 { "How far can the field be from the truth?" }
             @for primal in &report.primal {
                 @if let Some(bound) = primal.relative_error_bound.filter(|bound| bound.is_finite()) {
                     div.big { "≤ " (percent(bound)) }
@@ -132,7 +132,7 @@ fn distance(report: &Report) -> Markup {
     }
     html! {
         section.card {
-            h3 { "How far can each be from the truth?" }
+            h2 { "How far can each be from the truth?" }
             @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
                 div.big { "≤ " (percent(energy.relative_error_bound)) }
             }
@@ -159,7 +159,7 @@ fn differences(report: &Report) -> Markup {
     html! {
         @if let Some(stress) = &report.stress {
             section.card {
-                h3 { "Where do they differ?" }
+                h2 { "Where do they differ?" }
                 div.big { (percent(stress.relative_energy_norm_difference)) }
                 p {
                     "is the difference of the stresses of the dual model and of " (clean(&stress.against)) " in the energy norm. "

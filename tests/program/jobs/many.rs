@@ -111,10 +111,10 @@ fn one_scene_is_no_job_and_a_folder_is_one() {
     let place = Place::with(&["x"]);
     ended("one", &place.run(&["solve", "scenes/x.toml", "--out", "one", "--jobs", "2"]), 0, &[]);
     let mut left = std::fs::read_dir(place.path("one")).expect("there").count();
-    assert_eq!(left, 5);
+    assert_eq!(left, 7);
     ended("a folder", &place.run(&["solve", "scenes", "--out", "folder"]), 0, &[]);
     left = std::fs::read_dir(place.path("folder/x")).expect("there").count();
-    assert_eq!(left, 5);
+    assert_eq!(left, 7);
     place.write("empty/notes.txt", "");
     ended("nothing", &place.run(&["solve", "empty"]), 2, &["empty", "directory without a scene"]);
     ended("both", &place.run(&["solve", "scenes", "empty"]), 2, &["empty"]);
