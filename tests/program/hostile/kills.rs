@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use hypercircle::report::{NAMES, run_of};
+use hypercircle::report::run_of;
 
-use super::run::{Place, alive, case, names, soon};
+use super::run::{Place, alive, case, expected, names, soon};
 use crate::command::script;
 use crate::random::Random;
 
@@ -86,12 +86,6 @@ impl Trial {
         assert!(soon(|| !pids.lines().any(alive)), "{what}: a process lives on");
         std::fs::write(&self.pids, "").expect("writable");
     }
-}
-
-fn expected() -> Vec<String> {
-    let mut names = NAMES.map(String::from).to_vec();
-    names.sort();
-    names
 }
 
 fn kill(signal: &str, child: &Child) {

@@ -2,17 +2,10 @@
 
 use std::process::Command;
 
-use hypercircle::report::{NAMES, run_of};
+use hypercircle::report::run_of;
 
-use super::run::{Place, case, names};
+use super::run::{Place, case, expected, names};
 use crate::command::said;
-
-/// The files of a run on a scene with contacts and without quantities.
-fn expected() -> Vec<String> {
-    let mut names: Vec<String> = NAMES.into_iter().chain(["checks.csv", "contacts.csv"]).map(String::from).collect();
-    names.sort();
-    names
-}
 
 #[test]
 fn a_full_or_closed_standard_output_changes_nothing() {

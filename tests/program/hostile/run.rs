@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
+use hypercircle::report::NAMES;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -106,3 +107,10 @@ pub const MESH: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\
 pub const FIELD: &str = "# vtk DataFile Version 3.0\nfield\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
     0 0 0\n1 0 0\n1 1 0\n0 1 0\nCELLS 2 8\n3 0 1 2\n3 0 2 3\nCELL_TYPES 2\n5\n5\nPOINT_DATA 4\n\
     VECTORS displacement double\n0 0 0\n0 0 0\n0 -0.7 0\n0 -0.7 0\n";
+
+/// The files of a run on a scene with contacts and without quantities.
+pub fn expected() -> Vec<String> {
+    let mut names: Vec<String> = NAMES.into_iter().chain(["checks.csv", "contacts.csv"]).map(String::from).collect();
+    names.sort();
+    names
+}
