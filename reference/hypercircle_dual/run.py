@@ -14,8 +14,8 @@ from .model import Model
 from .refinement import ROUND_OFF, Refined, refine
 from .solvers import Factorised, Iterated
 
-MOST_CHANGES = {Factorised: 12, Iterated: 60}
-"""Changes of the contact state at most."""
+MOST_CHANGES = 60
+"""Changes of the contact state at most, beside four for each end."""
 GRAZING = 1e-12
 """Tension relative to the load and penetration relative to the largest jump that are round-off."""
 UNSETTLED = 1e-8
@@ -61,8 +61,9 @@ class Settled:
         zero.set(0.0)
         self.now = Refined.of(model, zero)
         model.load_size = _largest(model.external) or _largest(self.now.r)
+        self.seen: set[bytes] = set()
         self._change(None)
-        for _ in range(MOST_CHANGES[type(solver)]):
+        for _ in range(MOST_CHANGES + 4 * len(self.bound)):
             self._refine(COARSE if isinstance(solver, Iterated) else ROUND_OFF)
             following = self._following()
             if np.array_equal(following, self.closed):
@@ -76,13 +77,29 @@ class Settled:
             raise DualFailure("the contact state could not be determined: ends keep opening and closing")
 
     def _change(self, start: np.ndarray | None) -> None:
-        """Take another contact state, and the unknowns that the solver has for it."""
+        """Take another contact state, and the unknowns that the solver has for it.
+
+        Where it has none, or leads back, closed jumps move to their bounds and refinement does the rest. States that have
+        been there before change one end at a time, which cannot cycle.
+        """
         begin = perf_counter()
         room = self.bound - self.model.jumps(self.now.x)
-        state, d = self.solver.state(self.now.r, room, start)
+        found = self.solver.state(self.now.r, room, start) if self.steps <= MOST_CHANGES else None
+        if found is None:
+            closed = np.ones(len(room), bool) if start is None else start
+            if closed.tobytes() in self.seen and start is not None:
+                last = np.flatnonzero(closed != self.closed)[-1:]
+                closed = self.closed.copy()
+                closed[last] = ~closed[last]
+            self.seen.add(closed.tobytes())
+            self.closed, self.steps = closed, self.steps + 1
+            d = self.now.x.duplicate()
+            d.set(0.0)
+            self.model.set_jumps(d, np.where(closed, room, 0.0))
+        else:
+            state, d = found
+            self.closed, self.steps = state.closed, self.steps + state.steps
         self.now = self.now.plus(self.model, 1.0, d, self.model.stresses(d, given=False))
-        self.closed = state.closed
-        self.steps += state.steps
         self.seconds_contact += perf_counter() - begin
 
     def _refine(self, enough: float) -> None:

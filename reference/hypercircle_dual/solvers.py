@@ -7,16 +7,15 @@ K and solves by an iteration; it finds the contact state by changing what stress
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
 
 from . import compat
-from .contact import ContactProblem, State
+from .contact import ContactProblem
 from .model import Model
 
-COLUMNS = 16
-"""Back-substitutions at a time."""
 INNER = 1e-6
 """Relative residual of an iteration; refinement does the rest."""
 MOST_ITERATIONS = 2000
@@ -43,7 +42,7 @@ class Factorised:
         self.assembled = perf_counter()
         self.solver = compat.factorisation(matrix)
         self.factorised = perf_counter()
-        self.contact = ContactProblem(self._schur())
+        self.contact = ContactProblem(self._schur(), self.shift)
 
     def _schur(self) -> np.ndarray:
         """S = (A⁻¹ on the jumps)⁻¹ − shift, in which nothing cancels: A is definite on the jumps by its shift."""
@@ -88,20 +87,19 @@ class Factorised:
         r.array = array
 
     def state(self, r, room: np.ndarray, start: np.ndarray | None):
-        """The contact state under the load ``r`` with jumps up to ``room``, and the unknowns that go with it."""
+        """The contact state under the load ``r`` with jumps up to ``room``, and the unknowns that go with it, if S tells."""
         z, c = self._condense(r)
-        state = self.model.comm.bcast(
-            self.contact.solve(c, room, start) if self.model.comm.rank == 0 else None
-        )
-        return state, self._expand(z, state.jumps)
+        state = self._on_first(lambda: self.contact.solve(c, room, start))
+        return state and (state, self._expand(z, state.jumps))
 
     def correct(self, r, closed: np.ndarray):
         """The change of the unknowns that takes ``r`` away while closed jumps and held unknowns stay."""
         z, c = self._condense(r)
-        jumps = self.model.comm.bcast(
-            self.contact.with_closed(c, np.zeros(len(c)), closed) if self.model.comm.rank == 0 else None
-        )
-        return self._expand(z, jumps)
+        return self._expand(z, self._on_first(lambda: self.contact.with_closed(c, np.zeros(len(c)), closed)))
+
+    def _on_first(self, find: Callable):
+        """What the first rank finds, so that all go on with the same digits."""
+        return self.model.comm.bcast(find() if self.model.comm.rank == 0 else None)
 
 
 class Iterated:
@@ -138,14 +136,8 @@ class Iterated:
             self.solver.destroy()
         self.solver = compat.multigrid(matrix, kernel, INNER, MOST_ITERATIONS)
 
-    def state(self, r, room: np.ndarray, start: np.ndarray | None):
-        """Moves the closed jumps to their bounds, and nothing else: refinement does the rest."""
-        closed = np.ones(len(room), bool) if start is None else start
-        x = r.duplicate()
-        x.set(0.0)
-        jumps = np.where(closed, room, 0.0)
-        self.model.set_jumps(x, jumps)
-        return State(jumps, closed, 1), x
+    def state(self, r, room: np.ndarray, start: np.ndarray | None) -> None:
+        """Nothing: the state is found by changing what stresses and jumps contradict."""
 
     def correct(self, r, closed: np.ndarray):
         """As :meth:`Factorised.correct`."""
