@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 
 from . import DualFailure, NotInstalled
@@ -9,7 +11,7 @@ from . import DualFailure, NotInstalled
 try:
     import petsc4py
 
-    petsc4py.init(["hypercircle_dual"])
+    petsc4py.init(["hypercircle_dual", *os.environ.get("HYPERCIRCLE_PETSC_OPTIONS", "").split()])
     from mpi4py import MPI
     from petsc4py import PETSc
 except ImportError as error:
@@ -21,15 +23,18 @@ INDEX = PETSc.IntType
 if not np.issubdtype(PETSc.ScalarType, np.floating):
     raise NotInstalled("PETSc is built for complex numbers, and this model needs the build for real ones")
 
-GAMG = {
-    "pc_gamg_type": "agg",
-    "pc_gamg_agg_nsmooths": 1,
-    "pc_gamg_threshold": 0.0,
+OPTIONS = {
     "mg_levels_ksp_type": "chebyshev",
     "mg_levels_ksp_max_it": 2,
-    "mg_levels_pc_type": "jacobi",
+    "mg_levels_pc_type": "pbjacobi",
+    "mg_coarse_ksp_type": "preonly",
+    "mg_coarse_pc_type": "gamg",
+    "mg_coarse_pc_gamg_agg_nsmooths": 1,
+    "mg_coarse_pc_gamg_threshold": 0.01,
+    "mg_coarse_mg_levels_ksp_type": "chebyshev",
+    "mg_coarse_mg_levels_pc_type": "jacobi",
 }
-"""Smoothed aggregation."""
+"""Two levels, the lower of which is solved with by one cycle of smoothed aggregation."""
 
 
 def index_set(comm: MPI.Comm, indices: np.ndarray) -> PETSc.IS:
@@ -119,18 +124,63 @@ def factorisation(target: PETSc.Mat) -> PETSc.KSP:
     return set_up(solver)
 
 
-def multigrid(target: PETSc.Mat, kernel: list[PETSc.Vec], tolerance: float, most: int) -> PETSc.KSP:
-    """Conjugate gradients with GAMG; ``kernel`` are orthonormal vectors that the matrix all but annihilates."""
-    target.setNearNullSpace(PETSc.NullSpace().create(vectors=kernel, comm=target.comm))
-    solver = PETSc.KSP().create(target.comm)
-    solver.setOptionsPrefix("dual_")
+def entries(comm: MPI.Comm, local: tuple[int, int], stride: int, rows, columns, values) -> PETSc.Mat:
+    """A matrix with ``local`` rows and columns on this rank from its entries; equal places are added."""
+    out = PETSc.Mat().create(comm)
+    out.setSizes(((local[0], None), (local[1], None)))
+    out.setBlockSizes(stride, 2)
+    out.setType("aij")
+    room = np.bincount(rows - (comm.exscan(local[0]) or 0), minlength=local[0]).astype(INDEX)
+    out.setPreallocationNNZ((np.minimum(room, local[1]), room))
+    out.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+    add_blocks_of_one(out, rows, columns, values)
+    out.assemble()
+    return out
+
+
+def add_blocks_of_one(target: PETSc.Mat, rows, columns, values) -> None:
+    """Add single entries."""
+    if len(rows):
+        shape = (-1, 1)
+        target.setValuesRCV(
+            np.ascontiguousarray(rows, INDEX).reshape(shape),
+            np.ascontiguousarray(columns, INDEX).reshape(shape),
+            np.ascontiguousarray(values).reshape(*shape, 1),
+            PETSc.InsertMode.ADD,
+        )
+
+
+def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tolerance: float, most: int) -> PETSc.KSP:
+    """Conjugate gradients with two levels: ``nodal`` maps the coarse unknowns to those of ``target``, and ``motions`` are
+    coarse vectors that the coarse matrix all but annihilates."""
+    coarse = target.ptap(nodal)
+    diagonal = coarse.getDiagonal()
+    # A vertex that moves no unknown.
+    diagonal.array = np.where(diagonal.array_r == 0.0, 1.0, diagonal.array_r)
+    coarse.setDiagonal(diagonal)
+    coarse.setBlockSize(2)
+    finish(coarse)
+    kernel: list[PETSc.Vec] = []
+    for motion in motions:
+        vector = motion.copy()
+        for _ in range(2):
+            for other in kernel:
+                vector.axpy(-vector.dot(other), other)
+        vector.normalize()
+        kernel.append(vector)
+    coarse.setNearNullSpace(PETSc.NullSpace().create(vectors=kernel, comm=target.comm))
     options = PETSc.Options()
-    for name, value in GAMG.items():
+    for name, value in OPTIONS.items():
         if not options.hasName(f"dual_{name}"):
             options[f"dual_{name}"] = value
+    solver = PETSc.KSP().create(target.comm)
+    solver.setOptionsPrefix("dual_")
     solver.setOperators(target)
     solver.setType("cg")
-    solver.pc.setType("gamg")
+    solver.pc.setType("mg")
+    solver.pc.setMGLevels(2)
+    solver.pc.setMGInterpolation(1, nodal)
+    solver.pc.getMGCoarseSolve().setOperators(coarse)
     solver.setTolerances(rtol=tolerance, atol=0.0, max_it=most)
     solver.setFromOptions()
     return set_up(solver)
@@ -166,8 +216,8 @@ def failure(solver: PETSc.KSP, reason: int) -> str:
     return names.get(reason, f"PETSc's reason is {reason}")
 
 
-def interior_point(matrix: np.ndarray, c: np.ndarray, g: np.ndarray) -> np.ndarray:
-    """Which of the variables are at their bound in min ½ jᵀSj − cᵀj over j ≤ g, as TAO's bqpip finds it, on this rank alone."""
+def newton(matrix: np.ndarray, c: np.ndarray, g: np.ndarray) -> np.ndarray:
+    """Which of the variables are at their bound in min ½ jᵀSj − cᵀj over j ≤ g, as TAO's Newton method with a trust region finds it, on this rank alone."""
     size = len(c)
     hessian = PETSc.Mat().createDense((size, size), array=np.asfortranarray(matrix), comm=MPI.COMM_SELF)
     hessian.assemble()
@@ -183,7 +233,7 @@ def interior_point(matrix: np.ndarray, c: np.ndarray, g: np.ndarray) -> np.ndarr
         return quadratic - float(c @ x.array_r)
 
     tao = PETSc.TAO().create(MPI.COMM_SELF)
-    tao.setType("bqpip")
+    tao.setType("bntr")
     tao.setObjectiveGradient(energy, x.duplicate())
     tao.setHessian(lambda *_: None, hessian)
     tao.setVariableBounds((lower, upper))

@@ -1,7 +1,7 @@
 """The contact problem on its jumps alone: min ½ jᵀSj − cᵀj over j ≤ g, with the dense Schur complement S.
 
 Primal–dual active sets, started from closed contact; where they come back to a state they have been in, TAO's
-bound-constrained interior point gives another start. The problem is solved in units in which the diagonal of S is one; where
+bound-constrained Newton method gives another start. The problem is solved in units in which the diagonal of S is one; where
 that fails, in units that are kept from rounding, which is all that is left of S where nothing but contact holds a body.
 """
 
@@ -47,7 +47,7 @@ class ContactProblem:
         """The contact state, or nothing where S does not tell it; ``start`` (m,) is a first guess of the closed jumps."""
         closed = np.ones(len(load), bool) if start is None else start
         for scaled in self.scaled:
-            found = scaled.pivot(load, bound, closed) or scaled.pivot(load, bound, scaled.interior_point(load, bound))
+            found = scaled.pivot(load, bound, closed) or scaled.pivot(load, bound, scaled.newton(load, bound))
             if found is not None:
                 return found
         return None
@@ -68,9 +68,9 @@ class Scaled:
         self.unit = 1.0 / np.sqrt(diagonal)
         self.matrix = schur * np.outer(self.unit, self.unit)
 
-    def interior_point(self, load: np.ndarray, bound: np.ndarray) -> np.ndarray:
+    def newton(self, load: np.ndarray, bound: np.ndarray) -> np.ndarray:
         """Closed jumps, nearly."""
-        return compat.interior_point(self.matrix, load * self.unit, bound / self.unit)
+        return compat.newton(self.matrix, load * self.unit, bound / self.unit)
 
     def equilibrium(self, c: np.ndarray, g: np.ndarray, closed: np.ndarray) -> np.ndarray | None:
         """Jumps with the closed ones at their bound; nothing where the others are not determined."""

@@ -58,20 +58,29 @@ def number_unknowns(comm, files: Files, unknowns: np.ndarray, padded: bool) -> N
     stride = comm.allreduce(int(sizes.max(initial=1)), compat.MPI.MAX) if padded else 1
     room = np.full(len(blocks), stride) if padded else sizes
 
+    begin, own, local, first = share_out(comm, count, blocks, room)
+    number = begin[block] + natural - starts[of_unknown]
+    return Numbering(natural, number, own[block], local, first, stride)
+
+
+def share_out(comm, count: int, things: np.ndarray, room: np.ndarray) -> tuple[np.ndarray, np.ndarray, int, int]:
+    """Numbers for ``count`` things, of which each rank names those that it works with, and the room that each takes.
+
+    Returns the first number of each of ``things``, whether it is this rank's, the room that this rank's take, and the first
+    number here.
+    """
     directory = compat.vector(comm, None, count)
-    window = compat.Window(directory, blocks)
+    window = compat.Window(directory, things)
     directory.set(-1.0)
-    window.maximum(np.full(len(blocks), float(comm.rank)), directory)
+    window.maximum(np.full(len(things), float(comm.rank)), directory)
     own = window.read(directory) == comm.rank
     local = int(room[own].sum())
     first = comm.exscan(local) or 0
-    begin = np.full(len(blocks), -1.0)
+    begin = np.full(len(things), -1.0)
     begin[own] = first + np.cumsum(room[own]) - room[own]
     directory.set(-1.0)
     window.maximum(begin, directory)
-    begin = window.read(directory).astype(np.int64)
-    number = begin[block] + natural - starts[of_unknown]
-    return Numbering(natural, number, own[block], local, first, stride)
+    return window.read(directory).astype(np.int64), own, local, first
 
 
 def ragged(files: Files, triangles: np.ndarray, starts: str) -> tuple[np.ndarray, np.ndarray]:
@@ -79,6 +88,3 @@ def ragged(files: Files, triangles: np.ndarray, starts: str) -> tuple[np.ndarray
     bounds = files.array(starts)
     first = np.asarray(bounds[triangles])
     return first, np.asarray(bounds[triangles + 1]) - first
-
-
-

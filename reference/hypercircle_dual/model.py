@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import compat
-from .distribution import Numbering, number_unknowns, own_triangles, ragged
+from .distribution import Numbering, number_unknowns, own_triangles, ragged, share_out
 from .exchange import Files, ranges
 
 CHUNK = 8192
@@ -93,13 +93,13 @@ class Model:
         self.comm.Allreduce(compat.MPI.IN_PLACE, out)
         return out
 
-    def from_natural(self, name: str, start: int = 0):
-        """A vector with the values that a file has for the unknowns, from entry ``start`` of the file on."""
+    def from_natural(self, name: str):
+        """A vector with the values that a file has for the unknowns."""
         natural, local = self.numbering.own_part()
         out = self.zero.duplicate()
         out.set(0.0)
         values = np.zeros(self.numbering.local)
-        values[local] = self.files.array(name)[start + natural]
+        values[local] = self.files.array(name)[natural]
         out.array = values
         return out
 
@@ -151,6 +151,26 @@ class Model:
         out = self.external.copy()
         self.window.add(left, out)
         return out
+
+    def nodal(self):
+        """Displacements linear on triangles in terms of the unknowns, and their rigid motions: the matrix and three vectors."""
+        files, (natural, local) = self.files, self.numbering.own_part()
+        first, lengths = ragged(files, natural, "nodal_start.i64")
+        component = files.pieces("nodal.i64", first, lengths)
+        vertices, place = np.unique(component // 2, return_inverse=True)
+        points = files.array("points.f64").reshape(-1, 2)
+        begin, own, room, start = share_out(self.comm, len(points), vertices, np.full(len(vertices), 2))
+        rows = np.repeat(local + self.numbering.first, lengths)
+        columns = begin[place] + component % 2
+        weights = files.pieces("nodal.f64", first, lengths)
+        matrix = compat.entries(self.comm, (self.numbering.local, room), self.numbering.stride, rows, columns, weights)
+        position = np.asarray(points[vertices[own]]) - np.mean(points, axis=0)
+        turned = np.stack([-position[:, 1], position[:, 0]], 1)
+        motions = []
+        for values in (np.tile([1.0, 0.0], len(position)), np.tile([0.0, 1.0], len(position)), turned.reshape(-1)):
+            motions.append(compat.vector(self.comm, room))
+            motions[-1].array = values
+        return matrix, motions
 
     def energy_product(self, a: np.ndarray, b: np.ndarray) -> float:
         """Σ over all triangles of a · b."""

@@ -103,7 +103,11 @@ class Factorised:
 
 
 class Iterated:
-    """K without its closed jumps, solved by conjugate gradients with GAMG."""
+    """K without its closed jumps, solved by conjugate gradients.
+
+    One step of the preconditioner smooths, corrects by a displacement linear on triangles, and smooths. On these K is the
+    stiffness matrix of linear finite elements, where algebraic multigrid is at home.
+    """
 
     padded = True
 
@@ -111,6 +115,7 @@ class Iterated:
         self.model = model
         self.iterations = self.first_iterations = 0
         self.matrix = model.matrix()
+        self.nodal, self.motions = model.nodal()
         self.assembled = perf_counter()
         self.solver, self.closed = None, None
         self._prepare(np.ones(model.files.jumps, bool))
@@ -120,21 +125,13 @@ class Iterated:
         if self.closed is not None and np.array_equal(closed, self.closed):
             return
         matrix, self.closed = self.matrix.copy(), closed.copy()
-        fixed = self.model.fixed_numbers(closed)
-        matrix.zeroRowsColumns(fixed.astype(compat.INDEX), 1.0)
+        matrix.zeroRowsColumns(self.model.fixed_numbers(closed).astype(compat.INDEX), 1.0)
         compat.finish(matrix)
-        kernel = []
-        for i in range(3):
-            motion = self.model.from_natural("rigid.f64", i * self.model.files.unknowns)
-            motion.pointwiseMult(motion, self.model.free(closed))
-            for _ in range(2):
-                for other in kernel:
-                    motion.axpy(-motion.dot(other), other)
-            motion.normalize()
-            kernel.append(motion)
+        nodal = self.nodal.copy()
+        nodal.diagonalScale(self.model.free(closed), None)
         if self.solver is not None:
             self.solver.destroy()
-        self.solver = compat.multigrid(matrix, kernel, INNER, MOST_ITERATIONS)
+        self.solver = compat.multigrid(matrix, nodal, self.motions, INNER, MOST_ITERATIONS)
 
     def state(self, r, room: np.ndarray, start: np.ndarray | None) -> None:
         """Nothing: the state is found by changing what stresses and jumps contradict."""

@@ -66,16 +66,10 @@ pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> Dual
     DualError::Factorisation { reason }
 }
 
-/// A motion in terms of the unknowns, linear between the vertices.
-pub fn moments_of(problem: &Problem, unknowns: &Unknowns, motion: &Motion) -> Vec<f64> {
-    let mesh = &problem.mesh;
-    unknowns.project(problem, |e, k| {
-        let (length, _) = mesh.edge_frame(e);
-        let [a, b] = mesh.edges[e].vertices;
-        let p = unknowns.degree(e);
-        let [near, far] = [0, 1].map(|end| length * side::product(p, k, 1, end));
-        [0, 1].map(|c| near * motion[a][c] + far * motion[b][c])
-    })
+/// Moment `k` of edge `e` of the two functions that are linear along it and one at an end.
+pub fn moments_of_ends(problem: &Problem, unknowns: &Unknowns, e: usize, k: usize) -> [f64; 2] {
+    let (length, _) = problem.mesh.edge_frame(e);
+    [0, 1].map(|end| length * side::product(unknowns.degree(e), k, 1, end))
 }
 
 /// What the unknowns held so far leave of a motion, and the unknown that is held for it.
@@ -90,9 +84,14 @@ struct Pivot {
 ///
 /// Loads that admit an equilibrium do no work on these motions, so holding them changes no stress.
 pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion]) -> Vec<usize> {
+    let mesh = &problem.mesh;
     let mut pivots: Vec<Pivot> = Vec::with_capacity(motions.len());
     for u in motions {
-        let mut z = moments_of(problem, unknowns, u);
+        let mut z = unknowns.project(problem, |e, k| {
+            let [a, b] = mesh.edges[e].vertices;
+            let [near, far] = moments_of_ends(problem, unknowns, e, k);
+            [0, 1].map(|c| near * u[a][c] + far * u[b][c])
+        });
         // Gaussian elimination: what the unknowns held so far leave of the motion, and where it is largest. Motions of few
         // bodies have few entries, and meet few of the others.
         for Pivot { unknown, value, entries } in &pivots {

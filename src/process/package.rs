@@ -116,8 +116,7 @@ impl Package {
                 std::iter::once(mpirun.into_os_string()).chain(arguments).collect()
             }
         };
-        let start =
-            format!("import runpy\nrunpy.run_module('{}', run_name='__main__', alter_sys=True)\n", self.name);
+        let start = format!("import runpy\nrunpy.run_module('{}', run_name='__main__', alter_sys=True)\n", self.name);
         let mut command = python::command(&interpreter(call.interpreter)?, &start, place, &launcher, Some(package))
             .map_err(|source| Failure::Io { path: place.to_owned(), source })?;
         command.args(&call.arguments).env("OMP_NUM_THREADS", "1");

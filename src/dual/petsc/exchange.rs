@@ -11,9 +11,10 @@ use serde::{Deserialize, Serialize};
 
 use super::LinearSolver;
 use super::blocks::Blocks;
+use super::nodal::Nodal;
 use crate::dual::ends;
 use crate::dual::equilibrium::LEAST_STRESS;
-use crate::dual::hybrid::{Motion, held_unknowns, moments_of};
+use crate::dual::hybrid::{Motion, held_unknowns};
 use crate::dual::modes::ModeTable;
 use crate::dual::system::{jump_bounds, load_of_tractions};
 use crate::dual::unknowns::Unknowns;
@@ -125,10 +126,13 @@ pub fn write(
     numbers("round_off.f64", &ends::round_off(problem, unknowns, modes, &scales))?;
     let pairs = unknowns.jump_blocks().enumerate();
     indices("pair.i64", &pairs.flat_map(|(i, b)| std::iter::repeat_n(i as i64, b.len)).collect::<Vec<_>>())?;
-    let rigid = rigid_motions(problem);
-    with_file(folder, "rigid.f64", |out| {
-        rigid.iter().try_for_each(|motion| write_numbers(out, &moments_of(problem, unknowns, motion)))
-    })?;
+    if linear_solver == LinearSolver::Gamg {
+        let nodal = Nodal::new(problem, unknowns);
+        indices("nodal_start.i64", &nodal.start)?;
+        indices("nodal.i64", &nodal.component)?;
+        numbers("nodal.f64", &nodal.weight)?;
+        numbers("points.f64", problem.mesh.points.as_flattened())?;
+    }
     let header = Header {
         format: FORMAT,
         version: VERSION,
@@ -182,11 +186,7 @@ pub fn write_numbers(out: &mut impl Write, values: &[f64]) -> io::Result<()> {
     values.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
 }
 
-fn with_file<T>(
-    folder: &Path,
-    name: &str,
-    fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>,
-) -> io::Result<T> {
+fn with_file<T>(folder: &Path, name: &str, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<T>) -> io::Result<T> {
     let mut out = BufWriter::with_capacity(1 << 20, File::create(folder.join(name))?);
     let made = fill(&mut out)?;
     out.flush()?;
@@ -211,13 +211,4 @@ fn neighbours(problem: &Problem) -> (Vec<i64>, Vec<i64>) {
         first.push(beside.len() as i64);
     }
     (first, beside)
-}
-
-/// Both translations and the rotation of everything together.
-fn rigid_motions(problem: &Problem) -> [Motion; 3] {
-    let points = &problem.mesh.points;
-    let part = 1.0 / points.len().max(1) as f64;
-    let [x, y] = points.iter().fold([0.0; 2], |sum, p| [sum[0] + part * p[0], sum[1] + part * p[1]]);
-    let motion = |at: fn([f64; 2]) -> [f64; 2]| points.iter().map(|p| at([p[0] - x, p[1] - y])).collect();
-    [motion(|_| [1.0, 0.0]), motion(|_| [0.0, 1.0]), motion(|[x, y]| [-y, x])]
 }

@@ -7,6 +7,7 @@
 
 mod blocks;
 mod exchange;
+mod nodal;
 
 use std::env;
 use std::io;
@@ -81,8 +82,7 @@ impl DualMethod for Petsc {
         let start = Instant::now();
         let modes = ModeTable::new(problem, options.elements.clone());
         let unknowns = Unknowns::new(problem, modes.elements());
-        let scratch =
-            Scratch::new().map_err(|source| DualError::Exchange { path: env::temp_dir(), source })?;
+        let scratch = Scratch::new().map_err(|source| DualError::Exchange { path: env::temp_dir(), source })?;
         let failed = |source: io::Error| DualError::Exchange { path: scratch.path().to_owned(), source };
         let folder = scratch.folder("dual").map_err(failed)?;
         exchange::write(&folder, problem, &unknowns, &modes, motions, (self.ranks, self.linear_solver))
