@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-
 import numpy as np
 
 from . import DualFailure, NotInstalled
@@ -11,7 +9,7 @@ from . import DualFailure, NotInstalled
 try:
     import petsc4py
 
-    petsc4py.init(["hypercircle_dual", *os.environ.get("HYPERCIRCLE_PETSC_OPTIONS", "").split()])
+    petsc4py.init(["hypercircle_dual"])
     from mpi4py import MPI
     from petsc4py import PETSc
 except ImportError as error:
@@ -27,14 +25,18 @@ OPTIONS = {
     "mg_levels_ksp_type": "chebyshev",
     "mg_levels_ksp_max_it": 2,
     "mg_levels_pc_type": "pbjacobi",
-    "mg_coarse_ksp_type": "preonly",
+    "mg_coarse_ksp_type": "richardson",
+    "mg_coarse_ksp_max_it": 2,
+    "mg_coarse_ksp_norm_type": "none",
     "mg_coarse_pc_type": "gamg",
+    "mg_coarse_pc_mg_cycle_type": "w",
     "mg_coarse_pc_gamg_agg_nsmooths": 1,
-    "mg_coarse_pc_gamg_threshold": 0.01,
+    "mg_coarse_pc_gamg_threshold": 0.0,
+    "mg_coarse_pc_gamg_square_graph": 0,
     "mg_coarse_mg_levels_ksp_type": "chebyshev",
     "mg_coarse_mg_levels_pc_type": "jacobi",
 }
-"""Two levels, the lower of which is solved with by one cycle of smoothed aggregation."""
+"""Two levels, the lower of which is solved with by two cycles of smoothed aggregation."""
 
 
 def index_set(comm: MPI.Comm, indices: np.ndarray) -> PETSc.IS:
