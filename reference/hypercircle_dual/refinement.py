@@ -46,7 +46,7 @@ class Refined:
 
 
 def refine(
-    model: Model, now: Refined, closed: np.ndarray, correct: Callable, enough: float = ROUND_OFF, most: int = 200
+    model: Model, now: Refined, closed: np.ndarray, correct: Callable, enough: float, most: int
 ) -> Refined:
     """The stresses of least energy with this contact state, from those of ``now``."""
     free = model.free(closed)

@@ -22,6 +22,8 @@ UNSETTLED = 1e-8
 """The same where the changes have come to an end: more is no contact state."""
 COARSE = 1e-7
 """Refinement of a contact state that is likely to change."""
+MOST_REFINEMENTS, FEW_REFINEMENTS = 200, 4
+"""Limits of its steps, and of those for a contact state that is likely to change."""
 SOLVERS = {"mumps": Factorised, "gamg": Iterated}
 
 
@@ -104,7 +106,8 @@ class Settled:
 
     def _refine(self, enough: float) -> None:
         begin = perf_counter()
-        self.now = refine(self.model, self.now, self.closed, self.solver.correct, enough)
+        most = MOST_REFINEMENTS if enough == ROUND_OFF else FEW_REFINEMENTS
+        self.now = refine(self.model, self.now, self.closed, self.solver.correct, enough, most)
         self.seconds_refine += perf_counter() - begin
 
     def _misses(self) -> np.ndarray:

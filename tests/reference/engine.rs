@@ -36,7 +36,10 @@ fn same(name: &str, options: &[&str], engine: &[&str]) {
     assert_eq!(found["dual"]["method"], if gamg { "petsc-gamg" } else { "petsc" });
     for key in ["/energy/lower", "/energy/upper"] {
         let (found, expected) = (number(&found, key), number(&expected, key));
-        assert!((found - expected).abs() < 1e-9 * expected.abs(), "{name} {arguments:?} {key}: {found:e}, {expected:e}");
+        assert!(
+            (found - expected).abs() < 1e-9 * expected.abs(),
+            "{name} {arguments:?} {key}: {found:e}, {expected:e}"
+        );
     }
     let left = number(&found, "/dual/equilibrium_residual");
     assert!(left < 1e-9, "{name} {arguments:?}: {left:e}");
