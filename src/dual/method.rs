@@ -43,7 +43,7 @@ pub struct Found {
     pub closed: SideValues<bool>,
     /// Number of unknowns.
     pub unknowns: usize,
-    /// Steps of the contact iteration.
+    /// Steps of the contact iteration; of a linear solver that iterates, its iterations.
     pub iterations: usize,
     /// Seconds by phase; `read` and `total` are the caller's.
     pub seconds: Phases,

@@ -64,7 +64,7 @@ pub struct DualSolution {
     pub closed: SideValues<bool>,
     /// Number of unknowns solved for.
     pub unknowns: usize,
-    /// Steps of the contact iteration.
+    /// Steps of the contact iteration; of a linear solver that iterates, its iterations.
     pub iterations: usize,
     /// Violation of equilibrium, measured on the stresses and relative to the applied load.
     pub equilibrium: Equilibrium,

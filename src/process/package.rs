@@ -120,6 +120,8 @@ impl Package {
         let mut command = python::command(&interpreter(call.interpreter)?, &start, place, &launcher, Some(package))
             .map_err(|source| Failure::Io { path: place.to_owned(), source })?;
         command.args(&call.arguments).env("OMP_NUM_THREADS", "1");
+        // Ranks that wait leave the processor to others.
+        command.env("OMPI_MCA_mpi_yield_when_idle", "1");
         Ok(command)
     }
 

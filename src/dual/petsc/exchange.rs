@@ -76,9 +76,9 @@ pub struct AnswerSeconds {
     pub refine: f64,
 }
 
-/// What comes back.
+/// What comes back from the ranks.
 #[derive(Debug)]
-pub struct Result {
+pub struct Solution {
     /// The report.
     pub answer: Answer,
     /// Mode parameters, triangle by triangle.
@@ -152,7 +152,7 @@ pub fn write(
 ///
 /// # Errors
 /// A file is missing, has another length, or holds something else than finite numbers.
-pub fn read(folder: &Path, unknowns: usize, jumps: usize, parameters: usize) -> io::Result<Result> {
+pub fn read(folder: &Path, unknowns: usize, jumps: usize, parameters: usize) -> io::Result<Solution> {
     let answer: Answer = serde_json::from_slice(&fs::read(folder.join("answer.json"))?)?;
     if (answer.format.as_str(), answer.version) != (FORMAT, VERSION) {
         return Err(io::Error::other(format!("answer.json is {} {}", answer.format, answer.version)));
@@ -161,7 +161,7 @@ pub fn read(folder: &Path, unknowns: usize, jumps: usize, parameters: usize) -> 
     if closed.len() != jumps {
         return Err(io::Error::other(format!("closed.u8 has {} entries where {jumps} belong", closed.len())));
     }
-    Ok(Result {
+    Ok(Solution {
         answer,
         parameters: read_numbers(folder, "parameters.f64", parameters)?,
         unknowns: read_numbers(folder, "moments.f64", unknowns)?,
