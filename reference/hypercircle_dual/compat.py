@@ -32,11 +32,15 @@ OPTIONS = {
     "mg_coarse_pc_mg_cycle_type": "w",
     "mg_coarse_pc_gamg_agg_nsmooths": 1,
     "mg_coarse_pc_gamg_threshold": 0.0,
+    # The name before release 3.18, and the one since.
     "mg_coarse_pc_gamg_square_graph": 0,
+    "mg_coarse_pc_gamg_aggressive_coarsening": 0,
     "mg_coarse_mg_levels_ksp_type": "chebyshev",
     "mg_coarse_mg_levels_pc_type": "jacobi",
 }
 """Two levels, the lower of which is solved with by two cycles of smoothed aggregation."""
+WORKSPACE = {"mat_mumps_icntl_14": 60}
+"""Percent of memory that MUMPS takes beyond its own estimate, which falls short over several ranks."""
 
 
 def index_set(comm: MPI.Comm, indices: np.ndarray) -> PETSc.IS:
@@ -118,12 +122,23 @@ def finish(target: PETSc.Mat) -> None:
 
 def factorisation(target: PETSc.Mat) -> PETSc.KSP:
     """A solver that factorises with MUMPS."""
-    solver = PETSc.KSP().create(target.comm)
-    solver.setOperators(target)
+    solver = with_options(target, WORKSPACE)
     solver.setType("preonly")
     solver.pc.setType("cholesky")
     solver.pc.setFactorSolverType("mumps")
     return set_up(solver)
+
+
+def with_options(target: PETSc.Mat, values: dict) -> PETSc.KSP:
+    """A solver with the matrix ``target``; what ``PETSC_OPTIONS`` says with the prefix ``dual_`` goes before ``values``."""
+    options = PETSc.Options()
+    for name, value in values.items():
+        if not options.hasName(f"dual_{name}"):
+            options[f"dual_{name}"] = value
+    solver = PETSc.KSP().create(target.comm)
+    solver.setOptionsPrefix("dual_")
+    solver.setOperators(target)
+    return solver
 
 
 def entries(comm: MPI.Comm, local: tuple[int, int], stride: int, rows, columns, values) -> PETSc.Mat:
@@ -135,21 +150,16 @@ def entries(comm: MPI.Comm, local: tuple[int, int], stride: int, rows, columns, 
     room = np.bincount(rows - (comm.exscan(local[0]) or 0), minlength=local[0]).astype(INDEX)
     out.setPreallocationNNZ((np.minimum(room, local[1]), room))
     out.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
-    add_blocks_of_one(out, rows, columns, values)
-    out.assemble()
-    return out
-
-
-def add_blocks_of_one(target: PETSc.Mat, rows, columns, values) -> None:
-    """Add single entries."""
     if len(rows):
         shape = (-1, 1)
-        target.setValuesRCV(
+        out.setValuesRCV(
             np.ascontiguousarray(rows, INDEX).reshape(shape),
             np.ascontiguousarray(columns, INDEX).reshape(shape),
             np.ascontiguousarray(values).reshape(*shape, 1),
             PETSc.InsertMode.ADD,
         )
+    out.assemble()
+    return out
 
 
 def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tolerance: float, most: int) -> PETSc.KSP:
@@ -171,13 +181,7 @@ def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tol
         vector.normalize()
         kernel.append(vector)
     coarse.setNearNullSpace(PETSc.NullSpace().create(vectors=kernel, comm=target.comm))
-    options = PETSc.Options()
-    for name, value in OPTIONS.items():
-        if not options.hasName(f"dual_{name}"):
-            options[f"dual_{name}"] = value
-    solver = PETSc.KSP().create(target.comm)
-    solver.setOptionsPrefix("dual_")
-    solver.setOperators(target)
+    solver = with_options(target, OPTIONS)
     solver.setType("cg")
     solver.pc.setType("mg")
     solver.pc.setMGLevels(2)

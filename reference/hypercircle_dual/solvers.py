@@ -47,7 +47,7 @@ class Factorised:
         self.contact = ContactProblem(self._schur(), self.shift)
 
     def _schur(self) -> np.ndarray:
-        """S = (A⁻¹ on the jumps)⁻¹ − shift, in which nothing cancels: A is definite on the jumps by its shift."""
+        """S = (A⁻¹ on the jumps)⁻¹ − shift, by one back-substitution for each jump; the shift keeps A⁻¹ well conditioned there."""
         m = self.model.files.jumps
         inverse = np.zeros((m, m))
         load, x = self.model.zero.duplicate(), self.model.zero.duplicate()

@@ -68,6 +68,15 @@ HEADER = {
 }  # fmt: skip
 
 
+def call(folder, header):
+    (folder / "problem.json").write_text(header)
+    return subprocess.run(
+        [sys.executable, "-m", "hypercircle_dual", str(folder / "problem.json")],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -78,11 +87,11 @@ HEADER = {
     ],
 )
 def test_bad_files_are_refused(tmp_path, text, said):
-    (tmp_path / "problem.json").write_text(text)
-    done = subprocess.run(
-        [sys.executable, "-m", "hypercircle_dual", str(tmp_path / "problem.json")],
-        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
-        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
+    done = call(tmp_path, text)
     assert done.returncode == 2, done.stderr
     assert said in done.stderr and "Traceback" not in done.stderr
+
+
+def test_ranks_that_do_not_see_each_other_are_refused(tmp_path):
+    done = call(tmp_path, json.dumps({**HEADER, "ranks": 2}))
+    assert done.returncode == 3 and "1 of 2 ranks see each other" in done.stderr, done.stderr
