@@ -25,7 +25,7 @@ fn number(report: &Value, key: &str) -> f64 {
     report.pointer(key).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {key}"))
 }
 
-/// Bounds equal to 1e-9, equilibrium below it.
+/// The same bounds, and equilibrium below 1e-9.
 #[track_caller]
 fn same(name: &str, options: &[&str], engine: &[&str]) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -55,10 +55,10 @@ fn ranks_find_the_stresses_of_the_condensed_method() {
         return;
     }
     same("two_blocks", &[], &[]);
-    // Free to slide; a curved contact between bodies, degree 3; degrees that differ.
+    // Free to slide; a higher degree; degrees that differ.
     same("sliding", &[], &["--ranks", "2"]);
-    same("from_gmsh", &["--degree", "3"], &["--ranks", "2"]);
-    same("two_blocks", &["--tolerance", "0.03"], &["--ranks", "2"]);
+    same("two_blocks", &["--degree", "2"], &["--ranks", "2"]);
+    same("two_blocks", &["--tolerance", "0.05"], &["--ranks", "2"]);
 }
 
 #[test]
