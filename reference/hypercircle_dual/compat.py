@@ -26,7 +26,7 @@ OPTIONS = {
     "mg_levels_ksp_max_it": 2,
     "mg_levels_pc_type": "pbjacobi",
     "mg_coarse_ksp_type": "richardson",
-    "mg_coarse_ksp_max_it": 2,
+    "mg_coarse_ksp_max_it": 4,
     "mg_coarse_ksp_norm_type": "none",
     "mg_coarse_pc_type": "gamg",
     "mg_coarse_pc_mg_cycle_type": "w",
@@ -38,7 +38,7 @@ OPTIONS = {
     "mg_coarse_mg_levels_ksp_type": "chebyshev",
     "mg_coarse_mg_levels_pc_type": "jacobi",
 }
-"""Two levels, the lower of which is solved with by two cycles of smoothed aggregation."""
+"""Two levels, the lower of which is solved with by four cycles of smoothed aggregation."""
 WORKSPACE = {"mat_mumps_icntl_14": 60}
 """Percent of memory that MUMPS takes beyond its own estimate, which falls short over several ranks."""
 
