@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum, value_parser};
 
 use super::{CliError, Exit};
 use crate::budget::{self, Budget};
+use crate::dual::LinearSolver;
 use crate::report;
 use crate::scene::Scene;
 use crate::study::{Adapt, GivenValue, Wanted};
@@ -38,12 +39,39 @@ impl std::fmt::Display for Method {
     }
 }
 
+/// What runs on other processors, or other machines.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct EngineOptions {
+    /// Solve in stresses with another program, over MPI ranks, in place of --method
+    #[arg(long, value_enum, conflicts_with = "method")]
+    pub engine: Option<Engine>,
+    /// Run on N MPI ranks: the engine, and the displacement model
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=65536))]
+    pub ranks: Option<u32>,
+    /// How the engine solves its linear systems
+    #[arg(long, value_enum, default_value_t = LinearSolver::Mumps, requires = "engine")]
+    pub linear_solver: LinearSolver,
+    /// Give each solve of the engine at most S seconds
+    #[arg(long, value_name = "S", default_value_t = 7200.0, value_parser = positive, requires = "engine")]
+    pub engine_seconds: f64,
+}
+
+/// Programs that solve in stresses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// PETSc
+    Petsc,
+}
+
 /// How to solve.
 #[derive(Debug, Clone, Args)]
 pub struct SolveOptions {
     /// Solver of the dual problem
     #[arg(long, value_enum, default_value_t = Method::Condensed)]
     pub method: Method,
+    /// What runs over MPI.
+    #[command(flatten)]
+    pub engine: EngineOptions,
     /// Polynomial degree of the stresses, 1 where it is missing; the one to begin with where --tolerance raises it, 3 where it is missing
     #[arg(long, value_name = "P", value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
     pub degree: Option<u32>,
@@ -100,7 +128,7 @@ impl SolveOptions {
 
     /// What is refined towards the tolerance.
     pub fn adapt(&self) -> Adapt {
-        let linear = self.method == Method::Uzawa;
+        let linear = self.method == Method::Uzawa && self.engine.engine.is_none();
         self.adapt.unwrap_or(if linear { Adapt::H } else { Adapt::Hp })
     }
 }

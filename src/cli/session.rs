@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
-use super::options::{Limits, Method, SolveOptions};
+use super::options::{Engine, EngineOptions, Limits, Method, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit, ci, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
-use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Size, Uzawa};
+use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Petsc, Size, Uzawa};
 use crate::element::{Elements, block};
 use crate::mesh;
 use crate::problem::{Note, Problem};
@@ -67,6 +67,10 @@ impl Session {
         if job.is_part() {
             end_with_parent();
         }
+        if command != "verify" && solve.engine.ranks.is_some() && solve.engine.engine.is_none() {
+            let what = "--ranks without --engine: nothing here runs over MPI";
+            return Err(CliError::stopped(Exit::BadInput, what, "add --engine petsc, or leave --ranks out"));
+        }
         let scene = Scene::read(scene)?;
         let threads = threads::start(solve.threads);
         let budget = enough(solve.memory.budget(threads))?;
@@ -89,7 +93,7 @@ impl Session {
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
         self.refuse_unknown_quantities(solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.progress.phase("reading the mesh");
-        let method = method(solve.method);
+        let method = dual_method(solve);
         let admission = Admission::new(method.as_ref(), self.budget);
         let problem = self.problem(solve, &admission)?;
         let read = self.start.elapsed().as_secs_f64();
@@ -238,6 +242,7 @@ impl Session {
             StudyError::Dual(DualError::Infeasible { .. }) => {
                 CliError::stopped(Exit::NoEquilibrium, message, "hold the body with a support, or change the load")
             }
+            StudyError::Dual(DualError::NotInstalled(_)) => CliError::stopped(Exit::NotInstalled, message, ""),
             StudyError::Dual(DualError::TooLarge { .. }) => CliError::stopped(Exit::Failed, message, COARSER),
             StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {
                 CliError::stopped(Exit::BadInput, message, "")
@@ -273,7 +278,7 @@ impl Session {
             self.progress
                 .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
         };
-        let method = method(solve.method);
+        let method = dual_method(solve);
         let options = match patient {
             true => self.options(&SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..solve.clone() }),
             false => self.options(solve),
@@ -284,6 +289,20 @@ impl Session {
             comparison.against_finer(&finer.certified.bracket, allow);
         }
         Ok((sharpened, enough))
+    }
+}
+
+/// The solver that was asked for.
+fn dual_method(solve: &SolveOptions) -> Box<dyn DualMethod> {
+    let EngineOptions { engine, ranks, linear_solver, engine_seconds } = solve.engine;
+    match engine {
+        None => method(solve.method),
+        Some(Engine::Petsc) => Box::new(Petsc {
+            ranks: ranks.unwrap_or(1) as usize,
+            linear_solver,
+            limit: limit(engine_seconds),
+            interpreter: None,
+        }),
     }
 }
 

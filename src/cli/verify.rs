@@ -38,9 +38,6 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
-    /// Run the displacement model on N MPI ranks
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub ranks: Option<u32>,
     /// Give the displacement model at most S seconds
     #[arg(long, value_name = "S", default_value_t = 1800.0, value_parser = positive)]
     pub primal_seconds: f64,
@@ -91,7 +88,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
             Planted::FlipSign => primal::Sabotage::FlipSign,
             Planted::DropRow => primal::Sabotage::DropRow,
         }),
-        ranks: args.ranks.map(|n| n as usize),
+        ranks: args.solve.engine.ranks.map(|n| n as usize),
         timeout: limit(args.primal_seconds),
         ..primal::Options::default()
     };

@@ -49,7 +49,7 @@ impl DualMethod for ActiveSet {
         seconds.assemble = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let held = held_unknowns(problem, &system, motions);
+        let held = held_unknowns(problem, &system.unknowns, motions);
         let first_jump = system.unknowns.first_jump;
         let broken = |breakdown| explain(problem, &system, breakdown);
         let symbolic = structure(problem, &system, options)?;

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::equilibrium::load_scale;
+use super::modes::ModeTable;
 use super::refinement::Refined;
 use super::system::System;
-use super::unknowns::Block;
-use crate::problem::{Problem, Scales};
+use super::unknowns::{Block, Unknowns};
+use crate::problem::{ContactPair, Problem, Scales};
 
 /// Tension relative to the load, or to the largest pressure of its pair, and penetration relative to the largest jump,
 /// that are round-off: a coefficient that grazes keeps its state.
@@ -26,17 +27,7 @@ pub struct Ends<'a> {
 impl<'a> Ends<'a> {
     pub fn new(problem: &'a Problem, system: &'a System) -> Self {
         let scales = Scales::new(problem);
-        let pairs = problem.pairs();
-        let jumps = system.unknowns.jump_blocks();
-        let round_off = pairs
-            .zip(jumps)
-            .flat_map(|(pair, block)| {
-                let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
-                let rounding = |t: usize| scales.stress_round_off(problem, t, system.modes.degree(t));
-                let rounding = triangles.map(rounding).fold(0.0, f64::max);
-                std::iter::repeat_n(rounding, block.len)
-            })
-            .collect();
+        let round_off = round_off(problem, &system.unknowns, &system.modes, &scales);
         let first = system.unknowns.first_jump;
         let own = |b: &Block| b.start - first..b.start + b.len - first;
         let pair = system.unknowns.jump_blocks().flat_map(|b| std::iter::repeat_n(own(b), b.len)).collect();
@@ -60,6 +51,16 @@ impl<'a> Ends<'a> {
         };
         (0..closed.len()).map(end).collect()
     }
+}
+
+/// Tension at each jump that is rounding of prescribed displacements and gaps.
+pub fn round_off(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, scales: &Scales) -> Vec<f64> {
+    let of_pair = |(pair, block): (&ContactPair, &Block)| {
+        let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
+        let rounding = |t: usize| scales.stress_round_off(problem, t, modes.degree(t));
+        std::iter::repeat_n(triangles.map(rounding).fold(0.0, f64::max), block.len)
+    };
+    problem.pairs().zip(unknowns.jump_blocks()).flat_map(of_pair).collect()
 }
 
 /// The state that the stresses ask for: closed ends under tension open, open ends that penetrate close.

@@ -6,6 +6,7 @@ use super::dissection::nested_dissection;
 use super::factor::{Breakdown, SymbolicFactor};
 use super::rows::Sides;
 use super::system::System;
+use super::unknowns::Unknowns;
 use super::{DualError, Options};
 use crate::element::{SideValues, side};
 use crate::problem::Problem;
@@ -65,6 +66,12 @@ pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> Dual
     DualError::Factorisation { reason }
 }
 
+/// Moment `k` of edge `e` of the two functions that are linear along it and one at an end.
+pub fn moments_of_ends(problem: &Problem, unknowns: &Unknowns, e: usize, k: usize) -> [f64; 2] {
+    let (length, _) = problem.mesh.edge_frame(e);
+    [0, 1].map(|end| length * side::product(unknowns.degree(e), k, 1, end))
+}
+
 /// What the unknowns held so far leave of a motion, and the unknown that is held for it.
 struct Pivot {
     unknown: usize,
@@ -76,15 +83,13 @@ struct Pivot {
 /// Unknowns to hold at zero so that exactly the given motions are removed: as many as there are motions.
 ///
 /// Loads that admit an equilibrium do no work on these motions, so holding them changes no stress.
-pub fn held_unknowns(problem: &Problem, system: &System, motions: &[Motion]) -> Vec<usize> {
+pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion]) -> Vec<usize> {
     let mesh = &problem.mesh;
     let mut pivots: Vec<Pivot> = Vec::with_capacity(motions.len());
     for u in motions {
-        let mut z = system.unknowns.project(problem, |e, k| {
-            let (length, _) = mesh.edge_frame(e);
+        let mut z = unknowns.project(problem, |e, k| {
             let [a, b] = mesh.edges[e].vertices;
-            let p = system.unknowns.degree(e);
-            let [near, far] = [0, 1].map(|end| length * side::product(p, k, 1, end));
+            let [near, far] = moments_of_ends(problem, unknowns, e, k);
             [0, 1].map(|c| near * u[a][c] + far * u[b][c])
         });
         // Gaussian elimination: what the unknowns held so far leave of the motion, and where it is largest. Motions of few
@@ -96,7 +101,7 @@ pub fn held_unknowns(problem: &Problem, system: &System, motions: &[Motion]) -> 
                 z[*unknown] = 0.0;
             }
         }
-        let free = z[..system.unknowns.first_jump].iter().enumerate();
+        let free = z[..unknowns.first_jump].iter().enumerate();
         let largest =
             free.clone().fold((0, 0.0_f64), |best, (i, v)| if v.abs() > best.1.abs() { (i, *v) } else { best });
         if largest.1 != 0.0 {

@@ -1,5 +1,7 @@
 //! The seam between the dual problem and the methods that solve it.
 
+use std::io;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use faer::Par;
@@ -41,7 +43,7 @@ pub struct Found {
     pub closed: SideValues<bool>,
     /// Number of unknowns.
     pub unknowns: usize,
-    /// Steps of the contact iteration.
+    /// Steps of the contact iteration; of a linear solver that iterates, its iterations.
     pub iterations: usize,
     /// Seconds by phase; `read` and `total` are the caller's.
     pub seconds: Phases,
@@ -138,6 +140,28 @@ pub enum DualError {
         wanted: f64,
         /// What to do.
         advice: String,
+    },
+    /// Programs that the method starts are missing.
+    #[error(
+        "the parallel solver is not installed: {0}; install openmpi-bin, python3-petsc4py and python3-scipy, or name an \
+         interpreter that has petsc4py in HYPERCIRCLE_PYTHON"
+    )]
+    NotInstalled(String),
+    /// Programs that the method started did not bring a solution.
+    #[error("the parallel solver failed ({reason}); the end of its log:\n{log}")]
+    Process {
+        /// How it ended.
+        reason: String,
+        /// The last lines it printed.
+        log: String,
+    },
+    /// Files that are exchanged with such programs cannot be written or read.
+    #[error("cannot use {path}: {source}; check that the folder exists, is writable and has room")]
+    Exchange {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
     },
     /// No stress balances the loads with contact tractions that only press.
     #[error(

@@ -17,6 +17,7 @@ mod long_contact;
 mod method;
 pub mod modes;
 pub mod paper;
+mod petsc;
 pub mod qp;
 mod reduced;
 mod refinement;
@@ -39,6 +40,7 @@ pub use hybrid::Motion;
 pub use interior::Clarabel;
 pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
+pub use petsc::{LinearSolver, Petsc};
 pub use response::{Bounds, Factorised, Load, Loaded, Response, Responses};
 pub use unknowns::contact_coefficients;
 
@@ -62,7 +64,7 @@ pub struct DualSolution {
     pub closed: SideValues<bool>,
     /// Number of unknowns solved for.
     pub unknowns: usize,
-    /// Steps of the contact iteration.
+    /// Steps of the contact iteration; of a linear solver that iterates, its iterations.
     pub iterations: usize,
     /// Violation of equilibrium, measured on the stresses and relative to the applied load.
     pub equilibrium: Equilibrium,

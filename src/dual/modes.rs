@@ -103,6 +103,11 @@ impl ModeTable {
         parts(values, &self.first_parameter)
     }
 
+    /// The class of congruent triangles that triangle `t` belongs to, below [`Self::classes`].
+    pub fn class_of(&self, t: usize) -> usize {
+        self.class[t] as usize
+    }
+
     /// Number of triangles that are not congruent to an earlier one of their degree.
     pub fn classes(&self) -> usize {
         self.classes.len()

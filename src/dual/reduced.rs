@@ -49,7 +49,7 @@ impl Reduced {
         options: &Options,
     ) -> Result<Self, DualError> {
         let first_jump = system.unknowns.first_jump;
-        let held = held_unknowns(problem, system, motions);
+        let held = held_unknowns(problem, &system.unknowns, motions);
         let shift = make_definite(system, &held);
         let structure = structure(problem, system, options)?;
         let factor = Factor::of_semidefinite(structure, (*system.matrix).as_ref(), options.par())

@@ -173,6 +173,9 @@ pub struct Loaded<'a> {
     held: Vec<f64>,
 }
 
+/// Which closed coefficients are at the floor, and the jumps of all.
+type Released = (Vec<bool>, Vec<f64>);
+
 /// What the normal traction s on Γ_K is held to.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds<'a> {
@@ -260,7 +263,7 @@ impl Loaded<'_> {
     }
 
     /// Which closed coefficients are at the floor, and the jumps of all.
-    fn released(&self, Bounds { closed, floor, sign }: Bounds<'_>) -> Result<(Vec<bool>, Vec<f64>), DualError> {
+    fn released(&self, Bounds { closed, floor, sign }: Bounds<'_>) -> Result<Released, DualError> {
         let contact = &self.responses.contact;
         let mut released = vec![false; closed.len()];
         let mut latest = None;
@@ -294,7 +297,7 @@ impl Loaded<'_> {
     /// [`Self::released`] where steps of many coefficients at a time do not end, as where contact alone holds a body: the same
     /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, by steps that each lower it. `None` where S is not
     /// dense.
-    fn released_one_by_one(&self, bounds: Bounds<'_>) -> Option<Result<(Vec<bool>, Vec<f64>), DualError>> {
+    fn released_one_by_one(&self, bounds: Bounds<'_>) -> Option<Result<Released, DualError>> {
         let Bounds { closed, floor, sign } = bounds;
         let floored = |i: usize| if closed[i] { floor[i] } else { 0.0 };
         if (0..closed.len()).any(|i| floored(i).is_infinite()) {

@@ -14,9 +14,9 @@ use rayon::prelude::*;
 use super::Options;
 use super::modes::ModeTable;
 use super::rows::Sides;
-use super::unknowns::{Component, Unknowns};
+use super::unknowns::{Block, Component, Unknowns};
 use crate::element::side;
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// The assembled problem. Copies share what does not depend on the loads.
 #[derive(Debug, Clone)]
@@ -74,14 +74,7 @@ impl System {
         }
         let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
-        let jump_bound = problem
-            .pairs()
-            .zip(unknowns.jump_blocks())
-            .flat_map(|(pair, jumps)| {
-                let moments = side::moments(&pair.gap, jumps.len - 1);
-                moments.into_iter().map(|moment| pair.length * moment)
-            })
-            .collect();
+        let jump_bound = jump_bounds(problem, &unknowns);
         let symbolic =
             SymbolicSparseColMat::new_checked(unknowns.count, unknowns.count, pattern.columns, None, pattern.rows);
         let matrix = Arc::new(SparseColMat::new(symbolic, values));
@@ -99,6 +92,15 @@ impl System {
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         symmetric_multiply((*self.matrix).as_ref(), x)
     }
+}
+
+/// ∫ g B_k of each jump.
+pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
+    let of_pair = |(pair, jumps): (&ContactPair, &Block)| {
+        let length = pair.length;
+        side::moments(&pair.gap, jumps.len - 1).into_iter().map(move |moment| length * moment)
+    };
+    problem.pairs().zip(unknowns.jump_blocks()).flat_map(of_pair).collect()
 }
 
 /// Takes the given unknowns out of a symmetric matrix: their rows and columns become those of a diagonal matrix.
@@ -234,7 +236,7 @@ struct Pattern {
     columns: Vec<usize>,
     rows: Vec<usize>,
     block_of: Vec<u32>,
-    blocks: Vec<super::unknowns::Block>,
+    blocks: Vec<Block>,
     /// For each block, its later neighbours with the offset of their rows behind the block's own.
     neighbours: Vec<(u32, u32)>,
     neighbour_start: Vec<u32>,

@@ -251,21 +251,22 @@ impl Unknowns {
     pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
         let mut x = vec![0.0; self.count];
         for e in 0..self.edges.len() {
-            let (_, normal) = problem.mesh.edge_frame(e);
-            for k in 0..=self.degree(e) {
-                let m = at(e, k);
-                if let EdgeMoments::Contact(edge) = &self.edges[e] {
-                    edge.project(k, m, &mut x);
-                    continue;
-                }
-                for component in self.components(e, k, normal) {
-                    if let [(dof, _)] = component.terms() {
-                        x[*dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
-                    }
-                }
-            }
+            (0..=self.degree(e)).for_each(|k| self.project_moment(problem, e, k, at(e, k), &mut x));
         }
         x
+    }
+
+    /// Gives the unknowns `x` what moment `k` of edge `e` contributes to them.
+    pub fn project_moment(&self, problem: &Problem, e: usize, k: usize, m: [f64; 2], x: &mut [f64]) {
+        if let EdgeMoments::Contact(edge) = &self.edges[e] {
+            return edge.project(k, m, x);
+        }
+        let (_, normal) = problem.mesh.edge_frame(e);
+        for component in self.components(e, k, normal) {
+            if let [(dof, _)] = component.terms() {
+                x[*dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
+            }
+        }
     }
 
     /// The blocks of jumps, one for each pair.

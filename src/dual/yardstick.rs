@@ -38,7 +38,7 @@ pub fn plain_factorisation(
     ready: impl FnOnce(),
 ) -> Result<Yardstick, DualError> {
     let mut system = System::new(problem, options);
-    let held = held_unknowns(problem, &system, motions);
+    let held = held_unknowns(problem, &system.unknowns, motions);
     make_definite(&mut system, &held);
     let failed = |reason: String| DualError::Factorisation { reason };
     ready();

@@ -1,11 +1,13 @@
 //! Processes: how this program starts others, how they end, and what goes with it when it ends itself.
 //!
 //! A process started here has a group of its own, a limit of time, pipes that are drained into the end of a log, and does
-//! not outlive this one. Python is started so that no file in the current folder is taken for a module ([`python`]).
+//! not outlive this one. Python is started so that no file in the current folder is taken for a module ([`python`]), and
+//! with packages that this program carries ([`package`]).
 //! Temporary folders ([`Scratch`]) go with the process: on its way out, on a signal ([`signals`]), and after a signal that
 //! leaves no time by the next run ([`clear`]).
 
 pub mod child;
+pub mod package;
 pub mod python;
 mod scratch;
 pub mod signals;

@@ -6,6 +6,7 @@ mod arcs;
 mod cases;
 #[path = "../support/command.rs"]
 mod command;
+mod engine;
 #[path = "../support/lame.rs"]
 mod lame;
 mod planted;

@@ -1,0 +1,97 @@
+"""The contact problem of ``hypercircle_dual`` against all its states, and files that contradict their format."""
+
+import json
+import os
+import subprocess
+import sys
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parent.parent
+
+
+def least(schur, load, bound):
+    """The minimum of ½ jᵀSj − cᵀj over j ≤ g: the least of those with each set of closed jumps that obey the bounds."""
+    best = np.inf
+    for closed in map(np.array, product((False, True), repeat=len(load))):
+        jumps = np.where(closed, bound, 0.0)
+        opened = ~closed
+        if opened.any():
+            rest = load[opened] - schur[np.ix_(opened, closed)] @ bound[closed]
+            jumps[opened] = np.linalg.solve(schur[np.ix_(opened, opened)], rest)
+        if np.all(jumps <= bound + 1e-12):
+            best = min(best, 0.5 * jumps @ schur @ jumps - load @ jumps)
+    return best
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_contact_state_has_least_energy(seed):
+    from hypercircle_dual.contact import ContactProblem
+
+    random = np.random.default_rng(seed)
+    size = 7
+    root = random.normal(size=(size, size))
+    scale = 10.0 ** random.uniform(-4, 4, size)
+    schur = (root @ root.T + 0.01 * np.eye(size)) * np.outer(scale, scale)
+    load, bound = random.normal(size=size) * scale, np.abs(random.normal(size=size)) / scale
+    state = ContactProblem(schur, np.diag(schur)).solve(load, bound, None)
+    assert np.all(state.jumps <= bound * (1.0 + 1e-12))
+    assert np.all(state.jumps[state.closed] == pytest.approx(bound[state.closed]))
+    energy = 0.5 * state.jumps @ schur @ state.jumps - load @ state.jumps
+    assert energy == pytest.approx(least(schur, load, bound), rel=1e-9)
+
+
+def test_newton_agrees_with_pivoting():
+    from hypercircle_dual.contact import ContactProblem
+
+    random = np.random.default_rng(5)
+    root = random.normal(size=(12, 12))
+    problem = ContactProblem(root @ root.T + np.eye(12), np.ones(12))
+    load, bound = random.normal(size=12) * 3.0, np.full(12, 0.1)
+    state = problem.solve(load, bound, None)
+    assert np.array_equal(problem.scaled[0].newton(load, bound), state.closed)
+
+
+def test_ranges_are_consecutive_numbers():
+    from hypercircle_dual.exchange import ranges
+
+    found = ranges(np.array([7, 2, 30]), np.array([2, 0, 3]))
+    assert found.tolist() == [7, 8, 30, 31, 32]
+
+
+HEADER = {
+    "format": "hypercircle-dual", "version": 1, "triangles": 1, "unknowns": 12, "first_jump": 12, "parameters": 9,
+    "held": [], "load": 1.0, "ranks": 1, "linear_solver": "mumps",
+}  # fmt: skip
+
+
+def call(folder, header):
+    (folder / "problem.json").write_text(header)
+    return subprocess.run(
+        [sys.executable, "-m", "hypercircle_dual", str(folder / "problem.json")],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "cannot be used"),
+        (json.dumps({**HEADER, "version": 2}), "hypercircle-dual' 2"),
+        (json.dumps({key: value for key, value in HEADER.items() if key != "load"}), "load"),
+        (json.dumps(HEADER), "start.i64 cannot be read"),
+    ],
+)
+def test_bad_files_are_refused(tmp_path, text, said):
+    done = call(tmp_path, text)
+    assert done.returncode == 2, done.stderr
+    assert said in done.stderr and "Traceback" not in done.stderr
+
+
+def test_ranks_that_do_not_see_each_other_are_refused(tmp_path):
+    done = call(tmp_path, json.dumps({**HEADER, "ranks": 2}))
+    assert done.returncode == 3 and "1 of 2 ranks see each other" in done.stderr, done.stderr

@@ -1,0 +1,168 @@
+//! The hybrid form on PETSc, over MPI ranks.
+//!
+//! This program computes the matrices of the elements and writes them down ([`blocks`], [`exchange`]). The Python package
+//! `hypercircle_dual`, started by `mpirun`, distributes the triangles, assembles K as one matrix over all ranks, finds the
+//! contact state and refines on the stresses, rank by rank. What it hands back are mode parameters: the stresses are made
+//! of them here, and held against equilibrium here, by code that knows nothing of PETSc. So no guarantee rests on it.
+
+mod blocks;
+mod exchange;
+mod nodal;
+
+use std::env;
+use std::io;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use super::equilibrium::Equilibrium;
+use super::modes::ModeTable;
+use super::unknowns::Unknowns;
+use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
+use crate::problem::Problem;
+use crate::process::Scratch;
+use crate::process::package::{Call, Failure, Package};
+
+/// The Python package.
+const PACKAGE: Package = Package {
+    name: "hypercircle_dual",
+    files: &[
+        ("__init__.py", include_str!("../../../reference/hypercircle_dual/__init__.py")),
+        ("__main__.py", include_str!("../../../reference/hypercircle_dual/__main__.py")),
+        ("compat.py", include_str!("../../../reference/hypercircle_dual/compat.py")),
+        ("contact.py", include_str!("../../../reference/hypercircle_dual/contact.py")),
+        ("distribution.py", include_str!("../../../reference/hypercircle_dual/distribution.py")),
+        ("exchange.py", include_str!("../../../reference/hypercircle_dual/exchange.py")),
+        ("model.py", include_str!("../../../reference/hypercircle_dual/model.py")),
+        ("refinement.py", include_str!("../../../reference/hypercircle_dual/refinement.py")),
+        ("run.py", include_str!("../../../reference/hypercircle_dual/run.py")),
+        ("solvers.py", include_str!("../../../reference/hypercircle_dual/solvers.py")),
+    ],
+};
+
+/// Bytes that this process holds for each triangle: element matrices and stresses, then the bracket.
+const EACH: f64 = 9500.0;
+
+/// How PETSc solves with K.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum LinearSolver {
+    /// Sparse Cholesky factorisation over all ranks
+    #[default]
+    Mumps,
+    /// Conjugate gradients with algebraic multigrid
+    Gamg,
+}
+
+/// The hybrid form on PETSc.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Petsc {
+    /// MPI ranks.
+    pub ranks: usize,
+    /// How K is solved with.
+    pub linear_solver: LinearSolver,
+    /// The ranks are ended when they take longer.
+    pub limit: Duration,
+    /// The Python interpreter; `None` asks `HYPERCIRCLE_PYTHON`, then takes `/usr/bin/python3`.
+    pub interpreter: Option<PathBuf>,
+}
+
+impl DualMethod for Petsc {
+    fn name(&self) -> &'static str {
+        match self.linear_solver {
+            LinearSolver::Mumps => "petsc",
+            LinearSolver::Gamg => "petsc-gamg",
+        }
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        size.linear(EACH)
+    }
+
+    fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        let start = Instant::now();
+        let modes = ModeTable::new(problem, options.elements.clone());
+        let unknowns = Unknowns::new(problem, modes.elements());
+        let scratch = Scratch::new().map_err(|source| DualError::Exchange { path: env::temp_dir(), source })?;
+        let failed = |source: io::Error| DualError::Exchange { path: scratch.path().to_owned(), source };
+        let folder = scratch.folder("dual").map_err(failed)?;
+        exchange::write(&folder, problem, &unknowns, &modes, motions, (self.ranks, self.linear_solver))
+            .map_err(failed)?;
+        let written = start.elapsed().as_secs_f64();
+
+        let call = Call {
+            interpreter: self.interpreter.as_deref(),
+            ranks: Some(self.ranks),
+            arguments: vec![folder.join(exchange::PROBLEM_FILE).into()],
+            limit: self.limit,
+        };
+        PACKAGE.run(&call).map_err(|failure| self.explain(failure))?;
+
+        let start = Instant::now();
+        let jumps = unknowns.count - unknowns.first_jump;
+        let found = exchange::read(&folder, unknowns.count, jumps, modes.parameters()).map_err(failed)?;
+        let stress = modes.stresses(problem, &found.parameters);
+        let moments = unknowns.moments(problem, &found.unknowns);
+        let residual = Equilibrium::measure(problem, &stress, &moments).residual();
+        let answer = &found.answer;
+        if !residual.is_finite() || residual > self.accuracy() {
+            return Err(DualError::NotConverged {
+                method: self.name(),
+                iterations: answer.steps + answer.iterations,
+                residual,
+                wanted: self.accuracy(),
+                advice: "use --linear-solver mumps, or leave --engine out".to_string(),
+            });
+        }
+        let seconds = Phases {
+            assemble: written + answer.seconds.assemble,
+            factor: answer.seconds.factor,
+            contact: answer.seconds.contact,
+            recover: answer.seconds.refine + start.elapsed().as_secs_f64(),
+            ..Phases::default()
+        };
+        Ok(Found {
+            stress,
+            moments,
+            closed: unknowns.by_pair(found.closed),
+            unknowns: unknowns.count,
+            iterations: match self.linear_solver {
+                LinearSolver::Mumps => answer.steps,
+                LinearSolver::Gamg => answer.iterations,
+            },
+            seconds,
+            notes: vec![self.note(answer)],
+            factorised: None,
+        })
+    }
+}
+
+impl Petsc {
+    /// How the stresses were found.
+    fn note(&self, answer: &exchange::Answer) -> String {
+        let megabytes = answer.memory.iter().copied().max().unwrap_or(0) / 1_000_000;
+        let (ranks, release, steps) = (answer.ranks, &answer.petsc, answer.steps);
+        let ranks = if ranks == 1 { "1 rank".to_string() } else { format!("{ranks} ranks") };
+        let how = match self.linear_solver {
+            LinearSolver::Mumps => "factorised by MUMPS".to_string(),
+            LinearSolver::Gamg => format!(
+                "solved by conjugate gradients with GAMG, {} iterations in the first solve, {} in all",
+                answer.first_iterations, answer.iterations
+            ),
+        };
+        format!(
+            "The stresses were found by PETSc {release} on {ranks}, {how}; contact states tried: {steps}; largest memory of \
+             a rank {megabytes} MB."
+        )
+    }
+
+    fn explain(&self, failure: Failure) -> DualError {
+        match failure {
+            Failure::NotInstalled(reason) => DualError::NotInstalled(reason),
+            Failure::Failed { status, log } => DualError::Process { reason: status, log },
+            Failure::TimedOut { log } => {
+                DualError::Process { reason: format!("stopped after {} s", self.limit.as_secs_f64()), log }
+            }
+            Failure::Io { path, source } => DualError::Exchange { path, source },
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Python packages that this program carries inside it, so that both always belong together, and their runs.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::io;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus};
+use std::time::Duration;
+
+use super::{Ended, Outcome, Scratch, python, supervise};
+
+/// A package as it is carried.
+#[derive(Debug, Clone, Copy)]
+pub struct Package {
+    /// Its name in Python.
+    pub name: &'static str,
+    /// Names and texts of its files.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+/// How a package is run.
+#[derive(Debug, Clone)]
+pub struct Call<'a> {
+    /// The Python interpreter; `None` asks `HYPERCIRCLE_PYTHON`, then takes `/usr/bin/python3`.
+    pub interpreter: Option<&'a Path>,
+    /// Number of MPI ranks; `None` runs without `mpirun`.
+    pub ranks: Option<usize>,
+    /// Arguments of the package.
+    pub arguments: Vec<OsString>,
+    /// The process is ended when it takes longer.
+    pub limit: Duration,
+}
+
+/// Why a package did not run to its end.
+#[derive(Debug)]
+pub enum Failure {
+    /// The interpreter, `mpirun` or a Python package is missing.
+    NotInstalled(String),
+    /// The process ended without success.
+    Failed {
+        /// How it ended.
+        status: String,
+        /// The last lines it printed.
+        log: String,
+    },
+    /// The process did not end in time and was stopped.
+    TimedOut {
+        /// The last lines it printed.
+        log: String,
+    },
+    /// A folder cannot be used.
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
+}
+
+/// What a package returns when something that it imports is missing.
+const NOT_INSTALLED: i32 = 4;
+
+impl Package {
+    /// Runs the package as `python3 -m` does, in an empty folder, and waits for its end. Of a package `a_b` a line that
+    /// begins with `a-b: not installed:` names what is missing.
+    ///
+    /// `HYPERCIRCLE_REFERENCE` may name a folder with another copy of the package.
+    ///
+    /// # Errors
+    /// [`Failure`].
+    pub fn run(&self, call: &Call<'_>) -> Result<(), Failure> {
+        let scratch = Scratch::new().map_err(|source| Failure::Io { path: env::temp_dir(), source })?;
+        let in_scratch = |source| Failure::Io { path: scratch.path().to_owned(), source };
+        let folder = match env::var_os("HYPERCIRCLE_REFERENCE") {
+            Some(given) => {
+                let given = PathBuf::from(given);
+                std::path::absolute(&given).map_err(|source| Failure::Io { path: given, source })?
+            }
+            None => self.unpack(&scratch).map_err(in_scratch)?,
+        };
+        if !folder.join(self.name).join("__main__.py").is_file() {
+            let reason = format!("{} (from HYPERCIRCLE_REFERENCE) holds no {}", folder.display(), self.name);
+            return Err(Failure::NotInstalled(reason));
+        }
+        let place = scratch.folder("run").map_err(in_scratch)?;
+        let mut command = self.command(&folder, &place, call)?;
+        let program = command.get_program().to_owned();
+        let ended = supervise(&mut command, call.limit).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => Failure::NotInstalled(format!("{} does not exist", program.display())),
+            _ => Failure::Failed { status: format!("{} did not start", program.display()), log: error.to_string() },
+        })?;
+        self.judge(ended)
+    }
+
+    /// Puts the package into a folder of `scratch`, which is the result.
+    fn unpack(&self, scratch: &Scratch) -> io::Result<PathBuf> {
+        let root = scratch.folder("package")?;
+        let package = root.join(self.name);
+        fs::create_dir(&package)?;
+        for (name, text) in self.files {
+            fs::write(package.join(name), text)?;
+        }
+        Ok(root)
+    }
+
+    fn command(&self, package: &Path, place: &Path, call: &Call<'_>) -> Result<Command, Failure> {
+        let launcher: Vec<OsString> = match call.ranks {
+            None => Vec::new(),
+            Some(ranks) => {
+                let missing = || Failure::NotInstalled("mpirun does not exist".to_owned());
+                let mpirun = python::find(Path::new("mpirun")).ok_or_else(missing)?;
+                let count = ranks.to_string();
+                let arguments = ["--allow-run-as-root", "--oversubscribe", "-n", &count].map(OsString::from);
+                std::iter::once(mpirun.into_os_string()).chain(arguments).collect()
+            }
+        };
+        let start = format!("import runpy\nrunpy.run_module('{}', run_name='__main__', alter_sys=True)\n", self.name);
+        let mut command = python::command(&interpreter(call.interpreter)?, &start, place, &launcher, Some(package))
+            .map_err(|source| Failure::Io { path: place.to_owned(), source })?;
+        command.args(&call.arguments).env("OMP_NUM_THREADS", "1");
+        // Ranks that wait leave the processor to others.
+        command.env("OMPI_MCA_mpi_yield_when_idle", "1");
+        Ok(command)
+    }
+
+    /// What the end of the process means.
+    fn judge(&self, ended: Ended) -> Result<(), Failure> {
+        let log = if ended.log.is_empty() { "(nothing was printed)".to_owned() } else { ended.log.join("\n") };
+        match ended.outcome {
+            Outcome::TimedOut => Err(Failure::TimedOut { log }),
+            Outcome::Lost(error) => Err(Failure::Failed { status: format!("lost: {error}"), log }),
+            Outcome::Exit(status) if status.success() => Ok(()),
+            Outcome::Exit(status) if status.code() == Some(NOT_INSTALLED) => {
+                let begin = format!("{}: not installed:", self.name.replace('_', "-"));
+                let reason = ended.log.iter().find_map(|line| line.strip_prefix(&begin)).map(str::trim);
+                Err(Failure::NotInstalled(reason.map_or(log, str::to_owned)))
+            }
+            Outcome::Exit(status) => Err(Failure::Failed { status: words(status), log }),
+        }
+    }
+}
+
+fn interpreter(given: Option<&Path>) -> Result<PathBuf, Failure> {
+    let found = given
+        .map(Path::to_path_buf)
+        .or_else(|| env::var_os("HYPERCIRCLE_PYTHON").map(PathBuf::from))
+        .unwrap_or_else(|| PathBuf::from("/usr/bin/python3"));
+    python::find(&found).ok_or_else(|| Failure::NotInstalled(format!("{} does not exist", found.display())))
+}
+
+fn words(status: ExitStatus) -> String {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => format!("exit code {code}"),
+        (None, Some(signal)) => format!("ended by signal {signal}"),
+        (None, None) => "ended abnormally".to_owned(),
+    }
+}

@@ -1,0 +1,139 @@
+//! The stress side on PETSc over MPI ranks, held against the condensed method, and what becomes of it when a rank dies, MPI is
+//! missing, or what comes back is wrong.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::command::{case, ended, hypercircle, run, said, script, with_reference};
+
+/// The report of a run of `arguments` on the case `name`.
+#[track_caller]
+fn report(folder: &Path, name: &str, arguments: &[&str]) -> Value {
+    let scene = case(name);
+    let mut all = vec!["solve", scene.to_str().expect("plain path"), "--out", "out", "--quiet"];
+    all.extend(arguments);
+    let output = run(hypercircle(folder, &all));
+    assert_eq!(output.status.code(), Some(0), "{name} {arguments:?}: {}", said(&output));
+    let text = std::fs::read_to_string(folder.join("out/report.json")).expect("a report");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn number(report: &Value, key: &str) -> f64 {
+    report.pointer(key).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {key}"))
+}
+
+/// The same bounds, and equilibrium below 1e-9.
+#[track_caller]
+fn same(name: &str, options: &[&str], engine: &[&str]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let expected = report(folder.path(), name, options);
+    let arguments: Vec<&str> = options.iter().chain(&["--engine", "petsc"]).chain(engine).copied().collect();
+    let found = report(folder.path(), name, &arguments);
+    let gamg = engine.contains(&"gamg");
+    assert_eq!(found["dual"]["method"], if gamg { "petsc-gamg" } else { "petsc" });
+    for key in ["/energy/lower", "/energy/upper"] {
+        let (found, expected) = (number(&found, key), number(&expected, key));
+        assert!(
+            (found - expected).abs() < 1e-9 * expected.abs(),
+            "{name} {arguments:?} {key}: {found:e}, {expected:e}"
+        );
+    }
+    let left = number(&found, "/dual/equilibrium_residual");
+    assert!(left < 1e-9, "{name} {arguments:?}: {left:e}");
+    assert!(!gamg || number(&found, "/dual/iterations") > 10.0);
+    let notes = found["notes"].to_string();
+    let ranks = if engine.contains(&"2") { "on 2 ranks" } else { "on 1 rank" };
+    assert!(notes.contains("PETSc") && notes.contains(ranks), "{notes}");
+}
+
+#[test]
+fn ranks_find_the_stresses_of_the_condensed_method() {
+    if !with_reference() {
+        return;
+    }
+    same("two_blocks", &[], &[]);
+    // Free to slide; a higher degree; degrees that differ.
+    same("sliding", &[], &["--ranks", "2"]);
+    same("two_blocks", &["--degree", "2"], &["--ranks", "2"]);
+    same("two_blocks", &["--tolerance", "0.05"], &["--ranks", "2"]);
+}
+
+#[test]
+fn an_iteration_finds_the_same() {
+    if with_reference() {
+        same("two_blocks", &[], &["--ranks", "2", "--linear-solver", "gamg"]);
+    }
+}
+
+#[test]
+fn both_sides_run_on_the_ranks() {
+    if !with_reference() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = case("patch");
+    let arguments = ["verify", scene.to_str().expect("plain path"), "--engine", "petsc", "--ranks", "2", "--quiet"];
+    ended("verify", &run(hypercircle(folder.path(), arguments)), 0, &[]);
+}
+
+/// A run on two ranks whose interpreter is the script `body`, in which `$python` stands for the real one.
+fn with_interpreter(body: &str) -> (Output, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or_else(|| "/usr/bin/python3".into(), PathBuf::from);
+    let body = format!("here={}\npython={}\n{body}", folder.path().display(), python.display());
+    let fake = script(folder.path().join("python"), &body);
+    let scene = case("two_blocks");
+    let arguments = ["solve", scene.to_str().expect("plain path"), "--engine", "petsc", "--ranks", "2", "--quiet"];
+    let mut command = hypercircle(folder.path(), arguments);
+    command.env("HYPERCIRCLE_PYTHON", fake);
+    (run(command), folder)
+}
+
+fn alive(process: &str) -> bool {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
+}
+
+#[test]
+fn a_killed_rank_ends_the_run_and_leaves_no_other() {
+    if !with_reference() {
+        return;
+    }
+    let body = "echo $$ >$here/rank-$OMPI_COMM_WORLD_RANK\n\
+                if [ $OMPI_COMM_WORLD_RANK = 1 ]; then sleep 0.5; kill -KILL $$; fi\nexec $python \"$@\"";
+    let (output, folder) = with_interpreter(body);
+    ended("a killed rank", &output, 3, &["the parallel solver failed"]);
+    assert!(!folder.path().join("out").exists(), "a report of nothing");
+    let other = std::fs::read_to_string(folder.path().join("rank-0")).expect("a number");
+    let patience = Instant::now();
+    while alive(other.trim()) && patience.elapsed() < Duration::from_secs(5) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(!alive(other.trim()), "rank 0 lives");
+}
+
+#[test]
+fn a_wrong_answer_is_caught() {
+    if !with_reference() {
+        return;
+    }
+    // The first parameters of what the ranks found are lost.
+    let body = "for last in \"$@\"; do :; done\n$python \"$@\" || exit\nif [ $OMPI_COMM_WORLD_RANK = 0 ]; then\n\
+                dd if=/dev/zero of=$(dirname $last)/parameters.f64 bs=8 count=9 conv=notrunc 2>/dev/null\nfi";
+    ended("nine zeros", &with_interpreter(body).0, 3, &["petsc stopped", "with a residual of"]);
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = case("patch");
+    let scene = scene.to_str().expect("plain path");
+    let mut command = hypercircle(folder.path(), ["solve", scene, "--engine", "petsc", "--ranks", "2"]);
+    command.env("PATH", folder.path());
+    ended("no mpirun", &run(command), 4, &["mpirun does not exist", "openmpi-bin"]);
+    let output = run(hypercircle(folder.path(), ["solve", scene, "--ranks", "2"]));
+    ended("no engine", &output, 2, &["--ranks without --engine"]);
+}
