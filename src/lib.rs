@@ -78,3 +78,4 @@ pub mod scene;
 pub mod stability;
 pub mod statics;
 pub mod study;
+pub mod workbench;
