@@ -26,6 +26,9 @@ pub enum Variant {
     Right,
     /// One quadrature point in the middle.
     OnePoint,
+    /// n × n quadrature points of Gauss on a quadrilateral, where two are the rule. The integrand is no polynomial on a distorted one, so that
+    /// the matrix is another one, and as good.
+    Points(usize),
     /// The Jacobian where its transpose belongs: ∇N = J⁻¹ ∇̂N in place of J⁻ᵀ ∇̂N.
     Transposed,
 }
@@ -93,8 +96,9 @@ impl Family {
         match (self, variant) {
             (Family::Q4, Variant::OnePoint) => vec![([0.5, 0.5], 1.0)],
             (_, Variant::OnePoint) => vec![([1.0 / 3.0, 1.0 / 3.0], 0.5)],
-            (Family::Q4, _) => {
-                let line = segment_rule(3);
+            (Family::Q4, variant) => {
+                let points = if let Variant::Points(n) = variant { n.max(1) } else { 2 };
+                let line = segment_rule(2 * points - 1);
                 line.iter().flat_map(|&(s, v)| line.iter().map(move |&(t, w)| ([s, t], v * w))).collect()
             }
             _ => triangle_rule(2).iter().map(|(l, w)| ([l[1], l[2]], 0.5 * w)).collect(),

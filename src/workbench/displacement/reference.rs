@@ -19,9 +19,9 @@ fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
         None => ", with the material that constant strains show",
     };
     let sentence = match diagnose(e) {
-        None => format!("K is that of the {}{of}", reference.family.words()),
+        None => format!("K is that of the {}{of}", reference.words()),
         Some(diagnosis) => {
-            format!("K is not that of the {}{of}. {}", reference.family.words(), diagnosis.sentence)
+            format!("K is not that of the {}{of}. {}", reference.words(), diagnosis.sentence)
         }
     };
     Ok(Measured::new(value, e.precision, sentence))

@@ -65,6 +65,17 @@ fn right_matrices_pass_with_and_without_a_material() {
     }
 }
 
+/// On a distorted quadrilateral the integrand is no polynomial: three by three points give another matrix, which is no mistake.
+#[test]
+fn more_quadrature_points_are_no_mistake() {
+    let k = Family::Q4.stiffness(&nodes(Family::Q4), &MATERIAL.hooke(), MATERIAL.thickness, Variant::Points(3));
+    let k = k.expect("regular");
+    assert!((&k - right(Family::Q4)).amax() > 1e-6 * k.amax());
+    let report = examined(Family::Q4, &k, Some(MATERIAL));
+    let reference = report.finding("reference").expect("there");
+    assert!(reference.passed == Some(true) && reference.sentence.contains("3 × 3 points"), "{}", reference.sentence);
+}
+
 #[test]
 fn a_wrong_sign_is_named() {
     for family in Family::ALL {

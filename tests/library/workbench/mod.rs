@@ -3,13 +3,23 @@
 mod matrices;
 mod stresses;
 
-use hypercircle::workbench::{Options, Report, SHIPPED, shipped};
+use std::sync::LazyLock;
+
+use hypercircle::workbench::{Options, Report, SHIPPED, Shipped};
+
+/// The reports on all elements that come with the program.
+static REPORTS: LazyLock<Vec<(&'static str, Report)>> = LazyLock::new(|| {
+    let of = |element: &'static Shipped| {
+        let waived = element.lacks.iter().map(|name| name.to_string()).collect();
+        let subject = element.subject().expect("can be made");
+        (element.name, subject.examine(&Options { waived, claimed: Vec::new() }))
+    };
+    SHIPPED.iter().map(of).collect()
+});
 
 /// The report on an element that comes with the program.
-fn report(name: &str) -> Report {
-    let element = shipped(name).expect("shipped");
-    let waived = element.lacks.iter().map(|name| name.to_string()).collect();
-    element.subject().expect("can be made").examine(&Options { waived, claimed: Vec::new() })
+fn report(name: &str) -> &'static Report {
+    &REPORTS.iter().find(|(known, _)| *known == name).expect("shipped").1
 }
 
 #[test]
@@ -41,7 +51,7 @@ fn spurious_modes_are_named_and_drawn() {
     assert_eq!(rank.value, Some(2.0));
     assert!(rank.sentence.contains("hourglass"), "{}", rank.sentence);
     assert!(rank.picture.as_ref().is_some_and(|svg| svg.contains("2 of 2")));
-    assert_eq!(reduced.diagnosis.expect("differs from Q4").cause, "one-point-quadrature");
+    assert_eq!(reduced.diagnosis.as_ref().expect("differs from Q4").cause, "one-point-quadrature");
     let single = report("single-triangle");
     let rank = single.finding("traction-rank").expect("there");
     assert_eq!(rank.value, Some(2.0));
@@ -53,8 +63,8 @@ fn spurious_modes_are_named_and_drawn() {
 #[test]
 fn known_figures_are_found() {
     let value = |element: &str, name: &str| report(element).finding(name).and_then(|f| f.value).expect("measured");
-    assert!(value("p1", "incompressible") > 20.0 && value("q4", "incompressible") > 20.0);
-    assert!(value("p2", "incompressible") < 3.0);
+    assert!(value("p1", "incompressible") > 0.15 && value("q4", "incompressible") > 0.5);
+    assert!(value("p2", "incompressible") < 0.01);
     assert_eq!(value("johnson-mercier", "dimension"), 6.0);
     assert_eq!(value("johnson-mercier", "span"), 0.0);
     assert_eq!(value("single-triangle", "dimension"), 2.0);
