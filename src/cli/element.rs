@@ -96,7 +96,7 @@ fn bad(message: impl Into<String>, remedy: &str) -> CliError {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut options = workbench::Options { waived: args.waive.clone(), claimed: args.claim.clone() };
     let (subject, name) = match (&args.matrix, &args.name) {
-        (Some(file), _) => (Subject::Displacement(matrix(args, file)?), stem(file)),
+        (Some(file), _) => (Subject::Displacement(Box::new(matrix(args, file)?)), stem(file)),
         (None, Some(name)) => {
             let Shipped { name, lacks, .. } = *known(name)?;
             options.waived.extend(lacks.iter().map(|name| name.to_string()));

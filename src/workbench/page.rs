@@ -45,9 +45,11 @@ pub fn page(report: &Report) -> String {
 fn failures(report: &Report) -> Markup {
     let missing: Vec<&Finding> = report.findings.iter().filter(|f| f.is_missing()).collect();
     html! {
-        @if !missing.is_empty() || report.diagnosis.is_some() {
+        @if let Some(diagnosis) = &report.diagnosis {
+            div.card.asked { h3 { "Diagnosis" } p { (clean(&diagnosis.sentence)) } }
+        }
+        @if !missing.is_empty() {
             section.failures aria-label="what is missing" {
-                @if let Some(diagnosis) = &report.diagnosis { p { b { "Diagnosis. " } (clean(&diagnosis.sentence)) } }
                 ol { @for finding in missing { li {
                     span.name { (finding.name) }
                     p { (clean(&finding.sentence)) }

@@ -28,7 +28,7 @@ pub fn motions(title: &str, nodes: &[[f64; 2]], outline: &Outline, panels: &[DVe
 /// Motions of the sides of a triangle, each by itself: what its tractions do not feel.
 pub fn side_motions(title: &str, corners: [[f64; 2]; 3], panels: &[[[[f64; 2]; 2]; 3]]) -> String {
     let side = |s: usize| [corners[(s + 1) % 3], corners[(s + 2) % 3]];
-    let size = (0..3).map(|s| side(s)).fold(0.0, |m: f64, [a, b]| m.max((a[0] - b[0]).hypot(a[1] - b[1])));
+    let size = (0..3).map(side).fold(0.0, |m: f64, [a, b]| m.max((a[0] - b[0]).hypot(a[1] - b[1])));
     let rest: Vec<Vec<[f64; 2]>> = (0..3).map(|s| side(s).to_vec()).collect();
     let moved: Vec<Vec<Vec<[f64; 2]>>> = panels
         .iter()

@@ -10,7 +10,7 @@ use crate::element::block;
 /// What is under test.
 pub enum Subject {
     /// A displacement element.
-    Displacement(DisplacementElement),
+    Displacement(Box<DisplacementElement>),
     /// An equilibrium element.
     Stress(Box<dyn StressElement>),
 }
@@ -63,7 +63,7 @@ pub fn shipped(name: &str) -> Option<&'static Shipped> {
 }
 
 fn family(family: Family, variant: Variant, name: &str) -> Result<Subject, String> {
-    family.element(name, Material::USUAL, variant).map(Subject::Displacement)
+    family.element(name, Material::USUAL, variant).map(|e| Subject::Displacement(Box::new(e)))
 }
 
 fn stresses(element: impl StressElement + 'static) -> Result<Subject, String> {

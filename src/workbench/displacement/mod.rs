@@ -196,7 +196,7 @@ fn outline_of(nodes: &[[f64; 2]]) -> Result<Outline, String> {
     if nodes.len() < 3 || nodes.len() > 100 {
         return Err(format!("{} nodes: an element in the plane has from 3 to 100", nodes.len()));
     }
-    if let Some(n) = nodes.iter().position(|x| !x.iter().all(|x| x.is_finite() && x.abs() < 1e100)) {
+    if let Some(n) = nodes.iter().position(|x| !x.iter().all(|x| x.is_finite() && x.abs() < 1e50)) {
         return Err(format!("node {n} is {:?}: coordinates are finite numbers", nodes[n]));
     }
     for i in 0..nodes.len() {
@@ -216,7 +216,7 @@ fn ordered(matrix: &DMatrix<f64>, nodes: usize, order: Order) -> Result<DMatrix<
     if let Some(at) = matrix.iter().position(|x| !x.is_finite() || x.abs() > 1e150) {
         return Err(format!("entry ({}, {}) of K is {}", at % rows, at / rows, matrix[at]));
     }
-    if matrix.amax() == 0.0 {
+    if matrix.amax() < 1e-150 {
         return Err("every entry of K is zero".into());
     }
     let place = |i: usize| order.place(nodes, i / 2, i % 2);

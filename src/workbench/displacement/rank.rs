@@ -64,19 +64,22 @@ fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
         );
         return Ok(Measured::count(0, text));
     }
-    let is_hourglass = hourglass(e).is_some_and(|h| {
-        // Orthogonal to rigid motions, so that distortion of the shape plays no part.
+    // Orthogonal to rigid motions, so that distortion of the shape plays no part.
+    let to_and_fro = hourglass(e).map(|h| {
         let [_, mut h] = within(&h, &rigid);
         h.column_iter_mut().for_each(|mut c| {
             c.normalize_mut();
         });
-        let part = found.tr_mul(&h);
-        part.column_iter().all(|c| c.norm() > 0.7)
+        let [part, _] = within(&h, &found);
+        part
     });
+    let is_hourglass = to_and_fro.as_ref().is_some_and(|part| part.column_iter().all(|c| c.norm() > 0.7));
     let plural = if count == 1 { "motion stores" } else { "motions store" };
     let kind = if is_hourglass { "hourglass" } else { "spurious" };
     let text = format!("{count} {kind} {plural} nothing and are not rigid: the rank of K is too low by {count}.");
-    let panels: Vec<DVector<f64>> = found.column_iter().map(|c| c.into_owned()).collect();
+    // Along x and along y, rather than any two of their combinations.
+    let shown = to_and_fro.filter(|_| is_hourglass && count == 2).unwrap_or(found);
+    let panels: Vec<DVector<f64>> = shown.column_iter().map(|c| c.into_owned()).collect();
     let drawn = picture::motions(&format!("{kind} motions"), &e.nodes, &e.outline, &panels);
     Ok(Measured::count(count, text).drawn(Some(drawn)))
 }

@@ -112,6 +112,13 @@ impl Fields {
         }
     }
 
+    /// Whether every stress and traction is a finite number.
+    pub fn is_finite(&self) -> bool {
+        self.all().all(|(field, tractions, _)| {
+            field.values.as_flattened().iter().chain(tractions).all(|x| x.is_finite() && x.abs() < 1e100)
+        })
+    }
+
     /// Modes and λ̄ with their tractions and body forces.
     pub fn all(&self) -> impl Iterator<Item = (&Nodal, &[f64], [f64; 2])> {
         let modes = self.fields.iter().zip(&self.tractions).map(|(f, t)| (f, t.as_slice(), [0.0; 2]));

@@ -90,9 +90,12 @@ fn worst(e: &dyn StressElement, figure: impl Fn(&Fields) -> f64) -> (f64, String
     for Shape { name, corners } in super::displacement::sweep(3) {
         let [a, b, c] = corners[..] else { continue };
         for poisson in POISSON {
-            let found = figure(&e.fields([a, b, c], &Material::USUAL.with_poisson(poisson).compliance(), FORCE));
-            // A number that is none is the worst.
-            if !(found <= value) || place.is_empty() {
+            let fields = e.fields([a, b, c], &Material::USUAL.with_poisson(poisson).compliance(), FORCE);
+            if !fields.is_finite() {
+                return (f64::NAN, format!("{name}, ν = {poisson}, where a stress is no number"));
+            }
+            let found = figure(&fields);
+            if found > value || place.is_empty() {
                 place = format!("{name}, ν = {poisson}");
                 value = found;
             }
@@ -105,8 +108,8 @@ fn worst(e: &dyn StressElement, figure: impl Fn(&Fields) -> f64) -> (f64, String
 fn usual(e: &dyn StressElement) -> Result<Fields, Fault> {
     let corners = [[0.1, -0.2], [1.3, 0.1], [0.4, 0.9]];
     let fields = e.fields(corners, &Material::USUAL.compliance(), FORCE);
-    match fields.fields.is_empty() {
-        true => Err(Fault::Failed("the space is empty".into())),
+    match fields.fields.is_empty() || !fields.is_finite() {
+        true => Err(Fault::Failed("The space is empty, or a stress in it is no number.".into())),
         false => Ok(fields),
     }
 }
