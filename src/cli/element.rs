@@ -11,7 +11,7 @@ use super::{CliError, Exit, say};
 use crate::report::{ReportError, folder};
 use crate::scene::Kinematics;
 use crate::workbench::read::{self, Array};
-use crate::workbench::{self, DisplacementElement, Material, Order, SHIPPED, Shipped, Subject};
+use crate::workbench::{self, DisplacementElement, Material, Order, Report, SHIPPED, Shipped, Subject};
 
 /// What single precision leaves of a matrix.
 const SINGLE: f64 = 1e-5;
@@ -112,7 +112,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let report = subject.examine(&options);
     report.write(&dir).map_err(|e: ReportError| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
     if !args.run.quiet {
-        report.findings.iter().for_each(|finding| say::line(&finding.in_words()));
+        told(&report).iter().for_each(|line| say::line(line));
         if let Some(diagnosis) = &report.diagnosis {
             say::line(&format!("diagnosis: {}", diagnosis.sentence));
         }
@@ -120,6 +120,21 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         say::line(&format!("report: {}", dir.join("report.html").display()));
     }
     Ok(if report.passed { Exit::Agree } else { Exit::Disagree })
+}
+
+/// What was found, a line each; then what was not made, a line for each reason.
+fn told(report: &Report) -> Vec<String> {
+    let made = report.findings.iter().filter(|f| f.passed.is_some());
+    let mut lines: Vec<String> = made.map(|f| f.in_words()).collect();
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for finding in report.findings.iter().filter(|f| f.passed.is_none()) {
+        match reasons.iter_mut().find(|(reason, _)| *reason == finding.sentence) {
+            Some((_, names)) => names.push(&finding.name),
+            None => reasons.push((&finding.sentence, vec![&finding.name])),
+        }
+    }
+    lines.extend(reasons.into_iter().map(|(reason, names)| format!("– not made: {}: {reason}", names.join(", "))));
+    lines
 }
 
 fn stem(file: &Path) -> String {

@@ -101,10 +101,10 @@ impl Report {
             ),
         };
         if absent > 0 {
-            verdict += &format!(", {absent} that it does not claim are absent");
+            verdict += &format!(", {absent} not claimed and absent");
         }
         if of(None) > 0 {
-            verdict += &format!(", {} were not made", of(None));
+            verdict += &format!(", {} not made", of(None));
         }
         Report {
             schema_version: SCHEMA_VERSION,

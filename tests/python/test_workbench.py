@@ -1,6 +1,8 @@
 """The element workbench, held against the elements of scikit-fem."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,6 +91,21 @@ def test_an_object_with_a_method_is_a_formula_too(hypercircle):
     assert "K is 2 times" in report["diagnosis"]["sentence"]
     assert finding(report, "bound")["passed"], "too stiff an element has too much energy, not too little"
     assert not finding(report, "convergence")["passed"]
+
+
+def test_the_example_of_the_page_does_what_the_page_says(hypercircle, tmp_path, monkeypatch, capsys):
+    page = (Path(__file__).resolve().parents[2] / "docs/workbench.md").read_text()
+    first, second = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(first, names)
+    report = hypercircle.workbench(names["K"], names["nodes"], young=1.0, poisson=0.3)
+    assert [f["name"] for f in report["findings"] if f["claim"] and not f["passed"]] == ["rank"]
+    assert report["diagnosis"]["sentence"] in page and finding(report, "rank")["sentence"] in page
+    assert "K lacks a property it claims" + report["verdict"].split("claims")[1] in page
+    exec(second, names)
+    assert "hourglass" in capsys.readouterr().out and (tmp_path / "out/mine/report.html").exists()
+    assert finding(names["report"], "bound")["passed"] is False
 
 
 def test_what_is_no_element_is_a_value_error(hypercircle):
