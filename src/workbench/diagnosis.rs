@@ -12,6 +12,8 @@ use crate::report::number::{percent, significant};
 
 /// Of |K − R|², what an explanation may leave.
 const LEFT: f64 = 1e-8;
+/// The cause where none is found.
+const UNEXPLAINED: &str = "unexplained";
 /// Of all entries, how many may be wrong for them to be listed.
 const FEW: usize = 4;
 
@@ -39,29 +41,34 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// The reference for an element. Where its material is not known it is the one that constant strains show.
+    /// The reference for an element. Where its material is not known it is the one that constant strains show. More points of
+    /// quadrature are another matrix on a distorted quadrilateral, and no mistake: of 2 × 2 to 5 × 5 the first that gives K, or 2 × 2.
     ///
     /// # Errors
     /// Why there is none.
     pub fn of(e: &DisplacementElement) -> Result<Self, String> {
+        let mut all = Self::all(e)?;
+        let same = all.iter().position(|r| r.off(&e.matrix) <= e.precision).unwrap_or(0);
+        Ok(all.swap_remove(same))
+    }
+
+    /// The references for an element, one for each rule of quadrature that is right; never none.
+    fn all(e: &DisplacementElement) -> Result<Vec<Self>, String> {
         let none = || format!("no element of the textbooks has {} nodes that lie like these", e.nodes.len());
         let (family, order) = Family::of(&e.outline, &e.nodes).ok_or_else(none)?;
         let hooke = match e.material {
             Some(m) => m.hooke() * m.thickness,
             None => super::displacement::hooke_seen(&e.matrix, &e.nodes, &e.outline),
         };
-        let nodes = order.iter().map(|&n| e.nodes[n]).collect();
-        let mut reference =
-            Reference { family, rule: Variant::Right, matrix: DMatrix::zeros(0, 0), order, nodes, hooke };
-        reference.matrix = reference.variant(&hooke, Variant::Right)?;
-        // More points are another matrix on a distorted quadrilateral, and no mistake.
-        for points in if family == Family::Q4 { 3..6 } else { 0..0 } {
-            let finer = reference.variant(&hooke, Variant::Points(points))?;
-            if (&e.matrix - &finer).amax() <= e.precision * finer.amax() && reference.off(&e.matrix) > e.precision {
-                (reference.rule, reference.matrix) = (Variant::Points(points), finer);
-            }
-        }
-        Ok(reference)
+        let nodes: Vec<[f64; 2]> = order.iter().map(|&n| e.nodes[n]).collect();
+        let finer = if family == Family::Q4 { 3..6 } else { 0..0 };
+        let of = |rule| {
+            let (order, nodes) = (order.clone(), nodes.clone());
+            let mut reference = Reference { family, rule, matrix: DMatrix::zeros(0, 0), order, nodes, hooke };
+            reference.matrix = reference.variant(&hooke, Variant::Right)?;
+            Ok(reference)
+        };
+        std::iter::once(Variant::Right).chain(finer.map(Variant::Points)).map(of).collect()
     }
 
     /// What it is called, with the points of its quadrature where they are others than usual.
@@ -78,6 +85,7 @@ impl Reference {
     }
 
     fn variant(&self, hooke: &Matrix3<f64>, variant: Variant) -> Result<DMatrix<f64>, String> {
+        let variant = if variant == Variant::Right { self.rule } else { variant };
         let own = self.family.stiffness(&self.nodes, hooke, 1.0, variant)?;
         let mut at = vec![0; self.order.len()];
         self.order.iter().enumerate().for_each(|(i, &n)| at[n] = i);
@@ -97,24 +105,33 @@ struct Trial {
 
 /// What explains that K is not that of the reference; `None` where it is, or where there is none.
 pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
-    let reference = Reference::of(e).ok()?;
-    let (k, right) = (&e.matrix, &reference.matrix);
-    if reference.off(k) <= e.precision {
+    let all = Reference::all(e).ok()?;
+    if all.iter().any(|r| r.off(&e.matrix) <= e.precision) {
         return None;
     }
-    let mut trials = materials(e, &reference);
-    trials.extend(variants(&reference));
+    let mut found = all.iter().filter_map(|r| explanation(e, r));
+    let first = found.next()?;
+    if first.cause != UNEXPLAINED {
+        return Some(first);
+    }
+    Some(found.find(|d| d.cause != UNEXPLAINED).unwrap_or(first))
+}
+
+/// The simplest mistake that explains the difference from one reference, or the nearest.
+fn explanation(e: &DisplacementElement, reference: &Reference) -> Option<Diagnosis> {
+    let (k, right) = (&e.matrix, &reference.matrix);
+    let mut trials = materials(e, reference);
+    trials.extend(variants(reference));
     trials.extend(numberings(e, right));
     let scaled: Vec<Trial> = trials.iter().filter_map(|t| with_factor(k, t)).collect();
     trials.extend(scaled);
-    trials.extend(fitted_hooke(k, &reference));
+    trials.extend(fitted_hooke(k, reference));
     trials.extend(entries(e, right));
     let whole = (k - right).norm_squared();
     // What the digits of K leave is explained by nothing.
     let digits = (e.precision * right.amax()).powi(2) * k.len() as f64;
     let left = |t: &Trial| (k - &t.matrix).norm_squared() / whole;
     let enough = LEFT.max(digits / whole);
-    let tried = trials.len();
     if let Some(best) = trials.iter().filter(|t| left(t) <= enough).min_by_key(|t| t.rank) {
         let explained = 1.0 - left(best);
         let sentence = format!("The difference is explained to {} by this: {}.", percent(explained), best.sentence);
@@ -123,11 +140,12 @@ pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
     let nearest = trials.iter().min_by(|a, b| left(a).total_cmp(&left(b)))?;
     let explained = (1.0 - left(nearest)).max(0.0);
     let sentence = format!(
-        "None of {tried} mistakes explains the difference; nearest, to {}, comes this one: {}.",
+        "None of {} mistakes explains the difference; nearest, to {}, comes this one: {}.",
+        trials.len(),
         percent(explained),
         nearest.sentence
     );
-    Some(Diagnosis { cause: "unexplained".into(), explained, sentence })
+    Some(Diagnosis { cause: UNEXPLAINED.into(), explained, sentence })
 }
 
 /// Sign, factor, plane state, shear.

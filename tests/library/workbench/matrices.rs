@@ -74,6 +74,10 @@ fn more_quadrature_points_are_no_mistake() {
     let report = examined(Family::Q4, &k, Some(MATERIAL));
     let reference = report.finding("reference").expect("there");
     assert!(reference.passed == Some(true) && reference.sentence.contains("3 × 3 points"), "{}", reference.sentence);
+    // Nor do they hide one.
+    let hooke = MATERIAL.in_other_kinematics().hooke();
+    let k = Family::Q4.stiffness(&nodes(Family::Q4), &hooke, MATERIAL.thickness, Variant::Points(3));
+    named(Family::Q4, &k.expect("regular"), "patch-energy", "plane-state");
 }
 
 #[test]
