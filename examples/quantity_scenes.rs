@@ -132,7 +132,8 @@ impl Seen {
             _ => self.no_end += 1,
         }
         let [half, finer] = [coarse, fine].map(|answer| answer.interval.half_width());
-        if coarse.interval.exact_by_statics || !half.is_finite() || !(NARROWER * finer < half) {
+        let told = half.is_finite() && NARROWER * finer < half;
+        if coarse.interval.exact_by_statics || !told {
             return;
         }
         let off = (coarse.interval.value - 0.5 * (c + d)).abs();

@@ -18,7 +18,7 @@
 //!
 //! Data travel in the order of the modules: [`process`] and [`budget`] → [`scene`] → [`mesh`] → [`problem`] → [`statics`] →
 //! [`element`] → [`dual`] →
-//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`diff`] and [`study`] → [`measure`] → [`chart`] and [`stability`] → [`job`], with [`cli`] as a
+//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`diff`] and [`study`] → [`workbench`] → [`measure`] → [`chart`] and [`stability`] → [`job`], with [`cli`] as a
 //! thin door.
 //!
 //! ```
@@ -78,3 +78,4 @@ pub mod scene;
 pub mod stability;
 pub mod statics;
 pub mod study;
+pub mod workbench;

@@ -2,6 +2,8 @@
 //!
 //! Arrays are nested lists; whatever cannot be computed raises `ValueError` with the message of the library.
 
+mod workbench;
+
 use std::path::Path;
 
 use clap::ValueEnum;
@@ -288,5 +290,6 @@ fn hypercircle(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(flexibility, module)?)?;
     module.add_function(wrap_pyfunction!(side_map, module)?)?;
     module.add_function(wrap_pyfunction!(solve, module)?)?;
-    module.add_function(wrap_pyfunction!(problem, module)?)
+    module.add_function(wrap_pyfunction!(problem, module)?)?;
+    module.add_function(wrap_pyfunction!(workbench::workbench, module)?)
 }

@@ -8,6 +8,7 @@ pub mod chart;
 pub mod ci;
 mod conclude;
 pub mod diff;
+pub mod element;
 pub mod error;
 pub mod exit;
 pub mod gather;
@@ -63,6 +64,8 @@ pub enum Command {
     Certify(certify::Args),
     /// Make one page of the parts of a job
     Gather(gather::Args),
+    /// Examine an element formulation: what is right and wrong with it
+    Element(element::Args),
     /// Compare two reports: what changed, and whether it matters
     Diff(diff::Args),
     /// Measure accuracy against time, every method and refinement
@@ -125,6 +128,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Solve(args) => solve::run(args, given),
         Command::Certify(args) => certify::run(args, given),
         Command::Gather(args) => gather::run(args),
+        Command::Element(args) => element::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),

@@ -1,14 +1,16 @@
-//! Properties that every equilibrium element must have, checked with quadrature and derivatives of their own.
+//! Properties that every equilibrium element must have, as the workbench measures them with derivatives of its own; energies and elastic
+//! solutions against quadrature and closed formulas of these tests.
 
 use hypercircle::element::{block, parameters_from_tractions, side};
 use hypercircle::scene::Kinematics;
+use hypercircle::workbench::stress;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
 use crate::support::element::{Case, Material, Setting, longest_side, setting};
 use crate::support::theory::airy::{self, Jet};
-use crate::support::theory::quadrature::{area, gauss, point, sub_corners};
+use crate::support::theory::quadrature::{gauss, point, sub_corners};
 
 /// Degrees, and on how many random triangles they are held against each property.
 const SWEEPS: [(std::ops::RangeInclusive<usize>, u32); 3] = [(1..=1, 256), (2..=4, 64), (5..=8, 4)];
@@ -46,122 +48,16 @@ mod figures {
     const POINTS: [[f64; 3]; 5] =
         [[0.2, 0.3, 0.5], [0.7, 0.1, 0.2], [1.0, 0.0, 0.0], [0.05, 0.05, 0.9], [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]];
 
-    /// |div τ + F| √area at points of every subtriangle.
-    pub fn divergence(case: &Case) -> f64 {
-        let Setting { corners, force, .. } = case.setting;
-        let h = area(corners).sqrt();
-        let mut worst = 0.0_f64;
-        for (k, (field, _)) in case.with_tractions().enumerate() {
-            let force = if k < case.fields.len() { [0.0; 2] } else { force };
-            let size = field.largest() + h * force[0].hypot(force[1]);
-            for sub in 0..3 {
-                let q = sub_corners(corners, sub);
-                // Gradients of the first two barycentric coordinates.
-                let [g, e] = [(1, 2), (2, 0)].map(|(i, j): (usize, usize)| {
-                    [(q[i][1] - q[j][1]) / (2.0 * area(q)), (q[j][0] - q[i][0]) / (2.0 * area(q))]
-                });
-                for l in POINTS {
-                    let [_, d, f] = field.jet(sub, l);
-                    let of = |c: usize, axis: usize| d[c] * g[axis] + f[c] * e[axis];
-                    let div = [of(0, 0) + of(2, 1) + force[0], of(2, 0) + of(1, 1) + force[1]];
-                    worst = worst.max(div[0].hypot(div[1]) * h / size);
-                }
-            }
-        }
-        worst
-    }
-
-    /// The jump of the traction across inner segments.
-    pub fn jump(case: &Case) -> f64 {
-        let corners = case.setting.corners;
-        let mut worst = 0.0_f64;
-        for (field, _) in case.with_tractions() {
-            for sub in 0..3 {
-                let (j, q) = ((sub + 2) % 3, sub_corners(corners, sub));
-                let (dx, dy) = (q[2][0] - corners[j][0], q[2][1] - corners[j][1]);
-                let n = [dy / dx.hypot(dy), -dx / dx.hypot(dy)];
-                for step in 0..=case.degree() + 1 {
-                    let s = step as f64 / (case.degree() + 1) as f64;
-                    // Subtriangle `sub` has a_j as its second corner, the next one has it as its first.
-                    let l = traction(field.at(sub, [0.0, 1.0 - s, s]), n);
-                    let m = traction(field.at((sub + 1) % 3, [1.0 - s, 0.0, s]), n);
-                    worst = worst.max((l[0] - m[0]).hypot(l[1] - m[1]) / field.largest());
-                }
-            }
-        }
-        worst
-    }
-
-    /// Traction coefficients against the stresses on the sides.
-    pub fn coefficients(case: &Case) -> f64 {
-        let n = case.degree() + 1;
-        let mut worst = 0.0_f64;
-        for (field, tractions) in case.with_tractions() {
-            for s in 0..3 {
-                let (.., normal, _) = side_of(case.setting.corners, s);
-                for step in 0..=n {
-                    let x = step as f64 / n as f64;
-                    let t = traction(field.at(s, [1.0 - x, x, 0.0]), normal);
-                    for (c, t) in t.into_iter().enumerate() {
-                        let own: Vec<f64> = (0..n).map(|k| tractions[2 * (s * n + k) + c]).collect();
-                        worst = worst.max((side::value(&own, x) - t).abs() / field.largest());
-                    }
-                }
-            }
-        }
-        worst
-    }
-
-    /// Force and moment of the tractions, from their coefficients. The particular field balances the body force.
-    pub fn resultant(case: &Case) -> f64 {
-        let Setting { corners, force, .. } = case.setting;
-        let n = case.degree() + 1;
-        let centre = sub_corners(corners, 0)[2];
-        let mut worst = 0.0_f64;
-        for (k, (_, tractions)) in case.with_tractions().enumerate() {
-            let load = if k < case.fields.len() { [0.0; 2] } else { force.map(|f| f * area(corners)) };
-            let (mut sum, mut size) = ([load[0], load[1], 0.0], [load[0].hypot(load[1]), 0.0]);
-            for s in 0..3 {
-                let (a, b, _, length) = side_of(corners, s);
-                for (i, t) in tractions[2 * s * n..2 * (s + 1) * n].chunks_exact(2).enumerate() {
-                    // ∫ B_i ds = ℓ/(p + 1), and its centre divides the side as (i + 1) : (p + 1 − i).
-                    let (weight, x) = (length / n as f64, (i + 1) as f64 / (n + 1) as f64);
-                    let arm = [0, 1].map(|c| a[c] + x * (b[c] - a[c]) - centre[c]);
-                    sum[0] += weight * t[0];
-                    sum[1] += weight * t[1];
-                    sum[2] += weight * (arm[0] * t[1] - arm[1] * t[0]);
-                    size[0] += weight * t[0].hypot(t[1]);
-                    size[1] += weight * t[0].hypot(t[1]) * arm[0].hypot(arm[1]);
-                }
-            }
-            worst = worst.max(sum[0].hypot(sum[1]) / size[0].max(1e-300)).max(sum[2].abs() / size[1].max(1e-300));
-        }
-        worst
-    }
-
-    /// Energies of all modes with each other less the unit matrix.
-    pub fn orthonormality(case: &Case) -> f64 {
-        let (n, rows) = (case.fields.len(), energy_rows(case));
-        let modes = rows.columns(0, n);
-        (modes.tr_mul(&modes) - DMatrix::identity(n, n)).amax()
-    }
-
-    /// λ̄ with the modes, and its energy.
-    pub fn particular(case: &Case) -> f64 {
-        let n = case.fields.len();
-        let rows = energy_rows(case);
-        let own = rows.column(n);
-        let energy = own.norm_squared();
-        if energy == 0.0 {
-            return case.modes.particular_energy();
-        }
-        let overlap = rows.columns(0, n).tr_mul(&own).amax() / energy.sqrt();
-        overlap.max((energy / case.modes.particular_energy() - 1.0).abs())
+    /// Energies of the workbench against those by the constants after (3.2).
+    pub fn energy(case: &Case) -> f64 {
+        let (own, theirs) = (energy_rows(case), case.fields.columns(case.fields.all().map(|(field, ..)| field)));
+        let (own, theirs) = (own.tr_mul(&own), theirs.tr_mul(&theirs));
+        (&own - theirs).amax() / own.amax()
     }
 
     /// Modes and λ̄ column by column, their products being energies.
     fn energy_rows(case: &Case) -> DMatrix<f64> {
-        energies(case, case.with_tractions().map(|(field, _)| move |sub: usize, l: [f64; 3]| field.at(sub, l)))
+        energies(case, case.fields.all().map(|(field, ..)| move |sub: usize, l: [f64; 3]| field.at(sub, l)))
     }
 
     /// Modes and λ̄ with fields that have no traction: (μ_i² q)'' on subtriangle i, see [`airy::without_traction`].
@@ -210,23 +106,12 @@ mod figures {
 
     /// Tractions as forces, by mode.
     pub fn forces(case: &Case) -> DMatrix<f64> {
-        let (rows, n) = (case.element.tractions(), case.fields.len());
+        let (rows, n) = (case.element.tractions(), case.modes.parameters());
         let mut t = DMatrix::from_column_slice(rows, n, case.modes.traction());
         for s in 0..3 {
             t.rows_mut(s * rows / 3, rows / 3).scale_mut(side_of(case.setting.corners, s).3);
         }
         t
-    }
-
-    /// Largest over smallest singular value of the tractions of the modes, each in units of its own size.
-    pub fn condition(case: &Case) -> f64 {
-        let mut t = forces(case);
-        for mut column in t.column_iter_mut() {
-            let norm = column.norm();
-            column /= norm;
-        }
-        let s = t.singular_values();
-        s.max() / s.min()
     }
 
     /// Tractions of the stress of an Airy function, and what is left of them by the modes; then how far the field that has them
@@ -276,7 +161,7 @@ mod figures {
 #[test]
 fn stresses_are_in_equilibrium_at_every_point() {
     sweep(|case| {
-        let found = figures::divergence(case);
+        let found = stress::divergence(&case.fields);
         prop_assert!(found < 1e-10, "p = {}: {found:.1e}", case.degree());
         Ok(())
     });
@@ -285,7 +170,7 @@ fn stresses_are_in_equilibrium_at_every_point() {
 #[test]
 fn tractions_are_continuous_inside() {
     sweep(|case| {
-        let found = figures::jump(case);
+        let found = stress::inner_jump(&case.fields);
         prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
         Ok(())
     });
@@ -294,7 +179,7 @@ fn tractions_are_continuous_inside() {
 #[test]
 fn traction_coefficients_belong_to_the_stresses() {
     sweep(|case| {
-        let found = figures::coefficients(case);
+        let found = stress::coefficients(&case.fields);
         prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
         Ok(())
     });
@@ -304,7 +189,7 @@ fn traction_coefficients_belong_to_the_stresses() {
 #[test]
 fn tractions_are_self_equilibrated() {
     sweep(|case| {
-        let found = figures::resultant(case);
+        let found = stress::resultant(&case.fields);
         prop_assert!(found < 1e-11, "p = {}: {found:.1e}", case.degree());
         Ok(())
     });
@@ -313,10 +198,12 @@ fn tractions_are_self_equilibrated() {
 #[test]
 fn modes_are_orthonormal_in_energy() {
     sweep(|case| {
-        let found = figures::orthonormality(case);
+        let found = stress::orthonormality(&case.fields);
         prop_assert!(found < 1e-9, "p = {}: {found:.1e}", case.degree());
-        let found = figures::particular(case);
+        let found = stress::particular(&case.fields);
         prop_assert!(found < 1e-9, "λ̄, p = {}: {found:.1e}", case.degree());
+        let found = figures::energy(case);
+        prop_assert!(found < 1e-9, "by the constants, p = {}: {found:.1e}", case.degree());
         Ok(())
     });
 }
@@ -335,8 +222,8 @@ fn energy_is_the_least_for_given_tractions() {
 #[test]
 fn every_traction_in_equilibrium_has_one_field() {
     sweep(|case| {
-        let (p, found) = (case.degree(), figures::condition(case));
-        prop_assert_eq!(case.fields.len(), 6 * (p + 1) - 3);
+        let (p, found) = (case.degree(), stress::traction_condition(&case.fields));
+        prop_assert_eq!(case.fields.fields.len(), 6 * (p + 1) - 3);
         prop_assert!(found < 1e7, "p = {}: {:.1e}", p, found);
         Ok(())
     });
@@ -397,15 +284,16 @@ fn stiffness_goes_with_the_triangle() {
 /// changes a flat triangle by as much. That the field of given tractions is worse by the aspect ratio once more is (2.10): c(α) ~ 1/sin²α.
 #[test]
 fn flat_and_nearly_incompressible_triangles() {
-    const FIGURES: [(&str, Figure); 8] = [
-        ("div", figures::divergence),
-        ("jump", figures::jump),
-        ("coeff", figures::coefficients),
-        ("force", figures::resultant),
-        ("energy", figures::orthonormality),
-        ("λ̄", figures::particular),
+    const FIGURES: [(&str, Figure); 9] = [
+        ("div", |case| stress::divergence(&case.fields)),
+        ("jump", |case| stress::inner_jump(&case.fields)),
+        ("coeff", |case| stress::coefficients(&case.fields)),
+        ("force", |case| stress::resultant(&case.fields)),
+        ("energy", |case| stress::orthonormality(&case.fields)),
+        ("λ̄", |case| stress::particular(&case.fields)),
         ("least", figures::least_energy),
-        ("cond", figures::condition),
+        ("cond", |case| stress::traction_condition(&case.fields)),
+        ("own energy", figures::energy),
     ];
     println!("p  aspect  ν  {}  patch", FIGURES.map(|(name, _)| name).join("  "));
     let material = |poisson| Material { kinematics: Kinematics::PlaneStrain, young: 7.0, poisson };

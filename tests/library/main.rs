@@ -49,3 +49,4 @@ mod squares;
 mod support;
 mod two_blocks;
 mod upper_bound;
+mod workbench;

@@ -8,6 +8,7 @@ mod claimed;
 mod command;
 mod command_line;
 mod diff;
+mod element;
 mod fields;
 mod hostile;
 mod jobs;

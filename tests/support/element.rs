@@ -1,8 +1,8 @@
-//! What every equilibrium element is held against: random triangles and materials, energies and derivatives with quadrature and shape
-//! functions of their own.
+//! What every equilibrium element is held against: random triangles and materials, and energies with a quadrature of their own.
 
 use hypercircle::element::{Compliance, EquilibriumElement, Modes};
 use hypercircle::scene::Kinematics;
+use hypercircle::workbench::stress::{Fields, Nodal};
 use proptest::prelude::*;
 
 use super::theory::quadrature::{self, area, sub_corners};
@@ -77,84 +77,30 @@ pub fn longest_side(p: [[f64; 2]; 3]) -> f64 {
     (0..3).map(|i| (p[i][0] - p[(i + 1) % 3][0]).hypot(p[i][1] - p[(i + 1) % 3][1])).fold(0.0, f64::max)
 }
 
-/// A stress of degree p on the three subtriangles, by its values on the lattice.
-pub struct Nodal {
-    pub degree: usize,
-    pub values: Vec<[f64; 3]>,
-}
-
-impl Nodal {
-    /// The largest component at a node.
-    pub fn largest(&self) -> f64 {
-        self.values.as_flattened().iter().fold(0.0, |m, v| m.max(v.abs()))
-    }
-
-    /// The stress on subtriangle `sub`, and its derivatives by the first and by the second barycentric coordinate.
-    pub fn jet(&self, sub: usize, l: [f64; 3]) -> [[f64; 3]; 3] {
-        let p = self.degree;
-        let nodes = (p + 1) * (p + 2) / 2;
-        // Lagrange's factor of degree n in one coordinate, with its derivative.
-        let factor = |n: usize, x: f64| {
-            (0..n).fold((1.0, 0.0), |(value, slope), m| {
-                let (f, d) = ((p as f64 * x - m as f64) / (n - m) as f64, p as f64 / (n - m) as f64);
-                (value * f, slope * f + value * d)
-            })
-        };
-        let mut out = [[0.0; 3]; 3];
-        let mut node = sub * nodes;
-        for i in (0..=p).rev() {
-            for j in (0..=p - i).rev() {
-                let (a, b, c) = (factor(i, l[0]), factor(j, l[1]), factor(p - i - j, l[2]));
-                let weights = [a.0 * b.0 * c.0, (a.1 * c.0 - a.0 * c.1) * b.0, (b.1 * c.0 - b.0 * c.1) * a.0];
-                for (out, w) in out.iter_mut().zip(weights) {
-                    out.iter_mut().zip(&self.values[node]).for_each(|(o, v)| *o += w * v);
-                }
-                node += 1;
-            }
-        }
-        out
-    }
-
-    pub fn at(&self, sub: usize, l: [f64; 3]) -> [f64; 3] {
-        self.jet(sub, l)[0]
-    }
-}
-
 /// An element on a triangle, with the fields of its modes.
 pub struct Case {
     pub setting: Setting,
     pub element: &'static dyn EquilibriumElement,
     pub modes: Modes<'static>,
-    pub fields: Vec<Nodal>,
-    pub particular: Nodal,
+    pub fields: Fields,
 }
 
 impl Case {
     pub fn new(element: &'static dyn EquilibriumElement, setting: Setting) -> Self {
-        let modes = element.modes(setting.corners, &setting.material.compliance(), setting.force);
-        let degree = element.degree();
-        let nodal = |values| Nodal { degree, values };
-        let fields: Vec<Nodal> = element.mode_stresses(setting.corners, &modes).into_iter().map(nodal).collect();
-        let mut values = vec![[0.0; 3]; 3 * (degree + 1) * (degree + 2) / 2];
-        let zero = vec![0.0; element.parameters()];
-        element.stresses(setting.corners, setting.force, &modes, &zero, 1.0, &mut values);
-        Case { setting, element, modes, fields, particular: nodal(values) }
+        let material = setting.material.compliance();
+        let modes = element.modes(setting.corners, &material, setting.force);
+        Case { setting, element, modes, fields: Fields::of(element, setting.corners, &material, setting.force) }
     }
 
     pub fn degree(&self) -> usize {
         self.element.degree()
     }
 
-    /// Modes and λ̄, each with its traction coefficients.
-    pub fn with_tractions(&self) -> impl Iterator<Item = (&Nodal, &[f64])> {
-        let last = (&self.particular, self.modes.particular_traction());
-        self.fields.iter().zip(self.modes.tractions()).chain([last])
-    }
-
     /// The sum of the modes times `s`.
     pub fn sum(&self, s: &[f64]) -> Nodal {
-        let mut values = vec![[0.0; 3]; self.particular.values.len()];
-        for (field, s) in self.fields.iter().zip(s) {
+        let modes = &self.fields.fields;
+        let mut values = vec![[0.0; 3]; modes[0].values.len()];
+        for (field, s) in modes.iter().zip(s) {
             values.as_flattened_mut().iter_mut().zip(field.values.as_flattened()).for_each(|(o, v)| *o += s * v);
         }
         Nodal { degree: self.degree(), values }

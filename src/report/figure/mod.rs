@@ -14,7 +14,7 @@ pub mod pressure;
 pub mod quantity;
 pub(crate) mod raster;
 pub mod scene;
-mod svg;
+pub(crate) mod svg;
 mod symbols;
 pub(crate) mod viridis;
 

@@ -1,0 +1,106 @@
+//! The element workbench from Python.
+
+use std::path::PathBuf;
+
+use nalgebra::DMatrix;
+use pyo3::prelude::*;
+
+use super::{fault, kinematics_named};
+use crate::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
+
+/// Rows of numbers as a matrix.
+fn matrix(object: &Bound<'_, PyAny>) -> Result<DMatrix<f64>, String> {
+    let rows: Vec<Vec<f64>> = object.extract().map_err(|e| format!("a matrix is an array of rows of numbers: {e}"))?;
+    let columns = rows.first().map_or(0, Vec::len);
+    match rows.iter().position(|row| row.len() != columns) {
+        Some(i) => Err(format!("row {i} has {} numbers and row 0 has {columns}", rows[i].len())),
+        None => Ok(DMatrix::from_row_slice(rows.len(), columns, &rows.concat())),
+    }
+}
+
+/// K with two rows a node, by the Python callable `stiffness(nodes, young, poisson)`.
+fn called(
+    stiffness: &Py<PyAny>,
+    nodes: &[[f64; 2]],
+    material: &Material,
+    order: Order,
+) -> Result<DMatrix<f64>, String> {
+    Python::attach(|py| {
+        let rows: Vec<Vec<f64>> = nodes.iter().map(|x| x.to_vec()).collect();
+        let array = py.import("numpy").and_then(|numpy| numpy.call_method1("array", (rows,)));
+        let found = array.and_then(|nodes| stiffness.call1(py, (nodes, material.young, material.poisson)));
+        let k = matrix(found.map_err(|e| e.to_string())?.bind(py))?;
+        let (count, size) = (nodes.len(), 2 * nodes.len());
+        if k.shape() != (size, size) {
+            return Err(format!("K is {} × {} for {count} nodes", k.nrows(), k.ncols()));
+        }
+        let place = |i: usize| order.place(count, i / 2, i % 2);
+        Ok(DMatrix::from_fn(size, size, |i, j| material.thickness * k[(place(i), place(j))]))
+    })
+}
+
+/// What is right and what is wrong with a displacement element: a dictionary with `passed`, `verdict`, `diagnosis` (`cause`, `explained`,
+/// `sentence`, or `None`) and `findings`, each with `name`, `asks`, `claim`, `value`, `allowed`, `passed` and `sentence`.
+///
+/// `element` is a stiffness matrix (an array of 2n rows), or what makes one: a callable `stiffness(nodes, young, poisson)`, or an object
+/// with such a method. It is given an n × 2 array and returns K per unit thickness; with it shapes, Poisson's ratios and solved
+/// scenes are looked at too. `nodes` are n points (x, y). `order` is `interleaved` (x0, y0, x1, …) or `blocked` (x0, x1, …, y0, …).
+/// `waive` and `claim` name properties that the element does not claim, and that it claims beside the usual ones. With `out`,
+/// report.json, report.html and junit.xml go into that folder. `passed` is `None` for a property that was not made.
+///
+/// # Errors
+/// `ValueError` for a matrix, nodes or a material that are none.
+#[pyfunction]
+#[pyo3(signature = (element, nodes, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
+    precision = None, waive = Vec::new(), claim = Vec::new(), name = "element", out = None))]
+#[allow(clippy::too_many_arguments)]
+pub fn workbench<'py>(
+    py: Python<'py>,
+    element: &Bound<'py, PyAny>,
+    nodes: Vec<[f64; 2]>,
+    young: Option<f64>,
+    poisson: Option<f64>,
+    kinematics: &str,
+    thickness: f64,
+    order: &str,
+    precision: Option<f64>,
+    waive: Vec<String>,
+    claim: Vec<String>,
+    name: &str,
+    out: Option<PathBuf>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let order = match order {
+        "interleaved" => Order::Interleaved,
+        "blocked" => Order::Blocked,
+        other => return Err(fault(format!("order '{other}': use interleaved or blocked"))),
+    };
+    if let Some(name) = waive.iter().chain(&claim).find(|name| !is_property(name)) {
+        return Err(fault(format!("no property is called '{name}'; the findings name them")));
+    }
+    let state = kinematics_named(kinematics)?;
+    let material = |young, poisson| Material::new(state, young, poisson, thickness).map_err(fault);
+    let given = match (young, poisson) {
+        (Some(young), Some(poisson)) => Some(material(young, poisson)?),
+        (None, None) => None,
+        _ => return Err(fault("give young and poisson, or neither")),
+    };
+    let method = element.getattr_opt("stiffness")?.or_else(|| element.is_callable().then(|| element.clone()));
+    let made = match method {
+        Some(stiffness) => {
+            let stiffness = stiffness.unbind();
+            let usual = material(1.0, 0.3)?;
+            DisplacementElement::of_formula(name, nodes, given.unwrap_or(usual), move |nodes, material| {
+                called(&stiffness, nodes, material, order)
+            })
+        }
+        None => matrix(element).and_then(|k| DisplacementElement::of_matrix(name, &k, nodes, order, given)),
+    };
+    let made = made.map_err(fault)?;
+    let usual = made.precision;
+    let made = made.with_precision(precision.filter(|p| *p > 0.0).unwrap_or(usual));
+    let report = Report::of_displacement(&made, &Options { waived: waive, claimed: claim });
+    if let Some(out) = out {
+        report.write(&out).map_err(fault)?;
+    }
+    py.import("json")?.call_method1("loads", (serde_json::to_string(&report).map_err(fault)?,))
+}

@@ -1,0 +1,224 @@
+//! Displacement elements: a stiffness matrix K on nodes, and the formula that makes it, where there is one.
+
+mod condition;
+mod convergence;
+mod definite;
+mod frame;
+mod incompressible;
+mod mesh;
+mod patch;
+mod rank;
+mod reference;
+mod rigid;
+mod shapes;
+mod symmetry;
+
+use nalgebra::DMatrix;
+
+pub(super) use patch::{hooke_seen, material_words};
+pub(super) use rank::spurious;
+pub(super) use rigid::{motions, within};
+pub(super) use shapes::{Shape, sweep};
+
+use super::finding::{Fault, Property};
+use super::material::Material;
+use super::outline::Outline;
+
+/// What is asked of a displacement element, in the order of a report: one file each, one line each.
+pub const PROPERTIES: &[Property<DisplacementElement>] = &[
+    symmetry::SYMMETRY,
+    rigid::MOTIONS,
+    rigid::FORCES,
+    rank::RANK,
+    definite::DEFINITE,
+    definite::SWEEP,
+    patch::ENERGY,
+    patch::FORCES,
+    patch::DISTORTED,
+    patch::SOLVED,
+    frame::ROTATION,
+    frame::REFLECTION,
+    frame::SCALING,
+    frame::RENUMBERING,
+    incompressible::INCOMPRESSIBLE,
+    condition::CONDITION,
+    convergence::BOUND,
+    convergence::RATE,
+    reference::REFERENCE,
+];
+
+/// What a matrix may differ from one without rounding, where nothing else is said: relative to its largest entry.
+pub const PRECISION: f64 = 1e-9;
+
+/// How the unknowns of a matrix are numbered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// x and y of the first node, x and y of the second one, …
+    Interleaved,
+    /// x of all nodes, then y of all nodes.
+    Blocked,
+}
+
+impl Order {
+    /// Where component c of node n stands among `count` nodes.
+    pub fn place(self, count: usize, n: usize, c: usize) -> usize {
+        match self {
+            Order::Interleaved => 2 * n + c,
+            Order::Blocked => c * count + n,
+        }
+    }
+}
+
+/// A formula: K at nodes (x, y) in a material, two rows a node (x, then y).
+pub type Formula = dyn Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String>;
+
+/// A displacement element under test.
+pub struct DisplacementElement {
+    /// What it is called.
+    pub name: String,
+    /// Its nodes.
+    pub nodes: Vec<[f64; 2]>,
+    /// Its boundary.
+    pub outline: Outline,
+    /// What it is made of, where that is known.
+    pub material: Option<Material>,
+    /// K, two rows a node.
+    pub matrix: DMatrix<f64>,
+    /// How exact the entries are, relative to the largest one.
+    pub precision: f64,
+    formula: Option<Box<Formula>>,
+}
+
+impl DisplacementElement {
+    /// One matrix.
+    ///
+    /// # Errors
+    /// What is wrong with matrix or nodes, and what to do.
+    pub fn of_matrix(
+        name: &str,
+        matrix: &DMatrix<f64>,
+        nodes: Vec<[f64; 2]>,
+        order: Order,
+        material: Option<Material>,
+    ) -> Result<Self, String> {
+        let outline = outline_of(&nodes)?;
+        let matrix = ordered(matrix, nodes.len(), order)?;
+        Ok(DisplacementElement {
+            name: name.into(),
+            nodes,
+            outline,
+            material,
+            matrix,
+            precision: PRECISION,
+            formula: None,
+        })
+    }
+
+    /// A formula, with the nodes and the material to begin with.
+    ///
+    /// # Errors
+    /// As [`Self::of_matrix`], or what the formula says.
+    pub fn of_formula(
+        name: &str,
+        nodes: Vec<[f64; 2]>,
+        material: Material,
+        formula: impl Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String> + 'static,
+    ) -> Result<Self, String> {
+        let outline = outline_of(&nodes)?;
+        let matrix = ordered(&formula(&nodes, &material)?, nodes.len(), Order::Interleaved)?;
+        Ok(DisplacementElement {
+            name: name.into(),
+            nodes,
+            outline,
+            material: Some(material),
+            matrix,
+            precision: PRECISION,
+            formula: Some(Box::new(formula)),
+        })
+    }
+
+    /// The same with entries that are exact to this part of the largest one.
+    pub fn with_precision(self, precision: f64) -> Self {
+        DisplacementElement { precision, ..self }
+    }
+
+    /// The material.
+    ///
+    /// # Errors
+    /// It is not known.
+    fn material(&self) -> Result<Material, Fault> {
+        self.material.ok_or_else(|| Fault::NotMade("no material is given; say E and ν".into()))
+    }
+
+    /// Whether there is a formula for other nodes and materials.
+    ///
+    /// # Errors
+    /// There is one matrix only.
+    fn needs_formula(&self) -> Result<(), Fault> {
+        let text = "one matrix says nothing about other shapes, materials and meshes; give the formula, from Python";
+        self.formula.as_ref().map(|_| ()).ok_or_else(|| Fault::NotMade(text.into()))
+    }
+
+    /// K at other nodes, in another material.
+    ///
+    /// # Errors
+    /// There is no formula, or it gives no matrix.
+    fn stiffness(&self, nodes: &[[f64; 2]], material: &Material) -> Result<DMatrix<f64>, Fault> {
+        self.needs_formula()?;
+        let Some(formula) = &self.formula else { return Err(Fault::Failed("there is no formula".into())) };
+        formula(nodes, material)
+            .and_then(|k| ordered(&k, nodes.len(), Order::Interleaved))
+            .map_err(|e| Fault::Failed(format!("the formula gives no matrix for nodes {nodes:?}: {e}")))
+    }
+
+    /// The weights of the corners in the nodes, which carry the nodes to other shapes.
+    ///
+    /// # Errors
+    /// It is neither a triangle nor a quadrilateral.
+    fn layout(&self) -> Result<DMatrix<f64>, Fault> {
+        let text = || Fault::NotMade(format!("it has {} corners, not three or four", self.outline.corners.len()));
+        self.outline.weights(&self.nodes).ok_or_else(text)
+    }
+
+    /// What counts as zero in a product of K with vectors of length one: relative to the largest entry of K.
+    fn size(&self) -> f64 {
+        self.matrix.amax().max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Nodes that lie as `layout` says between these corners.
+fn nodes_on(layout: &DMatrix<f64>, corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let at = |n: usize, c: usize| corners.iter().enumerate().map(|(k, p)| layout[(n, k)] * p[c]).sum();
+    (0..layout.nrows()).map(|n| [at(n, 0), at(n, 1)]).collect()
+}
+
+fn outline_of(nodes: &[[f64; 2]]) -> Result<Outline, String> {
+    if nodes.len() < 3 || nodes.len() > 100 {
+        return Err(format!("{} nodes: an element in the plane has from 3 to 100", nodes.len()));
+    }
+    if let Some(n) = nodes.iter().position(|x| !x.iter().all(|x| x.is_finite() && x.abs() < 1e50)) {
+        return Err(format!("node {n} is {:?}: coordinates are finite numbers", nodes[n]));
+    }
+    for i in 0..nodes.len() {
+        if let Some(j) = nodes[..i].iter().position(|x| x == &nodes[i]) {
+            return Err(format!("nodes {j} and {i} are in the same place, {:?}", nodes[i]));
+        }
+    }
+    Outline::of(nodes).ok_or_else(|| "the nodes lie on one line and enclose no area".into())
+}
+
+/// The matrix with two rows a node.
+fn ordered(matrix: &DMatrix<f64>, nodes: usize, order: Order) -> Result<DMatrix<f64>, String> {
+    let (rows, columns) = matrix.shape();
+    if rows != 2 * nodes || columns != 2 * nodes {
+        return Err(format!("K is {rows} × {columns}, but {nodes} nodes have {0} × {0} entries", 2 * nodes));
+    }
+    if let Some(at) = matrix.iter().position(|x| !x.is_finite() || x.abs() > 1e150) {
+        return Err(format!("entry ({}, {}) of K is {}", at % rows, at / rows, matrix[at]));
+    }
+    if matrix.amax() < 1e-150 {
+        return Err("every entry of K is zero".into());
+    }
+    let place = |i: usize| order.place(nodes, i / 2, i % 2);
+    Ok(DMatrix::from_fn(rows, columns, |i, j| matrix[(place(i), place(j))]))
+}

@@ -1,0 +1,85 @@
+//! Motions that store no energy: the three rigid ones, and no other.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{DisplacementElement, motions, within};
+use crate::report::number::significant;
+use crate::workbench::finding::{Fault, Measured, Property};
+use crate::workbench::picture;
+
+pub const RANK: Property<DisplacementElement> = Property {
+    name: "rank",
+    asks: "no motion but the rigid ones stores nothing: the rank of K is 2n − 3",
+    usual: true,
+    measure,
+};
+
+/// A part of a motion that counts.
+const PART: f64 = 0.1;
+
+/// An orthonormal basis of the motions that store nothing and are orthogonal to the rigid ones.
+pub fn spurious(matrix: &DMatrix<f64>, rigid: &DMatrix<f64>, zero: f64) -> DMatrix<f64> {
+    let svd = matrix.clone().svd(false, true);
+    let least = zero * svd.singular_values.max();
+    let Some(v_t) = svd.v_t else { return DMatrix::zeros(matrix.ncols(), 0) };
+    let silent: Vec<DVector<f64>> = (0..svd.singular_values.len())
+        .filter(|&k| svd.singular_values[k] <= least)
+        .map(|k| v_t.row(k).transpose())
+        .collect();
+    if silent.is_empty() {
+        return DMatrix::zeros(matrix.ncols(), 0);
+    }
+    let [_, rest] = within(&DMatrix::from_columns(&silent), rigid);
+    let svd = rest.svd(true, false);
+    let Some(u) = svd.u else { return DMatrix::zeros(matrix.ncols(), 0) };
+    let kept: Vec<usize> = (0..svd.singular_values.len()).filter(|&k| svd.singular_values[k] > PART).collect();
+    u.select_columns(&kept)
+}
+
+/// The hourglass motions of a quadrilateral of four nodes: corners move to and fro in turn, along x and along y.
+fn hourglass(e: &DisplacementElement) -> Option<DMatrix<f64>> {
+    let corners = &e.outline.corners;
+    (corners.len() == 4 && e.nodes.len() == 4).then(|| {
+        let mut h = DMatrix::zeros(8, 2);
+        for (k, &n) in corners.iter().enumerate() {
+            let sign = if k % 2 == 0 { 0.5 } else { -0.5 };
+            (0..2).for_each(|c| h[(2 * n + c, c)] = sign);
+        }
+        h
+    })
+}
+
+fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
+    let rigid = motions(&e.nodes);
+    let found = spurious(&e.matrix, &rigid, e.precision);
+    let singular = e.matrix.clone().singular_values();
+    let count = found.ncols();
+    let mut sizes: Vec<f64> = singular.iter().map(|s| s / singular.max()).collect();
+    sizes.sort_by(f64::total_cmp);
+    if count == 0 {
+        let next = sizes.into_iter().find(|s| *s > e.precision).unwrap_or(0.0);
+        let text = format!(
+            "No motion beside the rigid ones stores nothing; the softest stores {} times the energy of the stiffest.",
+            significant(next, 3)
+        );
+        return Ok(Measured::count(0, text));
+    }
+    // Orthogonal to rigid motions, so that distortion of the shape plays no part.
+    let to_and_fro = hourglass(e).map(|h| {
+        let [_, mut h] = within(&h, &rigid);
+        h.column_iter_mut().for_each(|mut c| {
+            c.normalize_mut();
+        });
+        let [part, _] = within(&h, &found);
+        part
+    });
+    let is_hourglass = to_and_fro.as_ref().is_some_and(|part| part.column_iter().all(|c| c.norm() > 0.7));
+    let plural = if count == 1 { "motion stores" } else { "motions store" };
+    let kind = if is_hourglass { "hourglass" } else { "spurious" };
+    let text = format!("{count} {kind} {plural} nothing and are not rigid: the rank of K is too low by {count}.");
+    // Along x and along y, rather than any two of their combinations.
+    let shown = to_and_fro.filter(|_| is_hourglass && count == 2).unwrap_or(found);
+    let panels: Vec<DVector<f64>> = shown.column_iter().map(|c| c.into_owned()).collect();
+    let drawn = picture::motions(&format!("{kind} motions"), &e.nodes, &e.outline, &panels);
+    Ok(Measured::count(count, text).drawn(Some(drawn)))
+}

@@ -1,0 +1,171 @@
+//! All findings on one element, and the files they go into.
+
+use std::path::Path;
+
+use quick_junit::{NonSuccessKind, Report as JunitReport, TestCase, TestCaseStatus, TestSuite, XmlString};
+use serde::Serialize;
+
+use super::diagnosis::{Diagnosis, diagnose};
+use super::displacement::{self, DisplacementElement};
+use super::finding::{Finding, Property};
+use super::material::Material;
+use super::page;
+use super::stress::{self, StressElement};
+use crate::report::folder;
+use crate::report::number::{clean, optional};
+use crate::report::{ReportError, for_jenkins};
+
+/// Version of `report.json`.
+const SCHEMA_VERSION: u32 = 1;
+
+/// The names of the files.
+pub const NAMES: [&str; 3] = ["report.json", "report.html", "junit.xml"];
+
+/// What an element claims otherwise than usual.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Properties that it does not claim.
+    pub waived: Vec<String>,
+    /// Properties that it claims though they are not usual.
+    pub claimed: Vec<String>,
+}
+
+impl Options {
+    fn claims<S: ?Sized>(&self, property: &Property<S>) -> bool {
+        let named = |list: &[String]| list.iter().any(|name| name == property.name);
+        named(&self.claimed) || property.usual && !named(&self.waived)
+    }
+}
+
+/// Whether a name is that of a property.
+pub fn is_property(name: &str) -> bool {
+    let mut names = displacement::PROPERTIES.iter().map(|p| p.name).chain(stress::PROPERTIES.iter().map(|p| p.name));
+    names.any(|known| known == name)
+}
+
+/// All findings on one element.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// Version of this layout.
+    pub schema_version: u32,
+    /// This program's version.
+    pub version: &'static str,
+    /// What the element is called.
+    pub element: String,
+    /// `displacement` or `stress`.
+    pub kind: &'static str,
+    /// Its nodes, or nothing.
+    pub nodes: Vec<[f64; 2]>,
+    /// Its material, where one is known.
+    pub material: Option<Material>,
+    /// Whether no property that it claims is missing.
+    pub passed: bool,
+    /// All of it in a sentence.
+    pub verdict: String,
+    /// Which mistake explains the matrix, where it is not that of its reference.
+    pub diagnosis: Option<Diagnosis>,
+    /// Property by property.
+    pub findings: Vec<Finding>,
+}
+
+impl Report {
+    /// Looks at every property of a displacement element.
+    pub fn of_displacement(e: &DisplacementElement, options: &Options) -> Self {
+        let find = |p: &Property<DisplacementElement>| p.find(e, options.claims(p));
+        let findings = displacement::PROPERTIES.iter().map(find).collect();
+        Report {
+            nodes: e.nodes.clone(),
+            material: e.material,
+            ..Self::new(&e.name, "displacement", findings, diagnose(e))
+        }
+    }
+
+    /// Looks at every property of an equilibrium element.
+    pub fn of_stress(e: &(dyn StressElement + 'static), options: &Options) -> Self {
+        let find = |p: &Property<dyn StressElement>| p.find(e, options.claims(p));
+        Self::new(e.name(), "stress", stress::PROPERTIES.iter().map(find).collect(), None)
+    }
+
+    fn new(name: &str, kind: &'static str, findings: Vec<Finding>, diagnosis: Option<Diagnosis>) -> Self {
+        let missing: Vec<&str> = findings.iter().filter(|f| f.is_missing()).map(|f| f.name.as_str()).collect();
+        let of = |passed: Option<bool>| findings.iter().filter(|f| f.passed == passed).count();
+        let absent = of(Some(false)) - missing.len();
+        let mut verdict = match missing.as_slice() {
+            [] => format!("{name} has every property it claims: {} hold", of(Some(true))),
+            [one] => format!("{name} lacks a property it claims: {one}; {} hold", of(Some(true))),
+            several => format!(
+                "{name} lacks {} properties it claims: {}; {} hold",
+                several.len(),
+                several.join(", "),
+                of(Some(true))
+            ),
+        };
+        if absent > 0 {
+            verdict += &format!(", {absent} not claimed and absent");
+        }
+        if of(None) > 0 {
+            verdict += &format!(", {} not made", of(None));
+        }
+        Report {
+            schema_version: SCHEMA_VERSION,
+            version: env!("CARGO_PKG_VERSION"),
+            element: name.into(),
+            kind,
+            nodes: Vec::new(),
+            material: None,
+            passed: missing.is_empty(),
+            verdict: verdict + ".",
+            diagnosis,
+            findings,
+        }
+    }
+
+    /// The finding of that name.
+    pub fn finding(&self, name: &str) -> Option<&Finding> {
+        self.findings.iter().find(|f| f.name == name)
+    }
+
+    /// Writes `report.json`, `report.html` and `junit.xml` into `dir`.
+    ///
+    /// # Errors
+    /// [`ReportError`].
+    pub fn write(&self, dir: &Path) -> Result<(), ReportError> {
+        let fail = |file, reason: String| ReportError::Render { file, reason };
+        let mut json = serde_json::to_string_pretty(self).map_err(|e| fail("report.json", e.to_string()))?;
+        json.push('\n');
+        let junit = self.junit().map_err(|e| fail("junit.xml", e.to_string()))?;
+        let [a, b, c] = NAMES;
+        folder::replace(dir, &[(a, json.into()), (b, page::page(self).into()), (c, junit.into())], &[])
+    }
+
+    /// `junit.xml`: a test case a finding. What was not made, or is absent and not claimed, is skipped.
+    ///
+    /// # Errors
+    /// The text cannot be put together.
+    pub fn junit(&self) -> Result<String, quick_junit::SerializeError> {
+        let mut suite = TestSuite::new(format!("hypercircle element {}", clean(&self.element)));
+        for finding in &self.findings {
+            let mut status = match (finding.passed, finding.claim) {
+                (Some(true), _) => TestCaseStatus::success(),
+                (Some(false), true) => TestCaseStatus::non_success(NonSuccessKind::Failure),
+                _ => TestCaseStatus::skipped(),
+            };
+            if finding.passed != Some(true) {
+                status.set_message(clean(&finding.sentence));
+            }
+            if finding.is_missing() {
+                let (value, allowed) = (optional(finding.value, 6), optional(finding.allowed, 6));
+                status.set_description(clean(&format!("{}\nvalue {value}\nallowed {allowed}", finding.asks)));
+            }
+            let mut case = TestCase::new(finding.name.as_str(), status);
+            case.classname = Some(XmlString::new(format!("hypercircle.element.{}", clean(&self.element))));
+            suite.add_test_case(case);
+        }
+        if let Some(diagnosis) = &self.diagnosis {
+            suite.set_system_out(clean(&diagnosis.sentence));
+        }
+        let mut junit = JunitReport::new("hypercircle");
+        junit.add_test_suite(suite);
+        junit.to_string().map(for_jenkins)
+    }
+}
