@@ -15,6 +15,9 @@ use crate::element::{SideValues, StressField, triangle};
 const MOST_RAISES: usize = 8;
 const RAISE: f64 = 4.0;
 
+/// How far beyond the ratio that costs nothing the first one may be.
+const FAR: f64 = 10.0;
+
 /// Tries at most after the first that gives a bound.
 const MOST_TRIES: usize = 3;
 
@@ -38,10 +41,10 @@ impl Search<'_, '_> {
         let sigma = self.stress(&neutral.stress, sign);
         let moments = if sign < 0.0 { negated(neutral.moments.clone()) } else { neutral.moments.clone() };
         let mut start = known.nearest.start(&sigma, &moments);
-        let alone = self.measured(neutral, None, sign);
+        let begun = known.nearest.filled(&start, Pull { scene: 0.0, stress: Some(&sigma) });
+        let begun = self.measured(neutral, Some((&begun, sign)), sign);
         // Beyond that the stress of the scene leaves no digits of the adjoint one.
-        let sizes = [alone.pass.uncancelled[0], alone.pass.middle].map(f64::sqrt);
-        let most = HEAVIEST * sizes[0] / sizes[1];
+        let most = HEAVIEST * (begun.pass.uncancelled[0] / begun.pass.middle).sqrt();
         let most = if most > 0.0 { most } else { f64::INFINITY };
         let mut best: Option<(End, Response)> = None;
         let tried = RefCell::new(Tried::default());
@@ -58,8 +61,10 @@ impl Search<'_, '_> {
             }
             Ok(())
         };
-        // As if what is clipped, D² = c/ρ, had the size of the stresses: the least of ρH + D²/(4ρ).
-        let first = sizes[0] / (2.0 * sizes[1] * known.square).cbrt();
+        // As if what is clipped, D² = c/ρ, had the size of the stresses; where D is far smaller than they, what costs nothing.
+        let [size, middle] = [begun.pass.balanced, begun.pass.middle].map(f64::sqrt);
+        let clipped = size / (2.0 * middle * known.square).cbrt();
+        let first = clipped.min(FAR * begun.distance / (2.0 * known.square.sqrt()));
         let first = if first.is_finite() && first > 0.0 { first } else { 1.0 };
         let mut reason = attempt(first, &mut best).err();
         // A body that contact alone holds needs a pressure to take off from.

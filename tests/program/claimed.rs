@@ -145,7 +145,7 @@ fn the_place_of_a_wrong_value_is_named_as_in_the_file_and_drawn() {
     let place: Vec<f64> = line.split(' ').map(|x| x.parse().expect("a number")).collect();
     assert!(sentence.contains(&format!("at ({}, {})", place[0], place[1])), "{sentence} for {line}");
     assert!(why.contains(&format!("point {number} of the file")), "{why}");
-    assert!(read("out/P1/value-0/report.html").contains("misses of equilibrium"));
+    assert!(read("out/P1/value-0/report.html").contains("What equilibrium misses at the nodes of each triangle"));
     assert!(read("out/P1/value-0/summary.md").contains("What is wrong with value.vtk"));
 }
 

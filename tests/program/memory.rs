@@ -104,7 +104,9 @@ fn a_refinement_that_does_not_fit_ends_with_the_best_result() {
         report["energy"]
     );
     let notes = report["notes"].to_string();
-    for piece in ["would not fit into memory (about ", "40 MB may be used", "at the present pace"] {
+    // Refused from its counts, or from its symbolic factorisation.
+    assert!(notes.contains("would not fit into memory (about ") || notes.contains("does not fit: "), "{notes}");
+    for piece in ["40 MB may be used", "at the present pace"] {
         assert!(notes.contains(piece), "{piece}: {notes}");
     }
 }
