@@ -1,5 +1,6 @@
-//! NumPy's format of several arrays: a ZIP archive of `.npy` files, stored as they are.
+//! NumPy's format of several arrays: a ZIP archive of `.npy` files, stored as they are or deflated.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::{Array, Fault, npy};
@@ -16,22 +17,39 @@ pub fn parse(bytes: &[u8]) -> Result<BTreeMap<String, Array>, Fault> {
     let mut arrays = BTreeMap::new();
     for _ in 0..count {
         let entry = directory(bytes, at).ok_or_else(|| fault("its directory is damaged"))?;
-        if entry.method != 0 {
-            let what = format!("'{}' in it is compressed", entry.name);
-            return Err((what, "write it with numpy.savez, not with numpy.savez_compressed"));
-        }
-        let content = stored(bytes, &entry).ok_or_else(|| fault(&format!("'{}' in it is cut off", entry.name)))?;
+        let content = content(bytes, &entry)?;
         let name = entry.name.strip_suffix(".npy").unwrap_or(&entry.name).to_string();
-        arrays.insert(name, npy::parse(content)?);
+        arrays.insert(name, npy::parse(&content)?);
         at = entry.next;
     }
     Ok(arrays)
 }
 
+/// What a deflated file may take at most: arrays have no more than a million numbers.
+const LARGEST: usize = 9 << 20;
+
+/// The content of a file.
+fn content<'a>(bytes: &'a [u8], entry: &Entry) -> Result<Cow<'a, [u8]>, Fault> {
+    let fault = |what: &str| (format!("'{}' in it {what}", entry.name), REMEDY);
+    let packed = packed(bytes, entry).ok_or_else(|| fault("is cut off"))?;
+    match entry.method {
+        STORED => Ok(Cow::Borrowed(packed)),
+        DEFLATED => miniz_oxide::inflate::decompress_to_vec_with_limit(packed, LARGEST)
+            .map(Cow::Owned)
+            .map_err(|_| fault("is damaged, or larger than 9 MiB")),
+        _ => Err(fault("is packed in a way that NumPy does not write")),
+    }
+}
+
+/// Ways of packing that NumPy writes.
+const STORED: u16 = 0;
+const DEFLATED: u16 = 8;
+
 /// A file of the archive.
 struct Entry {
     name: String,
     method: u16,
+    /// Bytes that it takes in the archive.
     size: usize,
     /// Where its own header begins.
     start: usize,
@@ -57,13 +75,14 @@ fn directory(bytes: &[u8], at: usize) -> Option<Entry> {
     Some(Entry {
         name: String::from_utf8_lossy(text).into_owned(),
         method: u16_at(bytes, at + 10)? as u16,
-        size: u32_at(bytes, at + 24)?,
+        size: u32_at(bytes, at + 20)?,
         start: u32_at(bytes, at + 42)?,
         next: at + 46 + name + extra + comment,
     })
 }
 
-fn stored<'a>(bytes: &'a [u8], entry: &Entry) -> Option<&'a [u8]> {
+/// A file as it is in the archive.
+fn packed<'a>(bytes: &'a [u8], entry: &Entry) -> Option<&'a [u8]> {
     let at = entry.start;
     if bytes.get(at..)?.first_chunk()? != b"PK\x03\x04" {
         return None;
@@ -74,19 +93,28 @@ fn stored<'a>(bytes: &'a [u8], entry: &Entry) -> Option<&'a [u8]> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::*;
+
     /// An archive with one stored file.
     pub fn archive(name: &str, content: &[u8]) -> Vec<u8> {
-        let (size, length) = ((content.len() as u32).to_le_bytes(), (name.len() as u16).to_le_bytes());
+        packed_by(STORED, name, content, content.len())
+    }
+
+    fn packed_by(method: u16, name: &str, content: &[u8], whole: usize) -> Vec<u8> {
+        let (size, whole) = ((content.len() as u32).to_le_bytes(), (whole as u32).to_le_bytes());
+        let length = (name.len() as u16).to_le_bytes();
         let mut bytes = b"PK\x03\x04".to_vec();
         bytes.extend([0; 14]);
-        bytes.extend([size, size].concat());
+        bytes.extend([size, whole].concat());
         bytes.extend([length, [0, 0]].concat());
         bytes.extend(name.as_bytes());
         bytes.extend(content);
         let start = bytes.len() as u32;
         bytes.extend(b"PK\x01\x02");
-        bytes.extend([0; 16]);
-        bytes.extend([size, size].concat());
+        bytes.extend([0; 6]);
+        bytes.extend(method.to_le_bytes());
+        bytes.extend([0; 8]);
+        bytes.extend([size, whole].concat());
         bytes.extend(length);
         bytes.extend([0; 16]);
         bytes.extend(name.as_bytes());
@@ -95,5 +123,20 @@ pub(super) mod tests {
         bytes.extend(start.to_le_bytes());
         bytes.extend([0, 0]);
         bytes
+    }
+
+    #[test]
+    fn deflated_arrays_are_those_that_were_packed() {
+        let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }";
+        let mut npy = b"\x93NUMPY\x01\0".to_vec();
+        npy.extend((header.len() as u16).to_le_bytes());
+        npy.extend(header.as_bytes());
+        (0..6).for_each(|i| npy.extend(f64::from(i).to_le_bytes()));
+        let deflated = miniz_oxide::deflate::compress_to_vec(&npy, 6);
+        let both = [archive("K.npy", &npy), packed_by(DEFLATED, "K.npy", &deflated, npy.len())];
+        let [plain, packed] = both.map(|bytes| parse(&bytes).expect("an archive"));
+        assert_eq!(plain, packed);
+        let bytes = packed_by(DEFLATED, "K.npy", &deflated[..deflated.len() / 2], npy.len());
+        assert!(parse(&bytes).is_err_and(|(what, _)| what.contains("damaged")));
     }
 }
