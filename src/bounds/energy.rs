@@ -90,7 +90,7 @@ pub fn support_work(problem: &Problem, stress: &StressField) -> Sum {
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
             let tractions = edge_traction(problem, stress, e, 0, degree);
             for t in &tractions {
-                work.add(length / tractions.len() as f64 * (t[0] * u0[0] + t[1] * u0[1]));
+                work.extend([0, 1].map(|c| length / tractions.len() as f64 * (t[c] * u0[c])));
             }
         }
     }
@@ -174,24 +174,25 @@ pub fn work_of(
         if force != [0.0; 2] {
             // Every Bernstein polynomial has the same mean.
             let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
-            for sub in 0..3 {
-                work.add(v.sub(t, sub).map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum());
+            // Component by component: what cancels between them is rounded all the same.
+            for (sub, c) in (0..3).flat_map(|sub| [0, 1].map(|c| (sub, c))) {
+                work.add(v.sub(t, sub).map(|u| share * force[c] * u[c]).sum());
             }
         }
     }
-    tractions.for_each(|(e, ends)| work.add(work_on_edge(problem, v, e, ends)));
+    tractions.for_each(|(e, ends)| work.extend(work_on_edge(problem, v, e, ends)));
     work
 }
 
-/// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness.
-fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> f64 {
+/// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness, by components.
+fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     if a == [0.0; 2] && b == [0.0; 2] {
-        return 0.0;
+        return [0.0; 2];
     }
     let (length, _) = problem.mesh.edge_frame(e);
     let u = side_coefficients(problem, v, e);
     let along = |c: usize| side::integral(&[a[c], b[c]], &u.iter().map(|u| u[c]).collect::<Vec<_>>());
-    length * (along(0) + along(1))
+    [0, 1].map(|c| length * along(c))
 }
 
 fn absolute(s: [f64; 3]) -> f64 {
