@@ -88,6 +88,18 @@ fn block_field(p: Triangle, t: &[f64; 12]) -> (Vec<[f64; 3]>, f64) {
     (out, left)
 }
 
+/// Nearly equilateral, with singular values that nearly coincide.
+#[test]
+fn the_norm_is_attained_where_the_triangle_is_nearly_symmetric() {
+    let p = [[0.0, 0.0], [-0.9996667647802614, 0.025813937974777074], [-0.5226176523323474, -0.8519131872350232]];
+    let (norm, worst) = constant::norm(p);
+    let mut given = DVector::zeros(24);
+    given.rows_mut(12, 12).copy_from_slice(&worst);
+    let beta = conditions(p).svd(true, true).solve(&given, 0.0).expect("factors");
+    let found = nodal(p, &beta).iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    assert!((found - norm).abs() < 1e-6 * norm, "{found} for {norm}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
