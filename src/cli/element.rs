@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use nalgebra::DMatrix;
 
 use super::options::{RunOptions, positive};
@@ -34,11 +33,11 @@ pub struct Args {
     #[arg(long, value_name = "FILE", requires = "matrix")]
     pub nodes: Option<PathBuf>,
     /// How the unknowns of the matrix are numbered
-    #[arg(long, value_enum, default_value_t = OrderName::Interleaved, requires = "matrix")]
-    pub order: OrderName,
+    #[arg(long, value_enum, default_value_t = Order::Interleaved, requires = "matrix")]
+    pub order: Order,
     /// Plane state of the material
     #[arg(long, value_enum, requires = "matrix")]
-    pub kinematics: Option<State>,
+    pub kinematics: Option<Kinematics>,
     /// Young's modulus
     #[arg(long, value_name = "E", requires = "matrix")]
     pub young: Option<f64>,
@@ -60,24 +59,6 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
-}
-
-/// How the unknowns of a matrix are numbered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum OrderName {
-    /// x and y of the first node, x and y of the second one, …
-    Interleaved,
-    /// x of all nodes, then y of all nodes
-    Blocked,
-}
-
-/// Plane state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum State {
-    /// No strain across the plane
-    PlaneStrain,
-    /// No stress across the plane
-    PlaneStress,
 }
 
 fn property(name: &str) -> Result<String, String> {
@@ -178,12 +159,8 @@ fn matrix(args: &Args, file: &Path) -> Result<DisplacementElement, CliError> {
         bad("the nodes are not known", "give a file with x and y of a node on each row: --nodes FILE")
     })?;
     let nodes = read::points(&nodes).map_err(about)?;
-    let order = match args.order {
-        OrderName::Interleaved => Order::Interleaved,
-        OrderName::Blocked => Order::Blocked,
-    };
     let material = material(args, &arrays).map_err(about)?;
-    let element = DisplacementElement::of_matrix(&stem(file), k, nodes, order, material).map_err(about)?;
+    let element = DisplacementElement::of_matrix(&stem(file), k, nodes, args.order, material).map_err(about)?;
     let usual = if *single { SINGLE } else { element.precision };
     Ok(element.with_precision(args.precision.unwrap_or(usual)))
 }
@@ -197,13 +174,12 @@ fn material(args: &Args, arrays: &BTreeMap<String, Array>) -> Result<Option<Mate
     let of_file = |name: &str| arrays.get(name).and_then(Array::number);
     let (young, poisson) = (args.young.or(of_file("young")), args.poisson.or(of_file("poisson")));
     let thickness = args.thickness.or(of_file("thickness")).unwrap_or(1.0);
-    let state = match (args.kinematics, arrays.get("kinematics")) {
-        (Some(state), _) => Some(state),
+    let kinematics = match (args.kinematics, arrays.get("kinematics")) {
         (None, Some(Array::Text(text))) => Some(
-            State::from_str(text, false)
-                .map_err(|_| format!("kinematics is '{text}'; it is plane-strain or plane-stress"))?,
+            Kinematics::named(text)
+                .ok_or_else(|| format!("kinematics is '{text}'; it is plane-strain or plane-stress"))?,
         ),
-        (None, _) => None,
+        (given, _) => given,
     };
     let (young, poisson) = match (young, poisson) {
         (Some(young), Some(poisson)) => (young, poisson),
@@ -211,14 +187,7 @@ fn material(args: &Args, arrays: &BTreeMap<String, Array>) -> Result<Option<Mate
         (Some(_), None) => return Err("E is given without ν; say both, or neither".into()),
         (None, Some(_)) => return Err("ν is given without E; say both, or neither".into()),
     };
-    let kinematics = match state {
-        Some(State::PlaneStrain) => Kinematics::PlaneStrain,
-        Some(State::PlaneStress) => Kinematics::PlaneStress,
-        None => {
-            return Err(
-                "E and ν are given without the plane state; say --kinematics plane-strain or plane-stress".into()
-            );
-        }
-    };
+    let kinematics =
+        kinematics.ok_or("E and ν are given without the plane state; say --kinematics plane-strain or plane-stress")?;
     Material::new(kinematics, young, poisson, thickness).map(Some)
 }

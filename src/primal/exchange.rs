@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{PrimalError, PrimalSolution};
 use crate::problem::{Condition, Pin, Problem};
-use crate::scene::Kinematics;
 
 /// Name of the file the model reads.
 pub const PROBLEM_FILE: &str = "problem.json";
@@ -102,10 +101,7 @@ impl<'a> ProblemFile<'a> {
         ProblemFile {
             format: "hypercircle-exchange",
             version: 1,
-            kinematics: match scene.kinematics {
-                Kinematics::PlaneStrain => "plane-strain",
-                Kinematics::PlaneStress => "plane-stress",
-            },
+            kinematics: scene.kinematics.name(),
             thickness: scene.thickness,
             bodies: scene
                 .bodies

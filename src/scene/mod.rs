@@ -63,12 +63,35 @@ pub struct Scene {
 }
 
 /// The plane state, which fixes the compliance constants α, β, γ after (3.2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Kinematics {
-    /// ε_33 = 0.
+    /// No strain across the plane: ε_33 = 0
     PlaneStrain,
-    /// σ_33 = 0.
+    /// No stress across the plane: σ_33 = 0
     PlaneStress,
+}
+
+impl Kinematics {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kinematics::PlaneStrain => "plane-strain",
+            Kinematics::PlaneStress => "plane-stress",
+        }
+    }
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        <Self as clap::ValueEnum>::value_variants().iter().copied().find(|k| k.name() == name)
+    }
+
+    /// Its name in a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Kinematics::PlaneStrain => "plane strain",
+            Kinematics::PlaneStress => "plane stress",
+        }
+    }
 }
 
 /// `[mesh]` or `[geometry]`.

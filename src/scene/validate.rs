@@ -169,14 +169,11 @@ pub(crate) fn scene_name(path: &Path) -> String {
 fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64), SceneError> {
     let table = "[model]";
     let Table(model) = &raw.value;
-    let kinematics = match model.kinematics.value.as_str() {
-        "plane-strain" => Kinematics::PlaneStrain,
-        "plane-stress" => Kinematics::PlaneStress,
-        other => {
-            let known = ["plane-strain", "plane-stress"].map(String::from).to_vec();
-            let fault = Fault::UnknownWord { key: "kinematics", table: table.into(), found: other.to_owned(), known };
-            return Err(source.error(model.kinematics.span(), fault));
-        }
+    let Some(kinematics) = Kinematics::named(&model.kinematics.value) else {
+        let known = [Kinematics::PlaneStrain, Kinematics::PlaneStress].map(|k| k.name().to_owned()).to_vec();
+        let found = model.kinematics.value.clone();
+        let fault = Fault::UnknownWord { key: "kinematics", table: table.into(), found, known };
+        return Err(source.error(model.kinematics.span(), fault));
     };
     let thickness = match &model.thickness {
         None => 1.0,

@@ -161,7 +161,7 @@ fn materials(e: &DisplacementElement, r: &Reference) -> Vec<Trial> {
     push(4, "factor", text, Ok(&r.matrix * factor));
     if let Some(material) = e.material {
         let other = material.in_other_kinematics();
-        let text = format!("K is that of {} and not of {}", other.state(), material.state());
+        let text = format!("K is that of {} and not of {}", other.kinematics.words(), material.kinematics.words());
         push(1, "plane-state", text, r.variant(&(other.hooke() * other.thickness), Variant::Right));
     }
     // K is linear in D_33: how often does shear count?

@@ -67,21 +67,13 @@ impl Material {
         };
         Material { kinematics, ..self }
     }
-
-    /// The plane state in words.
-    pub fn state(&self) -> &'static str {
-        match self.kinematics {
-            Kinematics::PlaneStrain => "plane strain",
-            Kinematics::PlaneStress => "plane stress",
-        }
-    }
 }
 
 impl Serialize for Material {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct;
         let mut out = serializer.serialize_struct("Material", 4)?;
-        out.serialize_field("kinematics", &self.state().replace(' ', "-"))?;
+        out.serialize_field("kinematics", self.kinematics.name())?;
         out.serialize_field("young", &self.young)?;
         out.serialize_field("poisson", &self.poisson)?;
         out.serialize_field("thickness", &self.thickness)?;

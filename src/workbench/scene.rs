@@ -7,7 +7,7 @@ use super::material::Material;
 use crate::dual::{Condensed, Options};
 use crate::element::{Elements, EquilibriumElement, block};
 use crate::problem::Problem;
-use crate::scene::{Kinematics, Scene};
+use crate::scene::Scene;
 use crate::study::{Certified, certify};
 
 /// The degree of the stresses that enclose the exact energy.
@@ -35,11 +35,8 @@ pub struct Exact {
 /// # Errors
 /// The library refuses its own scene.
 pub fn problem(material: &Material, size: f64) -> Result<Problem, Fault> {
-    let kinematics = match material.kinematics {
-        Kinematics::PlaneStrain => "plane-strain",
-        Kinematics::PlaneStress => "plane-stress",
-    };
-    let Material { young, poisson, thickness, .. } = material;
+    let Material { kinematics, young, poisson, thickness } = material;
+    let kinematics = kinematics.name();
     let [value, slope] = [load(0.0), load(1.0) - load(0.0)];
     let text = format!(
         "model = {{ kinematics = \"{kinematics}\", thickness = {thickness:e} }}\n\

@@ -5,21 +5,17 @@ use maud::{Markup, html};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
-use crate::scene::{Gap, Kinematics, Load, Scene, SupportKind};
+use crate::scene::{Gap, Load, Scene, SupportKind};
 
 /// The box with everything a reader has to know of the scene.
 pub(super) fn card(dossier: &Dossier) -> Markup {
     let (report, problem) = (&dossier.report, dossier.problem);
     let scene = &problem.scene;
-    let kinematics = match scene.kinematics {
-        Kinematics::PlaneStrain => "plane strain",
-        Kinematics::PlaneStress => "plane stress",
-    };
     html! {
         section.card #scene aria-label="the scene in numbers" {
             h2 { "What was computed" }
             dl.scene {
-                dt { "State" } dd { (kinematics) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
+                dt { "State" } dd { (scene.kinematics.words()) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
                     bdi { (clean(&body.name)) } ": E = " (significant(body.young, 6)) ", ν = " (significant(body.poisson, 6))

@@ -17,7 +17,7 @@ const ASPECTS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 30.0, 100.0];
 const GROWTH: f64 = 10.0;
 
 fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material) = (e.layout()?, e.material()?);
     let regular = shapes::regular(e.outline.corners.len());
     let (mut points, mut rank) = (Vec::new(), 0);

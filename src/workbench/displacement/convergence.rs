@@ -59,10 +59,15 @@ pub fn levels(e: &DisplacementElement, material: &Material) -> Result<Vec<Level>
     Ok(levels)
 }
 
-fn solved(e: &DisplacementElement) -> Result<(Exact, Vec<Level>), Fault> {
-    e.needs_formula()?;
+/// What encloses the exact energy, and the element on its meshes: made once, asked for by two properties.
+fn solved(e: &DisplacementElement) -> Result<&(Exact, Vec<Level>), Fault> {
+    if let Some(solved) = e.solved.get() {
+        return Ok(solved);
+    }
+    e.formula()?;
     let material = e.material()?;
-    Ok((scene::exact(&material)?, levels(e, &material)?))
+    let solved = (scene::exact(&material)?, levels(e, &material)?);
+    Ok(e.solved.get_or_init(|| solved))
 }
 
 /// By how much an energy is below the bound, relative to it.
@@ -72,7 +77,7 @@ fn below(exact: &Exact, level: &Level) -> f64 {
 
 fn bound(e: &DisplacementElement) -> Result<Measured, Fault> {
     let (exact, levels) = solved(e)?;
-    let below = |l: &Level| below(&exact, l);
+    let below = |l: &Level| below(exact, l);
     let worst = levels.iter().max_by(|a, b| below(a).total_cmp(&below(b))).map_or((0.0, 0), |l| (below(l), l.cells));
     let sentence = match worst.0 <= ROUNDING {
         true => format!("Energies of {} meshes lie above the guaranteed bound; by this part below it", levels.len()),
@@ -87,7 +92,7 @@ fn bound(e: &DisplacementElement) -> Result<Measured, Fault> {
 fn rate(e: &DisplacementElement) -> Result<Measured, Fault> {
     let (exact, levels) = solved(e)?;
     let material = e.material()?;
-    if levels.iter().any(|l| below(&exact, l) > ROUNDING) {
+    if levels.iter().any(|l| below(exact, l) > ROUNDING) {
         return Err(Fault::Failed("The energy lies below the guaranteed bound: there is no error to fall.".into()));
     }
     let errors: Vec<f64> = levels.iter().map(|l| exact.guaranteed(l.energy)).collect();
@@ -101,10 +106,10 @@ fn rate(e: &DisplacementElement) -> Result<Measured, Fault> {
         significant(rate, 3),
         level.cells
     );
-    let mut series = vec![(e.name.clone(), points(&exact, &levels))];
+    let mut series = vec![(e.name.clone(), points(exact, levels))];
     for family in [Family::P1, Family::P2] {
         let other = family.element(family.words(), material, Default::default()).map_err(Fault::Failed)?;
-        series.push((family.words().into(), points(&exact, &self::levels(&other, &material)?)));
+        series.push((family.words().into(), points(exact, &self::levels(&other, &material)?)));
     }
     let drawn = picture::curves("Unknowns for a guaranteed error", ["guaranteed relative error", "unknowns"], &series);
     Ok(Measured::new((wanted - rate).max(0.0), SHORT, text).drawn(drawn))

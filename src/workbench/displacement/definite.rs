@@ -3,7 +3,6 @@
 use nalgebra::DMatrix;
 
 use super::{DisplacementElement, nodes_on, shapes};
-use crate::scene::Kinematics;
 use crate::workbench::finding::{Fault, Measured, Property};
 
 pub const DEFINITE: Property<DisplacementElement> = Property {
@@ -49,10 +48,11 @@ fn one(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn sweep(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material) = (e.layout()?, e.material()?);
+    let shapes = shapes::sweep(e.outline.corners.len());
     let (mut value, mut worst) = (0.0_f64, String::new());
-    for shape in shapes::sweep(e.outline.corners.len()) {
+    for shape in &shapes {
         let nodes = nodes_on(&layout, &shape.corners);
         for poisson in POISSON {
             let k = e.stiffness(&nodes, &material.with_poisson(poisson))?;
@@ -63,8 +63,8 @@ fn sweep(e: &DisplacementElement) -> Result<Measured, Fault> {
             value = value.max(below);
         }
     }
-    let state = if material.kinematics == Kinematics::PlaneStrain { "plane strain" } else { "plane stress" };
-    let count = POISSON.len() * shapes::sweep(e.outline.corners.len()).len();
+    let state = material.kinematics.words();
+    let count = POISSON.len() * shapes.len();
     let sentence = match value <= e.precision {
         true => format!("No eigenvalue is below zero on {count} shapes and Poisson's ratios in {state}"),
         false => format!("An eigenvalue is below zero on the element {worst}, relative to the largest"),

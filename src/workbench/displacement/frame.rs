@@ -66,7 +66,7 @@ fn compare(e: &DisplacementElement, what: &str, found: &DMatrix<f64>, expected: 
 }
 
 fn moved(e: &DisplacementElement, what: &str, q: Turn, factor: f64) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material) = (e.layout()?, e.material()?);
     let nodes = nodes_on(&layout, &shapes::irregular(e.outline.corners.len()));
     let there: Vec<[f64; 2]> = nodes.iter().map(|x| apply(q, [factor * x[0] + 2.0, factor * x[1] - 1.0])).collect();
@@ -76,7 +76,7 @@ fn moved(e: &DisplacementElement, what: &str, q: Turn, factor: f64) -> Result<Me
 }
 
 fn renumbered(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
     let at = shapes::irregular(corners);
     let begun: Vec<[f64; 2]> = (0..corners).map(|k| at[(k + 1) % corners]).collect();
@@ -97,7 +97,7 @@ fn places(there: &[[f64; 2]], nodes: &[[f64; 2]]) -> Result<Vec<usize>, Fault> {
 }
 
 fn reflected(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
     let at = shapes::irregular(corners);
     let mirror: Turn = [[-1.0, 0.0], [0.0, 1.0]];

@@ -26,7 +26,7 @@ fn flexibility(levels: &[Level], lower: f64) -> Vec<f64> {
 }
 
 fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let material = e.material()?;
     if material.kinematics == Kinematics::PlaneStress {
         return Err(Fault::NotMade("plane stress knows no incompressible limit".into()));

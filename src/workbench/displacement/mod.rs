@@ -13,6 +13,8 @@ mod rigid;
 mod shapes;
 mod symmetry;
 
+use std::cell::OnceCell;
+
 use nalgebra::DMatrix;
 
 pub(super) use patch::{hooke_seen, material_words};
@@ -20,9 +22,11 @@ pub(super) use rank::spurious;
 pub(super) use rigid::{motions, within};
 pub(super) use shapes::{Shape, sweep};
 
+use self::convergence::Level;
 use super::finding::{Fault, Property};
 use super::material::Material;
 use super::outline::Outline;
+use super::scene::Exact;
 
 /// What is asked of a displacement element, in the order of a report: one file each, one line each.
 pub const PROPERTIES: &[Property<DisplacementElement>] = &[
@@ -51,11 +55,11 @@ pub const PROPERTIES: &[Property<DisplacementElement>] = &[
 pub const PRECISION: f64 = 1e-9;
 
 /// How the unknowns of a matrix are numbered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Order {
     /// x and y of the first node, x and y of the second one, …
     Interleaved,
-    /// x of all nodes, then y of all nodes.
+    /// x of all nodes, then y of all nodes
     Blocked,
 }
 
@@ -87,6 +91,8 @@ pub struct DisplacementElement {
     /// How exact the entries are, relative to the largest one.
     pub precision: f64,
     formula: Option<Box<Formula>>,
+    /// The solved scene, once it was asked for.
+    solved: OnceCell<(Exact, Vec<Level>)>,
 }
 
 impl DisplacementElement {
@@ -111,6 +117,7 @@ impl DisplacementElement {
             matrix,
             precision: PRECISION,
             formula: None,
+            solved: OnceCell::new(),
         })
     }
 
@@ -134,6 +141,7 @@ impl DisplacementElement {
             matrix,
             precision: PRECISION,
             formula: Some(Box::new(formula)),
+            solved: OnceCell::new(),
         })
     }
 
@@ -150,13 +158,13 @@ impl DisplacementElement {
         self.material.ok_or_else(|| Fault::NotMade("no material is given; say E and ν".into()))
     }
 
-    /// Whether there is a formula for other nodes and materials.
+    /// The formula for other nodes and materials.
     ///
     /// # Errors
     /// There is one matrix only.
-    fn needs_formula(&self) -> Result<(), Fault> {
+    fn formula(&self) -> Result<&Formula, Fault> {
         let text = "one matrix says nothing about other shapes, materials and meshes; give the formula, from Python";
-        self.formula.as_ref().map(|_| ()).ok_or_else(|| Fault::NotMade(text.into()))
+        self.formula.as_deref().ok_or_else(|| Fault::NotMade(text.into()))
     }
 
     /// K at other nodes, in another material.
@@ -164,9 +172,7 @@ impl DisplacementElement {
     /// # Errors
     /// There is no formula, or it gives no matrix.
     fn stiffness(&self, nodes: &[[f64; 2]], material: &Material) -> Result<DMatrix<f64>, Fault> {
-        self.needs_formula()?;
-        let Some(formula) = &self.formula else { return Err(Fault::Failed("there is no formula".into())) };
-        formula(nodes, material)
+        (self.formula()?)(nodes, material)
             .and_then(|k| ordered(&k, nodes.len(), Order::Interleaved))
             .map_err(|e| Fault::Failed(format!("the formula gives no matrix for nodes {nodes:?}: {e}")))
     }

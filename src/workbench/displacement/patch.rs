@@ -133,7 +133,7 @@ fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn distorted(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
     let (mut value, mut worst, mut count) = (0.0_f64, String::new(), 0);
     for shape in shapes::sweep(corners).into_iter().chain(shapes::rotations(corners)) {
@@ -156,7 +156,7 @@ fn distorted(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn solved(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.needs_formula()?;
+    e.formula()?;
     let material = e.material()?;
     let patch = Patch::new(e, 3, 0.2)?;
     let given = strains(&patch.nodes);

@@ -58,7 +58,7 @@ fn annihilated(e: &DisplacementElement) -> Result<Measured, Fault> {
         true => "Shifts and the rotation are annihilated, relative to the largest entry of K".to_string(),
         false => format!("K gives forces for {}, relative to its largest entry", motion_words(worst)),
     };
-    if let (Ok(layout), Some(material), Ok(())) = (e.layout(), e.material, e.needs_formula()) {
+    if let (Ok(layout), Some(material), Ok(_)) = (e.layout(), e.material, e.formula()) {
         for shape in shapes::rotations(e.outline.corners.len()) {
             let nodes = nodes_on(&layout, &shape.corners);
             let k = e.stiffness(&nodes, &material)?;
