@@ -139,6 +139,25 @@ pub struct Dense {
     unit: Vec<f64>,
 }
 
+impl Dense {
+    /// The jumps of least energy within `bound`, which may be infinite.
+    ///
+    /// # Errors
+    /// As [`qp::solve`].
+    pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
+        let Dense { matrix, cleared, unit } = self;
+        let (c, bound) = (times(c, unit), over(bound, unit));
+        let mut state = qp::solve(cleared.as_ref().unwrap_or(matrix), &c, &bound, warm)?;
+        if cleared.is_some()
+            && let Some(jumps) = qp::with_closed_or_springs(matrix, &c, &bound, &state.closed)
+        {
+            state.jumps = jumps;
+        }
+        state.jumps.iter_mut().zip(unit).for_each(|(j, u)| *j *= u);
+        Ok(state)
+    }
+}
+
 impl<'a> Contact<'a> {
     /// `unresisted` gives jumps, of motions that no support resists, to which S gives no traction: none where they are
     /// more than it is asked for. S is dense up to `longest_dense` jumps, and where `budget` has room for it.
@@ -173,29 +192,9 @@ impl<'a> Contact<'a> {
 
     pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
         match self {
-            Contact::Dense(Dense { matrix, cleared, unit }) => {
-                let (c, bound) = (times(c, unit), over(bound, unit));
-                let mut state = qp::solve(cleared.as_ref().unwrap_or(matrix), &c, &bound, warm)?;
-                if cleared.is_some()
-                    && let Some(jumps) = qp::with_closed_or_springs(matrix, &c, &bound, &state.closed)
-                {
-                    state.jumps = jumps;
-                }
-                state.jumps.iter_mut().zip(unit).for_each(|(j, u)| *j *= u);
-                Ok(state)
-            }
+            Contact::Dense(dense) => dense.solve(c, bound, warm),
             Contact::Long(s, _) => s.solve(c, bound, warm),
         }
-    }
-
-    /// [`Self::solve`] where bounds may be infinite; `None` where S is not dense.
-    pub fn solve_bounded(
-        &self,
-        c: &[f64],
-        bound: &[f64],
-        start: Option<&[bool]>,
-    ) -> Option<Result<ContactState, DualError>> {
-        matches!(self, Contact::Dense(_)).then(|| self.solve(c, bound, start))
     }
 
     /// S j − c.

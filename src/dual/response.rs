@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use super::hybrid::{Motion, parameters, residual};
 use super::modes::ModeTable;
-use super::reduced::{Contact, Reduced};
+use super::reduced::{Contact, Dense, Reduced};
 use super::refinement::{Refined, Refinement};
 use super::rigid::unsupported;
-use super::system::{System, load_of_tractions};
+use super::system::{System, jump_moments, load_of_tractions};
 use super::{DualError, Options};
 use crate::element::{SideValues, StressField, side};
 use crate::problem::Problem;
@@ -123,12 +123,8 @@ impl Responses<'_> {
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
         let (y, c) = reduced.condense(&r);
-        let pairs = self.problem.pairs().zip(&load.weights);
-        let held = pairs.zip(system.unknowns.jump_blocks()).flat_map(|((pair, weights), block)| {
-            let moments = side::moments(if weights.is_empty() { &[0.0] } else { weights }, block.len - 1);
-            moments.into_iter().map(|m| -pair.length * m)
-        });
-        let held = held.collect();
+        let weights = load.weights.iter().map(Vec::as_slice);
+        let held = jump_moments(&problem, &system.unknowns, weights).into_iter().map(|m| -m).collect();
         Loaded { responses: self, problem, system, start, y, c, held }
     }
 }
@@ -288,28 +284,23 @@ impl Loaded<'_> {
             }
             latest = Some((std::mem::replace(&mut released, next), jumps));
         }
-        match self.released_one_by_one(Bounds { closed, floor, sign }) {
-            Some(found) => found,
-            None => latest.ok_or(DualError::ContactUndetermined),
+        let bounded = closed.iter().zip(floor).all(|(closed, floor)| !closed || floor.is_finite());
+        match contact {
+            Contact::Dense(dense) if bounded => self.released_one_by_one(dense, Bounds { closed, floor, sign }),
+            _ => latest.ok_or(DualError::ContactUndetermined),
         }
     }
 
     /// [`Self::released`] where steps of many coefficients at a time do not end, as where contact alone holds a body: the same
-    /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, by steps that each lower it. `None` where S is not
-    /// dense.
-    fn released_one_by_one(&self, bounds: Bounds<'_>) -> Option<Result<Released, DualError>> {
+    /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, by steps that each lower it.
+    fn released_one_by_one(&self, contact: &Dense, bounds: Bounds<'_>) -> Result<Released, DualError> {
         let Bounds { closed, floor, sign } = bounds;
         let floored = |i: usize| if closed[i] { floor[i] } else { 0.0 };
-        if (0..closed.len()).any(|i| floored(i).is_infinite()) {
-            return None;
-        }
         let load: Vec<f64> = self.c.iter().enumerate().map(|(i, c)| -sign * c - floored(i)).collect();
         let bound = |i: usize| if closed[i] { -sign * self.held[i] } else { f64::INFINITY };
         let bound: Vec<f64> = (0..closed.len()).map(bound).collect();
-        let state = self.responses.contact.solve_bounded(&load, &bound, None)?;
-        Some(state.map(|state| {
-            let released = closed.iter().zip(&state.closed).map(|(closed, held)| *closed && !held).collect();
-            (released, state.jumps.into_iter().map(|j| -sign * j).collect())
-        }))
+        let state = contact.solve(&load, &bound, None)?;
+        let released = closed.iter().zip(&state.closed).map(|(closed, held)| *closed && !held).collect();
+        Ok((released, state.jumps.into_iter().map(|j| -sign * j).collect()))
     }
 }

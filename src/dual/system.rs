@@ -96,11 +96,17 @@ impl System {
 
 /// ∫ g B_k of each jump.
 pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
-    let of_pair = |(pair, jumps): (&ContactPair, &Block)| {
+    jump_moments(problem, unknowns, problem.pairs().map(|pair| &pair.gap[..]))
+}
+
+/// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.
+pub fn jump_moments<'a>(problem: &Problem, unknowns: &Unknowns, f: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let of_pair = |((pair, jumps), f): ((&ContactPair, &Block), &[f64])| {
         let length = pair.length;
-        side::moments(&pair.gap, jumps.len - 1).into_iter().map(move |moment| length * moment)
+        let moments = side::moments(if f.is_empty() { &[0.0] } else { f }, jumps.len - 1);
+        moments.into_iter().map(move |moment| length * moment)
     };
-    problem.pairs().zip(unknowns.jump_blocks()).flat_map(of_pair).collect()
+    problem.pairs().zip(unknowns.jump_blocks()).zip(f).flat_map(of_pair).collect()
 }
 
 /// Takes the given unknowns out of a symmetric matrix: their rows and columns become those of a diagonal matrix.
