@@ -85,25 +85,18 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     let violation = judged.violation;
     if has("admissible/").is_some() && violation.support >= violation.penetration.max(violation.at_vertices) {
         let what = "supports do not have their prescribed displacements".to_string();
-        let place = judged.balance.as_ref().and_then(|b| b.worst_node).map(|node| Place::of(problem, node, None));
-        return made(Kind::Support, "support", what, place);
+        return made(Kind::Support, "support", what, place::unbalanced(problem, judged));
     }
     if has("admissible/").is_some()
-        && let Some((node, interface, depth)) = place::deepest(problem, candidate, None)
+        && let Some((place, interface, depth)) = place::deepest(problem, candidate, None)
     {
-        let place = Place::of(problem, node, Some(interface));
-        let what = format!("contact {} is penetrated by {depth:.2e}", problem.interfaces[interface].name);
-        return made(
-            Kind::Contact,
-            &format!("contact/{}/penetration", problem.interfaces[interface].name),
-            what,
-            Some(place),
-        );
+        let contact = &problem.interfaces[interface].name;
+        let what = format!("contact {contact} is penetrated by {depth:.2e}");
+        return made(Kind::Contact, &format!("contact/{contact}/penetration"), what, Some(place));
     }
-    let worst = || judged.balance.as_ref().and_then(|b| b.worst_node).map(|node| Place::of(problem, node, None));
     if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
         let what = "stresses do not balance the loads".to_string();
-        return made(Kind::Equilibrium, "equilibrium", what, worst());
+        return made(Kind::Equilibrium, "equilibrium", what, place::unbalanced(problem, judged));
     }
     if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {
         let what = format!(
@@ -120,9 +113,7 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     if let Some(check) = own.iter().find(reactions) {
         let named = problem.interfaces.iter().position(|i| check.name.starts_with(&format!("contact/{}/", i.name)));
         let interface = named.or((!problem.interfaces.is_empty()).then_some(0));
-        let place = interface.and_then(|i| {
-            place::deepest(problem, candidate, Some(i)).map(|(node, ..)| Place::of(problem, node, Some(i)))
-        });
+        let place = interface.and_then(|i| place::deepest(problem, candidate, Some(i))).map(|(place, ..)| place);
         let on = named.map_or(String::new(), |i| format!(" of contact {}", problem.interfaces[i].name));
         let what = format!("the forces{on} that are reported are not those of its stresses");
         return made(Kind::Reactions, "reported-reactions", what, place);

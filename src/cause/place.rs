@@ -70,29 +70,38 @@ fn short(x: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// The node at which `candidate` is deepest in contact `interface`, or in any where none is named.
+/// Where `candidate` is deepest in contact `interface`, or in any where none is given: the place, the interface and the depth.
 pub(super) fn deepest(
     problem: &Problem,
     candidate: &Candidate,
     interface: Option<usize>,
-) -> Option<(usize, usize, f64)> {
+) -> Option<(Place, usize, f64)> {
     let sites = Sites::new(problem, candidate.degree, &holds(problem).ok()?);
     let own = sites.list.iter().filter(|site| interface.is_none_or(|i| site.interface == i));
     let depth = |node| candidate.value(node);
     let deepest = own.max_by(|a, b| a.excess(depth).total_cmp(&b.excess(depth)))?;
-    Some((deepest.first, deepest.interface, deepest.excess(depth)))
+    let place = Place::of(problem, deepest.first, Some(deepest.interface));
+    Some((place, deepest.interface, deepest.excess(depth)))
+}
+
+/// Where most of equilibrium is missing.
+pub(super) fn unbalanced(problem: &Problem, judged: &Judged) -> Option<Place> {
+    worst_node(judged).map(|node| Place::of(problem, node, None))
+}
+
+fn worst_node(judged: &Judged) -> Option<usize> {
+    judged.balance.as_ref().and_then(|balance| balance.worst_node)
 }
 
 /// The place that a finding of the given name is about, where its name has one; otherwise where most of equilibrium is
 /// missing.
 pub(super) fn of_finding(problem: &Problem, judged: &Judged, name: &str) -> Option<Place> {
     let interface = problem.interfaces.iter().position(|i| name.starts_with(&format!("contact/{}/", i.name)));
-    if let Some(i) = interface {
-        return deepest(problem, &judged.candidate, Some(i)).map(|(node, ..)| Place::of(problem, node, Some(i)));
+    if interface.is_some() {
+        return deepest(problem, &judged.candidate, interface).map(|(place, ..)| place);
     }
-    let worst = judged.balance.as_ref().and_then(|balance| balance.worst_node);
     let nodes = named(problem, name);
-    let node = match worst {
+    let node = match worst_node(judged) {
         Some(worst) if nodes.is_empty() || nodes.contains(&worst) => Some(worst),
         _ => nodes.get(nodes.len() / 2).copied(),
     };
