@@ -177,17 +177,9 @@ impl<'a> Known<'a> {
                 }
             }
         }
-        let [no_less, no_more] = functional.cannot_be();
-        if no_less {
-            ends[0] = ends[0].max(ends[1].min(0.0));
-            first_order[0] = first_order[0].max(first_order[1].min(0.0));
-            reasons[0] = None;
-        }
-        if no_more {
-            ends[1] = ends[1].min(ends[0].max(0.0));
-            first_order[1] = first_order[1].min(first_order[0].max(0.0));
-            reasons[1] = None;
-        }
+        let of_one_sign = functional.cannot_be();
+        let [ends, first_order] = [ends, first_order].map(|interval| clipped(interval, of_one_sign));
+        reasons.iter_mut().zip(of_one_sign).filter(|(_, is)| *is).for_each(|(reason, _)| *reason = None);
         let scaled = |v: f64| functional.scale * v;
         Interval {
             ends: ends.map(scaled),
@@ -233,6 +225,13 @@ impl<'a> Known<'a> {
             *share += 0.5 * (ratio * 0.5 * gap.max(0.0) / thickness + square.max(0.0) / (4.0 * ratio));
         }
     }
+}
+
+/// What is left of an interval for a value that is never below zero, or never above.
+fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
+    let lower = if no_less { lower.max(upper.min(0.0)) } else { lower };
+    let upper = if no_more { upper.min(lower.max(0.0)) } else { upper };
+    [lower, upper]
 }
 
 /// The coefficients of t(λ), zero where there is no pressure: rounding holds nothing.
