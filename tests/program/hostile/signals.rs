@@ -1,14 +1,13 @@
 //! What a run has started and its temporary folder go with it, by any signal that can be waited for.
 
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::run::{Place, alive, case, names, soon};
 use crate::command::script;
 
 fn kill(signal: &str, process: u32) {
-    let _ =
-        Command::new("kill").args(["-s", signal, &process.to_string()]).stderr(std::process::Stdio::null()).status();
+    let _ = Command::new("kill").args(["-s", signal, &process.to_string()]).stderr(Stdio::null()).status();
 }
 
 /// An interpreter that waits, told in a file, and ends with what it was started by.
@@ -16,11 +15,26 @@ fn waiting(place: &Place) -> std::path::PathBuf {
     script(place.path("python3"), &format!("echo $$ > {}\nexec sleep 300", place.path("pid").display()))
 }
 
+/// The program with all signals as they are by default: what started these tests may ignore some, as `nohup` does.
+fn heeding(place: &Place, arguments: &[&str]) -> Command {
+    let own = place.command(arguments);
+    let mut command = Command::new("env");
+    command.arg("--default-signal").arg(own.get_program()).args(own.get_args()).current_dir(place.folder.path());
+    for (name, value) in own.get_envs() {
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+    }
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
 #[test]
 fn the_exchange_folder_and_the_reference_go_with_the_process() {
     for signal in ["TERM", "INT", "HUP"] {
         let place = Place::with(&case("patch"));
-        let mut command = place.command(&["verify", "scene.toml"]);
+        let mut command = heeding(&place, &["verify", "scene.toml"]);
         let mut child = command.env("HYPERCIRCLE_PYTHON", waiting(&place)).spawn().expect("the program starts");
         let note = place.path("pid");
         let pid = || std::fs::read_to_string(&note).unwrap_or_default();
@@ -43,10 +57,7 @@ fn an_ignored_hangup_stays_ignored() {
     let mut command = Command::new("nohup");
     command.arg(env!("CARGO_BIN_EXE_hypercircle")).args(["verify", "scene.toml"]).current_dir(place.folder.path());
     command.env("HYPERCIRCLE_PYTHON", waiting(&place)).env("TMPDIR", place.temporary.path());
-    command
-        .stdin(std::process::Stdio::null())
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("nohup");
     let note = place.path("pid");
     assert!(soon(|| std::fs::read_to_string(&note).is_ok_and(|text| text.ends_with('\n'))));
