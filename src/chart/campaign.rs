@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use super::data::{Chart, Cold, Run, SCHEMA_VERSION, SceneChart, Status};
+use super::data::{Chart, Cold, Plot, Run, SCHEMA_VERSION, SceneChart, Status};
 use super::judge::judge;
 use super::reference::{self, REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};
 use super::store::{self, StoreError};
@@ -25,6 +25,8 @@ pub struct Plan {
     pub reference: f64,
     /// Threads.
     pub threads: usize,
+    /// Quantities that every run bounds too.
+    pub quantities: Vec<String>,
     /// Bytes that a run may take; four fifths of what is available then where it is missing.
     pub memory: Option<u64>,
 }
@@ -38,6 +40,7 @@ impl Default for Plan {
             budget: 60.0,
             reference: REFERENCE_ADAPTIVE,
             threads: 1,
+            quantities: Vec::new(),
             memory: None,
         }
     }
@@ -67,6 +70,15 @@ pub enum CampaignError {
         /// What the system said.
         source: std::io::Error,
     },
+}
+
+/// One run of the program.
+#[derive(Clone, Copy)]
+struct One<'a> {
+    method: Method,
+    refine: usize,
+    tolerance: Option<f64>,
+    quantities: &'a [String],
 }
 
 /// A chart in progress.
@@ -134,7 +146,7 @@ impl Campaign<'_> {
                     own.cold.extend(self.cold(scene, method)?);
                 }
                 let run = match (own.run(method, level), &stopped) {
-                    (Some(run), _) if !matches!(run.status, Status::Skipped(_)) => run.clone(),
+                    (Some(run), _) if self.is_of_the_plan(run) => run.clone(),
                     (_, Some(reason)) => self.without_numbers(method, level, Status::Skipped(reason.clone())),
                     _ => {
                         (self.progress)(format!("{}: {}, level {level}", scene.name, method.name()));
@@ -153,6 +165,12 @@ impl Campaign<'_> {
         Ok(store::save(chart, self.folder)?)
     }
 
+    /// Whether a run was made, and bounded what every run is to bound.
+    fn is_of_the_plan(&self, run: &Run) -> bool {
+        let of = |plot: &Plot| plot.quantities.iter().map(|q| &q.name).eq(&self.plan.quantities);
+        !matches!(run.status, Status::Skipped(_)) && run.plot.as_ref().is_none_or(of)
+    }
+
     fn without_numbers(&self, method: Method, level: usize, status: Status) -> Run {
         Run { method, level, tolerance: tolerance(method, level), status, plot: None }
     }
@@ -160,7 +178,9 @@ impl Campaign<'_> {
     fn repeat(&self, scene: &Scene, method: Method, level: usize, own: &SceneChart) -> Result<Run, CampaignError> {
         let mut repeats: Vec<Measured> = Vec::new();
         for _ in 0..self.plan.repeats.max(1) {
-            let ended = self.once(scene, method, level, tolerance(method, level), self.plan.budget, None)?;
+            let one =
+                One { method, refine: level, tolerance: tolerance(method, level), quantities: &self.plan.quantities };
+            let ended = self.once(scene, one, self.plan.budget, None)?;
             match ended {
                 Ended::Told(results) => repeats.extend(results),
                 Ended::OverBudget => return Ok(self.without_numbers(method, level, Status::OverBudget)),
@@ -176,9 +196,7 @@ impl Campaign<'_> {
     fn once(
         &self,
         scene: &Scene,
-        method: Method,
-        refine: usize,
-        tolerance: Option<f64>,
+        One { method, refine, tolerance, quantities }: One<'_>,
         budget: f64,
         cache: Option<&Path>,
     ) -> Result<Ended, CampaignError> {
@@ -196,6 +214,7 @@ impl Campaign<'_> {
             option("--tolerance", tolerance.to_string());
             option("--max-triangles", MOST_TRIANGLES.to_string());
         }
+        quantities.iter().for_each(|name| option("--quantity", name.clone()));
         let limits = Limits { budget: crate::process::limit(budget), cache };
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
@@ -209,7 +228,8 @@ impl Campaign<'_> {
                 Method::Adaptive => (format!("to {} %", 100.0 * self.plan.reference), 0, Some(self.plan.reference)),
                 _ => (format!("{REFERENCE_PRIMAL} refinements"), REFERENCE_PRIMAL, None),
             };
-            runs.push((what, self.once(scene, method, refine, tolerance, budget, None)?));
+            let one = One { method, refine, tolerance, quantities: &[] };
+            runs.push((what, self.once(scene, one, budget, None)?));
         }
         Ok(from_runs(&runs))
     }
@@ -219,7 +239,8 @@ impl Campaign<'_> {
         (self.progress)(format!("{}: first use of {}", scene.name, method.name()));
         let Ok(cache) = crate::process::Scratch::new() else { return Ok(None) };
         let phase = |name: &str| -> Result<Option<[f64; 2]>, CampaignError> {
-            let ended = self.once(scene, method, 0, None, REFERENCE_BUDGETS * self.plan.budget, Some(cache.path()))?;
+            let one = One { method, refine: 0, tolerance: None, quantities: &[] };
+            let ended = self.once(scene, one, REFERENCE_BUDGETS * self.plan.budget, Some(cache.path()))?;
             let Ended::Told(results) = ended else { return Ok(None) };
             let Some(run) = results.first().filter(|r| r.end == End::Solved) else { return Ok(None) };
             let of = |wanted: &str| run.seconds.phases.iter().find(|(n, _)| n == wanted).map_or(0.0, |(_, s)| *s);

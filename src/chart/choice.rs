@@ -1,7 +1,7 @@
 //! Which method, which mesh: Pareto front, slopes, and the fastest run for a wanted accuracy.
 
 use super::data::{Plot, Run, SceneChart};
-use crate::measure::Method;
+use crate::measure::{Asked, Method};
 
 /// Relative errors that tables of fastest choices name.
 pub(super) const WANTED: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
@@ -17,13 +17,27 @@ pub struct Choice<'a> {
     pub error: f64,
 }
 
+/// What errors are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Of<'a> {
+    /// The solution, in the energy norm.
+    Energy,
+    /// The quantity of this name, relative to its value.
+    Quantity(&'a str),
+}
+
+/// What tables of fastest choices are about, with the heading of the wanted errors.
+pub(super) fn asked(scene: &SceneChart) -> Vec<(Of<'_>, String)> {
+    let of_quantities = scene.quantities().into_iter().map(|name| (Of::Quantity(name), format!("wanted of {name}")));
+    std::iter::once((Of::Energy, "wanted".to_string())).chain(of_quantities).collect()
+}
+
 /// The run that takes the least whole time with an error of at most `wanted`: by the guaranteed error, or by the true
 /// one, which only the reference bracket knows, and not better than to its own width.
-pub fn fastest(scene: &SceneChart, wanted: f64, guaranteed: bool) -> Option<Choice<'_>> {
-    let error = |plot: &Plot| if guaranteed { plot.guaranteed } else { plot.true_error };
-    // Errors are roots of energies: the exact one is at most √(measured² + resolution²).
-    let unsure = match &scene.reference {
-        Ok(reference) if !guaranteed => reference.resolution(),
+pub fn fastest<'a>(scene: &'a SceneChart, of: Of<'_>, wanted: f64, guaranteed: bool) -> Option<Choice<'a>> {
+    // Errors in energy are roots of differences: the exact one is at most √(measured² + resolution²).
+    let unsure = match (of, &scene.reference) {
+        (Of::Energy, Ok(reference)) if !guaranteed => reference.resolution(),
         _ => 0.0,
     };
     scene
@@ -31,7 +45,7 @@ pub fn fastest(scene: &SceneChart, wanted: f64, guaranteed: bool) -> Option<Choi
         .iter()
         .filter_map(|run| {
             let plot = run.plot.as_ref()?;
-            let error = error(plot)?;
+            let error = scene.error(plot, of, guaranteed)?;
             (error.hypot(unsure) <= wanted).then_some(Choice { run, plot, error })
         })
         .min_by(|a, b| a.plot.whole.median.total_cmp(&b.plot.whole.median))
@@ -62,6 +76,37 @@ pub fn slope(points: &[[f64; 2]]) -> Option<f64> {
 }
 
 impl SceneChart {
+    /// The error that a run guarantees, or its true one: of a quantity the largest that what all runs together guarantee allows.
+    pub fn error(&self, plot: &Plot, of: Of<'_>, guaranteed: bool) -> Option<f64> {
+        match of {
+            Of::Energy if guaranteed => plot.guaranteed,
+            Of::Energy => plot.true_error,
+            Of::Quantity(name) => {
+                let Asked { value, lower, upper, .. } = plot.quantities.iter().find(|q| q.name == name)?;
+                let ends = if guaranteed { [(*lower)?, (*upper)?] } else { self.known(name)? };
+                let value = (*value)?;
+                let off = match guaranteed {
+                    true => 0.5 * (ends[1] - ends[0]),
+                    false => ends.map(|end| (value - end).abs()).into_iter().fold(0.0, f64::max),
+                };
+                Some(off / value.abs()).filter(|error| error.is_finite())
+            }
+        }
+    }
+
+    /// What all runs together guarantee of a quantity.
+    pub fn known(&self, name: &str) -> Option<[f64; 2]> {
+        let asked = self.runs.iter().filter_map(|run| run.plot.as_ref()?.quantities.iter().find(|q| q.name == name));
+        let ends = asked.filter_map(|asked| Some([asked.lower?, asked.upper?]));
+        ends.reduce(|a, b| [a[0].max(b[0]), a[1].min(b[1])])
+    }
+
+    /// Names of the quantities that runs were asked for.
+    pub fn quantities(&self) -> Vec<&str> {
+        let first = self.runs.iter().filter_map(|run| run.plot.as_ref()).find(|plot| !plot.quantities.is_empty());
+        first.map_or(Vec::new(), |plot| plot.quantities.iter().map(|q| q.name.as_str()).collect())
+    }
+
     /// Points (cost, error) of a method, coarse to fine; points without an error above zero are left out, a logarithmic
     /// axis has no place for them.
     pub fn points(

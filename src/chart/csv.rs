@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::data::{Chart, Status};
+use crate::measure::Asked;
 
-const COLUMNS: [&str; 20] = [
+const COLUMNS: [&str; 21] = [
     "scene",
     "method",
     "level",
@@ -25,6 +26,7 @@ const COLUMNS: [&str; 20] = [
     "guaranteed_error",
     "true_error",
     "phases",
+    "quantities",
 ];
 
 /// The whole file.
@@ -58,6 +60,10 @@ pub fn csv(chart: &Chart) -> String {
                     cells.extend([p.lower, p.upper, p.guaranteed, p.true_error].map(optional));
                     let phases: Vec<String> = p.phases.iter().map(|(name, s)| format!("{name}={s:.6}")).collect();
                     cells.push(phases.join(";"));
+                    let asked = |q: &Asked| {
+                        format!("{}={} [{}, {}]", q.name, optional(q.value), optional(q.lower), optional(q.upper))
+                    };
+                    cells.push(p.quantities.iter().map(asked).collect::<Vec<_>>().join(";"));
                 }
             }
             let line: Vec<String> = cells.iter().map(|c| quoted(c)).collect();

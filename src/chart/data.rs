@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::measure::{Machine, Method};
+use crate::measure::{Asked, Machine, Method};
 
 /// Everything in `chart.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -134,6 +134,9 @@ pub struct Plot {
     pub guaranteed: Option<f64>,
     /// Relative error of the energy against the reference: of the lower bound, or of the displacement's energy.
     pub true_error: Option<f64>,
+    /// The quantities that were asked for.
+    #[serde(default)]
+    pub quantities: Vec<Asked>,
 }
 
 /// Median and extremes of several runs.

@@ -1,6 +1,6 @@
 //! Error against cost, log–log.
 
-use super::choice::{pareto, slope};
+use super::choice::{Of, pareto, slope};
 use super::data::{Plot, Reference, SceneChart, Status};
 use crate::measure::Method;
 use crate::plot::{PlotError, Scale, Series, Sheet, draw};
@@ -21,14 +21,18 @@ impl Axis {
     /// All of them, in the order of a page.
     pub const ALL: [Axis; 3] = [Axis::Whole, Axis::Solve, Axis::Unknowns];
 
-    /// Name of the file of the figure.
-    pub(super) fn file(self, scene: &SceneChart) -> String {
-        let name = match self {
+    /// Name of the file of the figure; quantities go by their number.
+    pub(super) fn file(self, scene: &SceneChart, of: Of<'_>) -> String {
+        let axis = match self {
             Axis::Whole => "whole",
             Axis::Solve => "solve",
             Axis::Unknowns => "unknowns",
         };
-        format!("chart-{}-error-{name}.svg", scene.name)
+        let number = |name| scene.quantities().iter().position(|own| *own == name).map_or(0, |i| i + 1);
+        match of {
+            Of::Energy => format!("chart-{}-error-{axis}.svg", scene.name),
+            Of::Quantity(name) => format!("chart-{}-quantity-{}-{axis}.svg", scene.name, number(name)),
+        }
     }
 
     /// Heading, and what the axis is.
@@ -59,19 +63,41 @@ impl Axis {
     }
 }
 
+/// The figures of errors of a scene: the solution on every axis, every quantity against seconds.
+pub(super) fn error_figures(scene: &SceneChart) -> Vec<(Axis, Of<'_>)> {
+    let of_energy = Axis::ALL.map(|axis| (axis, Of::Energy));
+    let of_quantities = scene.quantities().into_iter().map(|name| (Axis::Whole, Of::Quantity(name)));
+    of_energy.into_iter().chain(of_quantities).collect()
+}
+
+/// True errors below this are not told from zero, with the words for it where anything is known.
+fn resolution(scene: &SceneChart, of: Of<'_>) -> (f64, Option<(f64, String)>) {
+    let (least, words) = match of {
+        Of::Energy => (scene.reference.as_ref().ok().map(Reference::resolution), "half the reference bracket"),
+        Of::Quantity(name) => {
+            let half = |[lower, upper]: [f64; 2]| (upper - lower) / (upper + lower).abs();
+            (scene.known(name).map(half).filter(|half| half.is_finite()), "half of what all runs leave open")
+        }
+    };
+    (least.unwrap_or(0.0), least.map(|least| (least, words.to_string())))
+}
+
 /// True error (full markers) and guaranteed error (hollow) of every method, with slopes and the Pareto front of the
 /// true errors. A true error that the reference bracket does not tell from zero is drawn at the largest it can be, on the
 /// line of the bracket, and has no part in the slope.
 ///
 /// # Errors
 /// What the drawing library reported.
-pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError> {
+pub fn error_figure(scene: &SceneChart, axis: Axis, of: Of<'_>) -> Result<String, PlotError> {
     let mut series = Vec::new();
     let mut notes = Vec::new();
-    let least = scene.reference.as_ref().map_or(0.0, Reference::resolution);
+    let (least, level) = resolution(scene, of);
     for method in Method::ALL {
         for (secondary, name) in [(false, "true"), (true, "guaranteed")] {
-            let error = |plot: &Plot| if secondary { plot.guaranteed } else { plot.true_error.map(|e| e.max(least)) };
+            let error = |plot: &Plot| {
+                let error = scene.error(plot, of, secondary);
+                if secondary { error } else { error.map(|e| e.max(least)) }
+            };
             let points = scene.points(method, |p| axis.cost(p), error);
             if points.is_empty() {
                 continue;
@@ -99,11 +125,14 @@ pub fn error_figure(scene: &SceneChart, axis: Axis) -> Result<String, PlotError>
     }
     let all: Vec<[f64; 2]> = series.iter().filter(|s| !s.secondary).flat_map(|s| s.points.clone()).collect();
     let front = pareto(&all).into_iter().map(|i| all[i]).collect();
-    let level = scene.reference.as_ref().ok().map(|r| (r.resolution(), "half the reference bracket".to_string()));
     let (title, x) = axis.words();
+    let (title, y) = match of {
+        Of::Energy => (format!("{title}: {}", scene.name), "relative error in the energy norm".to_string()),
+        Of::Quantity(name) => (format!("{title}: {}, {name}", scene.name), format!("relative error of {name}")),
+    };
     draw(&Sheet {
-        title: format!("{title}: {}", scene.name),
-        labels: [x.to_string(), "relative error in the energy norm".to_string()],
+        title,
+        labels: [x.to_string(), y],
         x: Scale::Logarithmic,
         series,
         front,

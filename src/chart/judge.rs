@@ -39,5 +39,6 @@ pub fn judge(repeats: &[Measured], reference: Option<&Reference>) -> Result<Plot
         upper: answer.upper,
         guaranteed: answer.relative_error_bound,
         true_error: reference.zip(energy).map(|(reference, energy)| reference.error(energy)),
+        quantities: answer.quantities.clone(),
     })
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::choice::{Choice, WANTED, fastest};
+use super::choice::{Choice, Of, WANTED, asked, fastest};
 use super::data::{Chart, Cold, Plot, Run, SceneChart, Spread, Status};
-use super::figure::Axis;
+use super::figure::{Axis, error_figures};
 use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
 
 /// One section a scene, the command under each figure; figures are those that [`super::write()`] puts beside the text.
@@ -49,10 +49,13 @@ fn one(text: &mut String, scene: &SceneChart, command: &str) {
         let _ =
             writeln!(text, "\nFirst use of FEniCSx on a machine, in none of the other numbers: {}.", list.join("; "));
     }
-    let _ = writeln!(text, "\n| wanted | fastest with a guarantee | fastest by true error |\n|---:|---|---|");
-    for wanted in WANTED {
-        let [guaranteed, truly] = [true, false].map(|g| choice(fastest(scene, wanted, g)));
-        let _ = writeln!(text, "| {} | {guaranteed} | {truly} |", percent(wanted));
+    for (of, words) in asked(scene) {
+        let words = escaped(&words);
+        let _ = writeln!(text, "\n| {words} | fastest with a guarantee | fastest by true error |\n|---:|---|---|");
+        for wanted in WANTED {
+            let [guaranteed, truly] = [true, false].map(|g| choice(fastest(scene, of, wanted, g)));
+            let _ = writeln!(text, "| {} | {guaranteed} | {truly} |", percent(wanted));
+        }
     }
     let _ = writeln!(text, "\n<details><summary>All runs on {}</summary>\n", escaped(&scene.name));
     let _ = writeln!(
@@ -67,10 +70,15 @@ fn one(text: &mut String, scene: &SceneChart, command: &str) {
 }
 
 /// Names of the files of a scene's figures, and what each shows.
-pub(super) fn figures(scene: &SceneChart) -> [(String, String); 4] {
-    let errors = Axis::ALL.map(|axis| (axis.file(scene), format!("{}: {}", axis.words().0, scene.name)));
-    let [whole, solve, unknowns] = errors;
-    [whole, solve, unknowns, (format!("chart-{}-phases.svg", scene.name), format!("Seconds by phase: {}", scene.name))]
+pub(super) fn figures(scene: &SceneChart) -> Vec<(String, String)> {
+    let words = |axis: Axis, of| match of {
+        Of::Energy => format!("{}: {}", axis.words().0, scene.name),
+        Of::Quantity(name) => format!("{}: {}, {name}", axis.words().0, scene.name),
+    };
+    let mut figures: Vec<_> =
+        error_figures(scene).into_iter().map(|(axis, of)| (axis.file(scene, of), words(axis, of))).collect();
+    figures.push((format!("chart-{}-phases.svg", scene.name), format!("Seconds by phase: {}", scene.name)));
+    figures
 }
 
 fn first_use(cold: &Cold) -> String {

@@ -17,7 +17,7 @@ mod reference;
 mod store;
 
 pub use campaign::{Campaign, CampaignError, Plan};
-pub use choice::{Choice, fastest, pareto, slope};
+pub use choice::{Choice, Of, fastest, pareto, slope};
 pub use csv::csv;
 pub use data::{Chart, Cold, Plot, Reference, Run, SceneChart, Spread, Status};
 pub use figure::{Axis, error_figure};

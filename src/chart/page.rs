@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::choice::{WANTED, fastest};
+use super::choice::{Of, WANTED, asked, fastest};
 use super::data::{Chart, Run, SceneChart, Spread, Status};
 use crate::report::CSS;
 use crate::report::document::{PLOTS, document};
@@ -30,7 +30,9 @@ pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {
 fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {
     let prefix = format!("chart-{}-", scene.name);
     let own = figures.iter().filter(|(name, _)| {
-        name.strip_prefix(&prefix).is_some_and(|rest| rest.starts_with("error-") || rest.starts_with("phases"))
+        name.strip_prefix(&prefix).is_some_and(|rest| {
+            rest.starts_with("error-") || rest.starts_with("quantity-") || rest.starts_with("phases")
+        })
     });
     html! {
         section {
@@ -54,23 +56,23 @@ fn one(scene: &SceneChart, figures: &[(String, String)]) -> Markup {
                     "."
                 }
             }
-            (choices(scene))
+            @for (of, words) in asked(scene) { (choices(scene, of, &words)) }
             (table(scene))
         }
     }
 }
 
-fn choices(scene: &SceneChart) -> Markup {
+fn choices(scene: &SceneChart, of: Of<'_>, words: &str) -> Markup {
     html! {
-        div.scroll role="region" aria-label={ "fastest methods, " (clean(&scene.name)) } tabindex="0" { table {
-            thead { tr { th.n { "wanted" } th { "fastest with a guarantee" } th { "fastest by true error" } } }
+        div.scroll role="region" aria-label={ "fastest methods, " (clean(&scene.name)) ", " (clean(words)) } tabindex="0" { table {
+            thead { tr { th.n { (clean(words)) } th { "fastest with a guarantee" } th { "fastest by true error" } } }
             tbody {
                 @for wanted in WANTED {
                     tr {
                         td.n { (percent(wanted)) }
                         @for guaranteed in [true, false] {
                             td {
-                                @match fastest(scene, wanted, guaranteed) {
+                                @match fastest(scene, of, wanted, guaranteed) {
                                     Some(c) => { (level(c.run)) ": " (seconds(c.plot.whole.median)) },
                                     None => "none of these runs",
                                 }

@@ -111,6 +111,7 @@ mod tests {
                 upper: Some(upper),
                 guaranteed: None,
                 true_error: Some(0.5),
+                quantities: Vec::new(),
             }),
         };
         let mut scene = SceneChart {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::data::{Chart, SCHEMA_VERSION};
-use super::figure::{Axis, error_figure};
+use super::figure::{error_figure, error_figures};
 use super::{csv, markdown, page, phases};
 use crate::report::folder::replace;
 
@@ -76,16 +76,17 @@ pub fn read(folder: &Path) -> Result<Option<Chart>, StoreError> {
     Ok(Some(chart))
 }
 
-/// Writes all files: `chart.json`, `chart.csv`, `chart.md`, `chart.html`, and four figures a scene in `figures/`.
+/// Writes all files: `chart.json`, `chart.csv`, `chart.md`, `chart.html`, and the figures of every scene in
+/// `figures/`.
 ///
 /// # Errors
 /// [`StoreError`].
 pub fn write(chart: &Chart, folder: &Path) -> Result<(), StoreError> {
     let mut figures = Vec::new();
     for scene in &chart.scenes {
-        for axis in Axis::ALL {
-            let name = axis.file(scene);
-            let svg = error_figure(scene, axis)
+        for (axis, of) in error_figures(scene) {
+            let name = axis.file(scene, of);
+            let svg = error_figure(scene, axis, of)
                 .map_err(|reason| StoreError::Figure { name: name.clone(), reason: reason.to_string() })?;
             figures.push((name, svg));
         }

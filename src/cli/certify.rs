@@ -9,7 +9,7 @@ use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
-use super::session::Session;
+use super::session::{Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
 use crate::compare::{Candidate, Comparison, compare};
@@ -83,7 +83,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
     let given = args.values.all()?;
-    session.refuse_unknown_quantities(given.iter().map(|value| value.name.as_str()))?;
+    refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
     if args.displacement.is_empty() {
         return values_alone(args, &session, &given);
     }

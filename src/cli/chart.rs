@@ -1,13 +1,16 @@
 //! `hypercircle chart`: accuracy against time, every method and refinement.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::value_parser;
 
-use super::options::{MemoryOptions, RunOptions, positive};
+use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive};
 use super::progress::Progress;
+use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
-use crate::chart::{self, Campaign, CampaignError, Chart, Plan, Status, fastest};
+use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
 use crate::measure::Method;
 use crate::scene::Scene;
 
@@ -21,9 +24,10 @@ pub struct Args {
     /// The scene files
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
-    /// Print the fastest choice for the relative error X
-    #[arg(long = "for", value_name = "X", value_parser = positive)]
-    pub wanted: Option<f64>,
+    /// Print the fastest choice for the relative error X, or bound the quantity NAME in every run and print the fastest choice for
+    /// a half-width of X times its value; may be repeated
+    #[arg(long = "for", value_name = "[NAME=]X")]
+    pub wanted: Vec<Accuracy>,
     /// Mark a method that takes longer than SECONDS for one run, and go on
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub budget: Option<f64>,
@@ -53,6 +57,45 @@ pub struct Args {
     pub run: RunOptions,
 }
 
+/// How close a run is to come.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Accuracy {
+    /// Largest relative error in the energy norm.
+    Energy(f64),
+    /// Largest half-width of the interval of a quantity, relative to its value.
+    Quantity(NamedTolerance),
+}
+
+impl Accuracy {
+    /// The quantity that is asked for.
+    fn name(&self) -> Option<&String> {
+        match self {
+            Accuracy::Energy(_) => None,
+            Accuracy::Quantity(of) => Some(&of.name),
+        }
+    }
+}
+
+impl FromStr for Accuracy {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.contains('=') {
+            true => text.parse().map(Accuracy::Quantity),
+            false => positive(text).map(Accuracy::Energy),
+        }
+    }
+}
+
+impl fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Accuracy::Energy(error) => write!(f, "{error}"),
+            Accuracy::Quantity(NamedTolerance { name, value }) => write!(f, "{name}={value}"),
+        }
+    }
+}
+
 /// The method of that name, or the names there are.
 pub(super) fn known(name: &str) -> Result<Method, String> {
     let names = Method::ALL.map(Method::name).join(", ");
@@ -66,6 +109,7 @@ impl Args {
             repeats: self.repeats as usize,
             threads: self.threads as usize,
             memory: self.memory.max_memory,
+            quantities: self.quantities(),
             ..Plan::default()
         };
         if self.reduced {
@@ -80,6 +124,17 @@ impl Args {
         plan
     }
 
+    /// The quantities that are asked for, each once.
+    fn quantities(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for name in self.wanted.iter().filter_map(|wanted| wanted.name()) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
     /// The command that makes the same runs.
     fn command(&self) -> String {
         let mut words: Vec<String> = vec!["hypercircle chart".to_string()];
@@ -91,6 +146,9 @@ impl Args {
         {
             words.extend((value != usual).then(|| format!("--{name} {value}")));
         }
+        words.extend(
+            self.wanted.iter().filter(|w| w.name().is_some()).map(|w| format!("--for {}", quoted(&w.to_string()))),
+        );
         words.extend(self.budget.map(|s| format!("--budget {s}")));
         words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
         words.join(" ")
@@ -111,6 +169,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut scenes: Vec<Scene> = Vec::new();
     for path in &args.scenes {
         let scene = Scene::read(path)?;
+        refuse_unknown(&scene, args.quantities().iter().map(String::as_str))?;
         if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
             let message = format!("{} and {} have the same name", other.path.display(), path.display());
             return Err(CliError::stopped(Exit::BadInput, message, "rename one of the files, or chart them apart"));
@@ -133,9 +192,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let chart = campaign.run(&scenes, kept).map_err(failed)?;
     chart::write(&chart, &folder).map_err(|e| failed(e.into()))?;
     drop(progress);
-    if let Some(wanted) = args.wanted {
-        say::line(choices(&chart, wanted).trim_end());
-    }
+    args.wanted.iter().for_each(|wanted| say::line(choices(&chart, wanted).trim_end()));
     if !args.run.quiet {
         say::line(&format!("chart: {}", Path::new(&folder).join("chart.html").display()));
     }
@@ -149,26 +206,39 @@ pub(super) fn this_program() -> Result<PathBuf, CliError> {
     })
 }
 
-/// The fastest runs for the error `wanted`, one line a scene and kind of error.
-fn choices(chart: &Chart, wanted: f64) -> String {
+/// What an adaptive run was told to reach.
+fn tolerances(scene: &SceneChart, tolerance: f64) -> String {
+    match scene.quantities().as_slice() {
+        [] => format!("--tolerance {tolerance}"),
+        names => names.iter().map(|name| format!("--tolerance-of {name}={tolerance}")).collect::<Vec<_>>().join(" "),
+    }
+}
+
+/// The fastest runs for what is `wanted`, one line a scene and kind of error.
+fn choices(chart: &Chart, wanted: &Accuracy) -> String {
     let mut text = String::new();
+    let (of, error) = match wanted {
+        Accuracy::Energy(error) => (Of::Energy, *error),
+        Accuracy::Quantity(NamedTolerance { name, value }) => (Of::Quantity(name), *value),
+    };
     for scene in &chart.scenes {
-        for (guaranteed, words) in [(true, "guaranteed"), (false, "true")] {
-            let line = match fastest(scene, wanted, guaranteed) {
+        for (guaranteed, kind) in [(true, "guaranteed"), (false, "true")] {
+            let words = wanted.name().map_or(format!("{kind} error"), |name| format!("{kind} error of {name}"));
+            let line = match fastest(scene, of, error, guaranteed) {
                 Some(choice) => {
                     let how = match choice.run.tolerance {
-                        Some(tolerance) => format!("--tolerance {tolerance}"),
+                        Some(tolerance) => tolerances(scene, tolerance),
                         None => format!("--refine {}", choice.run.level),
                     };
                     format!(
-                        "{} {how}: {:.3} s, {words} error {:.3} %, {} unknowns",
+                        "{} {how}: {:.3} s, {words} {:.3} %, {} unknowns",
                         choice.run.method.name(),
                         choice.plot.whole.median,
                         100.0 * choice.error,
                         choice.plot.unknowns
                     )
                 }
-                None => format!("no run has a {words} error of {} % or less", 100.0 * wanted),
+                None => format!("no run has a {words} of {} % or less", 100.0 * error),
             };
             text.push_str(&format!("{}: {line}\n", scene.name));
         }

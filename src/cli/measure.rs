@@ -69,6 +69,9 @@ pub struct Options {
     /// How much memory may be taken.
     #[command(flatten)]
     pub memory: MemoryOptions,
+    /// A quantity of the scene to bound; may be repeated
+    #[arg(long)]
+    pub quantity: Vec<String>,
     /// When this process was asked for, in nanoseconds since 1970
     #[arg(long)]
     pub spawned: Option<u128>,
@@ -91,6 +94,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         max_triangles: options.max_triangles,
         seconds: options.seconds,
         budget: options.memory.budget(threads),
+        quantities: options.quantity.clone(),
         step_length: None,
     };
     let refined = |problem: Problem| problem.refine_uniform(options.refine as usize).map_err(|e| e.to_string());

@@ -91,7 +91,7 @@ impl Session {
     /// # Errors
     /// Bad input, a solver that failed, or no equilibrium.
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
-        self.refuse_unknown_quantities(solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
+        refuse_unknown(&self.scene, solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.progress.phase("reading the mesh");
         let method = dual_method(solve);
         let admission = Admission::new(method.as_ref(), self.budget);
@@ -145,25 +145,6 @@ impl Session {
         }
         self.progress.phase("bounding the quantities");
         study::answers(certified, &self.options(solve), |_| true)
-    }
-
-    /// Refuses names that no quantity of the scene has.
-    ///
-    /// # Errors
-    /// The first of them.
-    pub fn refuse_unknown_quantities<'a>(&self, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
-        let known: Vec<&str> = self.scene.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
-        for name in names {
-            if !known.contains(&name) {
-                let what = format!("{}: the scene has no quantity '{name}'", self.scene.path.display());
-                let remedy = match known.as_slice() {
-                    [] => "give it one in a [[quantities]] table".to_string(),
-                    known => format!("use one of {}", known.join(", ")),
-                };
-                return Err(CliError::stopped(Exit::BadInput, what, remedy));
-            }
-        }
-        Ok(())
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {
@@ -290,6 +271,25 @@ impl Session {
         }
         Ok((sharpened, enough))
     }
+}
+
+/// Refuses names that no quantity of the scene has.
+///
+/// # Errors
+/// The first of them.
+pub fn refuse_unknown<'a>(scene: &Scene, names: impl Iterator<Item = &'a str>) -> Result<(), CliError> {
+    let known: Vec<&str> = scene.quantities.iter().map(|quantity| quantity.name.as_str()).collect();
+    for name in names {
+        if !known.contains(&name) {
+            let what = format!("{}: the scene has no quantity '{name}'", scene.path.display());
+            let remedy = match known.as_slice() {
+                [] => "give it one in a [[quantities]] table".to_string(),
+                known => format!("use one of {}", known.join(", ")),
+            };
+            return Err(CliError::stopped(Exit::BadInput, what, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// The solver that was asked for.

@@ -16,5 +16,5 @@ pub use child::{Ended, Limits, run};
 pub use clock::Clock;
 pub use machine::Machine;
 pub use method::{Family, Method};
-pub use record::{Answer, End, Measured, Seconds, finite_or_null};
+pub use record::{Answer, Asked, End, Measured, Seconds, finite_or_null};
 pub use solve::{Settings, measure};

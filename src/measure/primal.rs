@@ -1,14 +1,17 @@
 //! Displacement models: the seconds and the memory are those of the process that FEniCSx runs in.
 
 use super::memory::Watch;
-use super::record::{Answer, End, Measured, Seconds};
+use super::record::{Answer, Asked, End, Measured, Seconds};
 use super::solve::variation;
 use super::{Clock, Method, Settings};
 use crate::bounds::{Repair, potential, repaired};
 use crate::compare::pressure::{maximum, reaction_pressure};
 use crate::compare::{Candidate, Reactions};
+use crate::element::Displacement;
 use crate::primal::{self, PrimalError, PrimalSeconds};
 use crate::problem::Problem;
+use crate::quantity::{Functional, value_of};
+use crate::scene::Quantity;
 use crate::statics;
 use crate::study::{candidates, pins};
 
@@ -59,7 +62,7 @@ pub(super) fn displacements(
         .map(|(candidate, own)| Measured {
             method: name(candidate.degree as u8).to_string(),
             end: End::Solved,
-            answer: Some(answer(&problem, candidate)),
+            answer: Some(answer(&problem, candidate, &settings.quantities)),
             seconds: seconds(&own, outside, [began, read]),
             peak_memory: memory,
         })
@@ -105,8 +108,19 @@ fn failure(error: PrimalError) -> End {
     }
 }
 
+/// The values of quantities in a displacement, which guarantees nothing of them.
+fn asked(problem: &Problem, field: &Displacement, names: &[String]) -> Vec<Asked> {
+    let asked = problem.scene.quantities.iter().filter(|quantity| names.contains(&quantity.name));
+    let known = |quantity: &Quantity| {
+        let functional = Functional::new(problem, quantity).ok();
+        let value = functional.and_then(|functional| value_of(problem, &functional, field));
+        Asked { name: quantity.name.clone(), value, lower: None, upper: None }
+    };
+    asked.map(known).collect()
+}
+
 /// Evaluates a solution with this program's own quadrature, on the nearest admissible field.
-fn answer(problem: &Problem, candidate: &Candidate) -> Answer {
+fn answer(problem: &Problem, candidate: &Candidate, quantities: &[String]) -> Answer {
     let mut answer = Answer {
         triangles: problem.mesh.triangles.len(),
         unknowns: candidate.unknowns,
@@ -119,6 +133,7 @@ fn answer(problem: &Problem, candidate: &Candidate) -> Answer {
             answer.upper = Some(energy.total());
             answer.strain = Some(energy.strain);
             answer.violation = Some(violation.largest());
+            answer.quantities = asked(problem, &field, quantities);
         }
         Err(reason) => answer.missing = Some(reason.to_string()),
     }

@@ -46,6 +46,15 @@ pub struct Seconds {
     pub phases: Vec<(String, f64)>,
 }
 
+impl Seconds {
+    /// Adds a phase after the others.
+    pub fn add(&mut self, phase: &str, seconds: f64) {
+        self.whole += seconds;
+        self.solve += seconds;
+        self.phases.push((phase.to_string(), seconds));
+    }
+}
+
 /// The numbers of a run. Energies and forces include the thickness.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
@@ -79,8 +88,26 @@ pub struct Answer {
     pub pressure_max: Vec<f64>,
     /// Total variation of the pressure along each contact.
     pub variation: Vec<f64>,
+    /// The quantities that were asked for.
+    pub quantities: Vec<Asked>,
     /// Why there is no upper bound, or what else is missing.
     pub missing: Option<String>,
+}
+
+/// A quantity in a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Its name.
+    pub name: String,
+    /// Its value, where the method has one.
+    #[serde(with = "finite_or_null")]
+    pub value: Option<f64>,
+    /// The exact value is above this …
+    #[serde(with = "finite_or_null")]
+    pub lower: Option<f64>,
+    /// … and below this, where the method guarantees anything.
+    #[serde(with = "finite_or_null")]
+    pub upper: Option<f64>,
 }
 
 /// Numbers that may be missing or not finite: both are null in JSON.

@@ -4,7 +4,7 @@ use super::Clock;
 use super::memory;
 use super::method::{Family, Method};
 use super::primal;
-use super::record::{Answer, End, Measured, Seconds};
+use super::record::{Answer, Asked, End, Measured, Seconds};
 
 use crate::budget::Budget;
 use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
@@ -12,7 +12,7 @@ use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
 use crate::element::{Elements, block};
 use crate::problem::Problem;
-use crate::study::{self, Certified, Goal, StudyError};
+use crate::study::{self, Certified, Goal, StudyError, Wanted};
 
 /// Choices of a run that are not the problem's.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +27,20 @@ pub struct Settings {
     pub seconds: f64,
     /// Memory that the process may hold.
     pub budget: Budget,
+    /// Names of the quantities of the scene that are asked for; an adaptive run has its tolerance for these then.
+    pub quantities: Vec<String>,
     /// Step length of the paper's plain iteration, relative to the largest that converges.
     pub step_length: Option<f64>,
+}
+
+impl Settings {
+    /// What an adaptive run is to reach.
+    fn goal(&self) -> Goal {
+        let tolerance = self.tolerance.unwrap_or(f64::MIN_POSITIVE);
+        let wanted = self.quantities.iter().map(|name| Wanted { name: name.clone(), tolerance });
+        let of_energy = if self.quantities.is_empty() { tolerance } else { f64::INFINITY };
+        Goal { max_triangles: self.max_triangles, wanted: wanted.collect(), ..Goal::new(of_energy) }
+    }
 }
 
 /// Solves what `make` makes with each of `methods`.
@@ -52,10 +64,7 @@ pub fn measure(
         let result = match method.family() {
             Family::Dual(solver) => stresses(&make, method, solver.as_ref(), None, settings, clock),
             Family::Adaptive(solver) => {
-                let goal = Goal {
-                    max_triangles: settings.max_triangles,
-                    ..Goal::new(settings.tolerance.unwrap_or(f64::MIN_POSITIVE))
-                };
+                let goal = settings.goal();
                 stresses(&make, method, solver.as_ref(), Some(goal), settings, clock)
             }
             Family::Primal(_) => continue,
@@ -101,23 +110,42 @@ fn stresses(
         elements: Elements::Uniform(block(method.degree())),
         threads: settings.threads.max(1),
         budget: settings.budget,
+        keep_factor: !settings.quantities.is_empty(),
         ..Options::default()
     };
     let solved = match goal {
         None => study::certify(problem, solver, &options),
         Some(ref goal) => study::adapt(problem, solver, &options, goal, |_| {}).map(|adapted| adapted.certified),
     };
+    let solved =
+        solved.map(|certified| (clock.elapsed(), asked(&certified, &options, &settings.quantities), certified));
     let done = clock.elapsed();
     match solved {
         Err(error) => Measured::without_answer(method.name(), refusal(&error)),
-        Ok(certified) => Measured {
-            method: method.name().to_string(),
-            end: End::Solved,
-            seconds: seconds(&certified, goal.is_some(), [began, read, done]),
-            peak_memory: memory::own_peak(),
-            answer: Some(answer(&certified)),
-        },
+        Ok((solved, quantities, certified)) => {
+            let mut seconds = seconds(&certified, goal.is_some(), [began, read, solved]);
+            if !quantities.is_empty() {
+                seconds.add("quantities", done - solved);
+            }
+            Measured {
+                method: method.name().to_string(),
+                end: End::Solved,
+                seconds,
+                peak_memory: memory::own_peak(),
+                answer: Some(Answer { quantities, ..answer(&certified) }),
+            }
+        }
     }
+}
+
+/// The intervals of the quantities that are asked for.
+fn asked(certified: &Certified, options: &Options, names: &[String]) -> Vec<Asked> {
+    let answers = study::answers(certified, options, |name| names.iter().any(|own| own == name));
+    let known = |answer: study::Answer| {
+        let [lower, upper] = answer.interval.ends.map(Some);
+        Asked { name: answer.name, value: Some(answer.interval.value), lower, upper }
+    };
+    answers.into_iter().map(known).collect()
 }
 
 /// 2/‖BA⁻¹Bᵀ‖.

@@ -172,3 +172,46 @@ fn the_fastest_choice_for_an_accuracy_is_printed() {
         .unwrap_or_else(|| panic!("{line}"));
     assert!(percent <= 5.0);
 }
+
+/// The exact mean displacement of the loaded edge, known to 1e-6 from meshes far finer.
+const TIP: f64 = 0.801499;
+
+#[test]
+fn a_quantity_is_charted_with_its_interval() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tip = "\n[[quantities]]\nname = \"tip\"\ndisplacement = \"left_load\"\ndirection = [1.0, 0.0]\n";
+    let scene = std::fs::read_to_string(case("two_blocks")).expect("readable") + tip;
+    std::fs::write(folder.path().join("asked.toml"), scene).expect("writable");
+    let asked = |name: &str| {
+        let mut command = hypercircle(folder.path(), ["chart", "asked.toml", "--out", "out", "--for"]);
+        command.arg(format!("{name}=0.03")).args(QUICK);
+        run(command)
+    };
+    let output = asked("tip");
+    ended("chart", &output, 0, &[]);
+    let chart = json(&folder.path().join("out"));
+    let mut widths = Vec::new();
+    for run in chart["scenes"][0]["runs"].as_array().expect("runs") {
+        let tip = &run["plot"]["quantities"][0];
+        let [value, lower, upper] = ["value", "lower", "upper"].map(|key| tip[key].as_f64().expect("a number"));
+        assert!(lower <= TIP + 2e-6 && TIP - 2e-6 <= upper && lower <= value && value <= upper, "{run}");
+        let half = 0.5 * (upper - lower) / value;
+        if let Some(tolerance) = run["tolerance"].as_f64() {
+            assert!(half <= tolerance, "{half} where {tolerance} is wanted");
+        }
+        widths.push(half);
+    }
+    assert!(widths.len() == 4 && widths[1] < 0.6 * widths[0], "{widths:?}");
+    let text = String::from_utf8(output.stdout).expect("text");
+    for kind in ["guaranteed", "true"] {
+        let line = text.lines().find(|line| line.contains(&format!("{kind} error of tip")));
+        let line = line.unwrap_or_else(|| panic!("{text}"));
+        let after = line.split("of tip ").nth(1).and_then(|rest| rest.split(' ').next()).expect(line);
+        let percent: f64 = after.parse().expect(line);
+        assert!(percent <= 3.0, "{line}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("out/chart.html")).expect("readable");
+    assert!(page.contains("relative error of tip") && page.contains("wanted of tip"));
+    assert!(folder.path().join("out/figures/chart-asked-quantity-1-whole.svg").is_file());
+    ended("a name that is none", &asked("top"), 2, &["asked.toml", "'top'", "tip"]);
+}

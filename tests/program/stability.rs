@@ -20,6 +20,7 @@ fn good() -> Answer {
         resultants: vec![[-0.5, 0.0]],
         pressure_max: vec![1.0],
         variation: vec![1.0],
+        quantities: Vec::new(),
         missing: None,
     }
 }
