@@ -91,6 +91,19 @@ impl Options {
     pub fn par(&self) -> Par {
         if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq }
     }
+
+    /// Does `work` on as many threads as these options have: those that are there where they are as many, else its own.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        let threads = self.threads.max(1);
+        if rayon::current_num_threads() == threads {
+            return work();
+        }
+        match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            Ok(pool) => pool.install(work),
+            // Where no thread can be started the work is the same on those that are there.
+            Err(_) => work(),
+        }
+    }
 }
 
 /// Why there is no dual solution.

@@ -8,6 +8,7 @@ use crate::element::Displacement;
 use crate::problem::{Problem, Scales};
 use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced, value_of};
 use crate::report::{QuantityOfModel, QuantitySummary};
+use crate::scene::Quantity;
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
 const OWN_ERROR: f64 = 2.0;
@@ -51,11 +52,17 @@ pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
 
 /// The intervals of the quantities of a problem that was solved with `options`, all of them or those that are `wanted`.
 pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -> bool) -> Vec<Answer> {
-    let Certified { problem, statics, dual, bracket } = certified;
-    let quantities: Vec<_> = problem.scene.quantities.iter().filter(|quantity| wanted(&quantity.name)).collect();
+    let quantities: Vec<&Quantity> =
+        certified.problem.scene.quantities.iter().filter(|quantity| wanted(&quantity.name)).collect();
     if quantities.is_empty() {
         return Vec::new();
     }
+    options.on_threads(|| bounded(certified, options, &quantities))
+}
+
+/// Their intervals, one after the other.
+fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -> Vec<Answer> {
+    let Certified { problem, statics, dual, bracket } = certified;
     let motions = statics.held_at_vertices(problem);
     let own;
     let factorised: Result<&Factorised, String> = match &dual.factorised {
@@ -69,7 +76,7 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
         let free = bracket.free.as_ref().map_err(|error| error.to_string())?;
         Known::new(problem, dual, bracket, free, factorised, options)
     });
-    let answer = |quantity: &&crate::scene::Quantity| {
+    let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
         match (Functional::new(problem, quantity), &known) {
             (Ok(functional), _) if motions.iter().any(|motion| changes(problem, &functional, motion)) => {

@@ -115,8 +115,11 @@ pub(super) fn solve_balanced(
         return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part });
     }
     let motions = statics.held_at_vertices(&problem);
-    let mut dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
-    let bracket = Bracket::from_start(&problem, &dual, start);
+    let (mut dual, bracket) = options.on_threads(|| {
+        let dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
+        let bracket = Bracket::from_start(&problem, &dual, start);
+        Ok::<_, DualError>((dual, bracket))
+    })?;
     dual.seconds.total = began.elapsed().as_secs_f64();
     Ok(Certified { problem, statics, dual, bracket })
 }

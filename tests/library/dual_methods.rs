@@ -1,15 +1,18 @@
 //! Four methods, one λ_h: energies, contact states and the free upper bound on problems of every kind.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::setup::{Role, Setup, lift_off, pressed, two_blocks};
+use crate::support::Blocks;
 use hypercircle::bounds::energy::{complementary, potential};
 use hypercircle::bounds::upper::admissible;
 use hypercircle::dual::{
-    ActiveSet, Clarabel, Condensed, DualError, DualMethod, DualSolution, Motion, Options, Uzawa, solve,
+    ActiveSet, Clarabel, Condensed, DualError, DualMethod, DualSolution, Found, Motion, Options, Size, Uzawa, solve,
 };
 use hypercircle::problem::Problem;
 use hypercircle::scene::Kinematics;
+use hypercircle::study::certify;
 
 fn run(method: &dyn DualMethod, problem: &Problem, motions: &[Motion]) -> DualSolution {
     solve(method, problem, motions, &Options::default()).unwrap_or_else(|e| panic!("{}: {e}", method.name()))
@@ -306,5 +309,37 @@ fn no_load_no_stress() {
     for method in [&Clarabel::default() as &dyn DualMethod, &Uzawa::default()] {
         let found = run(method, &problem, &[]);
         assert!(lower(&problem, &found).abs() < 1e-18, "{}", method.name());
+    }
+}
+
+/// The condensed method, and the threads that there were when it was asked.
+#[derive(Default)]
+struct Watched {
+    method: Condensed,
+    threads: AtomicUsize,
+}
+
+impl DualMethod for Watched {
+    fn name(&self) -> &'static str {
+        "watched"
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        self.method.memory(size)
+    }
+
+    fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        self.threads.store(rayon::current_num_threads(), Ordering::Relaxed);
+        self.method.solve(problem, motions, options)
+    }
+}
+
+#[test]
+fn a_solve_has_the_threads_of_its_options_whatever_pool_it_is_called_from() {
+    for threads in [1, 3] {
+        let watched = Watched::default();
+        let problem = Blocks { n: 2, ..Blocks::default() }.problem();
+        certify(problem, &watched, &Options { threads, ..Options::default() }).expect("solves");
+        assert_eq!(watched.threads.load(Ordering::Relaxed), threads);
     }
 }
