@@ -11,13 +11,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
-use hypercircle::dual::{Condensed, Options};
-use hypercircle::element::{Elements, block};
+use hypercircle::dual::Condensed;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Answer, StudyError, answers, certify_divided};
 use serde_json::json;
-use support::asked::everything;
+use support::asked::{everything, of_degree};
 use support::random::Random;
 use support::scenes::sample;
 
@@ -103,7 +102,7 @@ fn both(seed: u64) -> Option<[Vec<Answer>; 2]> {
     }
     problem.scene.quantities = everything(&problem, &mut Random::new(seed));
     let found = |problem: Problem, degree: usize| {
-        let options = Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() };
+        let options = of_degree(degree);
         match certify_divided(problem, &Condensed::default(), &options) {
             Ok(certified) => Some(answers(&certified, &options, |_| true)),
             Err(StudyError::NoEquilibrium { .. } | StudyError::Contradiction(_)) => None,

@@ -9,14 +9,13 @@ mod support;
 use std::path::Path;
 use std::time::Instant;
 
-use hypercircle::dual::{Condensed, Options};
-use hypercircle::element::{Elements, block};
+use hypercircle::dual::Condensed;
 use hypercircle::problem::Problem;
 use hypercircle::scene::{Component, Extent, Gap, Kinematics, Region, Target};
 use hypercircle::study::{answers, certify_divided};
 use serde_json::{Value, json};
 use support::Blocks;
-use support::asked::quantity;
+use support::asked::{of_degree, quantity};
 
 const COMMAND: &str = "cargo run --release --example quantity_widths";
 
@@ -28,10 +27,6 @@ fn main() -> std::io::Result<()> {
     std::fs::write(&file, format!("{data:#}\n"))?;
     println!("wrote docs/data/quantities.json");
     Ok(())
-}
-
-fn of_degree(degree: usize) -> Options {
-    Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() }
 }
 
 /// What the two blocks are asked.

@@ -2,7 +2,7 @@
 
 use super::interval::Known;
 use super::lift::jumps;
-use super::pass::{Fields, Pass, pass};
+use super::pass::{Fields, Integrals, Pass, pass};
 use super::search::Search;
 use crate::bounds::{NodalValues, ROUNDING_PER_TERM, Sum, openings, support_work, work};
 use crate::dual::Response;
@@ -38,27 +38,44 @@ impl End {
 }
 
 impl Search<'_, '_> {
-    /// The bound of a pair; z is `lifted` times its sign, zero where there is none.
-    pub fn measured(&self, response: &Response, lifted: Option<(&Displacement, f64)>, sign: f64) -> End {
-        let Known { problem, dual, upper, square, pressure, .. } = self.known;
+    /// The bound of a pair; z is `lifted` times its sign.
+    pub fn measured(&self, response: &Response, (lifted, factor): (&Displacement, f64), sign: f64) -> End {
+        let Known { problem, dual, upper, .. } = self.known;
         let turned;
-        let lifted = match lifted {
-            Some((z, factor)) if factor < 0.0 => {
-                turned = z.negated();
-                Some(&turned)
-            }
-            other => other.map(|(z, _)| z),
+        let lifted = if factor < 0.0 {
+            turned = lifted.negated();
+            &turned
+        } else {
+            lifted
         };
         let fields =
             Fields { stress: &dual.stress, displacement: &upper.displacement, adjoint: &response.stress, lifted };
         let pass = pass(problem, self.functional, fields);
-        let slip = [0, 1].map(|i| ROUNDING_PER_TERM * pass.uncancelled[i].sqrt());
-        let distance = pass.square.max(0.0).sqrt() + slip[0];
+        let integrals = pass.pair;
+        self.bounded(response, Some(lifted), integrals, pass, sign)
+    }
+
+    /// The bound of a stress alone, z being zero; `pass` is that of a pair with this stress.
+    pub fn alone(&self, response: &Response, pass: &Pass, sign: f64) -> End {
+        self.bounded(response, None, pass.alone, pass.clone(), sign)
+    }
+
+    fn bounded(
+        &self,
+        response: &Response,
+        lifted: Option<&Displacement>,
+        integrals: Integrals,
+        pass: Pass,
+        sign: f64,
+    ) -> End {
+        let Known { problem, dual, upper, square, pressure, .. } = self.known;
+        let slip = [integrals.uncancelled, pass.uncancelled].map(|square| ROUNDING_PER_TERM * square.sqrt());
+        let distance = integrals.square.max(0.0).sqrt() + slip[0];
         let mut rounding = distance * slip[1] + slip[0] * pass.middle.max(0.0).sqrt() + response.remainder;
 
         let mut sum = Sum::default();
         sum.add(self.functional.constant);
-        sum.add(pass.work);
+        sum.add(integrals.work);
         if let Some(z) = lifted {
             let work = work(problem, z);
             sum.add(work.value());

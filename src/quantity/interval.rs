@@ -149,13 +149,14 @@ impl<'a> Known<'a> {
         match neutral {
             Err(reason) => reasons = [Some(reason.clone()), Some(reason)],
             Ok(neutral) => {
+                let begun = search.begin(neutral);
                 let none = Pass::default();
                 let mut found: [Option<End>; 2] = [None, None];
                 for (end, sign) in [(0, 1.0), (1, -1.0)] {
                     let best = match &found[0] {
                         // Without contact one pair serves both ends.
                         Some(lower) if self.pressure.is_empty() => Ok(search.turned(lower)),
-                        _ => search.best(&neutral, sign),
+                        _ => search.best(&begun, sign),
                     };
                     match best {
                         Ok(best) => {

@@ -21,8 +21,8 @@ pub struct Fields<'a> {
     pub displacement: &'a Displacement,
     /// σ̂.
     pub adjoint: &'a StressField,
-    /// z, nothing where it is zero.
-    pub lifted: Option<&'a Displacement>,
+    /// z.
+    pub lifted: &'a Displacement,
 }
 
 /// The integrals, per unit thickness.
@@ -30,16 +30,27 @@ pub struct Fields<'a> {
 pub struct Pass {
     /// ‖σ_z − σ(z)‖²_a on each triangle.
     pub squares: Vec<f64>,
-    /// Its sum.
-    pub square: f64,
-    /// ∫ (σ_z − σ(z)) : a m.
-    pub work: f64,
+    /// Those of the pair.
+    pub pair: Integrals,
+    /// The same with z = 0.
+    pub alone: Integrals,
     /// ‖σ̂‖²_a.
     pub balanced: f64,
     /// ‖m‖²_a.
     pub middle: f64,
-    /// The squares of the norms that σ_z − σ(z) and m would have if nothing cancelled in them.
-    pub uncancelled: [f64; 2],
+    /// The square of the norm that m would have if nothing cancelled in it.
+    pub uncancelled: f64,
+}
+
+/// What an adjoint pair has over all triangles.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Integrals {
+    /// ‖σ_z − σ(z)‖²_a.
+    pub square: f64,
+    /// ∫ (σ_z − σ(z)) : a m.
+    pub work: f64,
+    /// The square of the norm that σ_z − σ(z) would have if nothing cancelled in it.
+    pub uncancelled: f64,
 }
 
 /// Computes them.
@@ -56,21 +67,30 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
             strain[cut.triangle] = Strain::Part(*chi, cut);
         }
     }
-    let terms: Vec<[f64; 6]> = (0..count)
+    let terms: Vec<[f64; TERMS]> = (0..count)
         .into_par_iter()
         .with_min_len(128)
         .map(|t| triangle(problem, &materials[mesh.body[t]], t, strain[t], fields))
         .collect();
     let sum = |i: usize| terms.iter().map(|t| t[i]).collect::<Sum>().value();
+    let integrals = |first: usize| Integrals { square: sum(first), work: sum(first + 1), uncancelled: sum(first + 2) };
     Pass {
-        squares: terms.iter().map(|t| t[0]).collect(),
-        square: sum(0),
-        work: sum(1),
-        balanced: sum(2),
-        middle: sum(3),
-        uncancelled: [sum(4), sum(5)],
+        squares: terms.iter().map(|t| t[PAIR]).collect(),
+        pair: integrals(PAIR),
+        alone: integrals(ALONE),
+        balanced: sum(BALANCED),
+        middle: sum(MIDDLE),
+        uncancelled: sum(UNCANCELLED),
     }
 }
+
+/// Where the sums of a triangle stand: three of the pair, three without z, and one of each other kind.
+const PAIR: usize = 0;
+const ALONE: usize = 3;
+const BALANCED: usize = 6;
+const MIDDLE: usize = 7;
+const UNCANCELLED: usize = 8;
+const TERMS: usize = 9;
 
 /// χ on a triangle.
 #[derive(Clone, Copy)]
@@ -80,8 +100,14 @@ enum Strain<'a> {
     Part([f64; 3], &'a Cut),
 }
 
-/// The sums of one triangle, in the order of the fields of [`Pass`].
-fn triangle(problem: &Problem, material: &Compliance, t: usize, strain: Strain<'_>, fields: Fields<'_>) -> [f64; 6] {
+/// The sums of one triangle.
+fn triangle(
+    problem: &Problem,
+    material: &Compliance,
+    t: usize,
+    strain: Strain<'_>,
+    fields: Fields<'_>,
+) -> [f64; TERMS] {
     let Fields { stress, displacement, adjoint, lifted } = fields;
     let corners = problem.mesh.corners(t);
     let area = sub_area(corners);
@@ -89,57 +115,56 @@ fn triangle(problem: &Problem, material: &Compliance, t: usize, strain: Strain<'
         Strain::Whole(chi) => material.stress(chi),
         _ => [0.0; 3],
     };
-    let of_lifted = lifted.map_or(1, |z| z.degree(t));
-    let k = displacement.degree(t).max(of_lifted) - 1;
+    let k = displacement.degree(t).max(lifted.degree(t)) - 1;
     let rule = triangle_rule(2 * k.max(stress.degree(t)).max(adjoint.degree(t)));
     let (mut of_v, mut of_z) = (Strains::default(), Strains::default());
-    let mut out = [0.0; 6];
+    let mut out = [0.0; TERMS];
     let modulus = material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
     for sub in 0..3 {
         of_v.on(corners, displacement, t, sub);
-        if let Some(z) = lifted {
-            of_z.on(corners, z, t, sub);
-            out[4] += area * modulus * of_z.largest_spread().powi(2);
-        }
-        out[5] += area * modulus * of_v.largest_spread().powi(2);
+        of_z.on(corners, lifted, t, sub);
+        out[PAIR + 2] += area * modulus * of_z.largest_spread().powi(2);
+        out[UNCANCELLED] += area * modulus * of_v.largest_spread().powi(2);
         for (l, weight) in rule {
             let (balanced, lambda) = (adjoint.at(t, sub, *l), stress.at(t, sub, *l));
             let sigma = plus(balanced, initial);
-            let (e_v, e_z) = (of_v.at(*l), if lifted.is_some() { of_z.at(*l) } else { [0.0; 3] });
+            let (e_v, e_z) = (of_v.at(*l), of_z.at(*l));
             // In strains: a σ_z − e(z), and a m.
             let a_sigma = material.strain(sigma);
             let off = minus(a_sigma, e_z);
             let middle = plus(material.strain(lambda), e_v).map(|e| 0.5 * e);
             let by = weight * area;
-            out[0] += by * material.strain_product(off, off);
-            out[1] += by * material.strain_product(off, middle);
-            out[2] += by * material.product(balanced, balanced);
-            out[3] += by * material.strain_product(middle, middle);
-            out[4] += by * material.product(sigma, sigma);
-            out[5] += by * material.product(lambda, lambda);
+            for (first, strain) in [(PAIR, off), (ALONE, a_sigma)] {
+                out[first] += by * material.strain_product(strain, strain);
+                out[first + 1] += by * material.strain_product(strain, middle);
+                out[first + 2] += by * material.product(sigma, sigma);
+            }
+            out[BALANCED] += by * material.product(balanced, balanced);
+            out[MIDDLE] += by * material.strain_product(middle, middle);
+            out[UNCANCELLED] += by * material.product(lambda, lambda);
         }
     }
     if let Strain::Part(chi, cut) = strain {
         for piece in &cut.pieces {
             of_v.on(corners, displacement, t, piece.sub);
-            if let Some(z) = lifted {
-                of_z.on(corners, z, t, piece.sub);
-            }
+            of_z.on(corners, lifted, t, piece.sub);
             for (l, by) in points(piece, 2 * k.max(stress.degree(t)).max(adjoint.degree(t))) {
                 let sigma = adjoint.at(t, piece.sub, l);
-                let e_z = if lifted.is_some() { of_z.at(l) } else { [0.0; 3] };
-                let off = minus(material.strain(sigma), e_z);
+                let e_z = of_z.at(l);
+                let a_sigma = material.strain(sigma);
                 let middle = plus(material.strain(stress.at(t, piece.sub, l)), of_v.at(l)).map(|e| 0.5 * e);
                 // ‖A + cχ‖² = ‖A‖² + 2 A:χ + χ:cχ inside the region.
                 let own = material.strain_product(chi, chi);
-                out[0] += by * (2.0 * material.strain_product(off, chi) + own);
-                out[1] += by * material.strain_product(chi, middle);
-                out[4] += by.abs() * own;
+                for (first, strain) in [(PAIR, minus(a_sigma, e_z)), (ALONE, a_sigma)] {
+                    out[first] += by * (2.0 * material.strain_product(strain, chi) + own);
+                    out[first + 1] += by * material.strain_product(chi, middle);
+                    out[first + 2] += by.abs() * own;
+                }
             }
         }
     }
-    let shape = shape(corners);
-    [out[0], out[1], out[2], out[3], shape * out[4], shape * out[5]]
+    [PAIR + 2, ALONE + 2, UNCANCELLED].into_iter().for_each(|i| out[i] *= shape(corners));
+    out
 }
 
 /// Points of a piece, in the barycentric coordinates of its subtriangle, with weights for polynomials up to `degree`.

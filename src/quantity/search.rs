@@ -1,15 +1,14 @@
 //! The search for the best adjoint pair for one end of an interval.
 
-use std::cell::RefCell;
-
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
+use super::pass::Pass;
 use super::tried::Tried;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
 use crate::dual::modes::materials;
 use crate::dual::{Loaded, Response};
-use crate::element::{SideValues, StressField, triangle};
+use crate::element::{StressField, triangle};
 
 /// How often, and by what factor, the ratio is raised where it gives nothing.
 const MOST_RAISES: usize = 8;
@@ -34,66 +33,60 @@ pub(super) struct Search<'s, 'a> {
     pub loaded: &'s Loaded<'s>,
 }
 
+/// What the search for either end begins with.
+pub(super) struct Begun {
+    response: Response,
+    end: End,
+}
+
 impl Search<'_, '_> {
+    /// What the search for either end begins with: the response that is not bounded, and a displacement near to it.
+    pub fn begin(&self, neutral: Response) -> Begun {
+        let nearest = &self.known.nearest;
+        let sigma = self.stress(&neutral.stress, 1.0);
+        let nodes = nearest.start(&sigma, &neutral.moments);
+        let lifted = nearest.filled(&nodes, Pull { scene: 0.0, stress: Some(&sigma) });
+        let end = self.measured(&neutral, (&lifted, 1.0), 1.0);
+        Begun { response: neutral, end: End { nodes, ..end } }
+    }
+
     /// The best end for sign · Q that a few ratios give.
-    pub fn best(&self, neutral: &Response, sign: f64) -> Result<End, String> {
+    pub fn best(&self, begun: &Begun, sign: f64) -> Result<End, String> {
         let known = self.known;
-        let sigma = self.stress(&neutral.stress, sign);
-        let moments = if sign < 0.0 { negated(neutral.moments.clone()) } else { neutral.moments.clone() };
-        let mut start = known.nearest.start(&sigma, &moments);
-        let begun = known.nearest.filled(&start, Pull { scene: 0.0, stress: Some(&sigma) });
-        let begun = self.measured(neutral, Some((&begun, sign)), sign);
-        // Beyond that the stress of the scene leaves no digits of the adjoint one.
-        let most = HEAVIEST * (begun.pass.uncancelled[0] / begun.pass.middle).sqrt();
-        let most = if most > 0.0 { most } else { f64::INFINITY };
-        let mut best: Option<(End, Response)> = None;
-        let tried = RefCell::new(Tried::default());
-        let mut attempt = |ratio: f64, best: &mut Option<(End, Response)>| -> Result<(), String> {
-            let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
-            let response = known.respond(self.loaded, &floor, sign)?;
-            let end = self.end(&response, sign, [ratio, ratio.min(most)], start.clone())?;
-            if end.bound.is_finite() && end.ratio > 0.0 {
-                tried.borrow_mut().add([ratio, end.ratio], end.distance);
-            }
-            if best.as_ref().is_none_or(|(best, _)| end.bound > best.bound) {
-                start.clone_from(&end.nodes);
-                *best = Some((end, response));
-            }
-            Ok(())
-        };
-        // As if what is clipped, D² = c/ρ, had the size of the stresses; where D is far smaller than they, what costs nothing.
-        let [size, middle] = [begun.pass.balanced, begun.pass.middle].map(f64::sqrt);
-        let clipped = size / (2.0 * middle * known.square).cbrt();
-        let first = clipped.min(FAR * begun.distance / (2.0 * known.square.sqrt()));
-        let first = if first.is_finite() && first > 0.0 { first } else { 1.0 };
-        let mut reason = attempt(first, &mut best).err();
+        let mut tries = Tries::new(self, &begun.end, sign);
+        tries.add(self.first_ratio(&begun.end));
         // A body that contact alone holds needs a pressure to take off from.
-        let finite = |best: &Option<(End, Response)>| best.as_ref().is_some_and(|(end, _)| end.bound.is_finite());
-        let needed = known.needed(neutral, sign);
-        let mut ratio = first.max(needed);
+        let mut ratio = self.first_ratio(&begun.end).max(known.needed(&begun.response, sign));
         for _ in 0..MOST_RAISES {
-            if finite(&best) {
+            if tries.is_bounded() {
                 break;
             }
             ratio *= RAISE;
-            reason = attempt(ratio, &mut best).err().or(reason);
+            tries.add(ratio);
         }
         for _ in 0..MOST_TRIES {
-            let Some(next) = tried.borrow().next(known.square) else { break };
-            if let Err(why) = attempt(next, &mut best) {
-                reason = Some(why);
+            let Some(next) = tries.tried.next(known.square) else { break };
+            if !tries.add(next) {
                 break;
             }
         }
-        match best.filter(|(best, _)| best.bound.is_finite()) {
-            Some((best, response)) => {
-                let lift = self.functional.lift.as_ref().map(|lift| (lift, 1.0));
-                let first = self.measured(&response, lift, sign);
-                let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
-                Ok(End { first_order, ..best })
-            }
-            None => Err(reason.unwrap_or_else(unbounded)),
-        }
+        let reason = tries.reason.unwrap_or_else(unbounded);
+        let (best, response) = tries.best.filter(|(best, _)| best.bound.is_finite()).ok_or(reason)?;
+        let first = match &self.functional.lift {
+            Some(lift) => self.measured(&response, (lift, 1.0), sign),
+            None => self.alone(&response, &best.pass, sign),
+        };
+        let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
+        Ok(End { first_order, ..best })
+    }
+
+    /// As if what is clipped, D² = c/ρ, had the size of the stresses; where D is far smaller than they, what costs nothing.
+    fn first_ratio(&self, begun: &End) -> f64 {
+        let square = self.known.square;
+        let [size, middle] = [begun.pass.balanced, begun.pass.middle].map(f64::sqrt);
+        let clipped = size / (2.0 * middle * square).cbrt();
+        let first = clipped.min(FAR * begun.distance / (2.0 * square.sqrt()));
+        if first.is_finite() && first > 0.0 { first } else { 1.0 }
     }
 
     /// The other end of an interval without contact, from the pair of the lower one.
@@ -153,7 +146,63 @@ impl Search<'_, '_> {
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
         })?;
-        Ok(End { nodes, ..self.measured(response, Some((&z, sign)), sign) })
+        Ok(End { nodes, ..self.measured(response, (&z, sign), sign) })
+    }
+}
+
+/// The ratios that were tried for one end, and the best of what they gave.
+struct Tries<'t, 's, 'a> {
+    search: &'t Search<'s, 'a>,
+    sign: f64,
+    /// The largest weight of the stress of the scene: beyond it that leaves no digits of the adjoint one.
+    heaviest: f64,
+    /// What relaxing begins with.
+    start: NodalValues,
+    tried: Tried,
+    best: Option<(End, Response)>,
+    /// Why the last of them gave nothing.
+    reason: Option<String>,
+}
+
+impl<'t, 's, 'a> Tries<'t, 's, 'a> {
+    fn new(search: &'t Search<'s, 'a>, End { pass: Pass { pair, middle, .. }, nodes, .. }: &End, sign: f64) -> Self {
+        let start = nodes.scaled(sign);
+        let heaviest = HEAVIEST * (pair.uncancelled / middle).sqrt();
+        let heaviest = if heaviest > 0.0 { heaviest } else { f64::INFINITY };
+        Tries { search, sign, heaviest, start, tried: Tried::default(), best: None, reason: None }
+    }
+
+    fn is_bounded(&self) -> bool {
+        self.best.as_ref().is_some_and(|(end, _)| end.bound.is_finite())
+    }
+
+    /// Tries a ratio; `false` where there is no response to it.
+    fn add(&mut self, ratio: f64) -> bool {
+        match self.attempt(ratio) {
+            Ok((end, response)) => {
+                if end.bound.is_finite() && end.ratio > 0.0 {
+                    self.tried.add([ratio, end.ratio], end.distance);
+                }
+                if self.best.as_ref().is_none_or(|(best, _)| end.bound > best.bound) {
+                    self.start.clone_from(&end.nodes);
+                    self.best = Some((end, response));
+                }
+                true
+            }
+            Err(reason) => {
+                self.reason = Some(reason);
+                false
+            }
+        }
+    }
+
+    fn attempt(&self, ratio: f64) -> Result<(End, Response), String> {
+        let Search { known, loaded, .. } = self.search;
+        let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
+        let response = known.respond(loaded, &floor, self.sign)?;
+        let weights = [ratio, ratio.min(self.heaviest)];
+        let end = self.search.end(&response, self.sign, weights, self.start.clone())?;
+        Ok((end, response))
     }
 }
 
@@ -173,11 +222,6 @@ fn less(sigma: StressField, factor: f64, middle: &StressField) -> StressField {
         }
     }
     out
-}
-
-fn negated(mut moments: SideValues<[f64; 2]>) -> SideValues<[f64; 2]> {
-    moments.values_mut().as_flattened_mut().iter_mut().for_each(|m| *m = -*m);
-    moments
 }
 
 fn unbounded() -> String {

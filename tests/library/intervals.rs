@@ -3,20 +3,15 @@
 //! Random scenes by seed; set `HYPERCIRCLE_SCENES` for another number than a dozen.
 
 use crate::support::Blocks;
-use crate::support::asked::{everything, quantity};
+use crate::support::asked::{everything, of_degree, quantity};
 use crate::support::random::Random;
 use crate::support::scenes::sample;
 use hypercircle::dual::{Condensed, Options};
-use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::quantity::Kind;
 use hypercircle::scene::{Component, Extent, Holder, Region, Scene, Target};
 use hypercircle::stability::REGIMES;
 use hypercircle::study::{Answer, Certified, Goal, StudyError, Wanted, adapt, answers, certify_divided};
-
-fn of_degree(degree: usize) -> Options {
-    Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() }
-}
 
 fn solved(problem: Problem, options: &Options) -> (Certified, Vec<Answer>) {
     let certified = certify_divided(problem, &Condensed::default(), options).expect("an answer");

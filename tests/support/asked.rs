@@ -1,9 +1,16 @@
 //! Quantities that scenes are asked for.
 
+use hypercircle::dual::Options;
+use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::{Component, Extent, Quantity, Region, Target};
 
 use super::random::Random;
+
+/// Stresses of one degree, the factor kept for quantities.
+pub fn of_degree(degree: usize) -> Options {
+    Options { keep_factor: true, elements: Elements::Uniform(block(degree)), ..Options::default() }
+}
 
 pub fn quantity(name: &str, target: Target) -> Quantity {
     Quantity { name: name.to_string(), target }

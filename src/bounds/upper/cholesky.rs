@@ -50,6 +50,12 @@ pub fn solve(l: &[f64], x: &mut [f64]) {
         x[j + 1..].iter_mut().zip(&own[1..]).for_each(|(x, l)| *x -= value * l);
         rest = next;
     }
+    backward(l, x);
+}
+
+/// x = L⁻ᵀ x.
+pub fn backward(l: &[f64], x: &mut [f64]) {
+    let n = x.len();
     for j in (0..n).rev() {
         let own = &l[column(n, j)..][..n - j];
         let sum: f64 = own[1..].iter().zip(&x[j + 1..]).map(|(l, x)| l * x).sum();

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::cholesky;
+use super::model::Model;
 use super::nodes::{NodalValues, elevated};
 use super::split::Split;
 use super::stiffness::Pull;
@@ -15,10 +16,34 @@ use crate::problem::Problem;
 /// ν = ½ is not little.
 const STEPS: usize = 2;
 
-/// Completes values at the nodes to a displacement on the split triangles.
+/// Completes values at the nodes to a displacement on the split triangles, those inside to the last digit.
 pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacement {
-    let mesh = &problem.mesh;
     let materials = materials(problem);
+    let split = |t: usize, k: usize| pull.split(problem, t, k, &materials[problem.mesh.body[t]]);
+    completed(problem, field, |t, k, block| inside(k, &split(t, k), block))
+}
+
+/// Does the same with what `model` has kept, to the digits that one elimination leaves.
+pub fn fill_with(problem: &Problem, field: &NodalValues, model: &Model<'_>) -> Displacement {
+    completed(problem, field, |t, k, block| {
+        let (boundary, within) = block.as_flattened_mut().split_at_mut(6 * k);
+        let base = [boundary[0], boundary[1]];
+        let about = |c: usize| boundary[c] - base[c % 2];
+        let about: Vec<f64> = (0..boundary.len()).map(about).collect();
+        let found = model.elements[t].as_ref().and_then(|element| element.inside(&about));
+        // Where nothing could be eliminated there is no unique minimum, and any values are admissible.
+        let found = found.unwrap_or_else(|| vec![0.0; within.len()]);
+        within.iter_mut().zip(found).enumerate().for_each(|(c, (own, found))| *own = found + base[c % 2]);
+    })
+}
+
+/// The displacement with the sides of `field`, its inside set by `inside`, which is given triangle, degree and coefficients.
+fn completed(
+    problem: &Problem,
+    field: &NodalValues,
+    inside: impl Fn(usize, usize, &mut [[f64; 2]]) + Sync,
+) -> Displacement {
+    let mesh = &problem.mesh;
     let degree = |t: usize| field.nodes.triangle_degree(mesh, t);
     let mut displacement = Displacement::zeros((0..mesh.triangles.len()).map(degree));
     displacement.blocks_mut().into_par_iter().enumerate().with_min_len(32).for_each(|(t, block)| {
@@ -31,7 +56,7 @@ pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacem
                 block[n] = value;
             }
         }
-        inside(k, &pull.split(problem, t, k, &materials[mesh.body[t]]), block);
+        inside(t, k, block);
     });
     displacement
 }

@@ -75,24 +75,28 @@ impl<'a> Nearest<'a> {
         let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
         let candidates = starts.into_iter().map(admissible).collect::<Result<Vec<_>, NoUpperBound>>()?;
         let at_rest = admissible(NodalValues::zeros(self.nodes.clone()))?;
-        let mut kept = self.kept.borrow_mut();
-        match kept.as_mut() {
-            Some((model, _)) => model.with(&self.nodes, &rows, pull),
-            None => {
-                let model = Model::new(self.problem, &self.holds, &self.nodes, &rows, pull, true);
-                *kept = Some((model, Patches::new(self.problem, &self.nodes)));
-            }
-        }
-        let relaxed = match kept.as_mut() {
-            Some((model, patches)) => relax::relax(self.problem, model, patches, until, candidates, at_rest),
-            None => at_rest,
-        };
-        let relaxed = admissible(relaxed)?;
-        Ok((self.filled(&relaxed, pull), relaxed))
+        self.pulled(pull, &rows, |model, patches| {
+            let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest);
+            let relaxed = admissible(relaxed)?;
+            Ok((interior::fill_with(self.problem, &relaxed, model), relaxed))
+        })
     }
 
     /// Values at nodes as a displacement, the inside of triangles of least energy under `pull`.
     pub fn filled(&self, values: &NodalValues, pull: Pull<'_>) -> Displacement {
-        interior::fill(self.problem, values, pull)
+        self.pulled(pull, &self.rows, |model, _| interior::fill_with(self.problem, values, model))
+    }
+
+    /// What `ask` says of the energy under `pull` with jumps bounded by `rows`.
+    fn pulled<T>(&self, pull: Pull<'_>, rows: &[Vec<Row>], ask: impl FnOnce(&Model<'_>, &mut Patches) -> T) -> T {
+        let mut kept = self.kept.borrow_mut();
+        if let Some((model, _)) = kept.as_mut() {
+            model.with(&self.nodes, rows, pull);
+        }
+        let (model, patches) = kept.get_or_insert_with(|| {
+            let model = Model::new(self.problem, &self.holds, &self.nodes, rows, pull, true);
+            (model, Patches::new(self.problem, &self.nodes))
+        });
+        ask(model, patches)
     }
 }

@@ -103,6 +103,11 @@ impl NodalValues {
         NodalValues { values: vec![[0.0; 2]; nodes.count()], nodes }
     }
 
+    /// All times `factor`.
+    pub fn scaled(&self, factor: f64) -> Self {
+        NodalValues { nodes: self.nodes.clone(), values: self.values.iter().map(|v| v.map(|v| factor * v)).collect() }
+    }
+
     /// The quadratic displacement with these values at vertices and edge midpoints.
     pub fn quadratic(mesh: &Triangulation, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
         let nodes = Nodes::new(vertex.len(), std::iter::repeat_n(2, middle.len()));

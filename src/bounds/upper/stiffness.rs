@@ -30,6 +30,8 @@ struct Inside {
     factor: Box<[f64]>,
     /// L⁻¹ K_ib, row by row.
     across: Box<[f64]>,
+    /// L⁻¹ f_i.
+    load: Box<[f64]>,
 }
 
 impl Condensed {
@@ -55,12 +57,12 @@ impl Condensed {
     /// Puts the load of other forces, on all coefficients of the triangle, in the place of f; `false` where nothing was kept
     /// for that.
     fn reload(&mut self, forces: &[f64]) -> bool {
-        let Some(inside) = &self.inside else { return false };
+        let Some(inside) = &mut self.inside else { return false };
         let (boundary, within) = forces.split_at(6 * inside.k);
-        let mut y = within.to_vec();
-        cholesky::forward(&inside.factor, &mut y, within.len());
+        inside.load.copy_from_slice(within);
+        cholesky::forward(&inside.factor, &mut inside.load, within.len());
         let mut load = boundary.to_vec();
-        for (by, row) in y.iter().zip(inside.across.chunks_exact(boundary.len())) {
+        for (by, row) in inside.load.iter().zip(inside.across.chunks_exact(boundary.len())) {
             load.iter_mut().zip(row).for_each(|(f, v)| *f -= by * v);
         }
         let size = self.size;
@@ -74,6 +76,20 @@ impl Condensed {
             (0..2).for_each(|c| own[2 * a + c] += p * load[2 * i + c]);
         }
         true
+    }
+
+    /// The coefficients inside, x and y of each, that minimise the energy where those on the boundary are `boundary`, all in the
+    /// degree of the triangle; `None` where nothing was kept for that.
+    pub fn inside(&self, boundary: &[f64]) -> Option<Vec<f64>> {
+        let Inside { factor, across, load, .. } = self.inside.as_deref()?;
+        let rows = across.chunks_exact(boundary.len());
+        let mut x: Vec<f64> = load
+            .iter()
+            .zip(rows)
+            .map(|(f, row)| f - row.iter().zip(boundary).map(|(k, u)| k * u).sum::<f64>())
+            .collect();
+        cholesky::backward(factor, &mut x);
+        Some(x)
     }
 
     /// uᵀKv.
@@ -218,6 +234,7 @@ fn eliminated(split: &Split, degrees: [usize; 3], keep: bool) -> Option<Condense
         degrees,
         factor: factor.as_slice().into(),
         across: rows().flat_map(|row| &row[..size]).copied().collect(),
+        load: rows().map(|row| row[size]).collect(),
     };
     Some(Condensed { size, data: data.into(), inside: keep.then(|| Box::new(kept())) })
 }
