@@ -195,7 +195,11 @@ impl Session {
         let triangles = problem.mesh.triangles.len();
         if let Some(degrees) = solve.degrees.as_ref().filter(|degrees| degrees.len() != triangles) {
             let what = format!("{} degrees for {triangles} triangles", degrees.len());
-            return Err(CliError::stopped(Exit::BadInput, what, "give one degree for each triangle of the mesh that is solved on"));
+            return Err(CliError::stopped(
+                Exit::BadInput,
+                what,
+                "give one degree for each triangle of the mesh that is solved on",
+            ));
         }
         problem.notes.extend(coarsened.map(|size| Note {
             weakens_guarantee: false,
@@ -239,9 +243,7 @@ impl Session {
                 });
                 CliError::stopped(Exit::Failed, message, remedy)
             }
-            StudyError::Dual(DualError::Infeasible { .. }) => {
-                CliError::stopped(Exit::NoEquilibrium, message, HOLD)
-            }
+            StudyError::Dual(DualError::Infeasible { .. }) => CliError::stopped(Exit::NoEquilibrium, message, HOLD),
             StudyError::Dual(DualError::NotInstalled(_)) => CliError::stopped(Exit::NotInstalled, message, ""),
             StudyError::Dual(DualError::TooLarge { .. }) => CliError::stopped(Exit::Failed, message, COARSER),
             StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {

@@ -7,8 +7,8 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use pyo3::PyClass;
-use pyo3::pyclass::boolean_struct::True;
 use pyo3::prelude::*;
+use pyo3::pyclass::boolean_struct::True;
 
 use super::errors::{fault, raised};
 use crate::cli::Exit;

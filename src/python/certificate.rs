@@ -64,7 +64,9 @@ impl Claims<'_, '_> {
             _ => return Err(fault("a field is points, triangles and displacement; give all three")),
         };
         if arrays.is_some() == self.file.is_some() && (arrays.is_some() || self.values.is_none()) {
-            return Err(fault("one thing has to be certified; give points, triangles and displacement, or a file, or values"));
+            return Err(fault(
+                "one thing has to be certified; give points, triangles and displacement, or a file, or values",
+            ));
         }
         let line = how
             .path("displacement", self.file.as_deref())

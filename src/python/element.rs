@@ -22,8 +22,7 @@ fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {
 /// Modes of the block element on a counter-clockwise triangle: `traction` 12 × 9, `stress` 9 × 3 × 9 (node, component,
 /// mode), `particular_traction` 12, `particular_stress` 9 × 3, `particular_energy`.
 ///
-/// # Errors
-/// `InputError` for a triangle or a material that is none.
+/// Raises `InputError` for a triangle or a material that is none.
 #[pyfunction]
 #[pyo3(signature = (corners, young, poisson, kinematics, body_force = [0.0, 0.0]))]
 pub fn element<'py>(
@@ -60,8 +59,7 @@ pub fn element<'py>(
 
 /// The flexibility f of (3.2), 7 × 7, of a triangle about its centre of gravity, for the constants α, β, γ.
 ///
-/// # Errors
-/// `InputError` for a triangle that is none.
+/// Raises `InputError` for a triangle that is none.
 #[pyfunction]
 pub fn flexibility(corners: [[f64; 2]; 3], constants: [f64; 3]) -> PyResult<Vec<Vec<f64>>> {
     let f = subtriangle::flexibility(&Moments::new(proper(corners)?), constants);
@@ -70,8 +68,7 @@ pub fn flexibility(corners: [[f64; 2]; 3], constants: [f64; 3]) -> PyResult<Vec<
 
 /// The side matrix C of (3.4), 4 × 7, of the side from `a` to `b`.
 ///
-/// # Errors
-/// `InputError` where the two points are one.
+/// Raises `InputError` where the two points are one.
 #[pyfunction]
 pub fn side_map(a: [f64; 2], b: [f64; 2]) -> PyResult<Vec<Vec<f64>>> {
     let length = (b[0] - a[0]).hypot(b[1] - a[1]);

@@ -73,7 +73,7 @@ fn refused(error: clap::Error) -> PyErr {
     };
     let known = match error.get(ContextKind::ValidValue) {
         Some(ContextValue::Strings(known)) if !known.is_empty() => format!("use one of {}", known.join(", ")),
-        _ => String::new(),
+        _ => "give another value".to_string(),
     };
     let name = text(ContextKind::InvalidArg).map(|argument| {
         let end = argument.find([' ', '=']).unwrap_or(argument.len());

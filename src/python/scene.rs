@@ -13,16 +13,17 @@ use super::kinematics::name_of;
 use super::line::Line;
 use super::problem::{body_entry, list, problem_entry};
 use super::solution::Solution;
-use crate::cli::solve::{Args, solved};
+use crate::cli::CliError;
 use crate::cli::session::Session;
+use crate::cli::solve::{Args, solved};
+use crate::element::MAX_DEGREE;
 use crate::problem::Problem;
 use crate::scene;
 
 /// A scene: bodies, supports, tractions, contacts, and what it is solved for. `Scene(path)` reads a TOML file,
 /// `Scene.from_text(text)` a text.
 ///
-/// # Errors
-/// `InputError` with the place in the file, what was found there, and what to do.
+/// Raises `InputError` with the place in the file, what was found there, and what to do.
 #[pyclass(frozen, module = "hypercircle")]
 pub struct Scene {
     of: Arc<scene::Scene>,
@@ -32,15 +33,16 @@ pub struct Scene {
 impl Scene {
     #[new]
     fn new(path: PathBuf) -> PyResult<Self> {
-        Ok(Scene { of: Arc::new(scene::Scene::read(&path).map_err(crate::cli::CliError::from)?) })
+        Ok(Scene { of: Arc::new(scene::Scene::read(&path).map_err(CliError::from)?) })
     }
 
-    /// A scene from the text of its TOML file. Messages call it `name`; relative paths of mesh files start in `folder`.
+    /// A scene from the text of its TOML file. Messages call it `name`; relative paths of mesh files start in `folder`, the
+    /// current one where it is missing.
     #[classmethod]
-    #[pyo3(signature = (text, name = "scene", folder = PathBuf::from(".")))]
-    fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: PathBuf) -> PyResult<Self> {
-        let path = folder.join(format!("{name}.toml"));
-        Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(crate::cli::CliError::from)?) })
+    #[pyo3(signature = (text, name = "scene", folder = None))]
+    fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
+        let path = folder.unwrap_or_default().join(format!("{name}.toml"));
+        Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from)?) })
     }
 
     /// Its name, that of the file.
@@ -104,8 +106,7 @@ impl Scene {
     /// triangle; `tolerance_of` maps quantities to tolerances; `max_memory` is text such as `2G`. With `out`, the report goes into
     /// that folder. Other Python threads run meanwhile.
     ///
-    /// # Errors
-    /// `InputError`, `InfeasibleError` where the scene has no equilibrium, `SolveError` where a solver gives no answer.
+    /// Raises `InputError`, `InfeasibleError` where the scene has no equilibrium, `SolveError` where a solver gives no answer.
     #[pyo3(signature = (*, method = "condensed", degree = None, degrees = None, refine = 0, tolerance = None, tolerance_of = None,
         adapt = None, max_triangles = None, max_seconds = None, max_memory = None, threads = 1, out = None))]
     #[allow(clippy::too_many_arguments)]
@@ -151,8 +152,7 @@ impl Scene {
     /// `allow` checks to tolerances. `tolerance` is the largest relative error that passes. With `out`, the report goes into that
     /// folder.
     ///
-    /// # Errors
-    /// As `solve`.
+    /// Raises as `solve` does.
     #[pyo3(signature = (points = None, triangles = None, displacement = None, *, file = None, field = None, name = "displacement",
         solution = false, values = None, allow = None, tolerance = None, method = "condensed", degree = None, max_triangles = None,
         max_seconds = None, max_memory = None, threads = 1, out = None))]
@@ -194,8 +194,7 @@ impl Scene {
     /// `findings`, `explained` (part of the squared residual) and `tried`; `None` where it is one. The same as
     /// `certify(points, triangles, displacement, solution=True).diagnosis`.
     ///
-    /// # Errors
-    /// As `solve`.
+    /// Raises as `solve` does.
     fn diagnose<'py>(
         &self,
         py: Python<'py>,
@@ -209,7 +208,8 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Scene {}: {} bodies, {} contacts>", self.of.name, self.of.bodies.len(), self.of.contacts.len())
+        let names: Vec<&str> = self.of.bodies.iter().map(|body| body.name.as_str()).collect();
+        format!("<Scene {}: bodies {}; contacts {}>", self.of.name, names.join(", "), self.contacts().join(", "))
     }
 }
 
@@ -237,8 +237,8 @@ fn each_known(degrees: &[i64], args: &Args) -> PyResult<Vec<u8>> {
         return Err(fault("degrees belong to one mesh, and a tolerance makes others; give degree, or no tolerance"));
     }
     let known = |p: &i64| match u8::try_from(*p) {
-        Ok(p) if (1..=crate::element::MAX_DEGREE).contains(&p.into()) => Ok(p),
-        _ => Err(fault(format!("degrees: {p} is not in 1..={}; use one of these", crate::element::MAX_DEGREE))),
+        Ok(p) if (1..=MAX_DEGREE).contains(&p.into()) => Ok(p),
+        _ => Err(fault(format!("degrees: {p} is not in 1..={MAX_DEGREE}; use one of these"))),
     };
     degrees.iter().map(known).collect()
 }

@@ -256,8 +256,7 @@ impl Solution {
     /// Holds a displacement field on the mesh of this solution, or values of quantities, against its bounds: as
     /// `Scene.certify`, without solving again.
     ///
-    /// # Errors
-    /// As `Scene.solve`.
+    /// Raises as `Scene.solve` does.
     #[pyo3(signature = (points = None, triangles = None, displacement = None, *, file = None, field = None, name = "displacement",
         solution = false, values = None, allow = None, tolerance = None, out = None))]
     #[allow(clippy::too_many_arguments)]
@@ -288,6 +287,6 @@ impl Solution {
     fn __repr__(&self) -> String {
         let percent = 100.0 * self.relative_error_bound();
         let (name, lower, upper) = (&self.session.scene.name, self.lower(), self.upper());
-        format!("<Solution of {name}: energy within {lower:.6e} … {upper:.6e}, guaranteed error {percent:.3} %>")
+        format!("<Solution of {name}: energy in [{lower:?}, {upper:?}], guaranteed error {percent:.3} %>")
     }
 }

@@ -49,8 +49,7 @@ fn called(
 /// `waive` and `claim` name properties that the element does not claim, and that it claims beside the usual ones. With `out`,
 /// report.json, report.html and junit.xml go into that folder. `passed` is `None` for a property that was not made.
 ///
-/// # Errors
-/// `InputError` for a matrix, nodes or a material that are none.
+/// Raises `InputError` for a matrix, nodes or a material that are none.
 #[pyfunction]
 #[pyo3(signature = (element, nodes, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
     precision = None, waive = Vec::new(), claim = Vec::new(), name = "element", out = None))]
