@@ -11,7 +11,7 @@ use super::aside::{aside, threads};
 use super::errors::fault;
 use super::line::Line;
 use crate::cli::certify::{Args, judged, read, stress_side};
-use crate::cli::session::{DualRun, Session};
+use crate::cli::session::{DualRun, Session, refuse_unknown};
 use crate::cli::{CliError, Exit};
 use crate::report;
 use crate::scene::Scene;
@@ -100,7 +100,7 @@ fn held(
     let Claimed { args, arrays } = claimed;
     let session = Session::new("certify", scene.clone(), count, &args.solve, true)?;
     let given = args.values.all()?;
-    session.refuse_unknown_quantities(given.iter().map(|value| value.name.as_str()))?;
+    refuse_unknown(scene, given.iter().map(|value| value.name.as_str()))?;
     let folder = args.run.out.is_some().then(|| args.run.report_folder(scene)).transpose()?;
     let field = match arrays {
         Some((name, arrays)) => Some(ForeignField::of_arrays(&name, arrays).map_err(refused)?),

@@ -3,7 +3,6 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use super::kinematics::name_of;
 use crate::problem::{Condition, Interface, Problem};
 use crate::scene::Body;
 
@@ -14,7 +13,7 @@ pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'
     let numbers = |rows: Vec<[f64; 2]>| super::arrays::made(py, rows);
     let indices = |rows: Bound<'py, PyAny>| numpy.call_method1("asarray", (rows, "intp"));
     let out = PyDict::new(py);
-    out.set_item("kinematics", name_of(scene.kinematics))?;
+    out.set_item("kinematics", scene.kinematics.name())?;
     out.set_item("thickness", scene.thickness)?;
     out.set_item("bodies", list(py, &scene.bodies, body_entry)?)?;
     out.set_item("points", numbers(mesh.points.iter().map(|p| scene.as_written(*p)).collect())?)?;

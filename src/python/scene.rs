@@ -9,7 +9,6 @@ use pyo3::types::{PyDict, PyList, PyType};
 use super::aside::{aside, threads};
 use super::certificate::{Certificate, Claims, certify};
 use super::errors::fault;
-use super::kinematics::name_of;
 use super::line::Line;
 use super::problem::{body_entry, list, problem_entry};
 use super::solution::Solution;
@@ -66,7 +65,7 @@ impl Scene {
     /// `plane-strain` or `plane-stress`.
     #[getter]
     fn kinematics(&self) -> &'static str {
-        name_of(self.of.kinematics)
+        self.of.kinematics.name()
     }
 
     /// The thickness, by which energies and forces are multiplied.

@@ -99,7 +99,7 @@ pub fn workbench<'py>(
     let usual = made.precision;
     let made = made.with_precision(precision.filter(|p| *p > 0.0).unwrap_or(usual));
     // The formula comes back for the interpreter.
-    let report = py.detach(|| Report::of_displacement(&made, &Options { waived: waive, claimed: claim }));
+    let report = py.detach(move || Report::of_displacement(&made, &Options { waived: waive, claimed: claim }));
     if let Some(out) = out {
         report.write(&out).map_err(fault)?;
     }
