@@ -18,8 +18,8 @@
 //!
 //! Data travel in the order of the modules: [`process`] and [`budget`] → [`scene`] → [`mesh`] → [`problem`] → [`statics`] →
 //! [`element`] → [`dual`] →
-//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`diff`] and [`study`] → [`workbench`] → [`measure`] → [`chart`] and [`stability`] → [`job`], with [`cli`] as a
-//! thin door.
+//! [`bounds`] → [`primal`] → [`compare`] → [`report`] → [`diff`] and [`study`] → [`workbench`] → [`measure`] → [`chart`] and [`stability`] → [`job`], with [`cli`], and
+//! the Python package, as thin doors.
 //!
 //! ```
 //! use std::path::Path;

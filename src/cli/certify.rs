@@ -9,14 +9,14 @@ use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
-use super::session::{Session, refuse_unknown};
+use super::session::{DualRun, Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
 use crate::compare::{Candidate, Comparison, compare};
 use crate::problem::Note;
 use crate::process::limit;
 use crate::study::{
-    self, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
+    self, FieldError, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
 };
 
 /// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
@@ -84,30 +84,62 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
     let given = args.values.all()?;
     refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
-    if args.displacement.is_empty() {
-        return values_alone(args, &session, &given);
+    let has_field = !args.displacement.is_empty();
+    if has_field {
+        refuse_refinement(&args.solve)?;
     }
-    refuse_refinement(&args.solve)?;
     let folder = args.run.report_folder(&session.scene)?;
-    let refused = |e: crate::study::FieldError| CliError::stopped(Exit::BadInput, e.to_string(), "");
-    session.progress.phase("reading the displacement");
     let start = Instant::now();
-    let read = |file: &PathBuf| {
-        ForeignField::read(file, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)
-    };
-    let mut parts = args.displacement.iter().map(read);
-    let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
-    let field = parts.try_fold(first, |field, part| Ok::<_, CliError>(field.and(part?)))?;
-    args.judge.refuse_early(&session.scene, &[&field.name()], &args.job)?;
+    let field = if has_field { Some(read(args, &session)?) } else { None };
     let reading = start.elapsed().as_secs_f64();
-    // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.
-    let on_its_mesh = SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..args.solve.clone() };
-    let run = session.solve(&on_its_mesh, &args.limits, &folder)?;
+    let names: Vec<String> = field.iter().map(ForeignField::name).collect();
+    args.judge.refuse_early(&session.scene, &names.iter().map(String::as_str).collect::<Vec<_>>(), &args.job)?;
+    let run = session.solve(&stress_side(args, has_field), &args.limits, Some(&folder))?;
+    let (comparison, particulars) = judged(args, &session, &run, field.as_ref(), &given, reading)?;
+    session.conclude(&run, &comparison, particulars, &folder)
+}
+
+/// How the stress side is solved. A field belongs to the mesh as given: what is refined is the stress side alone, afterwards.
+pub fn stress_side(args: &Args, has_field: bool) -> SolveOptions {
+    match has_field {
+        true => SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..args.solve.clone() },
+        false => args.solve.clone(),
+    }
+}
+
+/// Holds `field`, which is a displacement on the mesh of `run`, and `given` values against the bounds of `run`. The field took
+/// `reading` seconds.
+///
+/// # Errors
+/// The field does not fit the mesh, an option names what is not there, or no answer can be given.
+pub fn judged(
+    args: &Args,
+    session: &Session,
+    run: &DualRun,
+    field: Option<&ForeignField>,
+    given: &[GivenValue],
+    reading: f64,
+) -> Result<(Comparison, Particulars), CliError> {
+    match field {
+        Some(field) => held(args, session, run, field, given, reading),
+        None => values_held(args, session, run, given),
+    }
+}
+
+/// A field, and values beside it.
+fn held(
+    args: &Args,
+    session: &Session,
+    run: &DualRun,
+    field: &ForeignField,
+    given: &[GivenValue],
+    reading: f64,
+) -> Result<(Comparison, Particulars), CliError> {
     let certified = &run.certified;
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
     if args.solution {
-        refuse_inserted(&candidate, &field)?;
+        refuse_inserted(&candidate, field)?;
     }
     session.progress.phase("comparing");
     // A claimed solution knows the digits of its file.
@@ -128,7 +160,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         comparison.checks.extend(claim.checks.iter().cloned());
         claimed = Some(claim);
     }
-    let (sharpened, enough) = session.sharpen(&run, &mut comparison, &args.solve, &args.limits, &allow)?;
+    let (sharpened, enough) = session.sharpen(run, &mut comparison, &args.solve, &args.limits, &allow)?;
     if let Some(wanted) = args.solve.tolerance {
         let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
         comparison.checks.push(tolerance_check(sharpest, &comparison, wanted, &allow));
@@ -138,7 +170,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let answers = session.answers(sharpest, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Exact, &allow));
-    comparison.checks.extend(value_checks(&answers, &given, &allow));
+    comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
     comparison.checks.extend(against);
@@ -154,7 +186,25 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         failure: None,
         baseline,
     };
-    session.conclude(run, &comparison, particulars, &folder)
+    Ok((comparison, particulars))
+}
+
+/// The field in the files of the command line.
+///
+/// # Errors
+/// One cannot be read.
+pub fn read(args: &Args, session: &Session) -> Result<ForeignField, CliError> {
+    session.progress.phase("reading the displacement");
+    let read = |file: &PathBuf| {
+        ForeignField::read(file, args.field.as_deref(), limit(args.solve.reading_seconds)).map_err(refused)
+    };
+    let mut parts = args.displacement.iter().map(read);
+    let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
+    parts.try_fold(first, |field, part| Ok(field.and(part?)))
+}
+
+fn refused(error: FieldError) -> CliError {
+    CliError::stopped(Exit::BadInput, error.to_string(), "")
 }
 
 /// The displacements of one scene among several: the files that were given, or those of the scene's name in the folders.
@@ -191,11 +241,13 @@ fn of_scene(folder: &Path, scene: &Path) -> Result<PathBuf, CliError> {
     ))
 }
 
-/// Holds values against the intervals where there is no field.
-fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<Exit, CliError> {
-    let folder = args.run.report_folder(&session.scene)?;
-    args.judge.refuse_early(&session.scene, &[], &args.job)?;
-    let run = session.solve(&args.solve, &args.limits, &folder)?;
+/// Values without a field.
+fn values_held(
+    args: &Args,
+    session: &Session,
+    run: &DualRun,
+    given: &[GivenValue],
+) -> Result<(Comparison, Particulars), CliError> {
     let (certified, allow) = (&run.certified, args.judge.allowances());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let answers = session.answers(certified, &args.solve);
@@ -204,7 +256,7 @@ fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<
     args.judge.refuse_unknown(&allow, &comparison.checks, false, &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
     comparison.checks.extend(against);
-    session.conclude(run, &comparison, Particulars { answers, baseline, ..Particulars::default() }, &folder)
+    Ok((comparison, Particulars { answers, baseline, ..Particulars::default() }))
 }
 
 /// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.

@@ -43,12 +43,27 @@ impl Session {
     /// The files cannot be written.
     pub fn conclude(
         &self,
-        run: DualRun,
+        run: &DualRun,
         comparison: &Comparison,
         particulars: Particulars,
         folder: &Path,
     ) -> Result<Exit, CliError> {
-        let DualRun { certified, mut history, stopped } = run;
+        self.with_dossier(run, comparison, particulars, |mut dossier| {
+            self.sign(&mut dossier);
+            self.close(&dossier, folder)
+        })
+    }
+
+    /// What `of` makes of the dossier of a run with its comparison.
+    pub fn with_dossier<T>(
+        &self,
+        run: &DualRun,
+        comparison: &Comparison,
+        particulars: Particulars,
+        of: impl FnOnce(Dossier<'_>) -> T,
+    ) -> T {
+        let certified = &run.certified;
+        let mut history = run.history.clone();
         let Particulars {
             sharpened,
             enough,
@@ -68,12 +83,12 @@ impl Session {
             certified
         });
         seconds.push(("total", self.start.elapsed().as_secs_f64()));
-        let stopped = stopped.map(|text| Note { weakens_guarantee: false, text });
-        let fields = Fields::new(&certified, comparison, &answers).with_residual(residual);
+        let stopped = run.stopped.clone().map(|text| Note { weakens_guarantee: false, text });
+        let fields = Fields::new(certified, comparison, &answers).with_residual(residual);
         let mut dossier = assemble(
             Findings {
                 command: self.command,
-                certified: &certified,
+                certified,
                 comparison,
                 answers: &answers,
                 finer: finer.as_ref(),
@@ -90,8 +105,7 @@ impl Session {
             &fields,
         );
         dossier.report.baseline = baseline;
-        self.sign(&mut dossier);
-        self.close(&dossier, folder)
+        of(dossier)
     }
 
     /// Gives the report the identifier of this run, where one was given.

@@ -6,7 +6,7 @@
 pub mod certify;
 pub mod chart;
 pub mod ci;
-mod conclude;
+pub mod conclude;
 pub mod diff;
 pub mod element;
 pub mod error;

@@ -73,24 +73,32 @@ impl Session {
         }
         let scene = Scene::read(scene)?;
         let threads = threads::start(solve.threads);
-        let budget = enough(solve.memory.budget(threads))?;
-        Ok(Session {
-            scene,
-            progress: Progress::new(quiet),
-            start,
-            command,
-            quiet,
-            run: job.part.clone(),
-            threads,
-            budget,
-        })
+        let session = Session::new(command, scene, threads, solve, quiet)?;
+        Ok(Session { start, run: job.part.clone(), ..session })
     }
 
-    /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`.
+    /// Begins with a scene that was read, for a caller that has `threads` threads of its own.
+    ///
+    /// # Errors
+    /// Less memory may be taken than any run needs.
+    pub fn new(
+        command: &'static str,
+        scene: Scene,
+        threads: usize,
+        solve: &SolveOptions,
+        quiet: bool,
+    ) -> Result<Self, CliError> {
+        let budget = enough(solve.memory.budget(threads))?;
+        let (start, progress) = (Instant::now(), Progress::new(quiet));
+        Ok(Session { scene, progress, start, command, quiet, run: None, threads, budget })
+    }
+
+    /// Meshes the scene and solves the dual problem; a scene without equilibrium is reported into `folder`, where there is
+    /// one.
     ///
     /// # Errors
     /// Bad input, a solver that failed, or no equilibrium.
-    pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: &Path) -> Result<DualRun, CliError> {
+    pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: Option<&Path>) -> Result<DualRun, CliError> {
         refuse_unknown(&self.scene, solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.progress.phase("reading the mesh");
         let method = dual_method(solve);
@@ -150,7 +158,10 @@ impl Session {
     fn options(&self, solve: &SolveOptions) -> Options {
         let adaptive = solve.is_adaptive() && solve.adapt() == Adapt::Hp;
         let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
-        let elements = Elements::Uniform(block(degree as usize));
+        let elements = match &solve.degrees {
+            Some(degrees) => Elements::Blocks(degrees.as_slice().into()),
+            None => Elements::Uniform(block(degree as usize)),
+        };
         let keep_factor = !self.scene.quantities.is_empty();
         Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }
     }
@@ -181,6 +192,15 @@ impl Session {
             admission.admit(size, None).map_err(|excess| too_fine(&self.scene, &cause, size.triangles, excess))?;
         }
         let mut problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
+        let triangles = problem.mesh.triangles.len();
+        if let Some(degrees) = solve.degrees.as_ref().filter(|degrees| degrees.len() != triangles) {
+            let what = format!("{} degrees for {triangles} triangles", degrees.len());
+            return Err(CliError::stopped(
+                Exit::BadInput,
+                what,
+                "give one degree for each triangle of the mesh that is solved on",
+            ));
+        }
         problem.notes.extend(coarsened.map(|size| Note {
             weakens_guarantee: false,
             text: format!(
@@ -191,10 +211,13 @@ impl Session {
         Ok(problem)
     }
 
-    fn refuse(&self, error: StudyError, folder: &Path) -> CliError {
+    fn refuse(&self, error: StudyError, folder: Option<&Path>) -> CliError {
+        /// What to do where nothing holds a body.
+        const HOLD: &str = "hold the body with a support, or change the load";
         let message = format!("{}: {error}", self.scene.path.display());
         match error {
             StudyError::NoEquilibrium { sentence, motion, problem, .. } => {
+                let Some(folder) = folder else { return CliError::stopped(Exit::NoEquilibrium, message, HOLD) };
                 let mut dossier = study::infeasible(self.command, &problem, &sentence, motion, self.threads);
                 self.sign(&mut dossier);
                 ci::report(&dossier.report, &self.scene.path);
@@ -220,9 +243,7 @@ impl Session {
                 });
                 CliError::stopped(Exit::Failed, message, remedy)
             }
-            StudyError::Dual(DualError::Infeasible { .. }) => {
-                CliError::stopped(Exit::NoEquilibrium, message, "hold the body with a support, or change the load")
-            }
+            StudyError::Dual(DualError::Infeasible { .. }) => CliError::stopped(Exit::NoEquilibrium, message, HOLD),
             StudyError::Dual(DualError::NotInstalled(_)) => CliError::stopped(Exit::NotInstalled, message, ""),
             StudyError::Dual(DualError::TooLarge { .. }) => CliError::stopped(Exit::Failed, message, COARSER),
             StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {

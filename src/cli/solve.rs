@@ -6,10 +6,10 @@ use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{Limits, RunOptions, SolveOptions};
-use super::session::Session;
+use super::session::{DualRun, Session};
 use super::{CliError, Exit};
-use crate::compare::{Allowances, compare};
-use crate::study::{tolerance_check, wanted_checks};
+use crate::compare::{Allowances, Comparison, compare};
+use crate::study::{Answer, tolerance_check, wanted_checks};
 
 /// Options of `solve`.
 #[derive(Debug, clap::Args)]
@@ -54,12 +54,31 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("solve", scene, &args.solve, args.run.quiet, &args.job)?;
     let folder = args.run.report_folder(&session.scene)?;
-    let run = session.solve(&args.solve, &args.limits, &folder)?;
+    let Solved { run, comparison, answers } = solved(args, &session, Some(&folder))?;
+    session.conclude(&run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
+}
+
+/// A solved scene.
+pub struct Solved {
+    /// Problem, solution and bracket.
+    pub run: DualRun,
+    /// The checks of the bracket, and of what was asked for.
+    pub comparison: Comparison,
+    /// The intervals of the quantities.
+    pub answers: Vec<Answer>,
+}
+
+/// Solves the scene of `session`; one without equilibrium is reported into `folder`, where there is one.
+///
+/// # Errors
+/// Bad input, a solver that failed, or no equilibrium.
+pub fn solved(args: &Args, session: &Session, folder: Option<&Path>) -> Result<Solved, CliError> {
+    let run = session.solve(&args.solve, &args.limits, folder)?;
     let (certified, allow) = (&run.certified, Allowances::default());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
     let answers = session.answers(certified, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    session.conclude(run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
+    Ok(Solved { run, comparison, answers })
 }

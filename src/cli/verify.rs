@@ -78,7 +78,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, &FIELDS, &args.job)?;
-    let run = session.solve(&args.solve, &args.limits, &folder)?;
+    let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
     let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
 
@@ -135,7 +135,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         baseline,
         ..Particulars::default()
     };
-    let exit = session.conclude(run, &comparison, particulars, &folder)?;
+    let exit = session.conclude(&run, &comparison, particulars, &folder)?;
     match failure {
         None => Ok(exit),
         Some(error) => {

@@ -70,6 +70,16 @@ impl StressField {
     }
 
     /// All values, triangle by triangle.
+    pub fn values(&self) -> &[[f64; 3]] {
+        &self.values
+    }
+
+    /// The first value of each triangle, and the number of all.
+    pub fn starts(&self) -> &[usize] {
+        &self.start
+    }
+
+    /// All values, triangle by triangle, to change.
     pub fn values_mut(&mut self) -> &mut [[f64; 3]] {
         &mut self.values
     }
@@ -138,6 +148,13 @@ fn from_equispaced(p: usize) -> &'static [f64] {
 /// Number of nodes of the principal lattice of degree p on a triangle.
 pub fn lattice_len(degree: usize) -> usize {
     (degree + 1) * (degree + 2) / 2
+}
+
+/// Barycentric coordinates of the nodes of the principal lattice of degree p, in the order of [`StressField`]: row by row away
+/// from the first corner.
+pub fn lattice(p: usize) -> impl Iterator<Item = [f64; 3]> {
+    let node = move |i: usize, j: usize| [i, j, p - i - j].map(|n| n as f64 / p as f64);
+    (0..=p).rev().flat_map(move |i| (0..=p - i).rev().map(move |j| node(i, j)))
 }
 
 /// Lagrange shape functions of the principal lattice, as (node, value); for degree 1 node k is corner k.

@@ -28,7 +28,7 @@ pub use block::Block;
 pub use compliance::Compliance;
 pub use displacement::Displacement;
 pub use elements::Elements;
-pub use field::{StressField, lattice_len};
+pub use field::{StressField, lattice, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use side_values::{SideValues, parts, starts};
 

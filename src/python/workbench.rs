@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use nalgebra::DMatrix;
 use pyo3::prelude::*;
 
-use super::{fault, kinematics_named};
+use super::errors::fault;
+use super::kinematics::kinematics_named;
 use crate::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
 /// Rows of numbers as a matrix.
@@ -48,8 +49,7 @@ fn called(
 /// `waive` and `claim` name properties that the element does not claim, and that it claims beside the usual ones. With `out`,
 /// report.json, report.html and junit.xml go into that folder. `passed` is `None` for a property that was not made.
 ///
-/// # Errors
-/// `ValueError` for a matrix, nodes or a material that are none.
+/// Raises `InputError` for a matrix, nodes or a material that are none.
 #[pyfunction]
 #[pyo3(signature = (element, nodes, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
     precision = None, waive = Vec::new(), claim = Vec::new(), name = "element", out = None))]
@@ -98,9 +98,10 @@ pub fn workbench<'py>(
     let made = made.map_err(fault)?;
     let usual = made.precision;
     let made = made.with_precision(precision.filter(|p| *p > 0.0).unwrap_or(usual));
-    let report = Report::of_displacement(&made, &Options { waived: waive, claimed: claim });
+    // The formula comes back for the interpreter.
+    let report = py.detach(move || Report::of_displacement(&made, &Options { waived: waive, claimed: claim }));
     if let Some(out) = out {
         report.write(&out).map_err(fault)?;
     }
-    py.import("json")?.call_method1("loads", (serde_json::to_string(&report).map_err(fault)?,))
+    super::from_json(py, serde_json::to_string(&report))
 }

@@ -2,6 +2,7 @@
 //! between them.
 
 use super::Dossier;
+use crate::element::lattice;
 
 /// The nodes of all subtriangles: triangle by triangle, subtriangle by subtriangle, from the first corner to the side opposite.
 #[derive(Debug)]
@@ -36,7 +37,7 @@ impl Lattice {
         let mut values = Vec::new();
         for (t, &p) in self.degrees.iter().enumerate() {
             for sub in 0..3 {
-                for node in nodes(p) {
+                for node in lattice(p) {
                     values.extend(value(t, sub, node));
                 }
             }
@@ -53,12 +54,6 @@ impl Lattice {
             cells(p).into_iter().flatten().map(move |node| before + node as i64)
         })
     }
-}
-
-/// Barycentric coordinates of the nodes of degree p, row by row away from the first corner.
-fn nodes(p: usize) -> impl Iterator<Item = [f64; 3]> {
-    let at = move |row: usize, k: usize| [p - row, row - k, k].map(|i| i as f64 / p as f64);
-    (0..=p).flat_map(move |row| (0..=row).map(move |k| at(row, k)))
 }
 
 /// The p² cells of a subtriangle: p(p + 1)/2 as it stands, the others between them turned by half a turn.
@@ -78,7 +73,7 @@ mod tests {
     #[test]
     fn cells_fill_the_triangle_each_the_same_way_round() {
         for p in 1..=8 {
-            let all: Vec<[f64; 3]> = nodes(p).collect();
+            let all: Vec<[f64; 3]> = lattice(p).collect();
             assert_eq!(all.len(), (p + 1) * (p + 2) / 2);
             assert_eq!(cells(p).len(), p * p);
             for cell in cells(p) {
@@ -93,7 +88,7 @@ mod tests {
 
     #[test]
     fn degree_one_is_the_triangle_itself() {
-        assert_eq!(nodes(1).collect::<Vec<_>>(), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        assert_eq!(lattice(1).collect::<Vec<_>>(), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         assert_eq!(cells(1), [[0, 1, 2]]);
         let mixed = Lattice { degrees: vec![1, 2] };
         let first: Vec<i64> = mixed.connectivity().take(12).collect();

@@ -39,7 +39,7 @@ pub use claim::{Claim, claim, diagnoses};
 pub use curves::remarks as curve_remarks;
 pub use date::today;
 pub use dossier::{Findings, assemble, infeasible};
-pub use field::{FieldError, ForeignField};
+pub use field::{FieldArrays, FieldError, ForeignField};
 pub use indicators::Indicators;
 pub use maps::Fields;
 pub use outlook::outlook;

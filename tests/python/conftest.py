@@ -1,4 +1,4 @@
-"""Finds the module that `ci/python-module` builds."""
+"""Finds the package that `ci/python-package` installs, and what `ci/setup` puts beside it."""
 
 import os
 import sys
@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "python"))
+sys.path.append(str(Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "python"))
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 
 @pytest.fixture(scope="session")
 def hypercircle():
-    """The module under test; a missing one is an error, not a reason to skip."""
+    """The package under test; a missing one is an error, not a reason to skip."""
     try:
         import hypercircle as module
     except ImportError as error:
-        pytest.fail(f"build the module first with ci/python-module: {error}")
+        pytest.fail(f"install the package first with ci/python-package: {error}")
     return module

@@ -27,8 +27,8 @@ def at(values, l, p):
 
 def blocks(found):
     """For every triangle its degree and the stresses at the nodes of its three parts."""
-    for p, stress in zip(found["degrees"], found["stress"]):
-        yield p, np.array(stress).reshape(3, (p + 1) * (p + 2) // 2, 3)
+    for p, first, end in zip(found.degrees, found.stress_start, found.stress_start[1:]):
+        yield p, found.stress[first:end].reshape(3, (p + 1) * (p + 2) // 2, 3)
 
 
 def energy(found, mesh):
@@ -66,49 +66,51 @@ def largest_jump(found, mesh):
 @pytest.mark.parametrize("p", [1, 2, 3, 5])
 def test_two_blocks_of_a_degree(hypercircle, tmp_path, p):
     scene, problem = two_blocks(tmp_path, 3)
-    found, mesh = hypercircle.solve(str(scene), degree=p), hypercircle.problem(str(scene))
-    assert set(found["degrees"]) == {p}
-    assert energy(found, mesh) == pytest.approx(found["complementary"], rel=1e-10)
+    found, mesh = hypercircle.Scene(scene).solve(degree=p), hypercircle.Scene(scene).problem()
+    assert set(found.degrees) == {p}
+    assert energy(found, mesh) == pytest.approx(found.complementary, rel=1e-10)
     assert largest_jump(found, mesh) < 1e-10
-    traction = np.array(found["contact_traction"][0])
+    traction = np.array(found.contact_traction[0])
     assert traction.shape == (3, p + 1) and traction.max() <= 1e-12
     assert traction.mean() == pytest.approx(-0.5, rel=1e-10), "the mean of the coefficients is that of the traction"
-    assert {len(m) for m in found["moments"]} == {p + 1}
-    assert found["lower"] < found["upper"]
+    assert {len(m) for m in found.moments} == {p + 1}
+    assert found.lower < found.upper
 
 
 def test_energies_rise_with_the_degree(hypercircle, tmp_path):
     """Stresses of one degree are among those of the next, so the best of them is no worse."""
     scene, _ = two_blocks(tmp_path, 2)
-    all_degrees = [hypercircle.solve(str(scene), degree=p) for p in range(1, 6)]
-    energies = [found["energy"] for found in all_degrees]
+    all_degrees = [hypercircle.Scene(scene).solve(degree=p) for p in range(1, 6)]
+    energies = [found.energy for found in all_degrees]
     assert all(b > a for a, b in zip(energies, energies[1:]))
-    assert max(energies) < min(found["upper"] for found in all_degrees)
+    assert max(energies) < min(found.upper for found in all_degrees)
 
 
 def test_degrees_triangle_by_triangle(hypercircle, tmp_path):
     scene = tmp_path / "rich.toml"
     scene.write_text(RICH)
-    mesh = hypercircle.problem(str(scene))
+    mesh = hypercircle.Scene(scene).problem()
     count = len(mesh["triangles"])
-    low, high = (hypercircle.solve(str(scene), degree=p) for p in (1, 3))
+    low, high = (hypercircle.Scene(scene).solve(degree=p) for p in (1, 3))
     degrees = [1 + t % 3 for t in range(count)]
-    mixed = hypercircle.solve(str(scene), degrees=degrees)
-    assert mixed["degrees"] == degrees
-    assert [len(s) for s in mixed["stress"]] == [3 * (p + 1) * (p + 2) // 2 for p in degrees]
-    assert low["energy"] < mixed["energy"] < high["energy"]
-    assert energy(mixed, mesh) == pytest.approx(mixed["complementary"], rel=1e-10)
-    assert largest_jump(mixed, mesh) < 1e-9 * np.abs(np.concatenate(mixed["stress"])).max()
-    same = hypercircle.solve(str(scene), degrees=[3] * count)
-    assert same["energy"] == pytest.approx(high["energy"], rel=1e-12)
+    mixed = hypercircle.Scene(scene).solve(degrees=degrees)
+    assert mixed.degrees == degrees
+    assert list(np.diff(mixed.stress_start)) == [3 * (p + 1) * (p + 2) // 2 for p in degrees]
+    assert low.energy < mixed.energy < high.energy
+    assert energy(mixed, mesh) == pytest.approx(mixed.complementary, rel=1e-10)
+    assert largest_jump(mixed, mesh) < 1e-9 * np.abs(mixed.stress).max()
+    same = hypercircle.Scene(scene).solve(degrees=[3] * count)
+    assert same.energy == pytest.approx(high.energy, rel=1e-12)
 
 
 @pytest.mark.parametrize(
     "wrong, words",
     [
-        ({"degree": 0}, "degree 0"),
-        ({"degree": 9}, "degrees 1 to 8"),
+        ({"degree": 0}, "degree = 0: 0 is not in 1..=8"),
+        ({"degree": 9}, "degree = 9: 9 is not in 1..=8"),
         ({"degrees": [1, 2]}, "2 degrees for"),
+        ({"degrees": [0]}, "0 is not in 1..=8"),
+        ({"degrees": [1], "tolerance": 0.1}, "belong to one mesh"),
         ({"degree": 1, "degrees": [1]}, "not both"),
         ({"degree": 2, "method": "uzawa"}, ""),
     ],
@@ -116,4 +118,4 @@ def test_degrees_triangle_by_triangle(hypercircle, tmp_path):
 def test_degrees_that_cannot_be(hypercircle, tmp_path, wrong, words):
     scene, _ = two_blocks(tmp_path, 2)
     with pytest.raises(ValueError, match=words):
-        hypercircle.solve(str(scene), **wrong)
+        hypercircle.Scene(scene).solve(**wrong)

@@ -108,17 +108,17 @@ def test_the_example_of_the_page_does_what_the_page_says(hypercircle, tmp_path, 
     assert finding(names["report"], "bound")["passed"] is False
 
 
-def test_what_is_no_element_is_a_value_error(hypercircle):
+def test_what_is_no_element_is_an_input_error(hypercircle):
     nodes = [[0, 0], [1, 0], [0, 1]]
-    with pytest.raises(ValueError, match="6 × 6"):
+    with pytest.raises(hypercircle.InputError, match="6 × 6"):
         hypercircle.workbench(np.eye(4), nodes)
-    with pytest.raises(ValueError, match="no such thing"):
+    with pytest.raises(hypercircle.InputError, match="no such thing"):
         def fails(*_):
             raise RuntimeError("no such thing")
         hypercircle.workbench(fails, nodes)
-    with pytest.raises(ValueError, match="array of rows"):
+    with pytest.raises(hypercircle.InputError, match="array of rows"):
         hypercircle.workbench("K", nodes)
-    with pytest.raises(ValueError, match="beauty"):
+    with pytest.raises(hypercircle.InputError, match="beauty"):
         hypercircle.workbench(linear, nodes, waive=["beauty"])
-    with pytest.raises(ValueError, match="young and poisson"):
+    with pytest.raises(hypercircle.InputError, match="young and poisson"):
         hypercircle.workbench(np.eye(6), nodes, young=1.0)

@@ -14,6 +14,7 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 
 use super::polynomials::{self, Jet};
 use crate::element::MAX_DEGREE;
+use crate::element::lattice;
 use crate::element::quadrature::{segment_rule, triangle_rule};
 use crate::element::side;
 
@@ -129,12 +130,6 @@ impl Reference {
                 .collect(),
         }
     }
-}
-
-/// The nodes of the principal lattice of degree p, in the order of [`StressField`](crate::element::StressField).
-fn lattice(p: usize) -> impl Iterator<Item = [f64; 3]> {
-    let node = move |i: usize, j: usize| [i, j, p - i - j].map(|n| n as f64 / p as f64);
-    (0..=p).rev().flat_map(move |i| (0..=p - i).rev().map(move |j| node(i, j)))
 }
 
 /// A stress on a subtriangle, from its coefficients and the values of the polynomials.

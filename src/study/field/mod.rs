@@ -54,6 +54,19 @@ pub struct ForeignField {
     far: f64,
 }
 
+/// A displacement as a program hands it over.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FieldArrays {
+    /// Two or three coordinates of every point.
+    pub points: Vec<Vec<f64>>,
+    /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
+    pub triangles: Vec<Vec<usize>>,
+    /// Two or three components of the displacement of every point.
+    pub displacement: Vec<Vec<f64>>,
+    /// Whether the displacement was kept in single precision.
+    pub single: bool,
+}
+
 #[derive(Deserialize)]
 struct Content {
     points: Vec<Vec<Option<f64>>>,
@@ -97,8 +110,36 @@ impl ForeignField {
     /// As [`ForeignField::read`], without those of the file.
     pub fn parse(text: &[u8], file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
-        let content: Content =
+        let content =
             serde_json::from_slice(text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
+        Self::checked(content, file, sha256, name)
+    }
+
+    /// The field in `arrays`, which have no file: `name` stands in its place.
+    ///
+    /// # Errors
+    /// As [`ForeignField::read`], without those of the file.
+    pub fn of_arrays(name: &str, arrays: FieldArrays) -> Result<Self, FieldError> {
+        let finite = |rows: Vec<Vec<f64>>| -> Vec<Vec<Option<f64>>> {
+            rows.into_iter().map(|row| row.into_iter().map(|x| Some(x).filter(|x| x.is_finite())).collect()).collect()
+        };
+        let FieldArrays { points, triangles, displacement, single } = arrays;
+        let numbers = points.iter().chain(&displacement).flatten().flat_map(|x| x.to_le_bytes());
+        let indices = triangles.iter().flatten().flat_map(|n| (*n as u64).to_le_bytes());
+        let sha256 = hash(&numbers.chain(indices).collect::<Vec<u8>>());
+        let values = finite(displacement);
+        if let Some(i) = values.iter().position(|row| ![2, 3].contains(&row.len())) {
+            let what = format!("the displacement has {} components at point {}", values[i].len(), i + 1);
+            let remedy = "give one row of two or three components for every point".to_string();
+            return Err(FieldError { file: name.into(), what, remedy });
+        }
+        let fields = BTreeMap::from([("displacement".to_string(), Data { values: Some(values), single })]);
+        let content = Content { points: finite(points), single: false, triangles, others: Vec::new(), fields };
+        Self::checked(content, Path::new(name), sha256, None)
+    }
+
+    fn checked(content: Content, file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
+        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
         if let Some(kind) = content.others.first() {
             let what = format!("it has cells of the kind '{kind}'");
             return Err(fault(what, "write the field on straight triangles with three or six nodes"));
@@ -118,7 +159,7 @@ impl ForeignField {
             return Err(fault(what, "write one value for every point"));
         }
         if let Some(nodes) = content.triangles.iter().find(|nodes| ![3, 6].contains(&nodes.len())) {
-            let what = format!("meshio gave a triangle with {} nodes", nodes.len());
+            let what = format!("it has a triangle with {} nodes", nodes.len());
             return Err(fault(what, INSTEAD));
         }
         let damaged = content.triangles.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));

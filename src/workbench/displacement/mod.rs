@@ -74,7 +74,7 @@ impl Order {
 }
 
 /// A formula: K at nodes (x, y) in a material, two rows a node (x, then y).
-pub type Formula = dyn Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String>;
+pub type Formula = dyn Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String> + Send;
 
 /// A displacement element under test.
 pub struct DisplacementElement {
@@ -129,7 +129,7 @@ impl DisplacementElement {
         name: &str,
         nodes: Vec<[f64; 2]>,
         material: Material,
-        formula: impl Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String> + 'static,
+        formula: impl Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String> + Send + 'static,
     ) -> Result<Self, String> {
         let outline = outline_of(&nodes)?;
         let matrix = ordered(&formula(&nodes, &material)?, nodes.len(), Order::Interleaved)?;

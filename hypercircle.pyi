@@ -1,0 +1,251 @@
+"""Guaranteed two-sided energy bounds for plane frictionless contact, and what is wrong with an element or a field."""
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, Protocol, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Kinematics = Literal["plane-strain", "plane-stress"]
+_Method = Literal["condensed", "active-set", "clarabel", "uzawa"]
+
+class InputError(ValueError):
+    remedy: str
+
+class InfeasibleError(RuntimeError):
+    remedy: str
+
+class SolveError(RuntimeError):
+    remedy: str
+
+@final
+class Scene:
+    def __new__(cls, path: str | PathLike[str]) -> Scene: ...
+    @classmethod
+    def from_text(cls, text: str, name: str = "scene", folder: str | PathLike[str] | None = None) -> Scene: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def path(self) -> Path: ...
+    @property
+    def kinematics(self) -> _Kinematics: ...
+    @property
+    def thickness(self) -> float: ...
+    @property
+    def bodies(self) -> list[dict[str, Any]]: ...
+    @property
+    def contacts(self) -> list[str]: ...
+    @property
+    def quantities(self) -> list[str]: ...
+    def problem(self, refine: int = 0) -> dict[str, Any]: ...
+    def solve(
+        self,
+        *,
+        method: _Method = "condensed",
+        degree: int | None = None,
+        degrees: Sequence[int] | None = None,
+        refine: int = 0,
+        tolerance: float | None = None,
+        tolerance_of: dict[str, float] | None = None,
+        adapt: Literal["h", "hp"] | None = None,
+        max_triangles: int | None = None,
+        max_seconds: float | None = None,
+        max_memory: str | None = None,
+        threads: int = 1,
+        out: str | PathLike[str] | None = None,
+    ) -> Solution: ...
+    def certify(
+        self,
+        points: ArrayLike | None = None,
+        triangles: ArrayLike | None = None,
+        displacement: ArrayLike | None = None,
+        *,
+        file: str | PathLike[str] | None = None,
+        field: str | None = None,
+        name: str = "displacement",
+        solution: bool = False,
+        values: dict[str, float] | None = None,
+        allow: dict[str, float] | None = None,
+        tolerance: float | None = None,
+        method: _Method = "condensed",
+        degree: int | None = None,
+        max_triangles: int | None = None,
+        max_seconds: float | None = None,
+        max_memory: str | None = None,
+        threads: int = 1,
+        out: str | PathLike[str] | None = None,
+    ) -> Certificate: ...
+    def diagnose(
+        self, points: ArrayLike, triangles: ArrayLike, displacement: ArrayLike
+    ) -> dict[str, Any] | None: ...
+
+@final
+class Solution:
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def relative_error_bound(self) -> float: ...
+    @property
+    def status(self) -> Literal["agree", "disagree"]: ...
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    @property
+    def quantities(self) -> dict[str, Quantity]: ...
+    @property
+    def contacts(self) -> dict[str, Contact]: ...
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> NDArray[np.intp]: ...
+    @property
+    def body(self) -> NDArray[np.intp]: ...
+    @property
+    def stress(self) -> NDArray[np.float64]: ...
+    @property
+    def stress_start(self) -> NDArray[np.int64]: ...
+    @property
+    def stress_points(self) -> NDArray[np.float64]: ...
+    @property
+    def mean_stress(self) -> NDArray[np.float64]: ...
+    @property
+    def degrees(self) -> list[int]: ...
+    @property
+    def displacement(self) -> NDArray[np.float64] | None: ...
+    @property
+    def energy(self) -> float: ...
+    @property
+    def complementary(self) -> float: ...
+    @property
+    def contact_traction(self) -> list[list[list[float]]]: ...
+    @property
+    def closed(self) -> NDArray[np.bool_]: ...
+    @property
+    def moments(self) -> list[list[list[float]]]: ...
+    @property
+    def equilibrium_residual(self) -> float: ...
+    @property
+    def unknowns(self) -> int: ...
+    @property
+    def iterations(self) -> int: ...
+    def certify(
+        self,
+        points: ArrayLike | None = None,
+        triangles: ArrayLike | None = None,
+        displacement: ArrayLike | None = None,
+        *,
+        file: str | PathLike[str] | None = None,
+        field: str | None = None,
+        name: str = "displacement",
+        solution: bool = False,
+        values: dict[str, float] | None = None,
+        allow: dict[str, float] | None = None,
+        tolerance: float | None = None,
+        out: str | PathLike[str] | None = None,
+    ) -> Certificate: ...
+
+@final
+class Quantity:
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> Literal["displacement", "force", "moment", "stress"]: ...
+    @property
+    def value(self) -> float | None: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def first_order(self) -> tuple[float, float]: ...
+    @property
+    def exact_by_statics(self) -> bool: ...
+    @property
+    def reason(self) -> str | None: ...
+    def __contains__(self, value: float, /) -> bool: ...
+
+@final
+class Contact:
+    @property
+    def name(self) -> str: ...
+    @property
+    def arc_length(self) -> NDArray[np.float64]: ...
+    @property
+    def pressure(self) -> NDArray[np.float64]: ...
+    @property
+    def force(self) -> tuple[float, float]: ...
+    @property
+    def moment(self) -> float: ...
+    @property
+    def pressure_max(self) -> float: ...
+    @property
+    def pressure_max_at(self) -> tuple[float, float]: ...
+    @property
+    def open_fraction(self) -> float: ...
+    @property
+    def contact_ends(self) -> list[float]: ...
+    @property
+    def length(self) -> float: ...
+
+@final
+class Certificate:
+    @property
+    def passed(self) -> bool: ...
+    @property
+    def status(self) -> Literal["agree", "disagree", "undecided"]: ...
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def relative_error_bound(self) -> float | None: ...
+    @property
+    def checks(self) -> list[dict[str, Any]]: ...
+    @property
+    def causes(self) -> list[dict[str, Any]]: ...
+    @property
+    def diagnosis(self) -> dict[str, Any] | None: ...
+    @property
+    def residual(self) -> NDArray[np.float64] | None: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+
+_Formula = Callable[[NDArray[np.float64], float, float], ArrayLike]
+
+class _HasFormula(Protocol):
+    def stiffness(self, nodes: NDArray[np.float64], young: float, poisson: float, /) -> ArrayLike: ...
+
+def workbench(
+    element: ArrayLike | _Formula | _HasFormula,
+    nodes: ArrayLike,
+    young: float | None = None,
+    poisson: float | None = None,
+    kinematics: _Kinematics = "plane-strain",
+    thickness: float = 1.0,
+    order: Literal["interleaved", "blocked"] = "interleaved",
+    precision: float | None = None,
+    waive: Sequence[str] = ...,
+    claim: Sequence[str] = ...,
+    name: str = "element",
+    out: str | PathLike[str] | None = None,
+) -> dict[str, Any]: ...
+def element(
+    corners: ArrayLike,
+    young: float,
+    poisson: float,
+    kinematics: _Kinematics,
+    body_force: Sequence[float] = ...,
+) -> dict[str, Any]: ...
+def flexibility(corners: ArrayLike, constants: Sequence[float]) -> list[list[float]]: ...
+def side_map(a: Sequence[float], b: Sequence[float]) -> list[list[float]]: ...

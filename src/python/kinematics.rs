@@ -1,0 +1,14 @@
+//! The plane state by its name.
+
+use pyo3::PyResult;
+
+use super::errors::fault;
+use crate::scene::Kinematics;
+
+/// The plane state of that name.
+///
+/// # Errors
+/// `InputError` for any other.
+pub fn kinematics_named(name: &str) -> PyResult<Kinematics> {
+    Kinematics::named(name).ok_or_else(|| fault(format!("kinematics '{name}'; use plane-strain or plane-stress")))
+}

@@ -1,0 +1,84 @@
+//! A scene on its mesh, as dictionaries.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::problem::{Condition, Interface, Problem};
+use crate::scene::Body;
+
+/// Everything that is asked on the mesh: see [`super::scene::Scene::problem`].
+pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'py, PyDict>> {
+    let Problem { scene, mesh, conditions, interfaces, .. } = problem;
+    let numpy = py.import("numpy")?;
+    let numbers = |rows: Vec<[f64; 2]>| super::arrays::made(py, rows);
+    let indices = |rows: Bound<'py, PyAny>| numpy.call_method1("asarray", (rows, "intp"));
+    let out = PyDict::new(py);
+    out.set_item("kinematics", scene.kinematics.name())?;
+    out.set_item("thickness", scene.thickness)?;
+    out.set_item("bodies", list(py, &scene.bodies, body_entry)?)?;
+    out.set_item("points", numbers(mesh.points.iter().map(|p| scene.as_written(*p)).collect())?)?;
+    out.set_item("triangles", indices(mesh.triangles.into_pyobject(py)?)?)?;
+    out.set_item("body", indices(mesh.body.into_pyobject(py)?)?)?;
+    let edges: Vec<[usize; 2]> = mesh.edges.iter().map(|e| e.vertices).collect();
+    out.set_item("edges", indices(edges.into_pyobject(py)?)?)?;
+    out.set_item("triangle_edges", indices(mesh.triangle_edges.into_pyobject(py)?)?)?;
+    out.set_item("conditions", list(py, &conditions, condition_entry)?)?;
+    out.set_item("interfaces", list(py, &interfaces, interface_entry)?)?;
+    Ok(out)
+}
+
+/// A list of what `entry` makes of each.
+pub fn list<'py, T>(
+    py: Python<'py>,
+    all: &[T],
+    entry: impl Fn(Python<'py>, &T) -> PyResult<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyList>> {
+    PyList::new(py, all.iter().map(|one| entry(py, one)).collect::<PyResult<Vec<_>>>()?)
+}
+
+/// A body: `name`, `young`, `poisson`, `body_force`.
+pub fn body_entry<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
+    let entry = PyDict::new(py);
+    entry.set_item("name", &body.name)?;
+    entry.set_item("young", body.young)?;
+    entry.set_item("poisson", body.poisson)?;
+    entry.set_item("body_force", body.body_force)?;
+    Ok(entry)
+}
+
+fn condition_entry<'py>(py: Python<'py>, condition: &Condition) -> PyResult<Bound<'py, PyDict>> {
+    let entry = PyDict::new(py);
+    let kind = match condition {
+        Condition::Interior => "interior",
+        Condition::Traction(values) => {
+            entry.set_item("values", *values)?;
+            "traction"
+        }
+        Condition::Clamped(displacement) => {
+            entry.set_item("displacement", *displacement)?;
+            "clamped"
+        }
+        Condition::Roller => "roller",
+        Condition::Contact { .. } => "contact",
+    };
+    entry.set_item("kind", kind)?;
+    Ok(entry)
+}
+
+fn interface_entry<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Bound<'py, PyDict>> {
+    let pairs = PyList::empty(py);
+    for pair in &interface.pairs {
+        let entry = PyDict::new(py);
+        entry.set_item("edges", pair.edges)?;
+        entry.set_item("first", pair.first)?;
+        entry.set_item("second", pair.second)?;
+        entry.set_item("normal", pair.normal)?;
+        entry.set_item("length", pair.length)?;
+        entry.set_item("gap", pair.gap)?;
+        pairs.append(entry)?;
+    }
+    let out = PyDict::new(py);
+    out.set_item("name", &interface.name)?;
+    out.set_item("pairs", pairs)?;
+    Ok(out)
+}

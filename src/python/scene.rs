@@ -1,0 +1,243 @@
+//! A scene, read and checked.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyType};
+
+use super::aside::{aside, threads};
+use super::certificate::{Certificate, Claims, certify};
+use super::errors::fault;
+use super::line::Line;
+use super::problem::{body_entry, list, problem_entry};
+use super::solution::Solution;
+use crate::cli::CliError;
+use crate::cli::session::Session;
+use crate::cli::solve::{Args, solved};
+use crate::element::MAX_DEGREE;
+use crate::problem::Problem;
+use crate::scene;
+
+/// A scene: bodies, supports, tractions, contacts, and what it is solved for. `Scene(path)` reads a TOML file,
+/// `Scene.from_text(text)` a text.
+///
+/// Raises `InputError` with the place in the file, what was found there, and what to do.
+#[pyclass(frozen, module = "hypercircle")]
+pub struct Scene {
+    of: Arc<scene::Scene>,
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new(path: PathBuf) -> PyResult<Self> {
+        Ok(Scene { of: Arc::new(scene::Scene::read(&path).map_err(CliError::from)?) })
+    }
+
+    /// A scene from the text of its TOML file. Messages call it `name`; relative paths of mesh files start in `folder`, the
+    /// current one where it is missing.
+    #[classmethod]
+    #[pyo3(signature = (text, name = "scene", folder = None))]
+    fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
+        let path = folder.unwrap_or_default().join(format!("{name}.toml"));
+        Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from)?) })
+    }
+
+    /// Its name, that of the file.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.of.name
+    }
+
+    /// Its title.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.of.title
+    }
+
+    /// Its file.
+    #[getter]
+    fn path(&self) -> &Path {
+        &self.of.path
+    }
+
+    /// `plane-strain` or `plane-stress`.
+    #[getter]
+    fn kinematics(&self) -> &'static str {
+        self.of.kinematics.name()
+    }
+
+    /// The thickness, by which energies and forces are multiplied.
+    #[getter]
+    fn thickness(&self) -> f64 {
+        self.of.thickness
+    }
+
+    /// Its bodies: `name`, `young`, `poisson`, `body_force`.
+    #[getter]
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        list(py, &self.of.bodies, body_entry)
+    }
+
+    /// The names of its contacts.
+    #[getter]
+    fn contacts(&self) -> Vec<String> {
+        self.of.contacts.iter().map(scene::Contact::name).collect()
+    }
+
+    /// The names of its quantities.
+    #[getter]
+    fn quantities(&self) -> Vec<String> {
+        self.of.quantities.iter().map(|quantity| quantity.name.clone()).collect()
+    }
+
+    /// The scene on its mesh, refined uniformly `refine` times: `points` (n × 2), `triangles` (m × 3), `body` (m, index into
+    /// `bodies`), `edges` (e × 2), `triangle_edges` (m × 3), `conditions` of the edges, `interfaces`, `bodies`, `kinematics`,
+    /// `thickness`.
+    #[pyo3(signature = (refine = 0))]
+    fn problem<'py>(&self, py: Python<'py>, refine: u32) -> PyResult<Bound<'py, PyDict>> {
+        let made = aside(py, 1, || Problem::load((*self.of).clone())?.refine_uniform(refine as usize))?;
+        problem_entry(py, made.map_err(|error| fault(format!("{}: {error}", self.of.path.display())))?)
+    }
+
+    /// Solves in stresses and brackets the energy, with the options of `hypercircle solve`. `degrees` has one degree for each
+    /// triangle; `tolerance_of` maps quantities to tolerances; `max_memory` is text such as `2G`. With `out`, the report goes into
+    /// that folder. Other Python threads run meanwhile.
+    ///
+    /// Raises `InputError`, `InfeasibleError` where the scene has no equilibrium, `SolveError` where a solver gives no answer.
+    #[pyo3(signature = (*, method = "condensed", degree = None, degrees = None, refine = 0, tolerance = None, tolerance_of = None,
+        adapt = None, max_triangles = None, max_seconds = None, max_memory = None, threads = 1, out = None))]
+    #[allow(clippy::too_many_arguments)]
+    pub fn solve(
+        &self,
+        py: Python<'_>,
+        method: &str,
+        degree: Option<i64>,
+        degrees: Option<Vec<i64>>,
+        refine: i64,
+        tolerance: Option<f64>,
+        tolerance_of: Option<&Bound<'_, PyDict>>,
+        adapt: Option<&str>,
+        max_triangles: Option<i64>,
+        max_seconds: Option<f64>,
+        max_memory: Option<&str>,
+        threads: i64,
+        out: Option<PathBuf>,
+    ) -> PyResult<Solution> {
+        let line = Line::default()
+            .value("method", Some(method))
+            .value("degree", degree)
+            .value("refine", Some(refine))
+            .value("tolerance", tolerance)
+            .items("tolerance-of", tolerance_of)?
+            .value("adapt", adapt)
+            .value("max-triangles", max_triangles)
+            .value("max-seconds", max_seconds)
+            .value("max-memory", max_memory)
+            .value("threads", Some(threads))
+            .path("out", out.as_deref());
+        let mut args: Args = line.parsed()?;
+        args.solve.degrees = degrees.map(|degrees| each_known(&degrees, &args)).transpose()?;
+        self.solve_as(py, args)
+    }
+
+    /// Holds a displacement field, or values of quantities, against guaranteed bounds, as `hypercircle certify` does: the stress
+    /// side is solved on the mesh as given, which must be that of the field.
+    ///
+    /// `points` (n × 2), `triangles` (m × 3, or m × 6 with the middles of (0, 1), (1, 2), (2, 0) after the corners) and
+    /// `displacement` (n × 2) are arrays; in their place `file` is one that meshio reads. With `solution` the field claims to be
+    /// the discrete solution of its mesh, is held to that, and diagnosed where it is none. `values` maps quantities to numbers,
+    /// `allow` checks to tolerances. `tolerance` is the largest relative error that passes. With `out`, the report goes into that
+    /// folder.
+    ///
+    /// Raises as `solve` does.
+    #[pyo3(signature = (points = None, triangles = None, displacement = None, *, file = None, field = None, name = "displacement",
+        solution = false, values = None, allow = None, tolerance = None, method = "condensed", degree = None, max_triangles = None,
+        max_seconds = None, max_memory = None, threads = 1, out = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn certify(
+        &self,
+        py: Python<'_>,
+        points: Option<Bound<'_, PyAny>>,
+        triangles: Option<Bound<'_, PyAny>>,
+        displacement: Option<Bound<'_, PyAny>>,
+        file: Option<PathBuf>,
+        field: Option<&str>,
+        name: &str,
+        solution: bool,
+        values: Option<&Bound<'_, PyDict>>,
+        allow: Option<&Bound<'_, PyDict>>,
+        tolerance: Option<f64>,
+        method: &str,
+        degree: Option<i64>,
+        max_triangles: Option<i64>,
+        max_seconds: Option<f64>,
+        max_memory: Option<&str>,
+        threads: i64,
+        out: Option<PathBuf>,
+    ) -> PyResult<Certificate> {
+        let how = Line::default()
+            .value("method", Some(method))
+            .value("degree", degree)
+            .value("max-triangles", max_triangles)
+            .value("max-seconds", max_seconds)
+            .value("max-memory", max_memory)
+            .value("threads", Some(threads));
+        let arrays = [points, triangles, displacement];
+        let claims = Claims { arrays, file, field, name, solution, values, allow, tolerance, out };
+        certify(py, &self.of, claims.made(how)?, None)
+    }
+
+    /// Which mistake explains that a displacement is not the discrete solution of its mesh: a dictionary with `sentence`,
+    /// `findings`, `explained` (part of the squared residual) and `tried`; `None` where it is one. The same as
+    /// `certify(points, triangles, displacement, solution=True).diagnosis`.
+    ///
+    /// Raises as `solve` does.
+    fn diagnose<'py>(
+        &self,
+        py: Python<'py>,
+        points: Bound<'py, PyAny>,
+        triangles: Bound<'py, PyAny>,
+        displacement: Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let arrays = [Some(points), Some(triangles), Some(displacement)];
+        let claims = Claims { arrays, solution: true, name: "displacement", ..Claims::default() };
+        certify(py, &self.of, claims.made(Line::default())?, None)?.diagnosis(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let names: Vec<&str> = self.of.bodies.iter().map(|body| body.name.as_str()).collect();
+        format!("<Scene {}: bodies {}; contacts {}>", self.of.name, names.join(", "), self.contacts().join(", "))
+    }
+}
+
+impl Scene {
+    fn solve_as(&self, py: Python<'_>, args: Args) -> PyResult<Solution> {
+        let count = threads(args.solve.threads);
+        let scene = Arc::clone(&self.of);
+        aside(py, count, || {
+            let folder = args.run.out.is_some().then(|| args.run.report_folder(&scene)).transpose()?;
+            let session = Session::new("solve", (*scene).clone(), count, &args.solve, true)?;
+            let solved = solved(&args, &session, folder.as_deref())?;
+            let solution = Solution::new(args, session, solved);
+            folder.map(|folder| solution.write(&folder)).transpose()?;
+            Ok(solution)
+        })?
+    }
+}
+
+/// One degree for each triangle.
+fn each_known(degrees: &[i64], args: &Args) -> PyResult<Vec<u8>> {
+    if args.solve.degree.is_some() {
+        return Err(fault("give degree or degrees, not both"));
+    }
+    if args.solve.is_adaptive() {
+        return Err(fault("degrees belong to one mesh, and a tolerance makes others; give degree, or no tolerance"));
+    }
+    let known = |p: &i64| match u8::try_from(*p) {
+        Ok(p) if (1..=MAX_DEGREE).contains(&p.into()) => Ok(p),
+        _ => Err(fault(format!("degrees: {p} is not in 1..={MAX_DEGREE}; use one of these"))),
+    };
+    degrees.iter().map(known).collect()
+}
