@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import NotInstalled
+from hypercircle_process import NotInstalled
 
 try:
     import dolfinx

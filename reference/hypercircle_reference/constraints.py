@@ -22,7 +22,8 @@ import numpy as np
 import scipy.sparse as sparse
 from scipy.sparse.csgraph import connected_components
 
-from . import BadExchange
+from hypercircle_process import BadExchange
+
 from .exchange import Contact, Problem
 from .group import Conflict, eliminate
 

@@ -12,7 +12,9 @@ from time import perf_counter
 import numpy as np
 import ufl
 
-from . import ReferenceFailure, compat
+from hypercircle_process import Failure
+
+from . import compat
 from .exchange import Problem
 
 
@@ -157,5 +159,5 @@ def _find(given: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     place = np.minimum(np.searchsorted(given[order], wanted), len(given) - 1)
     found = order[place]
     if np.any(given[found] != wanted):
-        raise ReferenceFailure("FEniCSx returned a cell that is not among the triangles of the exchange file")
+        raise Failure("FEniCSx returned a cell that is not among the triangles of the exchange file")
     return found

@@ -6,7 +6,9 @@ from time import perf_counter
 
 import numpy as np
 
-from . import compat, log
+from hypercircle_process import log
+
+from . import compat
 from .constraints import Constraints, build as build_constraints
 from .exchange import Problem
 from .model import Mesh, build as build_model

@@ -169,7 +169,7 @@ MALFORMED = {
 
 @pytest.mark.parametrize("name", MALFORMED)
 def test_malformed_files_are_refused_by_name(tmp_path, name):
-    from hypercircle_reference import BadExchange
+    from hypercircle_process import BadExchange
     from hypercircle_reference.exchange import read_problem
 
     path = tmp_path / "problem.json"
@@ -191,9 +191,3 @@ def test_missing_file_and_folder(tmp_path):
     assert call(tmp_path).returncode == 2
     (tmp_path / "problem.json").mkdir()
     assert call(tmp_path).returncode == 2
-
-
-def test_ends_with_its_parent(tmp_path):
-    """Closed standard input stops a run that was told to watch it."""
-    done = call(tmp_path, "--stop-with-stdin", data=two_blocks(64))
-    assert done.returncode == 3 and not (tmp_path / "out").exists()

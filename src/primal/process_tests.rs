@@ -106,7 +106,7 @@ fn results_of_an_earlier_run_do_not_count() {
 
 #[test]
 fn arguments_and_environment_arrive() {
-    let script = "echo \"$@\" threads=$OMP_NUM_THREADS; ls \"${PYTHONPATH%%:*}/hypercircle_reference\"; exit 3";
+    let script = "echo \"$@\" threads=$OMP_NUM_THREADS; ls \"${PYTHONPATH%%:*}\"/*; exit 3";
     let (outcome, _) = with_fake(script, |options| {
         options.degrees = vec![2];
         options.sabotage = Some(Sabotage::DropRow);
@@ -114,9 +114,15 @@ fn arguments_and_environment_arrive() {
     });
     let Err(PrimalError::Failed { status, log }) = outcome else { panic!("{outcome:?}") };
     assert_eq!(status, "exit code 3");
-    for part in
-        ["hypercircle_reference'", "--degree 2", "--sabotage drop-row", "--nodal-contact", "threads=1", "solve.py"]
-    {
+    for part in [
+        "hypercircle_reference'",
+        "--degree 2",
+        "--sabotage drop-row",
+        "--nodal-contact",
+        "threads=1",
+        "solve.py",
+        "hypercircle_process:",
+    ] {
         assert!(log.contains(part), "{part} is missing in {log}");
     }
     assert!(!log.contains("--degree 1"));
