@@ -15,14 +15,17 @@ from pathlib import Path
 
 from hypercircle_process import finish, log
 
+from . import HIGHEST_DEGREE
+
 
 def arguments() -> argparse.Namespace:
     """Parse the command line."""
     parser = argparse.ArgumentParser(prog="hypercircle_reference", description=__doc__.splitlines()[0])
     parser.add_argument("problem", type=Path, help="the exchange file problem.json")
-    parser.add_argument("--out", type=Path, required=True, help="folder for primal-P1.json and primal-P2.json")
-    parser.add_argument("--degree", type=int, choices=(1, 2), action="append", help="1 or 2; repeat for both")
-    parser.add_argument("--nodal-contact", action="store_true", help="bound the P2 jump at the nodes only")
+    parser.add_argument("--out", type=Path, required=True, help="folder for primal-P1.json, primal-P2.json, …")
+    degrees = range(1, HIGHEST_DEGREE + 1)
+    parser.add_argument("--degree", type=int, choices=degrees, action="append", help="repeat for several; 1 and 2 if none is given")
+    parser.add_argument("--nodal-contact", action="store_true", help="bound the jump at the nodes only")
     parser.add_argument("--sabotage", choices=("flip-sign", "drop-row"), help="plant a bug on purpose")
     return parser.parse_args()
 

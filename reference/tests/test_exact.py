@@ -7,7 +7,7 @@ import pytest
 from hypercircle_process import Failure
 from scenes import Builder, rotated, two_blocks
 
-DEGREES = (1, 2)
+DEGREES = (1, 2, 3, 4)
 
 
 def displacement(result):
@@ -143,9 +143,10 @@ def test_resting_block_is_pinned_and_in_balance(solve, degree):
     assert contact["resultant"] == pytest.approx([0.0, -0.5 * 1.5], rel=1e-10, abs=1e-12)
     x = np.array(b.data["points"])[contact["vertices"], 0]
     moment = x @ contact["vertex_reaction"]
-    if degree == 2:
-        # b1 multiplies 2 s (1 − s), whose first moment is that of the middle of the edge.
-        moment += 0.5 * (x[1:] + x[:-1]) @ np.ravel(contact["edge_reaction"])
+    if degree > 1:
+        # b_j multiplies the Bernstein polynomial B_j, whose first moment is that of the point j/k of the edge.
+        s = np.arange(1, degree) / degree
+        moment += np.sum((x[:-1, None] * (1.0 - s) + x[1:, None] * s) * contact["edge_reaction"])
     assert moment == pytest.approx(0.5 * (1.0 * 1.0 + (1.0 / 3.0 + 0.5 * 0.5)), rel=1e-9)
 
 

@@ -60,7 +60,7 @@ fn is_of(check: &Check, who: &str) -> bool {
 
 /// Whether a check asks about the best field without its name.
 fn is_of_best(check: &Check) -> bool {
-    check.name.starts_with("contact/") || check.name == "energy/p1-above-p2"
+    check.name.starts_with("contact/") || (check.name.starts_with("energy/p") && check.name.contains("-above-p"))
 }
 
 fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check]) -> Fault {

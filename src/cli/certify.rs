@@ -98,7 +98,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let mut parts = args.displacement.iter().map(read);
     let first = parts.next().ok_or_else(|| CliError::stopped(Exit::BadInput, "no --displacement was given", ""))??;
     let field = parts.try_fold(first, |field, part| Ok::<_, CliError>(field.and(part?)))?;
-    args.judge.refuse_early(&session.scene, &[&field.name()], &args.job)?;
+    args.judge.refuse_early(&session.scene, Some(vec![field.name()]), &args.job)?;
     let reading = start.elapsed().as_secs_f64();
     // The field belongs to the mesh as given; what is refined is the stress side alone, afterwards.
     let on_its_mesh = SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..args.solve.clone() };
@@ -166,7 +166,8 @@ fn own(args: &Args, scene: &Path) -> Result<Own, CliError> {
             let what = format!("the name of {} is not Unicode", file.display());
             CliError::stopped(Exit::BadInput, what, "rename the file")
         })?;
-        own.fields.push(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
+        let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
+        own.fields.get_or_insert_default().push(name.unwrap_or_default());
         own.options.push(option);
         own.files.push(file);
     }
@@ -194,7 +195,7 @@ fn of_scene(folder: &Path, scene: &Path) -> Result<PathBuf, CliError> {
 /// Holds values against the intervals where there is no field.
 fn values_alone(args: &Args, session: &Session, given: &[GivenValue]) -> Result<Exit, CliError> {
     let folder = args.run.report_folder(&session.scene)?;
-    args.judge.refuse_early(&session.scene, &[], &args.job)?;
+    args.judge.refuse_early(&session.scene, Some(Vec::new()), &args.job)?;
     let run = session.solve(&args.solve, &args.limits, &folder)?;
     let (certified, allow) = (&run.certified, args.judge.allowances());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);

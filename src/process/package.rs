@@ -138,7 +138,7 @@ impl Package {
 
     /// What the end of the process means.
     fn judge(&self, ended: Ended) -> Result<(), Failure> {
-        let log = if ended.log.is_empty() { "(nothing was printed)".to_owned() } else { ended.log.join("\n") };
+        let log = ended.text();
         match ended.outcome {
             Outcome::TimedOut => Err(Failure::TimedOut { log }),
             Outcome::Lost(error) => Err(Failure::Failed { status: format!("lost: {error}"), log }),
@@ -161,7 +161,8 @@ fn interpreter(given: Option<&Path>) -> Result<PathBuf, Failure> {
     python::find(&found).ok_or_else(|| Failure::NotInstalled(format!("{} does not exist", found.display())))
 }
 
-fn words(status: ExitStatus) -> String {
+/// How a process ended.
+pub fn words(status: ExitStatus) -> String {
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(signal)) => format!("ended by signal {signal}"),
