@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Plan, Status, fastest};
 use crate::measure::Method;
+use crate::primal::SolverCommand;
 use crate::scene::Scene;
 
 const REFINE: u32 = 3;
@@ -39,6 +40,10 @@ pub struct Args {
     /// Only these methods; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known)]
     pub method: Vec<Method>,
+    /// Run COMMAND in the place of FEniCSx, as `verify` does: {problem} stands for the file to read, {out} for the folder to write
+    /// into, {degrees} for the degree that is wanted
+    #[arg(long, value_name = "COMMAND")]
+    pub reference: Option<SolverCommand>,
     /// Few refinements, one run each
     #[arg(long)]
     pub reduced: bool,
@@ -66,6 +71,7 @@ impl Args {
             repeats: self.repeats as usize,
             threads: self.threads as usize,
             memory: self.memory.max_memory,
+            program: self.reference.clone(),
             ..Plan::default()
         };
         if self.reduced {
@@ -86,6 +92,7 @@ impl Args {
         words.extend(self.scenes.iter().map(|path| quoted(&path.display().to_string())));
         words.extend(self.reduced.then(|| "--reduced".to_string()));
         words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.reference.iter().map(|program| format!("--reference {}", quoted(program.line()))));
         for (name, value, usual) in
             [("refine", self.refine, REFINE), ("repeats", self.repeats, REPEATS), ("threads", self.threads, THREADS)]
         {
@@ -99,7 +106,7 @@ impl Args {
 
 /// A name as a shell wants it.
 pub(super) fn quoted(name: &str) -> String {
-    if name.contains(' ') { format!("'{name}'") } else { name.to_string() }
+    if name.contains([' ', '\'', '"']) { format!("'{}'", name.replace('\'', "'\\''")) } else { name.to_string() }
 }
 
 /// Runs every method on every scene.
@@ -162,7 +169,7 @@ fn choices(chart: &Chart, wanted: f64) -> String {
                     };
                     format!(
                         "{} {how}: {:.3} s, {words} error {:.3} %, {} unknowns",
-                        choice.run.method.name(),
+                        choice.run.name(),
                         choice.plot.whole.median,
                         100.0 * choice.error,
                         choice.plot.unknowns
@@ -174,12 +181,7 @@ fn choices(chart: &Chart, wanted: f64) -> String {
         }
         let marked = scene.runs.iter().filter(|r| r.status == Status::OverBudget);
         for run in marked {
-            text.push_str(&format!(
-                "{}: {} was over the budget at level {}\n",
-                scene.name,
-                run.method.name(),
-                run.level
-            ));
+            text.push_str(&format!("{}: {} was over the budget at level {}\n", scene.name, run.name(), run.level));
         }
     }
     text
