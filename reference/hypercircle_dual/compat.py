@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import DualFailure, NotInstalled
+from hypercircle_process import Failure, NotInstalled
 
 try:
     import petsc4py
@@ -197,7 +197,7 @@ def set_up(solver: PETSc.KSP) -> PETSc.KSP:
     try:
         solver.setUp()
     except PETSc.Error as error:
-        raise DualFailure(f"the matrix could not be factorised ({error})") from error
+        raise Failure(f"the matrix could not be factorised ({error})") from error
     return solver
 
 
@@ -206,7 +206,7 @@ def solve(solver: PETSc.KSP, load: PETSc.Vec, out: PETSc.Vec) -> int:
     solver.solve(load, out)
     reason = solver.getConvergedReason()
     if reason < 0 and reason != PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT:
-        raise DualFailure(f"the linear solver stopped after {solver.getIterationNumber()} iterations: {failure(solver, reason)}")
+        raise Failure(f"the linear solver stopped after {solver.getIterationNumber()} iterations: {failure(solver, reason)}")
     return solver.getIterationNumber()
 
 

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
-from . import DualFailure, compat
+from hypercircle_process import Failure
+
+from . import compat
 
 MOST_STEPS = 200
 GRAZING = 1e-13
@@ -58,7 +60,7 @@ class ContactProblem:
             jumps = scaled.equilibrium(load * scaled.unit, bound / scaled.unit, closed)
             if jumps is not None:
                 return jumps * scaled.unit
-        raise DualFailure("the contact state could not be determined: its open part leaves a body without hold")
+        raise Failure("the contact state could not be determined: its open part leaves a body without hold")
 
 
 class Scaled:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import BadExchange
+from hypercircle_process import BadExchange
 
 FORMAT = "hypercircle-dual"
 VERSION = 1

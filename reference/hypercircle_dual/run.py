@@ -8,7 +8,9 @@ from time import perf_counter
 
 import numpy as np
 
-from . import DualFailure, compat, log
+from hypercircle_process import Failure, log
+
+from . import compat
 from .exchange import Files, read
 from .model import Model
 from .refinement import ROUND_OFF, Refined, refine
@@ -32,7 +34,7 @@ def solve(comm, path: Path) -> None:
     start = perf_counter()
     files = read(path)
     if comm.size != files.ranks:
-        raise DualFailure(
+        raise Failure(
             f"{comm.size} of {files.ranks} ranks see each other: mpirun and mpi4py belong to different installations of MPI"
         )
     kind = SOLVERS[files.linear_solver]
@@ -76,7 +78,7 @@ class Settled:
             self._change(following)
         self._refine(ROUND_OFF)
         if self._misses().max(initial=0.0) > UNSETTLED:
-            raise DualFailure("the contact state could not be determined: ends keep opening and closing")
+            raise Failure("the contact state could not be determined: ends keep opening and closing")
 
     def _change(self, start: np.ndarray | None) -> None:
         """Take another contact state, and the unknowns that the solver has for it.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import NotInstalled
+from hypercircle_process import NotInstalled
 
 try:
     import dolfinx
@@ -25,6 +25,10 @@ except ImportError as error:
 MODERN = hasattr(dolfinx.fem, "functionspace")
 if MODERN:
     import basix.ufl
+else:
+    import basix.ufl_wrapper
+
+EQUAL_STEPS = basix.LagrangeVariant.equispaced
 
 SOLVER_VERSION = dolfinx.__version__
 PETSC_VERSION = petsc4py.__version__
@@ -60,10 +64,12 @@ def cell_input_vertices(mesh) -> np.ndarray:
 
 
 def vector_space(mesh, degree: int):
-    """Continuous Lagrange displacements of the given degree."""
+    """Continuous Lagrange displacements of the given degree, their nodes at equal steps."""
     if MODERN:
-        return dolfinx.fem.functionspace(mesh, ("Lagrange", degree, (2,)))
-    return dolfinx.fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
+        element = basix.ufl.element("Lagrange", "triangle", degree, EQUAL_STEPS, shape=(2,))
+        return dolfinx.fem.functionspace(mesh, element)
+    element = basix.ufl_wrapper.create_vector_element("Lagrange", "triangle", degree, EQUAL_STEPS)
+    return dolfinx.fem.FunctionSpace(mesh, element)
 
 
 def constant_per_cell(mesh, values: np.ndarray):
@@ -75,14 +81,11 @@ def constant_per_cell(mesh, values: np.ndarray):
     return coefficient
 
 
-def cell_nodes(space, degree: int) -> np.ndarray:
-    """Global node index of each local degree of freedom of the owned cells, (m, 3) for P1 and (m, 6) for P2.
-
-    Nodes come as on the reference triangle: the vertices, then the midpoints of the edges opposite them.
-    """
-    width = {1: 3, 2: 6}[degree]
-    local = _table(space.dofmap.list, width)[: owned_cells(space.mesh)]
-    return space.dofmap.index_map.local_to_global(local.reshape(-1).astype(np.int32)).reshape(local.shape)
+def cell_nodes(space, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Global node index of each local degree of freedom of the owned cells (m, n), and where it is (m, n, 2)."""
+    local = _table(space.dofmap.list, (degree + 1) * (degree + 2) // 2)[: owned_cells(space.mesh)]
+    index = space.dofmap.index_map.local_to_global(local.reshape(-1).astype(np.int32)).reshape(local.shape)
+    return index, space.tabulate_dof_coordinates()[local, :2]
 
 
 def owned_nodes(space) -> tuple[int, int]:

@@ -23,7 +23,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from . import ReferenceFailure, log
+from hypercircle_process import Failure, log
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -99,7 +99,7 @@ class Descent:
                 held = face.held | met
             if self._count(held != face.held) > 0:
                 if faces == FACES:
-                    raise ReferenceFailure(f"the contact has not settled after {faces} steps")
+                    raise Failure(f"the contact has not settled after {faces} steps")
                 face.destroy()
                 face, faces = _Face(self, held), faces + 1
             step, left = face.step(w, gradient, unit)
@@ -210,7 +210,7 @@ class _Face:
                 if reach is not None:
                     return step + reach * direction, left
                 if slope > UNHELD / EPSILON * np.sqrt(it.dot(unit, unit) * it.dot(direction, direction)):
-                    raise ReferenceFailure(
+                    raise Failure(
                         "neither supports nor contacts hold the bodies against the loads, or so softly beside the "
                         "stiffness of a body that rounding hides it"
                     )
@@ -236,7 +236,7 @@ class _Face:
         self._in.array[:] = right
         self._ksp.solve(self._in, self._out)
         if self._ksp.getConvergedReason() < 0:
-            raise ReferenceFailure("PETSc could not factorise the stiffness matrix")
+            raise Failure("PETSc could not factorise the stiffness matrix")
         return np.where(self.held, 0.0, self._out.array_r)
 
     def _reach(self, w: np.ndarray, direction: np.ndarray) -> float | None:

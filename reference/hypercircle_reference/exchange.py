@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import BadExchange, ReferenceFailure
+from hypercircle_process import BadExchange, Failure
 
 FORMAT = "hypercircle-exchange"
 VERSION = 1
@@ -275,7 +275,7 @@ def write_result(path: Path, result: dict) -> None:
     try:
         text = json.dumps(result, allow_nan=False)
     except ValueError as error:
-        raise ReferenceFailure("the solution holds a number that is not finite; nothing was written") from error
+        raise Failure("the solution holds a number that is not finite; nothing was written") from error
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
     try:

@@ -1,4 +1,4 @@
-"""The weak form: stiffness and load of continuous P1 or P2 displacements on the given triangles.
+"""The weak form: stiffness and load of continuous displacements of degree k on the given triangles.
 
 𝓛(v) = ½ ∫ c e(v):e(v) − ∫ F·v − ∫ P·v, each integral times the thickness. FEniCSx assembles stiffness and body force;
 tractions, affine on each edge, are integrated in closed form against the traces of the shape functions.
@@ -12,8 +12,14 @@ from time import perf_counter
 import numpy as np
 import ufl
 
-from . import ReferenceFailure, compat
+from hypercircle_process import Failure
+
+from . import compat
 from .exchange import Problem
+from .lattice import Lattice, traction_weights, weights
+
+OFF_STEP = 0.1
+"""How far from a node of the lattice, in steps, a node of FEniCSx may seem to be on a very thin triangle."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +70,7 @@ class Mesh:
         self.problem = problem
         self.mesh = compat.create_mesh(comm, problem.triangles, problem.points)
         corners = compat.cell_input_vertices(self.mesh)
-        edges = np.stack([self._edge(corners[:, (i + 1) % 3], corners[:, (i + 2) % 3]) for i in range(3)], axis=1)
-        self.cell_nodes = np.concatenate([corners, len(problem.points) + edges], axis=1)
-        self.triangles = self._triangle(edges[:, 0], corners[:, 0])
+        self.triangles = self._triangle(self._edge(corners[:, 1], corners[:, 2]), corners[:, 0])
 
     def _edge(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         count = len(self.problem.points)
@@ -78,18 +82,33 @@ class Mesh:
         given = (self.problem.triangle_edges * count + self.problem.triangles).reshape(-1)
         return _find(given, edge * count + vertex) // 3
 
-    def numbering(self, space, degree: int) -> Numbering:
+    def numbering(self, space, lattice: Lattice) -> Numbering:
         """Gather the numbering of ``space`` from all ranks."""
-        ours = self.cell_nodes[:, : 3 * degree].reshape(-1)
-        pieces = self.comm.allgather((ours, compat.cell_nodes(space, degree).reshape(-1)))
-        nodes = np.full(len(self.problem.points) + (len(self.problem.edges) if degree == 2 else 0), -1, dtype=np.int64)
-        for node, index in pieces:
-            nodes[node] = index
+        index, points = compat.cell_nodes(space, lattice.degree)
+        ours = np.take_along_axis(lattice.of_triangles(self.problem)[self.triangles], self._places(points, lattice), axis=1)
+        pieces = self.comm.allgather((ours.reshape(-1), index.reshape(-1)))
+        nodes = np.full(lattice.ends[2], -1, dtype=np.int64)
+        for node, number in pieces:
+            nodes[node] = number
         return Numbering(nodes, np.array(self.comm.allgather(compat.owned_nodes(space))))
+
+    def _places(self, points: np.ndarray, lattice: Lattice) -> np.ndarray:
+        """Which node of its triangle each point (m, n, 2) of the owned cells is, in the order of the lattice."""
+        k, problem = lattice.degree, self.problem
+        corners = problem.points[problem.triangles[self.triangles]]
+        sides = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
+        exact = k * np.linalg.solve(sides[:, None], (points - corners[:, :1])[..., None])[..., 0]
+        steps = np.rint(exact).astype(int)
+        place = np.full((k + 1, k + 1), -1)
+        place[tuple(weights(k)[:, 1:].T)] = np.arange(len(weights(k)))
+        found = place[tuple(np.clip(steps, 0, k).T)].T
+        if np.any(np.abs(exact - steps) > OFF_STEP) or np.any(np.sort(found, axis=1) != np.arange(found.shape[1])):
+            raise Failure("FEniCSx has its nodes elsewhere than at equal steps")
+        return found
 
 
 def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
-    """Assemble stiffness and load for P1 or P2.
+    """Assemble stiffness and load of degree ``degree``.
 
     ``flip_sign`` plants a bug on purpose, 1 + 2ν for 1 − 2ν in Lamé's λ (1 + ν² for 1 − ν² in plane stress), so that
     a comparison can show that it would notice.
@@ -113,10 +132,11 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     linear = compat.form(ufl.inner(force, v) * ufl.dx)
     compiled = perf_counter()
 
-    numbering = mesh.numbering(space, degree)
+    lattice = Lattice.of(problem, degree)
+    numbering = mesh.numbering(space, lattice)
     stiffness = compat.assemble_matrix(bilinear)
     load = compat.assemble_vector(linear)
-    tractions = _traction_load(problem, degree).reshape(-1, 2)
+    tractions = _traction_load(problem, lattice)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
     return Model(stiffness, load, displacement, energy, numbering, compiled - start, perf_counter() - compiled)
 
@@ -134,22 +154,15 @@ def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
     return young * poisson / (1.0 - sign * poisson * poisson), shear
 
 
-def _traction_load(problem: Problem, degree: int) -> np.ndarray:
-    """∫ P·v over the loaded edges for every node and component (2n,), times the thickness; exact for affine P."""
-    vertices = len(problem.points)
-    nodes = vertices + (len(problem.edges) if degree == 2 else 0)
-    load = np.zeros((nodes, 2))
-    ends = problem.edges[problem.traction_edges]
-    length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)[:, None]
-    at_a, at_b = problem.traction_values[:, 0], problem.traction_values[:, 1]
-    if degree == 1:
-        np.add.at(load, ends[:, 0], length * (2.0 * at_a + at_b) / 6.0)
-        np.add.at(load, ends[:, 1], length * (at_a + 2.0 * at_b) / 6.0)
-    else:
-        np.add.at(load, ends[:, 0], length * at_a / 6.0)
-        np.add.at(load, ends[:, 1], length * at_b / 6.0)
-        np.add.at(load, vertices + problem.traction_edges, length * (at_a + at_b) / 3.0)
-    return problem.thickness * load.reshape(-1)
+def _traction_load(problem: Problem, lattice: Lattice) -> np.ndarray:
+    """∫ P·v over the loaded edges for every node and component (n, 2), times the thickness; exact for affine P."""
+    load = np.zeros((lattice.ends[2], 2))
+    edges = problem.traction_edges
+    ends = problem.edges[edges]
+    nodes = np.concatenate([ends[:, :1], lattice.inside_edges(edges), ends[:, 1:]], axis=1)
+    length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)
+    np.add.at(load, nodes, length[:, None, None] * (traction_weights(lattice.degree) @ problem.traction_values))
+    return problem.thickness * load
 
 
 def _find(given: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -157,5 +170,5 @@ def _find(given: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     place = np.minimum(np.searchsorted(given[order], wanted), len(given) - 1)
     found = order[place]
     if np.any(given[found] != wanted):
-        raise ReferenceFailure("FEniCSx returned a cell that is not among the triangles of the exchange file")
+        raise Failure("FEniCSx returned a cell that is not among the triangles of the exchange file")
     return found

@@ -6,9 +6,12 @@ from time import perf_counter
 
 import numpy as np
 
-from . import compat, log
+from hypercircle_process import log
+
+from . import compat
 from .constraints import Constraints, build as build_constraints
 from .exchange import Problem
+from .lattice import Lattice
 from .model import Mesh, build as build_model
 from .solve import Solution, minimise, without_strongest_row
 
@@ -47,8 +50,8 @@ def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=Non
 
 
 def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution: Solution, seconds) -> dict:
-    vertices = len(problem.points)
     displacement = solution.displacement.reshape(-1, 2)
+    vertices, edges, inside = np.split(displacement, Lattice.of(problem, degree).ends[:2])
     return {
         "format": "hypercircle-primal",
         "version": 1,
@@ -65,8 +68,9 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
         "unknowns": solution.unknowns,
         "admissible": degree == 1 or not (nodal_contact and problem.contacts),
         "seconds": seconds,
-        "vertex_displacement": displacement[:vertices].tolist(),
-        "edge_displacement": displacement[vertices:].tolist() if degree == 2 else None,
+        "vertex_displacement": vertices.tolist(),
+        "edge_displacement": edges.tolist() if degree > 1 else None,
+        "triangle_displacement": inside.tolist() if degree > 2 else None,
         "contacts": _contacts(problem, degree, constraints, solution),
     }
 
@@ -77,7 +81,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
     order = [list(dict.fromkeys(contact.first.reshape(-1).tolist())) for contact in problem.contacts]
     place = [{v: i for i, v in enumerate(vertices)} for vertices in order]
     at_vertex = [np.zeros(len(vertices)) for vertices in order]
-    at_edge = [[[0.0] * (2 if turns else 1) for turns in contact.turns] for contact in problem.contacts]
+    at_edge = [[[0.0] * (degree if turns else degree - 1) for turns in contact.turns] for contact in problem.contacts]
     resultant = np.zeros((len(problem.contacts), 2))
     for row in constraints.rows:
         reaction = max(-solution.gradient[row.column] / row.factor, 0.0)
@@ -94,7 +98,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
                 "name": contact.name,
                 "vertices": order[index],
                 "vertex_reaction": at_vertex[index].tolist(),
-                "edge_reaction": at_edge[index] if degree == 2 else None,
+                "edge_reaction": at_edge[index] if degree > 1 else None,
                 "resultant": resultant[index].tolist(),
             }
         )

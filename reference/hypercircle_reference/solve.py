@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from . import ReferenceFailure
+from hypercircle_process import Failure
+
 from .constraints import Constraints
 from .descent import EPSILON, Descent, Minimum, absolute
 from .model import Model
@@ -107,12 +108,12 @@ class Reduced:
         outside = self.comm.allreduce(int(np.sum((x > self.upper) | (x < self.lower))))
         load = self._size(x)
         if not residual <= RESIDUAL * load or outside:
-            raise ReferenceFailure(
+            raise Failure(
                 f"the solution fails its check: relative residual {residual / load if load else residual:.2e} "
                 f"(allowed {RESIDUAL:.0e}), {outside} jumps beyond their bounds"
             )
         if not found.left <= load * load:
-            raise ReferenceFailure(
+            raise Failure(
                 f"round-off leaves nothing of the energy: the residual alone may have changed it by {found.left:.1e} "
                 f"where {load * load:.1e} is at stake; a body moves rigidly by far more than displacements can resolve"
             )
@@ -162,21 +163,21 @@ class Reduced:
 
 
 def minimise(comm, model: Model, constraints: Constraints) -> Solution:
-    """Solve the reduced problem; :class:`ReferenceFailure` says why there is no solution to trust."""
+    """Solve the reduced problem; :class:`Failure` says why there is no solution to trust."""
     try:
         return Reduced(comm, model, constraints).minimise()
     except PETSc.Error as error:
-        raise ReferenceFailure(f"PETSc stopped with error {error.ierr}: {error}") from error
+        raise Failure(f"PETSc stopped with error {error.ierr}: {error}") from error
 
 
 def without_strongest_row(constraints: Constraints, solution: Solution) -> Constraints:
     """The constraints with one closed vertex jump left unbounded, a planted bug: the one with the largest reaction."""
     candidates = [row for row in constraints.rows if row.vertex >= 0 and row.factor > 0.0]
     if not candidates:
-        raise ReferenceFailure("there is no contact row to drop")
+        raise Failure("there is no contact row to drop")
     strongest = max(candidates, key=lambda row: -solution.gradient[row.column] / row.factor)
     if not solution.gradient[strongest.column] < 0.0:
-        raise ReferenceFailure("no contact row is closed, so that dropping one would change nothing")
+        raise Failure("no contact row is closed, so that dropping one would change nothing")
     upper = constraints.upper.copy()
     upper[strongest.column] = np.inf
     return Constraints(constraints.T, constraints.offset, constraints.lower, upper, constraints.rows)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypercircle_reference import BadExchange
+from hypercircle_process import BadExchange
 from hypercircle_reference.constraints import build
 from hypercircle_reference.exchange import parse_problem
 from hypercircle_reference.group import Conflict, eliminate

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypercircle_reference import ReferenceFailure
+from hypercircle_process import Failure
 from hypercircle_reference.descent import Descent
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -61,7 +61,7 @@ def test_random_minima_are_those_of_enumeration(seed, loose):
 
 def test_a_direction_that_nothing_stops_is_a_failure():
     matrix = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    with pytest.raises(ReferenceFailure, match="neither supports nor contacts hold the bodies"):
+    with pytest.raises(Failure, match="neither supports nor contacts hold the bodies"):
         descend(matrix, np.array([-1.0, -1.0]), np.array([-np.inf, -np.inf]), np.array([1.0, np.inf]))
 
 

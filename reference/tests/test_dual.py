@@ -95,3 +95,15 @@ def test_bad_files_are_refused(tmp_path, text, said):
 def test_ranks_that_do_not_see_each_other_are_refused(tmp_path):
     done = call(tmp_path, json.dumps({**HEADER, "ranks": 2}))
     assert done.returncode == 3 and "1 of 2 ranks see each other" in done.stderr, done.stderr
+
+
+def test_a_missing_package_is_named(tmp_path):
+    (tmp_path / "petsc4py.py").write_text("raise ModuleNotFoundError('no petsc4py here', name='petsc4py')")
+    (tmp_path / "problem.json").write_text(json.dumps(HEADER))
+    done = subprocess.run(
+        [sys.executable, "-m", "hypercircle_dual", str(tmp_path / "problem.json")],
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 4
+    assert done.stderr == "hypercircle-dual: not installed: petsc4py cannot be imported (no petsc4py here)\n"

@@ -15,6 +15,9 @@ from scenes import arched_blocks, two_blocks
 ROOT = Path(__file__).parent.parent
 
 
+DEGREES = ("--degree", "1", "--degree", "2", "--degree", "3")
+
+
 def call(folder, *arguments, data=None, text=None, launcher=(), python=(), **environment):
     problem = folder / "problem.json"
     if data is not None or text is not None:
@@ -41,21 +44,22 @@ def mpirun():
 
 def test_writes_what_the_format_promises(tmp_path):
     data = two_blocks(4)
-    done = call(tmp_path, "--degree", "1", "--degree", "2", data=data)
+    done = call(tmp_path, *DEGREES, data=data)
     assert done.returncode == 0, done.stderr
-    assert sorted(os.listdir(tmp_path / "out")) == ["primal-P1.json", "primal-P2.json"]
-    for degree in (1, 2):
+    assert sorted(os.listdir(tmp_path / "out")) == ["primal-P1.json", "primal-P2.json", "primal-P3.json"]
+    for degree in (1, 2, 3):
         found = result(tmp_path, degree)
         assert (found["format"], found["version"], found["degree"], found["ranks"]) == ("hypercircle-primal", 1, degree, 1)
         assert set(found["seconds"]) == {"import", "mesh", "assemble", "compile", "solve", "total"}
         assert np.shape(found["vertex_displacement"]) == (len(data["points"]), 2)
         contact = found["contacts"][0]
         assert len(contact["vertices"]) == len(contact["vertex_reaction"]) == 5
-        if degree == 2:
-            assert np.shape(found["edge_displacement"]) == (len(data["edges"]), 2)
-            assert len(contact["edge_reaction"]) == 4
+        if degree > 1:
+            assert np.shape(found["edge_displacement"]) == ((degree - 1) * len(data["edges"]), 2)
+            assert np.shape(contact["edge_reaction"]) == (4, degree - 1)
         else:
             assert found["edge_displacement"] is None and contact["edge_reaction"] is None
+        assert (found["triangle_displacement"] is None) == (degree < 3)
 
 
 def test_two_ranks_give_the_same_numbers(tmp_path, mpirun):
@@ -64,9 +68,9 @@ def test_two_ranks_give_the_same_numbers(tmp_path, mpirun):
     launchers = [(), mpirun]
     for folder, launcher in zip(folders, launchers):
         folder.mkdir()
-        done = call(folder, data=data, launcher=launcher)
+        done = call(folder, *DEGREES, data=data, launcher=launcher)
         assert done.returncode == 0, done.stderr
-    for degree in (1, 2):
+    for degree in (1, 2, 3):
         one, two = (result(folder, degree) for folder in folders)
         assert two["ranks"] == 2
         assert two["energy"] == pytest.approx(one["energy"], rel=1e-12)
@@ -79,9 +83,9 @@ def test_two_ranks_settle_a_curved_contact(tmp_path, mpirun):
     folders = [tmp_path / "one", tmp_path / "two"]
     for folder, launcher in zip(folders, [(), mpirun]):
         folder.mkdir()
-        done = call(folder, data=arched_blocks(8, 0.1), launcher=launcher)
+        done = call(folder, *DEGREES, data=arched_blocks(8, 0.1), launcher=launcher)
         assert done.returncode == 0, done.stderr
-    for degree in (1, 2):
+    for degree in (1, 2, 3):
         one, two = (result(folder, degree) for folder in folders)
         assert (two["ranks"], two["iterations"]) == (2, one["iterations"])
         assert two["energy"] == pytest.approx(one["energy"], rel=1e-12)
@@ -169,7 +173,7 @@ MALFORMED = {
 
 @pytest.mark.parametrize("name", MALFORMED)
 def test_malformed_files_are_refused_by_name(tmp_path, name):
-    from hypercircle_reference import BadExchange
+    from hypercircle_process import BadExchange
     from hypercircle_reference.exchange import read_problem
 
     path = tmp_path / "problem.json"
@@ -191,9 +195,3 @@ def test_missing_file_and_folder(tmp_path):
     assert call(tmp_path).returncode == 2
     (tmp_path / "problem.json").mkdir()
     assert call(tmp_path).returncode == 2
-
-
-def test_ends_with_its_parent(tmp_path):
-    """Closed standard input stops a run that was told to watch it."""
-    done = call(tmp_path, "--stop-with-stdin", data=two_blocks(64))
-    assert done.returncode == 3 and not (tmp_path / "out").exists()

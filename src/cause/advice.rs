@@ -50,6 +50,9 @@ impl Kind {
     }
 }
 
+/// The name of missing equilibrium that no mistake was looked for.
+pub const UNTRIED: &str = "equilibrium/untried";
+
 /// Of a check that fails without any other.
 pub const ALONE: [&str; 2] = [
     "Nothing else fails with it, so the models agree in the rest.",
@@ -125,6 +128,10 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Local, _) => [
             "All but a few equations are met: the assembly goes wrong at one spot.",
             "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
+        ],
+        (Kind::Equilibrium, UNTRIED) => [
+            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 alone.",
+            "Run degrees 1 and 2 of the same solver beside it: what is wrong with those is named.",
         ],
         (Kind::Equilibrium, _) => [
             "The displacement minimises another energy than that of the scene, or the solver stopped early. No single mistake that is looked for explains it.",

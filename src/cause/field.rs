@@ -1,6 +1,6 @@
 //! Causes that lie in displacement fields: all of a field's failures have one.
 
-use super::advice::{self, Kind};
+use super::advice::{self, Kind, UNTRIED};
 use super::place::{self, Place};
 use super::{Cause, names, taken};
 use crate::compare::{Check, Comparison, Judged};
@@ -60,7 +60,7 @@ fn is_of(check: &Check, who: &str) -> bool {
 
 /// Whether a check asks about the best field without its name.
 fn is_of_best(check: &Check) -> bool {
-    check.name.starts_with("contact/") || check.name == "energy/p1-above-p2"
+    check.name.starts_with("contact/") || (check.name.starts_with("energy/p") && check.name.contains("-above-p"))
 }
 
 fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check]) -> Fault {
@@ -96,7 +96,8 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     }
     if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
         let what = "stresses do not balance the loads".to_string();
-        return made(Kind::Equilibrium, "equilibrium", what, place::unbalanced(problem, judged));
+        let name = if candidate.higher.is_some() { UNTRIED } else { "equilibrium" };
+        return made(Kind::Equilibrium, name, what, place::unbalanced(problem, judged));
     }
     if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {
         let what = format!(

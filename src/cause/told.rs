@@ -64,8 +64,9 @@ fn failed(check: &Check) -> String {
         ("energy", "identity", who) => {
             format!("The energy {value} of {who} is not minus its strain energy, {reference}: it is not the minimum.")
         }
-        ("energy", "p1-above-p2", _) => {
-            format!("The energy {value} of P2 lies above that of P1, {reference}, which P2 can represent.")
+        ("energy", order, _) if order.contains("-above-") => {
+            let [low, high] = order.split_once("-above-").map_or(["", ""], |(p, q)| [p, q]).map(str::to_uppercase);
+            format!("The energy {value} of {high} lies above that of {low}, {reference}, which {high} can represent.")
         }
         ("primal", "equilibrium", who) => {
             format!("{value} of the nodal forces of {who} is left unbalanced, where a solver leaves {allowed}.")
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn passed_failed_and_not_made_are_three_sentences() {
-        for name in names_of_checks(&["a|b".to_string()], &["X".to_string()]) {
+        for name in names_of_checks(&["a|b".to_string()], &["X P2", "X P4"].map(String::from)) {
             let why = "Everything is well.";
             let passed = told(&Check::equal(&name, 1.0, 1.0, 0.5, Basis::RoundOff, why));
             let failed = told(&Check::equal(&name, 2.0, 1.0, 0.5, Basis::RoundOff, why));

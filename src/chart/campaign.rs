@@ -8,6 +8,7 @@ use super::judge::judge;
 use super::reference::{self, REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};
 use super::store::{self, StoreError};
 use crate::measure::{self, End, Ended, Limits, Machine, Measured, Method};
+use crate::primal::SolverCommand;
 use crate::scene::Scene;
 
 /// What to run.
@@ -29,6 +30,8 @@ pub struct Plan {
     pub quantities: Vec<String>,
     /// Bytes that a run may take; four fifths of what is available then where it is missing.
     pub memory: Option<u64>,
+    /// A displacement solver to run in the place of FEniCSx.
+    pub program: Option<SolverCommand>,
 }
 
 impl Default for Plan {
@@ -42,6 +45,7 @@ impl Default for Plan {
             threads: 1,
             quantities: Vec::new(),
             memory: None,
+            program: None,
         }
     }
 }
@@ -102,13 +106,17 @@ impl Campaign<'_> {
     /// [`CampaignError`]; runs that fail are no errors but results.
     pub fn run(&self, scenes: &[Scene], kept: Option<Chart>) -> Result<Chart, CampaignError> {
         let machine = Machine::here();
-        let mut kept = kept.filter(|chart| chart.machine == machine && chart.threads == self.plan.threads);
+        let program = self.plan.program.as_ref().map(|program| program.line().to_string());
+        let same =
+            |chart: &Chart| (&chart.machine, chart.threads, &chart.program) == (&machine, self.plan.threads, &program);
+        let mut kept = kept.filter(same);
         let mut chart = Chart {
             schema_version: SCHEMA_VERSION,
             machine,
             repeats: self.plan.repeats,
             budget: self.plan.budget,
             threads: self.plan.threads,
+            program,
             command: self.command.clone(),
             scenes: Vec::new(),
         };
@@ -142,7 +150,11 @@ impl Campaign<'_> {
             let mut stopped: Option<String> = None;
             for level in 0..self.plan.levels {
                 let Some(own) = chart.scenes.last_mut() else { return Ok(()) };
-                if method.is_primal() && level == 0 && own.cold.iter().all(|c| c.method != method) {
+                if method.is_primal()
+                    && self.plan.program.is_none()
+                    && level == 0
+                    && own.cold.iter().all(|c| c.method != method)
+                {
                     own.cold.extend(self.cold(scene, method)?);
                 }
                 let run = match (own.run(method, level), &stopped) {
@@ -172,7 +184,15 @@ impl Campaign<'_> {
     }
 
     fn without_numbers(&self, method: Method, level: usize, status: Status) -> Run {
-        Run { method, level, tolerance: tolerance(method, level), status, plot: None }
+        let program = self.plan.program.as_ref().filter(|_| method.is_primal());
+        Run {
+            method,
+            solver: program.map(SolverCommand::name),
+            level,
+            tolerance: tolerance(method, level),
+            status,
+            plot: None,
+        }
     }
 
     fn repeat(&self, scene: &Scene, method: Method, level: usize, own: &SceneChart) -> Result<Run, CampaignError> {
@@ -187,9 +207,13 @@ impl Campaign<'_> {
                 Ended::Crashed(text) => return Ok(self.without_numbers(method, level, Status::Failed(text))),
             }
         }
+        let told = repeats.iter().find_map(|run| run.answer.as_ref()?.solver.clone());
         Ok(match judge(&repeats, own.reference.as_ref().ok()) {
             Err(reason) => self.without_numbers(method, level, Status::Failed(reason)),
-            Ok(plot) => Run { plot: Some(plot), ..self.without_numbers(method, level, Status::Done) },
+            Ok(plot) => {
+                let run = self.without_numbers(method, level, Status::Done);
+                Run { plot: Some(plot), solver: told.or(run.solver), ..run }
+            }
         })
     }
 
@@ -207,6 +231,9 @@ impl Campaign<'_> {
         option("--refine", refine.to_string());
         option("--threads", self.plan.threads.to_string());
         option("--seconds", budget.to_string());
+        if let Some(program) = self.plan.program.as_ref().filter(|_| method.is_primal()) {
+            option("--reference", program.line().to_string());
+        }
         if let Some(memory) = self.plan.memory {
             option("--max-memory", memory.to_string());
         }

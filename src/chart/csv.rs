@@ -43,7 +43,7 @@ pub fn csv(chart: &Chart) -> String {
             };
             let mut cells = vec![
                 scene.name.clone(),
-                run.method.name().to_string(),
+                run.name(),
                 run.level.to_string(),
                 optional(run.tolerance),
                 status.to_string(),

@@ -17,6 +17,9 @@ pub struct Chart {
     pub budget: f64,
     /// Threads of the runs.
     pub threads: usize,
+    /// The command that was run in the place of FEniCSx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<String>,
     /// The command that makes it again.
     #[serde(default)]
     pub command: String,
@@ -87,6 +90,9 @@ pub struct Cold {
 pub struct Run {
     /// The method.
     pub method: Method,
+    /// The displacement solver that was run in the place of FEniCSx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<String>,
     /// Uniform refinements, or steps of the tolerance for the adaptive method.
     pub level: usize,
     /// Tolerance asked for, for the adaptive method.
@@ -160,7 +166,22 @@ impl Spread {
     }
 }
 
+impl Run {
+    /// What it is called: the method, or the solver in the place of FEniCSx with its degree.
+    pub fn name(&self) -> String {
+        match &self.solver {
+            Some(solver) => format!("{solver} P{}", self.method.degree()),
+            None => self.method.name().to_string(),
+        }
+    }
+}
+
 impl SceneChart {
+    /// What the runs of a method are called.
+    pub fn name_of(&self, method: Method) -> String {
+        self.runs.iter().find(|run| run.method == method).map_or_else(|| method.name().to_string(), Run::name)
+    }
+
     /// The runs of a method that ended with numbers, coarse to fine.
     pub fn done(&self, method: Method) -> impl Iterator<Item = (&Run, &Plot)> {
         self.runs.iter().filter(move |r| r.method == method).filter_map(|r| Some((r, r.plot.as_ref()?)))

@@ -112,7 +112,7 @@ pub fn error_figure(scene: &SceneChart, axis: Axis, of: Of<'_>) -> Result<String
             both.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
             let (points, spread) = both.into_iter().unzip();
             series.push(Series {
-                label: format!("{}, {name}{fitted}", method.name()),
+                label: format!("{}, {name}{fitted}", scene.name_of(method)),
                 ink: method.index(),
                 secondary,
                 spread,
@@ -120,7 +120,7 @@ pub fn error_figure(scene: &SceneChart, axis: Axis, of: Of<'_>) -> Result<String
             });
         }
         if let Some(run) = scene.runs.iter().find(|r| r.method == method && r.status == Status::OverBudget) {
-            notes.push(format!("{}: over the budget at level {}", method.name(), run.level));
+            notes.push(format!("{}: over the budget at level {}", run.name(), run.level));
         }
     }
     let all: Vec<[f64; 2]> = series.iter().filter(|s| !s.secondary).flat_map(|s| s.points.clone()).collect();

@@ -93,7 +93,7 @@ fn first_use(cold: &Cold) -> String {
 
 fn choice(choice: Option<Choice<'_>>) -> String {
     choice.map_or("none of these runs".to_string(), |c| {
-        format!("{}, {}: {}", c.run.method.name(), mesh(c.run), seconds(c.plot.whole.median))
+        format!("{}, {}: {}", c.run.name(), mesh(c.run), seconds(c.plot.whole.median))
     })
 }
 
@@ -129,7 +129,7 @@ fn line(run: &Run) -> String {
         Status::Skipped(reason) => format!("skipped: {reason}"),
         Status::Failed(reason) => format!("failed: {}", reason.lines().next().unwrap_or_default()),
     };
-    format!("| {} | {} | {} | {} |", run.method.name(), mesh(run), numbers.join(" | "), escaped(&outcome))
+    format!("| {} | {} | {} | {} |", run.name(), mesh(run), numbers.join(" | "), escaped(&outcome))
 }
 
 /// Text that means nothing to Markdown.

@@ -88,8 +88,8 @@ fn choices(scene: &SceneChart, of: Of<'_>, words: &str) -> Markup {
 /// Method and level of a run.
 pub(crate) fn level(run: &Run) -> String {
     match run.tolerance {
-        Some(t) => format!("{} to {}", run.method.name(), percent(t)),
-        None => format!("{}, {} refinements", run.method.name(), run.level),
+        Some(t) => format!("{} to {}", run.name(), percent(t)),
+        None => format!("{}, {} refinements", run.name(), run.level),
     }
 }
 

@@ -41,7 +41,7 @@ pub fn phase_figure(scene: &SceneChart) -> Result<String, PlotError> {
     let list: Vec<Bar> = chosen
         .iter()
         .map(|(run, plot)| Bar {
-            label: format!("{}, {} unknowns", run.method.name(), grouped(plot.unknowns)),
+            label: format!("{}, {} unknowns", run.name(), grouped(plot.unknowns)),
             parts: plot
                 .phases
                 .iter()

@@ -71,7 +71,7 @@ impl SceneChart {
             let [low, high] = [reference.lower.max(lower), reference.upper.min(upper)];
             if low <= high && [low, high] != [reference.lower, reference.upper] {
                 [reference.lower, reference.upper] = [low, high];
-                by.push(format!("{} at level {}", run.method.name(), run.level));
+                by.push(format!("{} at level {}", run.name(), run.level));
             }
         }
         if !by.is_empty() {
@@ -97,6 +97,7 @@ mod tests {
         let spread = Spread { least: 1.0, median: 1.0, most: 1.0 };
         let run = |method, lower: Option<f64>, upper| Run {
             method,
+            solver: None,
             level: 2,
             tolerance: None,
             status: Status::Done,

@@ -92,8 +92,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let start = Instant::now();
     let field = if has_field { Some(read(args, &session)?) } else { None };
     let reading = start.elapsed().as_secs_f64();
-    let names: Vec<String> = field.iter().map(ForeignField::name).collect();
-    args.judge.refuse_early(&session.scene, &names.iter().map(String::as_str).collect::<Vec<_>>(), &args.job)?;
+    args.judge.refuse_early(&session.scene, Some(field.iter().map(ForeignField::name).collect()), &args.job)?;
     let run = session.solve(&stress_side(args, has_field), &args.limits, Some(&folder))?;
     let (comparison, particulars) = judged(args, &session, &run, field.as_ref(), &given, reading)?;
     session.conclude(&run, &comparison, particulars, &folder)
@@ -216,7 +215,8 @@ fn own(args: &Args, scene: &Path) -> Result<Own, CliError> {
             let what = format!("the name of {} is not Unicode", file.display());
             CliError::stopped(Exit::BadInput, what, "rename the file")
         })?;
-        own.fields.push(file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default());
+        let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
+        own.fields.get_or_insert_default().push(name.unwrap_or_default());
         own.options.push(option);
         own.files.push(file);
     }

@@ -12,6 +12,7 @@ use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
 use crate::measure::Method;
+use crate::primal::SolverCommand;
 use crate::scene::Scene;
 
 const REFINE: u32 = 3;
@@ -43,6 +44,10 @@ pub struct Args {
     /// Only these methods; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known)]
     pub method: Vec<Method>,
+    /// Run COMMAND in the place of FEniCSx, as `verify` does: {problem} stands for the file to read, {out} for the folder to write
+    /// into, {degrees} for the degree that is wanted
+    #[arg(long, value_name = "COMMAND")]
+    pub reference: Option<SolverCommand>,
     /// Few refinements, one run each
     #[arg(long)]
     pub reduced: bool,
@@ -110,6 +115,7 @@ impl Args {
             threads: self.threads as usize,
             memory: self.memory.max_memory,
             quantities: self.quantities(),
+            program: self.reference.clone(),
             ..Plan::default()
         };
         if self.reduced {
@@ -141,6 +147,7 @@ impl Args {
         words.extend(self.scenes.iter().map(|path| quoted(&path.display().to_string())));
         words.extend(self.reduced.then(|| "--reduced".to_string()));
         words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.reference.iter().map(|program| format!("--reference {}", quoted(program.line()))));
         for (name, value, usual) in
             [("refine", self.refine, REFINE), ("repeats", self.repeats, REPEATS), ("threads", self.threads, THREADS)]
         {
@@ -157,7 +164,7 @@ impl Args {
 
 /// A name as a shell wants it.
 pub(super) fn quoted(name: &str) -> String {
-    if name.contains(' ') { format!("'{name}'") } else { name.to_string() }
+    if name.contains([' ', '\'', '"']) { format!("'{}'", name.replace('\'', "'\\''")) } else { name.to_string() }
 }
 
 /// Runs every method on every scene.
@@ -232,7 +239,7 @@ fn choices(chart: &Chart, wanted: &Accuracy) -> String {
                     };
                     format!(
                         "{} {how}: {:.3} s, {words} {:.3} %, {} unknowns",
-                        choice.run.method.name(),
+                        choice.run.name(),
                         choice.plot.whole.median,
                         100.0 * choice.error,
                         choice.plot.unknowns
@@ -244,12 +251,7 @@ fn choices(chart: &Chart, wanted: &Accuracy) -> String {
         }
         let marked = scene.runs.iter().filter(|r| r.status == Status::OverBudget);
         for run in marked {
-            text.push_str(&format!(
-                "{}: {} was over the budget at level {}\n",
-                scene.name,
-                run.method.name(),
-                run.level
-            ));
+            text.push_str(&format!("{}: {} was over the budget at level {}\n", scene.name, run.name(), run.level));
         }
     }
     text

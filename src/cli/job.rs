@@ -93,14 +93,19 @@ pub struct Order<'a> {
 }
 
 /// What belongs to one scene of a job.
-#[derive(Default)]
 pub struct Own {
     /// Options.
     pub options: Vec<String>,
     /// Files that its result depends on, beside the scene and its mesh.
     pub files: Vec<PathBuf>,
-    /// Names of the displacement fields that its checks name.
-    pub fields: Vec<String>,
+    /// Names of the displacement fields that its checks name; `None` where they name themselves later.
+    pub fields: Option<Vec<String>>,
+}
+
+impl Default for Own {
+    fn default() -> Self {
+        Own { options: Vec::new(), files: Vec::new(), fields: Some(Vec::new()) }
+    }
 }
 
 /// The command-line error of a job.
@@ -249,11 +254,12 @@ fn plan(order: &Order<'_>) -> Result<Plan, CliError> {
     for (name, scene) in job::names(&files).into_iter().zip(&files) {
         let own = (order.own)(scene)?;
         let content = job::content(scene, &own.files);
-        read.extend(Scene::read(scene).ok().map(|scene| (scene, own.fields)));
+        read.push(Scene::read(scene).ok().map(|scene| own.fields.map(|fields| (scene, fields))));
         scenes.push(Planned { name, scene: scene.clone(), content, options: own.options });
     }
-    if let Some(judge) = order.judge {
-        judge.refuse_foreign(&read)?;
+    let known: Option<Vec<(Scene, Vec<String>)>> = read.into_iter().flatten().collect();
+    if let Some((judge, known)) = order.judge.zip(known) {
+        judge.refuse_foreign(&known)?;
     }
     let settings = {
         let memory = order.memory.max_memory.map(|bytes| format!("--max-memory={bytes}"));

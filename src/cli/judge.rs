@@ -15,11 +15,11 @@ impl JudgeOptions {
     }
 
     /// Refuses, before anything is solved, a baseline that cannot be read or written and a tolerance for a check that no
-    /// comparison of `fields` makes.
+    /// comparison of `fields` makes; `None` where they name themselves later.
     ///
     /// # Errors
     /// What is at fault.
-    pub fn refuse_early(&self, scene: &Scene, fields: &[&str], job: &JobOptions) -> Result<(), CliError> {
+    pub fn refuse_early(&self, scene: &Scene, fields: Option<Vec<String>>, job: &JobOptions) -> Result<(), CliError> {
         match &self.baseline {
             Some(file) if self.accept && !job.is_part() => Baseline::refuse(file).map_err(refused)?,
             Some(file) if Accepted::is_meant(file) && self.accept => {
@@ -29,11 +29,11 @@ impl JudgeOptions {
             Some(file) => drop(Baseline::read(file).map_err(refused)?),
             None => {}
         }
-        if job.is_part() {
+        match fields {
             // A check of another scene of the job may be meant.
-            return Ok(());
+            Some(fields) if !job.is_part() => self.refuse_foreign(&[(scene.clone(), fields)]),
+            _ => Ok(()),
         }
-        self.refuse_foreign(&[(scene.clone(), fields.iter().map(|f| f.to_string()).collect())])
     }
 
     /// Refuses a tolerance for a check that is made on none of `scenes`, given with the displacement fields that are

@@ -9,6 +9,7 @@ use super::chart::known;
 use super::options::{MemoryOptions, positive};
 use super::{CliError, Exit, threads};
 use crate::measure::{Clock, Method, Settings, measure};
+use crate::primal::SolverCommand;
 use crate::problem::Problem;
 use crate::process::end_with_parent;
 use crate::scene::{MeshSource, Scene};
@@ -66,6 +67,9 @@ pub struct Options {
     /// Triangles at which an adaptive run stops
     #[arg(long)]
     pub max_triangles: Option<usize>,
+    /// A command to run in the place of FEniCSx
+    #[arg(long)]
+    pub reference: Option<SolverCommand>,
     /// How much memory may be taken.
     #[command(flatten)]
     pub memory: MemoryOptions,
@@ -96,6 +100,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         budget: options.memory.budget(threads),
         quantities: options.quantity.clone(),
         step_length: None,
+        program: options.reference.clone(),
     };
     let refined = |problem: Problem| problem.refine_uniform(options.refine as usize).map_err(|e| e.to_string());
     let results = match &args.what {

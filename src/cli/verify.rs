@@ -1,6 +1,9 @@
 //! `hypercircle verify`: dual and primal model of one scene, compared.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+use clap::value_parser;
 
 use super::conclude::Particulars;
 use super::given::Given;
@@ -9,12 +12,9 @@ use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
-use crate::primal::{self, PrimalError};
+use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand};
 use crate::process::limit;
 use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
-
-/// The displacement solutions that it compares.
-const FIELDS: [&str; 2] = ["FEniCSx P1", "FEniCSx P2"];
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -38,6 +38,16 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// Degrees of the displacement model, each from 1 to 9, with commas between
+    #[arg(
+        long, value_name = "P,…", value_delimiter = ',', default_values_t = [1, 2],
+        value_parser = value_parser!(u8).range(1..=i64::from(HIGHEST_DEGREE))
+    )]
+    pub primal_degree: Vec<u8>,
+    /// Run COMMAND in the place of FEniCSx, without a shell: {problem} stands for the file to read, {out} for the folder to write
+    /// primal-P1.json, … into, {degrees} for the degrees that are wanted; docs/exchange.md describes the files
+    #[arg(long, value_name = "COMMAND", conflicts_with = "sabotage")]
+    pub reference: Option<SolverCommand>,
     /// Give the displacement model at most S seconds
     #[arg(long, value_name = "S", default_value_t = 1800.0, value_parser = positive)]
     pub primal_seconds: f64,
@@ -55,6 +65,34 @@ pub enum Planted {
     DropRow,
 }
 
+impl Args {
+    /// The degrees, each once and the lowest first.
+    fn degrees(&self) -> Vec<u8> {
+        BTreeSet::from_iter(self.primal_degree.iter().copied()).into_iter().collect()
+    }
+
+    /// The names of the displacement solutions that are compared; a solver of the user's tells its own later.
+    fn fields(&self) -> Option<Vec<String>> {
+        let of_fenicsx = || self.degrees().iter().map(|degree| format!("FEniCSx P{degree}")).collect();
+        self.reference.is_none().then(of_fenicsx)
+    }
+
+    /// Refuses options that say nothing to a solver of the user's.
+    fn refuse_unheard(&self) -> Result<(), CliError> {
+        let Some(program) = &self.reference else { return Ok(()) };
+        let engine = &self.solve.engine;
+        if engine.ranks.is_some() && engine.engine.is_none() {
+            let message = format!("--ranks alone is for FEniCSx, and {} is run in its place", program.name());
+            return Err(CliError::stopped(
+                Exit::BadInput,
+                message,
+                "put what it needs into the command of --reference",
+            ));
+        }
+        Ok(())
+    }
+}
+
 /// Solves the scene twice and compares.
 ///
 /// # Errors
@@ -69,21 +107,25 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
         memory: &args.solve.memory,
         judge: Some(&args.judge),
         run: &args.run,
-        own: &|_| Ok(Own { fields: FIELDS.map(String::from).to_vec(), ..Own::default() }),
+        own: &|_| Ok(Own { fields: args.fields(), ..Own::default() }),
     };
     job::run(&order, |scene| one(args, scene))
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
+    args.refuse_unheard()?;
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
     let folder = args.run.report_folder(&session.scene)?;
-    args.judge.refuse_early(&session.scene, &FIELDS, &args.job)?;
+    args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
     let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
     let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
 
-    session.progress.phase("solving in displacements with FEniCSx");
+    let who = args.reference.as_ref().map_or("FEniCSx".to_string(), SolverCommand::name);
+    session.progress.phase(format!("solving in displacements with {who}"));
     let options = primal::Options {
+        program: args.reference.clone(),
+        degrees: args.degrees(),
         sabotage: args.sabotage.map(|s| match s {
             Planted::FlipSign => primal::Sabotage::FlipSign,
             Planted::DropRow => primal::Sabotage::DropRow,
@@ -101,12 +143,13 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         Ok(solutions) => (solutions, None),
         Err(error) => (Vec::new(), Some(error)),
     };
-    let components = solutions
-        .first()
-        .map(|s| {
-            vec![("dolfinx".to_string(), s.solver_version.clone()), ("petsc4py".to_string(), s.petsc_version.clone())]
-        })
-        .unwrap_or_default();
+    let components = solutions.first().map_or_else(Vec::new, |first| match &args.reference {
+        None => vec![
+            ("dolfinx".to_string(), first.solver_version.clone()),
+            ("petsc4py".to_string(), first.petsc_version.clone()),
+        ],
+        Some(_) => vec![(first.solver.clone(), first.solver_version.clone())],
+    });
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
@@ -139,7 +182,10 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     match failure {
         None => Ok(exit),
         Some(error) => {
-            let exit = if matches!(error, PrimalError::NotInstalled(_)) { Exit::NotInstalled } else { Exit::Failed };
+            let exit = match error {
+                PrimalError::NotInstalled(_) | PrimalError::NotFound(_) => Exit::NotInstalled,
+                _ => Exit::Failed,
+            };
             Err(CliError::stopped(exit, error.to_string(), ""))
         }
     }

@@ -6,10 +6,11 @@
 //! ∫ σ(u_h):e(φ) − L(φ) + Σ_r R_r b_r(φ) ∈ forces of the supports,  R_r ≥ 0,  R_r = 0 where b_r(u_h) < g_r,
 //!
 //! with b_r the bounded coefficients of v_n' + v_n'': its values at the vertices of degree 1, its Bernstein coefficients
-//! of degree 2. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
+//! of higher degrees. From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
 //! is what the solver left and what rounding of the displacements costs. A wrong modulus, load, thickness, support or
 //! contact leaves far more, however small its effect on the energy is.
 
+mod higher;
 mod reported;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -18,7 +19,6 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use super::solution::place;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
@@ -44,7 +44,7 @@ pub struct Balance {
     pub energy_rounding: f64,
     /// The node with the largest remainder: where it is, and the force that is left.
     pub worst: Option<([f64; 2], [f64; 2])>,
-    /// This node: vertices, then edge midpoints.
+    /// This node, or the one nearest to it: vertices, then edge midpoints.
     pub worst_node: Option<usize>,
     /// Largest difference of a reported reaction, or resultant, from what the displacement asks for; one for each interface.
     pub reactions: Vec<f64>,
@@ -65,35 +65,41 @@ impl Balance {
 }
 
 impl Balance {
-    /// Measures a candidate of degree 1 or 2; `strain` is ½a(u, u) of its field.
+    /// Measures a candidate; `strain` is ½a(u, u) of its field.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &Problem, candidate: &Candidate, strain: f64) -> Result<Self, NoUpperBound> {
-        let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
+        let forces = match &candidate.higher {
+            Some(field) => NodalForces::of_coefficients(problem, field),
+            None => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
+        };
         let holds = holds(problem)?;
-        let mut rest = forces.unsupported(&holds);
+        let nodes = higher::nodes(problem, candidate.degree);
+        let mut rest = forces.unsupported(&holds, &nodes);
         let solution = Solution { problem, candidate, holds: &holds };
-        solution.take_middles(&mut rest);
+        match &candidate.higher {
+            Some(field) => solution.take_inside(field, &mut rest),
+            None => solution.take_middles(&mut rest),
+        }
         let at_vertices = rest.clone();
         solution.take_vertices(&mut rest);
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
         let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
-        let value = |i: usize| solution.value(i);
+        let value = |i: usize| candidate.higher.as_ref().map_or_else(|| solution.value(i), |field| field.values()[i]);
         let (mut reactions, mut reaction_rounding) = (Vec::new(), Vec::new());
         let (mut carried, mut unbalanced) = (Vec::new(), Vec::new());
         for (index, interface) in problem.interfaces.iter().enumerate() {
             let reported = candidate.reactions.as_ref().and_then(|r| r.get(index));
             reactions
                 .push(reported.map_or(0.0, |r| solution.misreported(index, interface, r, &at_vertices, &forces.left)));
-            let nodes = || interface.pairs.iter().flat_map(|p| p.first);
-            reaction_rounding.push(ROUNDING * nodes().map(|v| forces.size[v]).sum::<f64>());
+            let first = || interface.pairs.iter().flat_map(|p| p.first);
+            reaction_rounding.push(ROUNDING * first().map(|v| forces.size[v]).sum::<f64>());
             let ends = interface.pairs.iter().flat_map(|p| p.first.into_iter().chain(p.second.into_iter().flatten()));
-            let vertices = problem.mesh.points.len();
-            let middles = interface.pairs.iter().flat_map(|p| p.edges).flatten().map(|e| vertices + e);
-            unbalanced.push(ends.chain(middles.filter(|m| *m < rest.len())).map(nodal).sum::<f64>());
-            carried.push(nodes().map(|v| forces.left[v][0].hypot(forces.left[v][1])).sum::<f64>());
+            let inside = interface.pairs.iter().flat_map(|p| p.edges).flatten().flat_map(|e| nodes.inside(e));
+            unbalanced.push(ends.chain(inside).map(nodal).sum::<f64>());
+            carried.push(first().map(|v| forces.left[v][0].hypot(forces.left[v][1])).sum::<f64>());
         }
         Ok(Balance {
             left: forces.energy_size(nodal),
@@ -101,8 +107,8 @@ impl Balance {
             rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
-            worst: worst.map(|i| (place(problem, i), rest[i])),
-            worst_node: worst,
+            worst: worst.map(|i| (higher::place(problem, candidate.degree, i), rest[i])),
+            worst_node: worst.map(|i| higher::near(problem, candidate.degree, i)),
             reactions,
             reaction_rounding,
             carried,

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::solution::Numbering;
-use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired};
+use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
 use crate::dual::DualSolution;
-use crate::element::Displacement;
+use crate::element::{Displacement, PlainDisplacement};
 use crate::problem::Problem;
 
 /// A displacement solution from some program, on the vertices and edges of the mesh.
@@ -18,12 +18,14 @@ pub struct Candidate {
     pub solver: String,
     /// Its version.
     pub version: String,
-    /// Polynomial degree: 1 or 2.
+    /// Polynomial degree.
     pub degree: usize,
     /// Value at each vertex.
     pub vertex: Vec<[f64; 2]>,
     /// Value at each edge midpoint.
     pub middle: Vec<[f64; 2]>,
+    /// The whole of a displacement of degree 3 or more, which these values do not determine.
+    pub higher: Option<PlainDisplacement>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
     /// ½a(u_h, u_h) as the program reports it.
@@ -51,6 +53,18 @@ impl Candidate {
         if node < vertices { self.vertex[node] } else { self.middle[node - vertices] }
     }
 
+    /// The nearest admissible field, and how far from admissible this one is.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other or the contact.
+    pub fn nearest_admissible(&self, problem: &Problem) -> Result<(Displacement, Violation), NoUpperBound> {
+        let repair = if self.is_solution { Repair::AtContact } else { Repair::OfLeastEnergy };
+        match &self.higher {
+            Some(plain) => repaired_at_contact(problem, plain),
+            None => repaired(problem, &self.vertex, &self.middle, repair),
+        }
+    }
+
     /// The largest component of all displacements.
     pub fn largest(&self) -> f64 {
         self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
@@ -64,8 +78,8 @@ pub struct Reactions {
     pub vertices: Vec<usize>,
     /// R ≥ 0 conjugate to the jump at each of them.
     pub vertex: Vec<f64>,
-    /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree 2): one, or two where the direction of
-    /// contact turns.
+    /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree k from 2 on): k − 1, or k where the direction
+    /// of contact turns.
     pub edge: Option<Vec<Vec<f64>>>,
     /// Force on the first side.
     pub resultant: [f64; 2],
@@ -95,9 +109,11 @@ impl Judged {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
     pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
-        let repair = if candidate.is_solution { Repair::AtContact } else { Repair::OfLeastEnergy };
-        let (mended, violation) = repaired(problem, &candidate.vertex, &candidate.middle, repair)?;
-        let field = Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle);
+        let (mended, violation) = candidate.nearest_admissible(problem)?;
+        let field = match &candidate.higher {
+            Some(plain) => plain.split(&problem.mesh),
+            None => Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle),
+        };
         let field = UpperBound::new(problem, dual, field);
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
         Ok(Judged {

@@ -3,7 +3,7 @@
 use super::balance::Balance;
 use super::candidate::{ADMISSIBLE, Candidate, Judged};
 use super::solution::{Site, Sites};
-use super::tolerance::chosen;
+use super::tolerance::{chosen, name_of_order};
 use super::{Basis, Check};
 use crate::bounds::{Bracket, UpperBound, Violation, holds};
 use crate::dual::DualSolution;
@@ -153,21 +153,25 @@ fn linear_where_contact_turns(problem: &Problem, judged: &Judged) -> bool {
     judged.candidate.is_solution && judged.candidate.degree == 1 && problem.contact_turns()
 }
 
-/// The larger space has the smaller energy.
-pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], bracket: &Bracket) -> Option<Check> {
-    let of = |degree: usize| judged.iter().find(|j| j.candidate.degree == degree && j.candidate.is_solution);
-    let (p1, p2) = (of(1)?, of(2)?);
-    let name = "energy/p1-above-p2";
-    let magnitude = p1.field.potential.magnitude.max(p2.field.potential.magnitude);
-    let scale = bracket.complementary.strain.max(magnitude);
-    Some(Check::at_most(
-        name,
-        p2.field.potential.total(),
-        if linear_where_contact_turns(problem, p1) { p1.admissible.upper() } else { p1.field.potential.total() },
-        SOLVER * scale + energy_rounding(scales, p1) + energy_rounding(scales, p2),
-        Basis::RoundOff,
-        "Every admissible P1 field is an admissible P2 field, so the P2 minimum cannot be higher.",
-    ))
+/// The larger space has the smaller energy: one check for each degree and the next.
+pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], bracket: &Bracket) -> Vec<Check> {
+    let mut solutions: Vec<&Judged> = judged.iter().filter(|j| j.candidate.is_solution).collect();
+    solutions.sort_by_key(|j| j.candidate.degree);
+    let check = |pair: &[&Judged]| {
+        let [low, high] = [pair[0], pair[1]];
+        let [p, q] = [low, high].map(|j| j.candidate.degree);
+        let magnitude = low.field.potential.magnitude.max(high.field.potential.magnitude);
+        let scale = bracket.complementary.strain.max(magnitude);
+        Check::at_most(
+            &name_of_order(p, q),
+            high.field.potential.total(),
+            if linear_where_contact_turns(problem, low) { low.admissible.upper() } else { low.field.potential.total() },
+            SOLVER * scale + energy_rounding(scales, low) + energy_rounding(scales, high),
+            Basis::RoundOff,
+            format!("Every admissible P{p} field is an admissible P{q} field, so the P{q} minimum cannot be higher."),
+        )
+    };
+    solutions.windows(2).filter(|pair| pair[0].candidate.degree < pair[1].candidate.degree).map(check).collect()
 }
 
 /// Whether a bracket can tell two models apart.

@@ -1,14 +1,14 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
-use crate::bounds::Holds;
 use crate::bounds::strain::{gradients, shape_gradients};
+use crate::bounds::{Hold, Holds, Nodes};
 use crate::dual::modes::materials;
 use crate::problem::{Condition, Problem};
 
 /// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.
 const MIDPOINTS: usize = 3;
 
-/// Per node (vertices, then for degree 2 the midpoint of every edge), thickness included.
+/// Per node (vertices, then for degree 2 the midpoint of every edge; of higher degrees per coefficient), thickness included.
 #[derive(Debug, Clone)]
 pub struct NodalForces {
     /// ∫ σ(u):e(φ) − ∫ F·φ − ∫ P·φ for the two displacements of each node: the force that supports and contact exert.
@@ -122,9 +122,9 @@ impl NodalForces {
         self.stiffness.iter().enumerate().map(term).sum::<f64>().sqrt()
     }
 
-    /// What supports cannot take of `left`.
-    pub fn unsupported(&self, holds: &Holds) -> Vec<[f64; 2]> {
-        let all = holds.vertices.iter().chain(&holds.edges);
+    /// What supports cannot take of `left`, whose nodes on vertices and edges are `nodes`.
+    pub fn unsupported(&self, holds: &Holds, nodes: &Nodes) -> Vec<[f64; 2]> {
+        let all = holds.of_nodes(nodes).chain(std::iter::repeat(&Hold::Free));
         self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()
     }
 }

@@ -3,6 +3,7 @@
 mod balance;
 mod candidate;
 mod check;
+mod coefficients;
 mod contact;
 mod energy;
 mod forces;

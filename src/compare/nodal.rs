@@ -92,14 +92,13 @@ pub fn nodal_pressures(
             }
             sum[1] += pair.length * p.integral(&weight);
             let force = force.entry(v).or_default();
-            match reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice) {
-                // The middle Bernstein coefficient of a hat function is one half.
-                Some(&[middle]) if !turns => *force += 0.5 * middle,
-                Some(&[first, last]) if turns => {
-                    let (near, far) = if end == 0 { (first, last) } else { (last, first) };
-                    *force += (near * (own + other) + far * other) / 3.0;
-                }
-                _ => {}
+            let inner = reactions.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
+            // Bernstein coefficients of the jump φ n·n̂ on degree k, one more where n̂ turns, counted from this end.
+            let degree = (inner.len() + 1) as f64;
+            let from_here = |j: usize| (if end == 0 { j + 1 } else { inner.len() - j }) as f64 / degree;
+            for (j, r) in inner.iter().enumerate() {
+                let s = from_here(j);
+                *force += r * if turns { turning_hat(s, degree, own, other) } else { 1.0 - s };
             }
         }
     }
@@ -120,6 +119,12 @@ pub fn nodal_pressures(
             }
         })
         .collect()
+}
+
+/// The Bernstein coefficient at `s` of φ n·n̂ in degree `k`: φ of degree k − 1 falls from 1 to 0, and n·n̂ goes from `own` to `other`.
+fn turning_hat(s: f64, k: f64, own: f64, other: f64) -> f64 {
+    let r = s * k;
+    ((k - r) * (1.0 - r / (k - 1.0)) * own + r * (1.0 - (r - 1.0) / (k - 1.0)) * other) / k
 }
 
 /// Compares the mean pressures of one interface; `None` without any.

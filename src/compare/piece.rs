@@ -6,7 +6,7 @@ use crate::element::subdivision::{self, part};
 /// Pressure on one pair: polynomials on equal parts of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// The Bernstein coefficients on each part, from the first end of the pair to the second: one part, or two halves.
+    /// The Bernstein coefficients on each part, from the first end of the pair to the second.
     parts: Vec<Vec<f64>>,
 }
 
@@ -16,9 +16,9 @@ impl Piece {
         Piece { parts: vec![coefficients] }
     }
 
-    /// Linear in each half, with the given values at the first end, in the middle and at the second end.
-    pub fn broken([first, middle, last]: [f64; 3]) -> Self {
-        Piece { parts: vec![vec![first, middle], vec![middle, last]] }
+    /// Linear between the given values, at equal steps from the first end to the second; at least two.
+    pub fn broken(values: Vec<f64>) -> Self {
+        Piece { parts: values.windows(2).map(<[f64]>::to_vec).collect() }
     }
 
     /// All coefficients: none of the values is outside them.
@@ -125,7 +125,7 @@ mod tests {
             (Piece::polynomial(vec![1.0, 3.0]), |s| 1.0 + 2.0 * s),
             (Piece::polynomial(vec![0.0, 0.0, 1.0]), |s| s * s),
             (Piece::polynomial(vec![0.0, 0.0, 1.0, 0.0]), |s| 3.0 * s * s * (1.0 - s)),
-            (Piece::broken([1.0, 2.0, 0.0]), |s| if s < 0.5 { 1.0 + 2.0 * s } else { 4.0 - 4.0 * s }),
+            (Piece::broken(vec![1.0, 2.0, 0.0]), |s| if s < 0.5 { 1.0 + 2.0 * s } else { 4.0 - 4.0 * s }),
         ]
     }
 
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn variation_goes_through_the_middle() {
-        assert_eq!(Piece::broken([1.0, 2.0, 0.0]).variation(), 3.0);
+        assert_eq!(Piece::broken(vec![1.0, 2.0, 0.0]).variation(), 3.0);
         assert!((Piece::polynomial(vec![0.0, 0.0, 1.0, 0.0]).variation() - 8.0 / 9.0).abs() < 1e-14);
     }
 }

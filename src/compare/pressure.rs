@@ -5,6 +5,7 @@ pub use super::piece::Piece;
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
+use crate::element::displacement::through;
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// −t of the dual solution.
@@ -17,15 +18,12 @@ pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
 pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &Reactions) -> Vec<Piece> {
     let thickness = problem.scene.thickness;
     // ∫ of the shape function per unit edge length: hat functions, or Bernstein polynomials of the jump.
-    let share = |pair: &ContactPair| match (&reactions.edge, pair.direction.is_constant()) {
-        (None, _) => 0.5,
-        (Some(_), true) => 1.0 / 3.0,
-        (Some(_), false) => 0.25,
-    };
+    let inner = |k: usize| reactions.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
+    let share = |k: usize| 1.0 / (inner(k).len() + 2) as f64;
     let mut weight = std::collections::HashMap::new();
-    for pair in &interface.pairs {
+    for (k, pair) in interface.pairs.iter().enumerate() {
         for v in pair.first {
-            *weight.entry(v).or_insert(0.0) += share(pair) * pair.length * thickness;
+            *weight.entry(v).or_insert(0.0) += share(k) * pair.length * thickness;
         }
     }
     let force: std::collections::HashMap<_, _> =
@@ -36,10 +34,15 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
         .iter()
         .enumerate()
         .map(|(k, pair)| {
-            let (a, b) = (at(pair.first[0]), at(pair.first[1]));
-            let inner = reactions.edge.as_ref().and_then(|e| e.get(k));
-            let mean = |r: &Vec<f64>| r.iter().sum::<f64>() / r.len() as f64 / (share(pair) * pair.length * thickness);
-            inner.map_or_else(|| Piece::polynomial(vec![a, b]), |r| Piece::broken([a, mean(r), b]))
+            let [a, b] = pair.first.map(at);
+            let part = share(k) * pair.length * thickness;
+            let inner = inner(k).iter().map(|r| r / part);
+            if !pair.direction.is_constant() && inner.len() > 0 {
+                // Apart, those of a direction that hardly turns say little; together they do.
+                let count = inner.len() as f64;
+                return Piece::broken(vec![a, inner.sum::<f64>() / count, b]);
+            }
+            Piece::broken(std::iter::once(a).chain(inner).chain([b]).collect())
         })
         .collect()
 }
@@ -59,9 +62,17 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
             let s = materials[mesh.body[t]].stress(e);
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
-        let [a, b] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|l| pressure(strains.at(l)));
-        let forward = mesh.edges[e].vertices[0] == pair.first[0];
-        Piece::polynomial(if forward { vec![a, b] } else { vec![b, a] })
+        // Of degree k − 1 on the edge, from corner to corner of the subtriangle.
+        let degree = judged.field.displacement.degree(t) - 1;
+        let values: Vec<[f64; 2]> = (0..=degree.max(1))
+            .map(|j| j as f64 / degree.max(1) as f64)
+            .map(|s| [pressure(strains.at([1.0 - s, s, 0.0])), 0.0])
+            .collect();
+        let mut pressures: Vec<f64> = through(&values).into_iter().map(|p| p[0]).collect();
+        if mesh.edges[e].vertices[0] != pair.first[0] {
+            pressures.reverse();
+        }
+        Piece::polynomial(pressures)
     };
     interface.pairs.iter().map(trace).collect()
 }
@@ -93,16 +104,19 @@ pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Rea
             normal.entry(v).or_insert(n);
         }
         let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
-        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let on = |s: f64| [0, 1].map(|c| a[c] + s * (b[c] - a[c]));
         let [m, n] = pair.direction.ends;
-        match reactions.edge.as_ref().and_then(|e| e.get(k)).map(Vec::as_slice) {
-            // The middle Bernstein coefficient of a linear function is its value at the midpoint.
-            Some([r]) => moment -= r * cross(middle, n),
-            Some([r, s]) => {
-                moment -= r * (cross(a, n) + 2.0 * cross(middle, m)) / 3.0;
-                moment -= s * (cross(b, m) + 2.0 * cross(middle, n)) / 3.0;
-            }
-            _ => {}
+        let inner = reactions.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
+        let degree = (inner.len() + 1) as f64;
+        for (j, r) in inner.iter().enumerate() {
+            let steps = (j + 1) as f64;
+            moment -= r * if pair.direction.is_constant() {
+                // The Bernstein coefficients of a linear function are its values at equal steps.
+                cross(on(steps / degree), n)
+            } else {
+                let [before, here] = [steps - 1.0, steps].map(|i| on(i / (degree - 1.0)));
+                ((degree - steps) * cross(here, m) + steps * cross(before, n)) / degree
+            };
         }
     }
     for (v, r) in reactions.vertices.iter().zip(&reactions.vertex) {

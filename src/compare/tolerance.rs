@@ -23,11 +23,10 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 25] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
-    "energy/p1-above-p2",
     "admissible/{field}",
     "certified/{field}/energy-error",
     "energy/gap-two-ways/{field}",
@@ -52,7 +51,8 @@ const NAMES: [&str; 26] = [
     "solution/contact/{contact}/pressure-where-open",
 ];
 
-/// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make.
+/// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end
+/// with their degree, as `FEniCSx P2` does, are also held against each other.
 pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
     let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
         values.iter().map(|value| template.replace(key, value)).collect()
@@ -62,7 +62,14 @@ pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
         name if name.contains("{contact}") => with(name, "{contact}", contacts),
         name => vec![name.to_string()],
     });
-    all.collect()
+    let degree = |field: &String| field.rsplit_once(" P").and_then(|(_, k)| k.parse::<usize>().ok());
+    let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
+    all.chain(degrees.windows(2).map(|pair| name_of_order(pair[0], pair[1]))).collect()
+}
+
+/// The name of the check that holds the energies of two displacement solutions of degrees p < q against each other.
+pub fn name_of_order(p: usize, q: usize) -> String {
+    format!("energy/p{p}-above-p{q}")
 }
 
 /// Allowed values from the command line, by check name.

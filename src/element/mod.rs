@@ -16,6 +16,7 @@ mod elements;
 mod field;
 mod frame;
 mod interpolate;
+pub mod plain;
 pub mod quadrature;
 pub mod side;
 mod side_values;
@@ -30,6 +31,7 @@ pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, lattice, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use plain::PlainDisplacement;
 pub use side_values::{SideValues, parts, starts};
 
 use std::borrow::Cow;

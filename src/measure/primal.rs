@@ -4,7 +4,7 @@ use super::memory::Watch;
 use super::record::{Answer, Asked, End, Measured, Seconds};
 use super::solve::variation;
 use super::{Clock, Method, Settings};
-use crate::bounds::{Repair, potential, repaired};
+use crate::bounds::potential;
 use crate::compare::pressure::{maximum, reaction_pressure};
 use crate::compare::{Candidate, Reactions};
 use crate::element::Displacement;
@@ -40,6 +40,7 @@ pub(super) fn displacements(
     let asked = clock.elapsed();
     let options = primal::Options {
         degrees: degrees.to_vec(),
+        program: settings.program.clone(),
         timeout: crate::process::limit(settings.seconds.max(1.0)),
         ..primal::Options::default()
     };
@@ -56,17 +57,24 @@ pub(super) fn displacements(
         ended - asked - solutions.iter().map(|s| s.seconds.total - s.seconds.import - s.seconds.mesh).sum::<f64>();
     let clocks: Vec<PrimalSeconds> = solutions.iter().map(|s| s.seconds).collect();
     let candidates = candidates(&problem, solutions);
-    candidates
-        .iter()
-        .zip(clocks)
-        .map(|(candidate, own)| Measured {
+    let measured = |(candidate, own): (&Candidate, PrimalSeconds)| {
+        let solver = settings.program.is_some().then(|| candidate.solver.clone());
+        Measured {
             method: name(candidate.degree as u8).to_string(),
             end: End::Solved,
-            answer: Some(answer(&problem, candidate, &settings.quantities)),
+            answer: Some(Answer { solver, ..answer(&problem, candidate, &settings.quantities) }),
             seconds: seconds(&own, outside, [began, read]),
             peak_memory: memory,
-        })
-        .collect()
+        }
+    };
+    let of_degree = |degree: &u8| {
+        let found = candidates.iter().zip(clocks.iter().copied()).find(|(c, _)| c.degree == usize::from(*degree));
+        found.map_or_else(
+            || Measured::without_answer(name(*degree), End::NotApplicable(format!("it has no P{degree}"))),
+            measured,
+        )
+    };
+    degrees.iter().map(of_degree).collect()
 }
 
 /// Phases of one degree, as if it had had the process to itself.
@@ -92,7 +100,7 @@ fn seconds(own: &PrimalSeconds, outside: f64, [began, read]: [f64; 2]) -> Second
 fn failure(error: PrimalError) -> End {
     let text = error.to_string();
     match error {
-        PrimalError::NotInstalled(_) => End::NotApplicable(text),
+        PrimalError::NotInstalled(_) | PrimalError::NotFound(_) => End::NotApplicable(text),
         PrimalError::TimedOut { .. } => End::NotConverged(text),
         // The package gives one line for everything it noticed itself; anything else is a crash of the interpreter.
         PrimalError::Failed { ref log, .. } => {
@@ -127,7 +135,7 @@ fn answer(problem: &Problem, candidate: &Candidate, quantities: &[String]) -> An
         iterations: candidate.iterations,
         ..Answer::default()
     };
-    match repaired(problem, &candidate.vertex, &candidate.middle, Repair::AtContact) {
+    match candidate.nearest_admissible(problem) {
         Ok((field, violation)) => {
             let energy = potential(problem, &field);
             answer.upper = Some(energy.total());

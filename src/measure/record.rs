@@ -58,6 +58,9 @@ impl Seconds {
 /// The numbers of a run. Energies and forces include the thickness.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
+    /// What a displacement solver of the user's calls itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<String>,
     /// Triangles of the (last) mesh.
     pub triangles: usize,
     /// Unknowns solved for.

@@ -11,6 +11,7 @@ use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
 use crate::element::{Elements, block};
+use crate::primal::SolverCommand;
 use crate::problem::Problem;
 use crate::study::{self, Certified, Goal, StudyError, Wanted};
 
@@ -31,6 +32,8 @@ pub struct Settings {
     pub quantities: Vec<String>,
     /// Step length of the paper's plain iteration, relative to the largest that converges.
     pub step_length: Option<f64>,
+    /// A displacement solver to run in the place of FEniCSx.
+    pub program: Option<SolverCommand>,
 }
 
 impl Settings {
@@ -221,7 +224,7 @@ mod tests {
 
     #[test]
     fn variation_counts_every_way_up_and_down() {
-        let up_and_down = [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]].map(Piece::broken);
+        let up_and_down = [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]].map(|p| Piece::broken(p.to_vec()));
         assert_eq!(variation(&up_and_down), 4.0);
         let with_a_jump = [Piece::polynomial(vec![0.0, 1.0]), Piece::polynomial(vec![3.0])];
         assert_eq!(variation(&with_a_jump), 3.0);

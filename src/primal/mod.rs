@@ -1,13 +1,14 @@
-//! The displacement model: FEniCSx, run as a process on the same triangles.
+//! The displacement model: FEniCSx or a solver of the user's, run as a process on the same triangles.
 //!
-//! It minimises 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫P·v over continuous P1 or P2 displacements. Contact is imposed on the
+//! It minimises 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫P·v over continuous displacements of degree k. Contact is imposed on the
 //! Bernstein coefficients of the normal jump, so that v_n' + v_n'' ≤ g holds between the nodes too and 𝓛(u_h) bounds
 //! 𝓛(u) from above.
 //!
 //! [`run`] writes the exchange file ([`exchange`]), starts the interpreter that has FEniCSx ([`process`]) with the
-//! Python package this program carries inside it, and reads the results. The files are described in
-//! `docs/exchange.md`.
+//! Python package this program carries inside it, or the command that was given ([`SolverCommand`]), and reads the results. The
+//! files are described in `docs/exchange.md`.
 
+mod command;
 pub mod exchange;
 #[cfg(test)]
 pub(crate) mod fixture;
@@ -15,24 +16,30 @@ pub mod process;
 
 use std::io;
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+pub use self::command::SolverCommand;
 use crate::problem::{Pin, Problem};
+
+/// The highest degree of a displacement solution.
+pub const HIGHEST_DEGREE: u8 = crate::element::displacement::MOST as u8;
 
 /// What to run, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// Polynomial degrees, each 1 or 2, each solved once.
+    /// Polynomial degrees, each from 1 to [`HIGHEST_DEGREE`], each solved once. A program that is not told them solves its own.
     pub degrees: Vec<u8>,
+    /// A solver to run in the place of FEniCSx; ranks, planted bugs, nodal contact and the interpreter are not for it.
+    pub program: Option<SolverCommand>,
     /// The process is ended when it takes longer.
     pub timeout: Duration,
     /// A bug to plant on purpose.
     pub sabotage: Option<Sabotage>,
     /// Number of MPI ranks; `None` runs without `mpirun`.
     pub ranks: Option<usize>,
-    /// Impose P2 contact at the nodes only. The result is then no upper bound, and says so.
+    /// Impose contact at the nodes only. The result is then no upper bound, and says so.
     pub nodal_contact: bool,
     /// Folder for the exchange files, kept afterwards; `None` uses a temporary one.
     pub scratch: Option<PathBuf>,
@@ -44,6 +51,7 @@ impl Default for Options {
     fn default() -> Self {
         Options {
             degrees: vec![1, 2],
+            program: None,
             timeout: Duration::from_secs(1800),
             sabotage: None,
             ranks: None,
@@ -71,24 +79,44 @@ pub enum PrimalError {
         "the FEniCSx reference is not installed: {0}; install python3-dolfinx, or name an interpreter that has it in HYPERCIRCLE_PYTHON"
     )]
     NotInstalled(String),
+    /// The solver of the user's is not there.
+    #[error(
+        "the displacement solver {0} is not found; give the path of the program, or the name of one in a folder of PATH"
+    )]
+    NotFound(String),
     /// The process ended without result files.
-    #[error("the FEniCSx reference failed ({status}); the end of its log:\n{log}")]
+    #[error("{of} failed ({status}); the end of its log:\n{log}")]
     Failed {
+        /// Whose process.
+        of: String,
         /// How the process ended.
         status: String,
         /// The last lines it printed.
         log: String,
     },
     /// The process did not end in time and was stopped.
-    #[error("the FEniCSx reference was stopped after {} s; the end of its log:\n{log}", limit.as_secs_f64())]
+    #[error("{of} was stopped after {} s; the end of its log:\n{log}", limit.as_secs_f64())]
     TimedOut {
+        /// Whose process.
+        of: String,
         /// The time allowed.
         limit: Duration,
         /// The last lines it printed.
         log: String,
     },
+    /// The solver of the user's ended well, and left no result.
+    #[error(
+        "{of} wrote no primal-P1.json, primal-P2.json, … into the folder that stands for {{out}}; docs/exchange.md says what they \
+         hold; the end of its log:\n{log}"
+    )]
+    NoResult {
+        /// Whose process.
+        of: String,
+        /// The last lines it printed.
+        log: String,
+    },
     /// A result file that contradicts its format or the problem.
-    #[error("{file} of the FEniCSx reference is not usable: {reason}")]
+    #[error("{file} of the displacement solver is not usable: {reason}; docs/exchange.md says what it has to hold")]
     BadResult {
         /// Name of the file.
         file: String,
@@ -97,7 +125,7 @@ pub enum PrimalError {
     },
     /// Options that cannot be run.
     #[error(
-        "the FEniCSx reference solves degrees 1 and 2, on one rank or more; found degrees {degrees:?}, ranks {ranks:?}"
+        "the FEniCSx reference solves degrees from 1 to {HIGHEST_DEGREE}, on one rank or more; found degrees {degrees:?}, ranks {ranks:?}"
     )]
     BadOptions {
         /// Degrees asked for.
@@ -116,45 +144,66 @@ pub enum PrimalError {
 }
 
 /// The displacement solution of one degree. Energies and forces include the thickness.
+///
+/// What a solver may leave out of its file is empty, zero or `None` then.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PrimalSolution {
-    /// `FEniCSx`.
+    /// `FEniCSx`, or what the solver calls itself.
+    #[serde(default)]
     pub solver: String,
-    /// Release of DOLFINx.
+    /// Release of DOLFINx, or of the solver.
+    #[serde(default)]
     pub solver_version: String,
     /// Release of PETSc's Python interface.
+    #[serde(default)]
     pub petsc_version: String,
-    /// Polynomial degree, 1 or 2.
+    /// Polynomial degree k.
     pub degree: u8,
     /// Number of MPI ranks.
+    #[serde(default)]
     pub ranks: usize,
     /// 𝓛(u_h).
-    pub energy: f64,
+    #[serde(default)]
+    pub energy: Option<f64>,
     /// ½∫ c e(u_h):e(u_h).
-    pub strain_energy: f64,
+    #[serde(default)]
+    pub strain_energy: Option<f64>,
     /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
     #[serde(default)]
     pub energy_rounding: Option<f64>,
     /// Sets of closed contacts that were tried; 1 for a problem without contact.
+    #[serde(default)]
     pub iterations: usize,
     /// The solver's reason for stopping; positive.
+    #[serde(default)]
     pub converged_reason: i32,
     /// Unknowns left after supports are eliminated.
+    #[serde(default)]
     pub unknowns: usize,
     /// Whether the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
-    pub admissible: bool,
+    #[serde(default)]
+    pub admissible: Option<bool>,
     /// Wall-clock time by phase.
+    #[serde(default)]
     pub seconds: PrimalSeconds,
     /// u_h at each vertex of the mesh.
     pub vertex_displacement: Vec<[f64; 2]>,
-    /// u_h at the midpoint of each edge of the mesh; `None` for degree 1, where it is the mean of the ends.
+    /// u_h at the k − 1 points inside each edge of the mesh, at equal steps from its first vertex to its second; `None` for
+    /// degree 1.
+    #[serde(default)]
     pub edge_displacement: Option<Vec<[f64; 2]>>,
+    /// u_h at the (k − 1)(k − 2)/2 points inside each triangle, as [`crate::element::PlainDisplacement`] has them; `None` below
+    /// degree 3.
+    #[serde(default)]
+    pub triangle_displacement: Option<Vec<[f64; 2]>>,
     /// Reactions, contact by contact in scene order.
-    pub contacts: Vec<PrimalContact>,
+    #[serde(default)]
+    pub contacts: Option<Vec<PrimalContact>>,
 }
 
 /// Seconds spent in each phase. Imports and the compilation of forms stand apart from the work itself.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct PrimalSeconds {
     /// Loading Python packages.
     pub import: f64,
@@ -179,20 +228,21 @@ pub struct PrimalContact {
     pub vertices: Vec<usize>,
     /// R ≥ 0 at each of `vertices`, conjugate to the jump there. Zero where supports alone decide the jump.
     pub vertex_reaction: Vec<f64>,
-    /// R ≥ 0 of each pair, conjugate to the middle Bernstein coefficient of its jump (to the midpoint value with
-    /// [`Options::nodal_contact`]); `None` for degree 1.
+    /// R ≥ 0 of each pair, conjugate to the inner Bernstein coefficients of its jump (to the values at the nodes with
+    /// [`Options::nodal_contact`]): k − 1, or k where the direction of contact turns; `None` for degree 1.
     pub edge_reaction: Option<Vec<Vec<f64>>>,
     /// Force on the first side.
     pub resultant: [f64; 2],
 }
 
-/// Solve `problem` in displacements, once for each of [`Options::degrees`], in their order.
+/// Solve `problem` in displacements, once for each of [`Options::degrees`], in their order; a program that is not told the
+/// degrees gives those it has, the lowest first.
 ///
 /// # Errors
 /// Everything that keeps the results from being complete is a [`PrimalError`]; the call ends at the latest a few
 /// seconds after [`Options::timeout`].
 pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<PrimalSolution>, PrimalError> {
-    let degrees_fit = options.degrees.iter().all(|d| (1..=2).contains(d)) && !options.degrees.is_empty();
+    let degrees_fit = options.degrees.iter().all(|d| (1..=HIGHEST_DEGREE).contains(d)) && !options.degrees.is_empty();
     if !degrees_fit || options.ranks == Some(0) {
         return Err(PrimalError::BadOptions { degrees: options.degrees.clone(), ranks: options.ranks });
     }
@@ -206,6 +256,22 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
         }
     };
     exchange::write_problem(problem, pins, folder)?;
-    process::run(folder, options)?;
-    options.degrees.iter().map(|&degree| exchange::read_solution(folder, degree, problem)).collect()
+    let Some(program) = &options.program else {
+        process::run(folder, options)?;
+        return options.degrees.iter().map(|&degree| exchange::read_solution(folder, degree, problem)).collect();
+    };
+    let started = Instant::now();
+    let degrees = program.run(folder, &options.degrees, options.timeout)?;
+    let share = started.elapsed().as_secs_f64() / degrees.len() as f64;
+    let named = |degree: &u8| {
+        let mut solution = exchange::read_solution(folder, *degree, problem)?;
+        if solution.solver.is_empty() {
+            solution.solver = program.name();
+        }
+        if solution.seconds.total == 0.0 {
+            (solution.seconds.solve, solution.seconds.total) = (share, share);
+        }
+        Ok(solution)
+    };
+    degrees.iter().map(named).collect()
 }

@@ -7,17 +7,23 @@ use super::exchange::PROBLEM_FILE;
 use super::{Options, PrimalError, Sabotage};
 use crate::process::package::{Call, Failure, Package};
 
+/// Who is meant in messages.
+const FENICSX: &str = "the FEniCSx reference";
+
 /// The Python package.
 const PACKAGE: Package = Package {
     name: "hypercircle_reference",
     files: &[
         ("__init__.py", include_str!("../../reference/hypercircle_reference/__init__.py")),
         ("__main__.py", include_str!("../../reference/hypercircle_reference/__main__.py")),
+        ("builder.py", include_str!("../../reference/hypercircle_reference/builder.py")),
         ("compat.py", include_str!("../../reference/hypercircle_reference/compat.py")),
         ("constraints.py", include_str!("../../reference/hypercircle_reference/constraints.py")),
         ("descent.py", include_str!("../../reference/hypercircle_reference/descent.py")),
         ("exchange.py", include_str!("../../reference/hypercircle_reference/exchange.py")),
         ("group.py", include_str!("../../reference/hypercircle_reference/group.py")),
+        ("inside.py", include_str!("../../reference/hypercircle_reference/inside.py")),
+        ("lattice.py", include_str!("../../reference/hypercircle_reference/lattice.py")),
         ("model.py", include_str!("../../reference/hypercircle_reference/model.py")),
         ("run.py", include_str!("../../reference/hypercircle_reference/run.py")),
         ("solve.py", include_str!("../../reference/hypercircle_reference/solve.py")),
@@ -36,8 +42,8 @@ pub fn run(folder: &Path, options: &Options) -> Result<(), PrimalError> {
     };
     PACKAGE.run(&call).map_err(|failure| match failure {
         Failure::NotInstalled(reason) => PrimalError::NotInstalled(reason),
-        Failure::Failed { status, log } => PrimalError::Failed { status, log },
-        Failure::TimedOut { log } => PrimalError::TimedOut { limit: options.timeout, log },
+        Failure::Failed { status, log } => PrimalError::Failed { of: FENICSX.to_owned(), status, log },
+        Failure::TimedOut { log } => PrimalError::TimedOut { of: FENICSX.to_owned(), limit: options.timeout, log },
         Failure::Io { path, source } => PrimalError::Io { path, source },
     })
 }

@@ -53,7 +53,7 @@ fn a_crash_brings_the_end_of_the_log() {
     let (outcome, _) =
         with_fake("i=0; while [ $i -lt 100 ]; do echo line $i >&2; i=$((i+1)); done; kill -SEGV $$", |_| {});
     match outcome {
-        Err(PrimalError::Failed { status, log }) => {
+        Err(PrimalError::Failed { status, log, .. }) => {
             assert_eq!(status, "ended by signal 11");
             assert_eq!(log.lines().count(), 40);
             assert!(log.starts_with("line 60\n") && log.ends_with("line 99"), "{log}");
@@ -106,17 +106,23 @@ fn results_of_an_earlier_run_do_not_count() {
 
 #[test]
 fn arguments_and_environment_arrive() {
-    let script = "echo \"$@\" threads=$OMP_NUM_THREADS; ls \"${PYTHONPATH%%:*}/hypercircle_reference\"; exit 3";
+    let script = "echo \"$@\" threads=$OMP_NUM_THREADS; ls \"${PYTHONPATH%%:*}\"/*; exit 3";
     let (outcome, _) = with_fake(script, |options| {
         options.degrees = vec![2];
         options.sabotage = Some(Sabotage::DropRow);
         options.nodal_contact = true;
     });
-    let Err(PrimalError::Failed { status, log }) = outcome else { panic!("{outcome:?}") };
+    let Err(PrimalError::Failed { status, log, .. }) = outcome else { panic!("{outcome:?}") };
     assert_eq!(status, "exit code 3");
-    for part in
-        ["hypercircle_reference'", "--degree 2", "--sabotage drop-row", "--nodal-contact", "threads=1", "solve.py"]
-    {
+    for part in [
+        "hypercircle_reference'",
+        "--degree 2",
+        "--sabotage drop-row",
+        "--nodal-contact",
+        "threads=1",
+        "solve.py",
+        "hypercircle_process:",
+    ] {
         assert!(log.contains(part), "{part} is missing in {log}");
     }
     assert!(!log.contains("--degree 1"));
@@ -124,7 +130,7 @@ fn arguments_and_environment_arrive() {
 
 #[test]
 fn degrees_and_ranks_are_checked() {
-    for (degrees, ranks) in [(vec![3], None), (vec![], None), (vec![1], Some(0))] {
+    for (degrees, ranks) in [(vec![1, 10], None), (vec![0], None), (vec![], None), (vec![1], Some(0))] {
         let (outcome, _) = with_fake("", |options| (options.degrees, options.ranks) = (degrees.clone(), ranks));
         assert!(matches!(outcome, Err(PrimalError::BadOptions { .. })), "{outcome:?}");
     }

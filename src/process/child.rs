@@ -39,6 +39,13 @@ pub struct Ended {
     pub log: Vec<String>,
 }
 
+impl Ended {
+    /// The last lines as one text, for a message.
+    pub fn text(&self) -> String {
+        if self.log.is_empty() { "(nothing was printed)".to_owned() } else { self.log.join("\n") }
+    }
+}
+
 /// Starts `command` in a process group of its own, and waits for its end, for at most `limit`. Standard input is a pipe
 /// that is never written to: its end tells the process that this one is gone. What it started and left running in its
 /// group ends with it.

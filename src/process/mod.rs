@@ -12,6 +12,7 @@ pub mod python;
 mod scratch;
 pub mod signals;
 mod tail;
+pub mod words;
 
 use std::time::Duration;
 

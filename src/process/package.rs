@@ -59,6 +59,12 @@ pub enum Failure {
     },
 }
 
+/// What every package imports.
+const SHARED: Package = Package {
+    name: "hypercircle_process",
+    files: &[("__init__.py", include_str!("../../reference/hypercircle_process/__init__.py"))],
+};
+
 /// What a package returns when something that it imports is missing.
 const NOT_INSTALLED: i32 = 4;
 
@@ -80,8 +86,11 @@ impl Package {
             }
             None => self.unpack(&scratch).map_err(in_scratch)?,
         };
-        if !folder.join(self.name).join("__main__.py").is_file() {
-            let reason = format!("{} (from HYPERCIRCLE_REFERENCE) holds no {}", folder.display(), self.name);
+        let missing = [(self.name, "__main__.py"), (SHARED.name, "__init__.py")]
+            .into_iter()
+            .find(|(name, file)| !folder.join(name).join(file).is_file());
+        if let Some((name, _)) = missing {
+            let reason = format!("{} (from HYPERCIRCLE_REFERENCE) holds no {name}", folder.display());
             return Err(Failure::NotInstalled(reason));
         }
         let place = scratch.folder("run").map_err(in_scratch)?;
@@ -94,13 +103,15 @@ impl Package {
         self.judge(ended)
     }
 
-    /// Puts the package into a folder of `scratch`, which is the result.
+    /// Puts the package, and what it imports, into a folder of `scratch`, which is the result.
     fn unpack(&self, scratch: &Scratch) -> io::Result<PathBuf> {
         let root = scratch.folder("package")?;
-        let package = root.join(self.name);
-        fs::create_dir(&package)?;
-        for (name, text) in self.files {
-            fs::write(package.join(name), text)?;
+        for package in [self, &SHARED] {
+            let folder = root.join(package.name);
+            fs::create_dir(&folder)?;
+            for (name, text) in package.files {
+                fs::write(folder.join(name), text)?;
+            }
         }
         Ok(root)
     }
@@ -127,7 +138,7 @@ impl Package {
 
     /// What the end of the process means.
     fn judge(&self, ended: Ended) -> Result<(), Failure> {
-        let log = if ended.log.is_empty() { "(nothing was printed)".to_owned() } else { ended.log.join("\n") };
+        let log = ended.text();
         match ended.outcome {
             Outcome::TimedOut => Err(Failure::TimedOut { log }),
             Outcome::Lost(error) => Err(Failure::Failed { status: format!("lost: {error}"), log }),
@@ -150,7 +161,8 @@ fn interpreter(given: Option<&Path>) -> Result<PathBuf, Failure> {
     python::find(&found).ok_or_else(|| Failure::NotInstalled(format!("{} does not exist", found.display())))
 }
 
-fn words(status: ExitStatus) -> String {
+/// How a process ended.
+pub fn words(status: ExitStatus) -> String {
     match (status.code(), status.signal()) {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(signal)) => format!("ended by signal {signal}"),

@@ -107,8 +107,7 @@ fn held(
         None if args.displacement.is_empty() => None,
         None => Some(read(&args, &session)?),
     };
-    let names: Vec<String> = field.iter().map(ForeignField::name).collect();
-    args.judge.refuse_early(scene, &names.iter().map(String::as_str).collect::<Vec<_>>(), &args.job)?;
+    args.judge.refuse_early(scene, Some(field.iter().map(ForeignField::name).collect()), &args.job)?;
     let own;
     let run = match solved {
         Some(run) => run,

@@ -27,13 +27,14 @@ pub fn claim(problem: &Problem, judged: &Judged, allow: &Allowances) -> Result<C
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
 }
 
-/// What explains the solutions of a displacement model that checks of their own say are none.
+/// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
+/// nodal forces the hypotheses are fitted to.
 pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());
         let failed = comparison.checks.iter().filter(own).any(|check| !check.passed && check.decides());
-        failed && judged.candidate.is_solution
+        failed && judged.candidate.is_solution && judged.candidate.higher.is_none()
     };
     let explained = |judged: &Judged| {
         let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?;

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::compare::{Candidate, Reactions};
-use crate::primal::PrimalSolution;
+use crate::element::PlainDisplacement;
+use crate::mesh::Edge;
+use crate::primal::{PrimalContact, PrimalSolution};
 use crate::problem::{Pin, Problem};
 use crate::statics::Statics;
 
@@ -30,36 +32,40 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
     .into_iter()
     .map(|(k, v)| (k.to_string(), v))
     .collect();
-    let middle = solution.edge_displacement.unwrap_or_else(|| {
-        let u = &solution.vertex_displacement;
-        problem.mesh.edges.iter().map(|e| [0, 1].map(|c| 0.5 * (u[e.vertices[0]][c] + u[e.vertices[1]][c]))).collect()
-    });
+    let mesh = &problem.mesh;
+    let degree = usize::from(solution.degree);
+    let vertex = solution.vertex_displacement;
+    let edge = solution.edge_displacement.unwrap_or_default();
+    let inside = solution.triangle_displacement.unwrap_or_default();
+    let plain = || PlainDisplacement::from_values(mesh, degree, &vertex, &edge, &inside);
+    let higher = if degree > 2 { plain() } else { None };
+    let mean = |e: &Edge| [0, 1].map(|c| 0.5 * (vertex[e.vertices[0]][c] + vertex[e.vertices[1]][c]));
+    let middle = match (&higher, degree) {
+        (Some(plain), _) => plain.middles(mesh),
+        (None, 1) => mesh.edges.iter().map(mean).collect(),
+        (None, _) => edge,
+    };
     Candidate {
         name: format!("{} P{}", solution.solver, solution.degree),
         solver: solution.solver,
         version: solution.solver_version,
-        degree: usize::from(solution.degree),
-        vertex: solution.vertex_displacement,
+        degree,
+        vertex,
         middle,
-        reported: Some(solution.energy),
-        reported_strain: Some(solution.strain_energy),
+        higher,
+        reported: solution.energy,
+        reported_strain: solution.strain_energy,
         is_solution: true,
-        reactions: Some(
-            solution
-                .contacts
-                .into_iter()
-                .map(|c| Reactions {
-                    vertices: c.vertices,
-                    vertex: c.vertex_reaction,
-                    edge: c.edge_reaction,
-                    resultant: c.resultant,
-                })
-                .collect(),
-        ),
+        reactions: solution.contacts.map(|contacts| contacts.into_iter().map(reactions).collect()),
         iterations: solution.iterations,
         unknowns: solution.unknowns,
         seconds,
         precision: f64::EPSILON,
         numbering: None,
     }
+}
+
+fn reactions(contact: PrimalContact) -> Reactions {
+    let PrimalContact { vertices, vertex_reaction: vertex, edge_reaction: edge, resultant, .. } = contact;
+    Reactions { vertices, vertex, edge, resultant }
 }

@@ -6,6 +6,8 @@ use crate::support::Blocks;
 use hypercircle::bounds::Bracket;
 use hypercircle::compare::{Allowances, Basis, Candidate, Check, Reactions, compare};
 use hypercircle::dual::{self, Condensed, Options};
+use hypercircle::element::PlainDisplacement;
+use hypercircle::mesh::Edge;
 use hypercircle::problem::Problem;
 
 fn problem(n: usize) -> Problem {
@@ -33,6 +35,7 @@ fn exact(problem: &Problem) -> Candidate {
         degree: 2,
         vertex: mesh.points.iter().map(|p| u(*p)).collect(),
         middle: (0..mesh.edges.len()).map(middle).collect(),
+        higher: None,
         reported: Some(-1.0),
         reported_strain: Some(1.0),
         is_solution: true,
@@ -48,6 +51,32 @@ fn exact(problem: &Problem) -> Candidate {
         precision: f64::EPSILON,
         numbering: None,
     }
+}
+
+/// The same in degree `k`: of a constant pressure, every coefficient on an edge has an equal share.
+fn exact_of_degree(problem: &Problem, k: usize) -> Candidate {
+    let mesh = &problem.mesh;
+    let linear = exact(problem);
+    let ends = |e: &Edge| e.vertices.map(|v| linear.vertex[v][0]);
+    let along = |[a, b]: [f64; 2]| (1..k).map(move |i| [a + (b - a) * i as f64 / k as f64, 0.0]);
+    let edge: Vec<[f64; 2]> = mesh.edges.iter().flat_map(|e| along(ends(e))).collect();
+    let inside = mesh.triangles.iter().flat_map(|corners| {
+        let [a, b, c] = corners.map(|v| linear.vertex[v][0]);
+        let all = (1..k).rev().flat_map(move |i| (1..k).rev().map(move |j| (i, j)));
+        let within = all.filter(move |(i, j)| i + j < k).map(move |(i, j)| (i, j, k - i - j));
+        within.map(move |(i, j, l)| [(i as f64 * a + j as f64 * b + l as f64 * c) / k as f64, 0.0])
+    });
+    let inside: Vec<[f64; 2]> = inside.collect();
+    let higher =
+        PlainDisplacement::from_values(mesh, k, &linear.vertex, &edge, &inside).expect("the nodes of the mesh");
+    let mut candidate = Candidate { degree: k, higher: Some(higher), ..linear };
+    let part = problem.interfaces[0].pairs[0].length / (k + 1) as f64;
+    let reported = reactions(&mut candidate);
+    let last = reported.vertex.len() - 1;
+    let shares = (0..=last).map(|i| if [0, last].contains(&i) { part } else { 2.0 * part });
+    reported.vertex = shares.collect();
+    reported.edge = Some(vec![vec![part; k - 1]; last]);
+    candidate
 }
 
 fn checks(problem: &Problem, candidate: Candidate) -> Vec<Check> {
@@ -129,10 +158,27 @@ fn a_displacement_that_is_wrong_anywhere_is_out_of_balance() {
 }
 
 #[test]
-fn linear_and_quadratic_solutions_of_other_data_are_out_of_balance_by_the_size_of_the_change() {
+fn solutions_of_higher_degree_pass_and_wrong_reactions_of_theirs_do_not() {
     let problem = problem(3);
-    for degree in [1, 2] {
-        let candidate = || Candidate { degree, reactions: None, ..exact(&problem) };
+    for k in [3, 4, 6] {
+        let found = checks(&problem, exact_of_degree(&problem, k));
+        assert!(failed(&found).is_empty(), "degree {k}: {:?}", failed(&found));
+        assert!(remainder(&found) < 1e-12, "degree {k}: {}", remainder(&found));
+        let mut candidate = exact_of_degree(&problem, k);
+        reactions(&mut candidate).edge.as_mut().expect("inside")[1][k - 2] += 1e-4;
+        let found = failed(&checks(&problem, candidate)).join(" ");
+        assert!(found.contains("reactions"), "degree {k}: {found}");
+    }
+}
+
+#[test]
+fn solutions_of_other_data_are_out_of_balance_by_the_size_of_the_change() {
+    let problem = problem(3);
+    for degree in [1, 2, 3, 5] {
+        let candidate = || match degree {
+            1 | 2 => Candidate { degree, reactions: None, ..exact(&problem) },
+            _ => Candidate { reactions: None, ..exact_of_degree(&problem, degree) },
+        };
         assert!(remainder(&checks(&problem, candidate())) < 1e-13);
         for change in [1e-2, 1e-4] {
             let mut heavier = problem.clone();

@@ -34,11 +34,11 @@ pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
 use self::relax::Patches;
 pub use self::relax::Until;
-pub use self::rows::{Row, bernstein};
+pub use self::rows::{Row, bernstein, of_pair, sides};
 pub use self::stiffness::Pull;
 use super::energy::potential;
 use crate::dual::DualSolution;
-use crate::element::Displacement;
+use crate::element::{Displacement, PlainDisplacement};
 use crate::problem::Problem;
 
 /// Why no admissible displacement could be built.
@@ -193,4 +193,25 @@ pub fn repaired(
         }
     }
     Ok((nearest, violation))
+}
+
+/// The field whose values along the contact and on supports are the nearest that these allow, and how far from admissible
+/// the given one was.
+///
+/// # Errors
+/// [`NoUpperBound`] as for [`admissible`].
+pub fn repaired_at_contact(
+    problem: &Problem,
+    field: &PlainDisplacement,
+) -> Result<(Displacement, Violation), NoUpperBound> {
+    let mesh = &problem.mesh;
+    let holds = holds(problem)?;
+    let size = field.values().iter().flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+    let nodes = Nodes::new(mesh.points.len(), std::iter::repeat_n(field.degree(), mesh.edges.len()));
+    let start = NodalValues { values: field.boundary().to_vec(), nodes };
+    let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
+    let rows = rows::rows(problem, &start.nodes);
+    let (nearest, farthest) = restricted(problem, &holds, &rows, start)?;
+    let violation = Violation { support: farthest / size, penetration, at_vertices };
+    Ok((field.clone().with_boundary(&nearest.values).split(mesh), violation))
 }

@@ -3,10 +3,11 @@
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
+use super::higher::Asked;
 use super::{End, HELD, Solution, dot, inner_reactions};
 use crate::bounds::Hold;
 use crate::compare::candidate::Reactions;
-use crate::problem::Interface;
+use crate::problem::{ContactPair, Interface};
 
 impl Solution<'_> {
     /// By how much the reported reactions of an interface miss what the displacement asks for, at the vertices where only
@@ -27,18 +28,14 @@ impl Solution<'_> {
         for (k, pair) in interface.pairs.iter().enumerate() {
             if let (Some(edge), Some(e)) = (&reported.edge, pair.edges[0]) {
                 let r = edge.get(k).map_or(&[][..], Vec::as_slice);
-                let left = left[vertices + e];
-                let [m, n] = pair.direction.ends;
-                let (asked, moved) = if pair.direction.is_constant() {
-                    (vec![-0.5 * dot(left, n)], vec![n])
-                } else {
-                    let moved = [[m, n], [n, m]].map(|[m, n]| [0, 1].map(|c| (2.0 * m[c] + n[c]) / 3.0));
-                    (inner_reactions(pair, left, [true; 2]).to_vec(), moved.to_vec())
+                let asked = match self.candidate.degree {
+                    2 => asked_in_the_middle(pair, left[vertices + e]),
+                    degree => self.asked_inside(pair, degree, left),
                 };
-                for (i, (asked, moved)) in asked.into_iter().zip(moved).enumerate() {
+                for (i, asked) in asked.into_iter().enumerate() {
                     let r = r.get(i).copied().unwrap_or(0.0);
-                    worst = worst.max((r - asked).abs());
-                    add(moved.map(|n| -r * n));
+                    worst = worst.max((r - asked.reaction).abs());
+                    add(asked.moved.map(|n| -r * n));
                 }
             }
         }
@@ -111,6 +108,17 @@ impl Solution<'_> {
         }
         if square > HELD * HELD { -pull / square } else { 0.0 }
     }
+}
+
+/// The reactions of degree 2 inside a pair that the force `left` at the midpoint of its first side asks for.
+fn asked_in_the_middle(pair: &ContactPair, left: [f64; 2]) -> Vec<Asked> {
+    let [m, n] = pair.direction.ends;
+    if pair.direction.is_constant() {
+        return vec![Asked { reaction: -0.5 * dot(left, n), moved: n }];
+    }
+    let moved = [[m, n], [n, m]].map(|[m, n]| [0, 1].map(|c| (2.0 * m[c] + n[c]) / 3.0));
+    let both = inner_reactions(pair, left, [true; 2]).into_iter().zip(moved);
+    both.map(|(reaction, moved)| Asked { reaction, moved }).collect()
 }
 
 /// How an interface meets a vertex of its first side: in one direction, with no other contact there where it is `alone`,

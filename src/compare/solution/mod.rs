@@ -14,7 +14,7 @@ pub use sites::{Site, Sites, Span};
 use super::balance::Balance;
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use crate::bounds::{Hold, Holds, NoUpperBound, holds};
+use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::problem::{Problem, ROUND_OFF};
 
 /// What a solver may leave in the equations that it solves, relative to what they balance.
@@ -91,8 +91,10 @@ impl<'a> Solution<'a> {
     pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
         let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
         let holds = holds(problem)?;
+        let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
+        let nodes = Nodes::new(problem.mesh.points.len(), inside);
         let sites = Sites::new(problem, candidate.degree, &holds);
-        let mut rest = forces.unsupported(&holds);
+        let mut rest = forces.unsupported(&holds, &nodes);
         let pressing = sites.pressing(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);

@@ -75,14 +75,14 @@ struct Group {
 }
 
 impl Sites {
-    /// Those of `problem` for nodes of the given degree.
+    /// Those of `problem` for nodes of the given degree; of degrees above 2, for those of degree 2.
     pub fn new(problem: &Problem, degree: usize, holds: &Holds) -> Self {
         let vertices = problem.mesh.points.len();
         let mut sites = Sites { list: Vec::new(), spans: Vec::new(), groups: Vec::new() };
         for (interface, contact) in problem.interfaces.iter().enumerate() {
             let mut known: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
             for pair in &contact.pairs {
-                let part = pair.length / if degree == 2 { 6.0 } else { 2.0 };
+                let part = pair.length / if degree > 1 { 6.0 } else { 2.0 };
                 let mut at_ends = [0; 2];
                 for (end, at) in at_ends.iter_mut().enumerate() {
                     let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
@@ -99,12 +99,12 @@ impl Sites {
                         }
                     }
                 }
-                let middle = (degree == 2 && pair.edges[0].is_some()).then_some(sites.list.len());
+                let middle = (degree > 1 && pair.edges[0].is_some()).then_some(sites.list.len());
                 let turned = !pair.direction.is_constant();
                 if !turned {
                     sites.spans.push(Span { ends: at_ends, middle, length: pair.length });
                 }
-                let (2, Some(own)) = (degree, pair.edges[0]) else { continue };
+                let (2.., Some(own)) = (degree, pair.edges[0]) else { continue };
                 let [n, m] = pair.direction.ends;
                 let turned = turned.then(|| [m[0] - n[0], m[1] - n[1]]);
                 sites.list.push(Site {

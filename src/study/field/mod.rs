@@ -274,6 +274,7 @@ impl ForeignField {
             degree: matched.degree,
             vertex: matched.vertex,
             middle: matched.middle,
+            higher: None,
             reported: None,
             reported_strain: None,
             is_solution: false,

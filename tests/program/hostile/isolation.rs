@@ -7,7 +7,7 @@ use crate::command::{said, script, with_reference};
 
 /// Prints the name of every module that can be imported, and of some that Python looks for by itself.
 const LIST: &str = "import pkgutil, sys\n\
-    more = {'meshio', 'hypercircle_reference', 'sitecustomize', 'usercustomize'}\n\
+    more = {'meshio', 'hypercircle_reference', 'hypercircle_process', 'sitecustomize', 'usercustomize'}\n\
     print('\\n'.join({m.name for m in pkgutil.iter_modules()} | set(sys.stdlib_module_names) | more))";
 
 const PYTHON: &str = "/usr/bin/python3";

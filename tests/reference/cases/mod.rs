@@ -3,10 +3,12 @@
 
 mod causes;
 mod curved;
+mod degrees;
 mod discs;
 mod exact;
 mod failures;
 mod half_planes;
+mod own_solver;
 mod repeatable;
 mod run;
 mod sabotage;

@@ -1,0 +1,63 @@
+"""What a solver that runs as a process of its own has in common with the others: how it fails, reports and ends.
+
+Exit codes: 0 result files written, 2 bad arguments or exchange file, 3 the solver failed, 4 a package is not installed.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Callable
+
+
+class Failure(Exception):
+    """A run that ends without a result; ``exit_code`` tells the caller of what kind."""
+
+    exit_code = 3
+
+
+class BadExchange(Failure):
+    """A file of the exchange cannot be read, or contradicts itself or another one."""
+
+    exit_code = 2
+
+
+class NotInstalled(Failure):
+    """A package that the solver needs, or one of its parts, is missing."""
+
+    exit_code = 4
+
+
+def log(comm, text: str) -> None:
+    """One line of progress on stderr, from rank 0 only."""
+    if comm.rank == 0:
+        print(text, file=sys.stderr, flush=True)
+
+
+def finish(name: str, work: Callable[[], None]) -> None:
+    """Do the ``work``, and translate every failure into an exit code and one line on stderr that begins with ``name``."""
+    try:
+        work()
+    except (NotInstalled, ImportError) as missing:
+        print(f"{name}: not installed: {_missing(missing)}", file=sys.stderr)
+        _leave(NotInstalled.exit_code)
+    except Failure as failure:
+        print(f"{name}: {failure}", file=sys.stderr)
+        _leave(failure.exit_code)
+    except (MemoryError, OSError, RuntimeError, ValueError) as error:
+        print(f"{name}: {type(error).__name__}: {error}", file=sys.stderr)
+        _leave(Failure.exit_code)
+
+
+def _missing(error: Exception) -> str:
+    return f"{error.name or 'a package'} cannot be imported ({error})" if isinstance(error, ImportError) else str(error)
+
+
+def _leave(code: int) -> None:
+    """End this rank; of several, one that fails takes the others along, which would wait for it forever."""
+    sys.stderr.flush()
+    if "mpi4py.MPI" in sys.modules:
+        from mpi4py import MPI
+
+        if MPI.COMM_WORLD.size > 1:
+            MPI.COMM_WORLD.Abort(code)
+    sys.exit(code)

@@ -1,0 +1,94 @@
+"""The nodes of continuous displacements of degree k, and the polynomials along an edge that they carry.
+
+Nodes lie at equal steps. Their numbers: the vertices, then for each edge the k − 1 inside it from its first vertex to its
+second, then for each triangle the (k − 1)(k − 2)/2 inside it, the weight of its first corner falling and, where that is
+equal, the weight of its second.
+
+On an edge j(s) = Σ b_i B_i(s) with the Bernstein polynomials B_0, …, B_k; the b_i of a linear function are its values at
+i/k, and a bound on every b_i bounds j between the nodes too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+
+import numpy as np
+
+
+def bernstein(degree: int) -> np.ndarray:
+    """Values (k + 1, k + 1) of the Bernstein polynomials, one column each, at the nodes of an edge."""
+    s = np.arange(degree + 1)[:, None] / degree
+    i = np.arange(degree + 1)
+    return np.array([comb(degree, j) for j in i]) * s**i * (1.0 - s) ** (degree - i)
+
+
+def traction_weights(degree: int) -> np.ndarray:
+    """∫ φ_i (1 − s) ds and ∫ φ_i s ds (k + 1, 2) over an edge of length one, for the shape functions φ_i of its nodes."""
+    i = np.arange(degree + 1)
+    moments = np.stack([degree + 1 - i, i + 1], axis=1) / ((degree + 1) * (degree + 2))
+    return np.linalg.solve(bernstein(degree).T, moments)
+
+
+def weights(degree: int) -> np.ndarray:
+    """Weights of the corners, times k, at each node of a triangle (n, 3), the first falling, then the second."""
+    return np.array([(degree - r, r - l, l) for r in range(degree + 1) for l in range(r + 1)])
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """The nodes of degree ``degree`` on a mesh with so many vertices, edges and triangles."""
+
+    degree: int
+    vertices: int
+    edges: int
+    triangles: int
+
+    @staticmethod
+    def of(problem, degree: int) -> "Lattice":
+        """Those of a problem."""
+        return Lattice(degree, len(problem.points), len(problem.edges), len(problem.triangles))
+
+    @property
+    def in_edge(self) -> int:
+        """Nodes inside one edge."""
+        return self.degree - 1
+
+    @property
+    def in_triangle(self) -> int:
+        """Nodes inside one triangle."""
+        return (self.degree - 1) * (self.degree - 2) // 2
+
+    @property
+    def ends(self) -> tuple[int, int, int]:
+        """One past the last node of the vertices, of the edges, and of all."""
+        edges = self.vertices + self.in_edge * self.edges
+        return self.vertices, edges, edges + self.in_triangle * self.triangles
+
+    def inside_edges(self, edges: np.ndarray) -> np.ndarray:
+        """Nodes (m, k − 1) inside the edges (m,), from their first vertices to their second."""
+        return self.vertices + self.in_edge * np.asarray(edges)[:, None] + np.arange(self.in_edge)
+
+    def inside_triangles(self, triangles: np.ndarray) -> np.ndarray:
+        """Nodes (m, (k − 1)(k − 2)/2) inside the triangles (m,)."""
+        return self.ends[1] + self.in_triangle * np.asarray(triangles)[:, None] + np.arange(self.in_triangle)
+
+    def along(self, problem, edges: np.ndarray, start: np.ndarray) -> np.ndarray:
+        """Nodes (m, k − 1) inside the edges (m,) in the direction that begins at the vertices ``start`` (m,); −1 where
+        there is no edge."""
+        nodes = self.inside_edges(edges)
+        nodes = np.where((problem.edges[edges, 0] == start)[:, None], nodes, nodes[:, ::-1])
+        return np.where((edges >= 0)[:, None], nodes, -1)
+
+    def of_triangles(self, problem) -> np.ndarray:
+        """Nodes of every triangle (m, (k + 1)(k + 2)/2), in the order of :func:`weights`."""
+        k, at = self.degree, weights(self.degree)
+        nodes = np.empty((self.triangles, len(at)), dtype=np.int64)
+        nodes[:, np.all(at > 0, axis=1)] = self.inside_triangles(np.arange(self.triangles))
+        for i in range(3):
+            first, second = (i + 1) % 3, (i + 2) % 3
+            side = np.flatnonzero(at[:, i] == 0)
+            side = side[np.argsort(at[side, second])]
+            nodes[:, side[0]] = problem.triangles[:, first]
+            nodes[:, side[1:k]] = self.along(problem, problem.triangle_edges[:, i], problem.triangles[:, first])
+        return nodes
