@@ -146,10 +146,10 @@ impl Scene {
     /// side is solved on the mesh as given, which must be that of the field.
     ///
     /// `points` (n × 2), `triangles` (m × 3, or m × 6 with the middles of (0, 1), (1, 2), (2, 0) after the corners) and
-    /// `displacement` (n × 2) are arrays; in their place `file` is one that meshio reads. With `solution` the field claims to be
-    /// the discrete solution of its mesh, is held to that, and diagnosed where it is none. `values` maps quantities to numbers,
-    /// `allow` checks to tolerances. `tolerance` is the largest relative error that passes. With `out`, the report goes into that
-    /// folder.
+    /// `displacement` (n × 2) are arrays; in their place `file` is one that meshio reads, `field` the name of its point data.
+    /// With `solution` the field claims to be the discrete solution of its mesh, is held to that, and diagnosed where it is none.
+    /// `values` maps quantities to numbers, `allow` checks to tolerances. `tolerance` refines the stresses alone, until their
+    /// guaranteed error is below it. With `out`, the report goes into that folder.
     ///
     /// Raises as `solve` does.
     #[pyo3(signature = (points = None, triangles = None, displacement = None, *, file = None, field = None, name = "displacement",
