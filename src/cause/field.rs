@@ -103,7 +103,8 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     let worst = || judged.balance.as_ref().and_then(|b| b.worst_node).map(|node| Place::of(problem, node, None));
     if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
         let what = "stresses do not balance the loads".to_string();
-        return made(Kind::Equilibrium, "equilibrium", what, worst());
+        let name = if candidate.higher.is_some() { "equilibrium/untried" } else { "equilibrium" };
+        return made(Kind::Equilibrium, name, what, worst());
     }
     if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {
         let what = format!(

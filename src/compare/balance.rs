@@ -20,7 +20,6 @@ use nalgebra::DVector;
 use super::candidate::Candidate;
 use super::forces::NodalForces;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
-use crate::element::{plain, triangle};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
 use crate::statics::cone::unbalanced;
@@ -108,41 +107,13 @@ impl Balance {
             rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
-            worst: worst.map(|i| (place(problem, candidate.degree, i), rest[i])),
-            worst_node: worst.map(|i| near(problem, candidate.degree, i)),
+            worst: worst.map(|i| (higher::place(problem, candidate.degree, i), rest[i])),
+            worst_node: worst.map(|i| higher::near(problem, candidate.degree, i)),
             reactions,
             reaction_rounding,
             carried,
             unbalanced,
         })
-    }
-}
-
-/// Where a node of degree `k` is: a vertex, inside an edge, or inside a triangle.
-fn place(problem: &Problem, k: usize, node: usize) -> [f64; 2] {
-    let mesh = &problem.mesh;
-    let vertices = mesh.points.len();
-    let between = |points: &[[f64; 2]], parts: &[usize]| {
-        [0, 1].map(|c| points.iter().zip(parts).map(|(p, part)| *part as f64 / k as f64 * p[c]).sum::<f64>())
-    };
-    let Some(inside) = node.checked_sub(vertices) else { return mesh.points[node] };
-    if inside < (k - 1) * mesh.edges.len() {
-        let (e, j) = (inside / (k - 1), inside % (k - 1) + 1);
-        return between(&mesh.edges[e].vertices.map(|v| mesh.points[v]), &[k - j, j]);
-    }
-    let inner = (inside - (k - 1) * mesh.edges.len()) % plain::inner_len(k);
-    let at = triangle::indices(k).filter(|alpha| !alpha.contains(&0)).nth(inner).unwrap_or([1; 3]);
-    between(&mesh.corners((inside - (k - 1) * mesh.edges.len()) / plain::inner_len(k)), &at)
-}
-
-/// The vertex or edge, as vertices and then edges are counted, that a node of degree `k` is on or near.
-fn near(problem: &Problem, k: usize, node: usize) -> usize {
-    let mesh = &problem.mesh;
-    let vertices = mesh.points.len();
-    match node.checked_sub(vertices) {
-        None => node,
-        Some(inside) if inside < (k - 1) * mesh.edges.len() => vertices + inside / (k - 1),
-        Some(inside) => mesh.triangles[(inside - (k - 1) * mesh.edges.len()) / plain::inner_len(k)][0],
     }
 }
 

@@ -1,4 +1,4 @@
-//! Contact inside pairs for displacements of degree 3 and more, whose forces are those on Bernstein polynomials.
+//! Nodes and contact inside pairs for displacements of degree 3 and more, whose forces are those on Bernstein polynomials.
 //!
 //! The jump of a pair has one coefficient for each row ([`of_pair`]); those between its ends act on the coefficients inside the
 //! two edges and, where n̂ turns, on those of the vertices next to them too.
@@ -7,13 +7,41 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Solution;
 use crate::bounds::{Nodes, Row, of_pair, sides};
-use crate::element::PlainDisplacement;
+use crate::element::{PlainDisplacement, plain, triangle};
 use crate::problem::{ContactPair, Problem};
 use crate::statics::cone::unbalanced;
 
 /// The nodes of a displacement of degree `k`, vertices and insides of edges.
 pub(super) fn nodes(problem: &Problem, k: usize) -> Nodes {
     Nodes::new(problem.mesh.points.len(), std::iter::repeat_n(k, problem.mesh.edges.len()))
+}
+
+/// Where a node of degree `k` is: a vertex, inside an edge, or inside a triangle.
+pub(super) fn place(problem: &Problem, k: usize, node: usize) -> [f64; 2] {
+    let mesh = &problem.mesh;
+    let vertices = mesh.points.len();
+    let between = |points: &[[f64; 2]], parts: &[usize]| {
+        [0, 1].map(|c| points.iter().zip(parts).map(|(p, part)| *part as f64 / k as f64 * p[c]).sum::<f64>())
+    };
+    let Some(inside) = node.checked_sub(vertices) else { return mesh.points[node] };
+    if inside < (k - 1) * mesh.edges.len() {
+        let (e, j) = (inside / (k - 1), inside % (k - 1) + 1);
+        return between(&mesh.edges[e].vertices.map(|v| mesh.points[v]), &[k - j, j]);
+    }
+    let inner = (inside - (k - 1) * mesh.edges.len()) % plain::inner_len(k);
+    let at = triangle::indices(k).filter(|alpha| !alpha.contains(&0)).nth(inner).unwrap_or([1; 3]);
+    between(&mesh.corners((inside - (k - 1) * mesh.edges.len()) / plain::inner_len(k)), &at)
+}
+
+/// The vertex or edge, as vertices and then edges are counted, that a node of degree `k` is on or near.
+pub(super) fn near(problem: &Problem, k: usize, node: usize) -> usize {
+    let mesh = &problem.mesh;
+    let vertices = mesh.points.len();
+    match node.checked_sub(vertices) {
+        None => node,
+        Some(inside) if inside < (k - 1) * mesh.edges.len() => vertices + inside / (k - 1),
+        Some(inside) => mesh.triangles[(inside - (k - 1) * mesh.edges.len()) / plain::inner_len(k)][0],
+    }
 }
 
 /// The rows between the ends of a pair, and the nodes inside its sides.

@@ -51,5 +51,7 @@ fn a_wrong_model_of_higher_degree_is_found() {
         let report = run.report();
         assert!(report.failed().contains(&check), "{scene}, {bug}: {:?}", report.failed());
         assert!(report.0["verdict"].as_str().is_some_and(|v| v.contains("FEniCSx P3")), "{}", report.0["verdict"]);
+        let causes = report.0["causes"].to_string();
+        assert_eq!(causes.contains("looked for in degrees 1 and 2"), bug == "flip-sign", "{causes}");
     }
 }
