@@ -129,7 +129,7 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "All but a few equations are met: the assembly goes wrong at one spot.",
             "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
         ],
-        (Kind::Equilibrium, UNTRIED) => [
+        (Kind::Equilibrium, "untried") => [
             "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 alone.",
             "Run degrees 1 and 2 of the same solver beside it: what is wrong with those is named.",
         ],
