@@ -168,7 +168,8 @@ fn held(
     let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
     let answers = session.answers(sharpest, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Exact, &allow));
+    let meant = if args.solution { Meant::Discrete } else { Meant::Exact };
+    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, meant, &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;

@@ -124,6 +124,23 @@ fn every_mistake_is_found_and_named() {
     });
 }
 
+/// A linear solution on a coarse mesh is off by several per cent, and right as such; as the exact displacement it is wrong.
+#[test]
+fn a_quantity_of_a_discrete_solution_may_be_off_by_its_own_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    if !prepared(folder.path(), &["right"]) {
+        return;
+    }
+    let tip = "\n[[quantities]]\nname = \"tip\"\ndisplacement = \"left_load\"\ndirection = [1.0, 0.0]\n";
+    std::fs::write(folder.path().join("scene.toml"), scene() + tip).expect("writable");
+    let (code, report) = certified(folder.path(), "P1/right", &["--tolerance-of", "tip=0.01"]);
+    let quantity = &report["quantities"][0];
+    assert_eq!(quantity["primal"][0]["inside"], false, "{quantity}");
+    assert_eq!(code, 0, "{}", report["verdict"]);
+    let usual = ["certify", "scene.toml", "--displacement", "P1/right.vtk", "--tolerance-of", "tip=0.01", "--quiet"];
+    ended("as the exact displacement", &run(hypercircle(folder.path(), usual)), 1, &[]);
+}
+
 #[test]
 fn the_place_of_a_wrong_value_is_named_as_in_the_file_and_drawn() {
     let folder = tempfile::tempdir().expect("a folder");
