@@ -50,9 +50,6 @@ impl Kind {
     }
 }
 
-/// The name of missing equilibrium that no mistake was looked for.
-pub const UNTRIED: &str = "equilibrium/untried";
-
 /// Of a check that fails without any other.
 pub const ALONE: [&str; 2] = [
     "Nothing else fails with it, so the models agree in the rest.",

@@ -1,6 +1,6 @@
 //! Causes that lie in displacement fields: all of a field's failures have one.
 
-use super::advice::{self, Kind, UNTRIED};
+use super::advice::{self, Kind};
 use super::place::{self, Place};
 use super::{Cause, names, taken};
 use crate::compare::{Check, Comparison, Judged};
