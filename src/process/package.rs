@@ -123,7 +123,9 @@ impl Package {
                 let missing = || Failure::NotInstalled("mpirun does not exist".to_owned());
                 let mpirun = python::find(Path::new("mpirun")).ok_or_else(missing)?;
                 let count = ranks.to_string();
-                let arguments = ["--allow-run-as-root", "--oversubscribe", "-n", &count].map(OsString::from);
+                // Bound to a core, the first ranks of several runs would share the first core.
+                let arguments = ["--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "-n", &count];
+                let arguments = arguments.map(OsString::from);
                 std::iter::once(mpirun.into_os_string()).chain(arguments).collect()
             }
         };
