@@ -92,11 +92,7 @@ impl NodalForces {
             }
         }
         forces.press(problem, k);
-        for (node, load) in forces.load.iter().enumerate() {
-            forces.left[node][0] -= load[0];
-            forces.left[node][1] -= load[1];
-            forces.size[node] += load[0].hypot(load[1]);
-        }
+        forces.take_loads();
         forces
     }
 

@@ -86,12 +86,17 @@ impl NodalForces {
             }
         }
         forces.add_tractions(problem, degree);
-        for (node, load) in forces.load.iter().enumerate() {
-            forces.left[node][0] -= load[0];
-            forces.left[node][1] -= load[1];
-            forces.size[node] += load[0].hypot(load[1]);
-        }
+        forces.take_loads();
         forces
+    }
+
+    /// Takes the loads from the forces of the stresses: what is left is missing in equilibrium.
+    pub(super) fn take_loads(&mut self) {
+        for (node, load) in self.load.iter().enumerate() {
+            self.left[node][0] -= load[0];
+            self.left[node][1] -= load[1];
+            self.size[node] += load[0].hypot(load[1]);
+        }
     }
 
     fn add_tractions(&mut self, problem: &Problem, degree: usize) {
