@@ -51,23 +51,19 @@ impl Search<'_, '_> {
         let fields =
             Fields { stress: &dual.stress, displacement: &upper.displacement, adjoint: &response.stress, lifted };
         let pass = pass(problem, self.functional, fields);
-        let integrals = pass.pair;
-        self.bounded(response, Some(lifted), integrals, pass, sign)
+        let Bound { bound, centre, distance, ratio } = self.bounded(response, Some(lifted), &pass, sign);
+        End { bound, centre, first_order: None, distance, ratio, pass, nodes: NodalValues::none() }
     }
 
-    /// The bound of a stress alone, z being zero; `pass` is that of a pair with this stress.
-    pub fn alone(&self, response: &Response, pass: &Pass, sign: f64) -> End {
-        self.bounded(response, None, pass.alone, pass.clone(), sign)
+    /// Bound and Q_h of a stress alone, z being zero; `pass` is that of a pair with this stress.
+    pub fn alone(&self, response: &Response, pass: &Pass, sign: f64) -> (f64, f64) {
+        let Bound { bound, centre, .. } = self.bounded(response, None, pass, sign);
+        (bound, centre)
     }
 
-    fn bounded(
-        &self,
-        response: &Response,
-        lifted: Option<&Displacement>,
-        integrals: Integrals,
-        pass: Pass,
-        sign: f64,
-    ) -> End {
+    /// The bound of a pair with z = `lifted`, or with z = 0.
+    fn bounded(&self, response: &Response, lifted: Option<&Displacement>, pass: &Pass, sign: f64) -> Bound {
+        let integrals: Integrals = if lifted.is_some() { pass.pair } else { pass.alone };
         let Known { problem, dual, upper, square, pressure, .. } = self.known;
         let slip = [integrals.uncancelled, pass.uncancelled].map(|square| ROUNDING_PER_TERM * square.sqrt());
         let distance = integrals.square.max(0.0).sqrt() + slip[0];
@@ -126,8 +122,16 @@ impl Search<'_, '_> {
         }
         let centre = sign * sum.value();
         let bound = centre - width(distance, *square, asked) - rounding;
-        End { bound, centre, first_order: None, distance, ratio: asked, pass, nodes: NodalValues::none() }
+        Bound { bound, centre, distance, ratio: asked }
     }
+}
+
+/// What a pair is worth: the fields of [`End`] of these names.
+struct Bound {
+    bound: f64,
+    centre: f64,
+    distance: f64,
+    ratio: f64,
 }
 
 /// The largest D √(H − X) + ρX for 0 ≤ X ≤ H.

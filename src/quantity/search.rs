@@ -73,10 +73,13 @@ impl Search<'_, '_> {
         let reason = tries.reason.unwrap_or_else(unbounded);
         let (best, response) = tries.best.filter(|(best, _)| best.bound.is_finite()).ok_or(reason)?;
         let first = match &self.functional.lift {
-            Some(lift) => self.measured(&response, (lift, 1.0), sign),
+            Some(lift) => {
+                let End { bound, centre, .. } = self.measured(&response, (lift, 1.0), sign);
+                (bound, centre)
+            }
             None => self.alone(&response, &best.pass, sign),
         };
-        let first_order = Some((first.bound, first.centre)).filter(|(bound, _)| bound.is_finite());
+        let first_order = Some(first).filter(|(bound, _)| bound.is_finite());
         Ok(End { first_order, ..best })
     }
 
