@@ -81,15 +81,24 @@ impl SceneChart {
         match of {
             Of::Energy if guaranteed => plot.guaranteed,
             Of::Energy => plot.true_error,
-            Of::Quantity(name) => {
+            Of::Quantity(name) if guaranteed => {
                 let Asked { value, lower, upper, .. } = plot.quantities.iter().find(|q| q.name == name)?;
-                let ends = if guaranteed { [(*lower)?, (*upper)?] } else { self.known(name)? };
-                let value = (*value)?;
-                let off = match guaranteed {
-                    true => 0.5 * (ends[1] - ends[0]),
-                    false => ends.map(|end| (value - end).abs()).into_iter().fold(0.0, f64::max),
-                };
-                Some(off / value.abs()).filter(|error| error.is_finite())
+                Some(0.5 * ((*upper)? - (*lower)?) / (*value)?.abs()).filter(|error| error.is_finite())
+            }
+            Of::Quantity(_) => self.errors(plot, of).map(|[_, most]| most),
+        }
+    }
+
+    /// Least and most that the true error of a run can be, for all that the reference or all runs together leave open.
+    pub fn errors(&self, plot: &Plot, of: Of<'_>) -> Option<[f64; 2]> {
+        match of {
+            Of::Energy => Some(self.reference.as_ref().ok()?.errors(plot.lower.or(plot.upper)?)),
+            Of::Quantity(name) => {
+                let value = plot.quantities.iter().find(|q| q.name == name)?.value?;
+                let [lower, upper] = self.known(name)?;
+                let off = [lower - value, value - upper].into_iter().fold(0.0, f64::max);
+                let most = (value - lower).abs().max((value - upper).abs());
+                Some([off, most].map(|distance| distance / value.abs())).filter(|[_, most]| most.is_finite())
             }
         }
     }

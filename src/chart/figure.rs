@@ -106,16 +106,21 @@ pub fn error_figure(scene: &SceneChart, axis: Axis, of: Of<'_>) -> Result<String
             let known: Vec<[f64; 2]> = points.iter().copied().filter(|p| secondary || p[1] > least).collect();
             let fitted = slope(&known).filter(|_| known.len() > 2);
             let fitted = fitted.map_or(String::new(), |s| format!(", slope {}", significant(s, 2)));
-            let spread = scene.done(method).filter(|(_, p)| error(p).is_some_and(|e| e > 0.0));
+            let drawn = scene.done(method).map(|(_, p)| p).filter(|p| error(p).is_some_and(|e| e > 0.0));
+            let whiskers = drawn.map(|p| {
+                let exact = [error(p).unwrap_or_default(); 2];
+                (axis.spread(p), if secondary { exact } else { scene.errors(p, of).unwrap_or(exact) })
+            });
             // A finer run may have been the quicker one: the line goes on from left to right all the same.
-            let mut both: Vec<_> = points.into_iter().zip(spread.map(|(_, p)| axis.spread(p))).collect();
+            let mut both: Vec<_> = points.into_iter().zip(whiskers).collect();
             both.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
-            let (points, spread) = both.into_iter().unzip();
+            let (points, (spread, open)) = both.into_iter().unzip();
             series.push(Series {
                 label: format!("{}, {name}{fitted}", scene.name_of(method)),
                 ink: method.index(),
                 secondary,
                 spread,
+                open,
                 points,
             });
         }

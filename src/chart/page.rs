@@ -132,14 +132,15 @@ fn reading() -> Markup {
             h2 { "How to read this page" }
             p {
                 b { "Whole process" } " runs from the request for the process to the answer, for every method: start of the program, \
-                mesh, solution and, for the stress methods, both bounds; for FEniCSx also the start of Python, its imports, the look-up of \
-                its compiled forms and the exchange files. " b { "Solving" } " begins with mesh and data in memory and ends with the answer, \
+                mesh, solution and, for the stress methods, both bounds; for FEniCSx, or the program in its place, also its \
+                start and imports, the look-up of compiled forms and the exchange files. " b { "Solving" } " begins with mesh and data in memory and ends with the answer, \
                 for every method; start-up, imports, compilation and reading are left out for all of them."
             }
             p {
                 "The " b { "guaranteed error" } " is √(gap/𝒮): an upper bound of the relative energy-norm error that needs no knowledge of the \
-                solution. FEniCSx alone gives none. The " b { "true error" } " is √(|E − energy|/𝒮) with the exact energy E in the middle of \
-                the reference bracket: the lower bound for the stress methods, 𝓛(u_h) for displacements. Near the dotted line it says \
+                solution. A displacement model alone gives none. The " b { "true error" } " is √(|E − energy|/𝒮) with the exact energy E in the middle of \
+                the reference bracket: the lower bound for the stress methods, 𝓛(u_h) for displacements. An upright line through a \
+                marker is what the bracket leaves open of it; near the dotted line that reaches to the axis, and the marker says \
                 nothing any more."
             }
         }

@@ -128,6 +128,10 @@ mod tests {
         let reference = scene.reference.as_ref().expect("a bracket");
         assert_eq!([reference.lower, reference.upper], [-1.0001, -0.9999]);
         assert!(reference.how.contains("narrowed by condensed at level 2"), "{}", reference.how);
+        // Anywhere in the bracket: nothing but the distance from its ends is sure.
+        let [least, most] = reference.errors(-1.0101);
+        assert!((least - 0.1).abs() < 1e-9 && (most - 0.0102_f64.sqrt()).abs() < 1e-9);
+        assert_eq!(reference.errors(-1.0)[0], 0.0);
         let errors: Vec<f64> = scene.runs.iter().filter_map(|run| run.plot.as_ref()?.true_error).collect();
         assert!((errors[0] - 0.01).abs() < 1e-9 && (errors[1] - 0.1).abs() < 1e-9, "{errors:?}");
     }

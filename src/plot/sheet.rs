@@ -17,6 +17,8 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// Least and most x at each point, where they were measured.
     pub spread: Vec<[f64; 2]>,
+    /// Least and most that y can be at each point, where it is not known exactly; a least of zero reaches to the axis.
+    pub open: Vec<[f64; 2]>,
 }
 
 /// A figure.
@@ -56,8 +58,9 @@ pub fn draw(sheet: &Sheet) -> Result<String, PlotError> {
     let front: Vec<(f64, f64)> = sheet.front.iter().filter_map(place).collect();
     let level = sheet.level.as_ref().and_then(|(value, text)| Some((y.position(*value)?, text)));
     let all = || placed.iter().flatten();
+    let most = sheet.series.iter().flat_map(|s| &s.open).filter_map(|[_, most]| y.position(*most));
     let x_axis = sheet.x.axis(all().map(|p| p.0));
-    let y_axis = y.axis(all().map(|p| p.1).chain(level.map(|l| l.0)));
+    let y_axis = y.axis(all().map(|p| p.1).chain(level.map(|l| l.0)).chain(most));
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (sheet.size[0], sheet.size[1])).into_drawing_area();
@@ -106,6 +109,11 @@ pub fn draw(sheet: &Sheet) -> Result<String, PlotError> {
                     continue;
                 };
                 chart.draw_series([PathElement::new(vec![(a, p.1), (b, p.1)], ink.colour.stroke_width(1))])?;
+            }
+            for (p, open) in series.points.iter().zip(&series.open) {
+                let (Some(p), Some(most)) = (place(p), y.position(open[1])) else { continue };
+                let least = y.position(open[0]).map_or(y_axis.range[0], |least| least.max(y_axis.range[0]));
+                chart.draw_series([PathElement::new(vec![(p.0, least), (p.0, most)], ink.colour.stroke_width(1))])?;
             }
             for p in points {
                 if series.secondary {
@@ -188,12 +196,37 @@ mod tests {
             title: "errors & \"time\"".to_string(),
             labels: ["x".to_string(), "y".to_string()],
             x: Scale::Logarithmic,
-            series: vec![Series { label: "a < b".to_string(), ink: 1, secondary: false, points, spread: Vec::new() }],
+            series: vec![Series { label: "a < b".to_string(), ink: 1, secondary: false, points, spread: Vec::new(), open: Vec::new() }],
             front: Vec::new(),
             level: None,
             notes: Vec::new(),
             size: [800, 400],
         }
+    }
+
+    #[test]
+    fn what_is_not_known_exactly_is_a_line_from_the_least_to_the_most() {
+        let mut known = sheet(vec![[1.0, 1e-2], [10.0, 1e-3], [100.0, 1e-4]]);
+        known.series[0].open = vec![[1e-2, 1e-2], [5e-4, 2e-3], [0.0, 2e-4]];
+        let svg = draw(&known).expect("draws");
+        let (start, end) = ("<polyline", "/>");
+        let lines: Vec<Vec<[i32; 2]>> = svg
+            .split(start)
+            .skip(1)
+            .filter_map(|rest| rest.split(end).next()?.split("points=\"").nth(1)?.split('"').next())
+            .map(|points| {
+                let number = |word: &str| word.trim().parse().expect("a coordinate");
+                points.split_whitespace().filter_map(|p| p.split_once(',')).map(|(x, y)| [number(x), number(y)]).collect()
+            })
+            .collect();
+        let upright: Vec<i32> = (lines.iter())
+            .filter(|line| line.len() == 2 && line[0][0] == line[1][0] && line[0][0] > 90 && line[0][0] < 530)
+            .map(|line| (line[0][1] - line[1][1]).abs())
+            .collect();
+        // From half to twice, and from twice to the end of the axis, which has a margin of 0.12 decades; ticks have five pixels.
+        let long: Vec<f64> = upright.iter().filter(|length| **length > 5).map(|length| f64::from(*length)).collect();
+        let ratio = 4.0_f64.log10() / (2.0_f64.log10() + 0.12);
+        assert!(long.len() == 2 && (long[0] / long[1] - ratio).abs() < 0.05, "{upright:?}");
     }
 
     #[test]

@@ -37,6 +37,7 @@ pub fn curve(row: &Row) -> Result<String, PlotError> {
                     secondary,
                     points,
                     spread: Vec::new(),
+                    open: Vec::new(),
                 });
             }
         }

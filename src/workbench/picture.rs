@@ -82,6 +82,7 @@ pub fn curves(title: &str, labels: [&str; 2], series: &[(String, Vec<[f64; 2]>)]
         secondary: false,
         points: points.clone(),
         spread: Vec::new(),
+        open: Vec::new(),
     };
     draw(&Sheet {
         title: title.into(),
