@@ -36,8 +36,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             curves.push(serde_json::json!({
                 "poisson": poisson, "refinement": name, "triangles_and_guaranteed_relative_error": points,
             }));
-            series
-                .push(Series { label: format!("{name}, ν = {poisson}"), ink, secondary, points, spread: Vec::new() });
+            series.push(Series {
+                label: format!("{name}, ν = {poisson}"),
+                ink,
+                secondary,
+                points,
+                spread: Vec::new(),
+                open: Vec::new(),
+            });
         }
     }
     let svg = draw(&Sheet {

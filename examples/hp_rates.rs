@@ -68,6 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             secondary: false,
             points,
             spread: Vec::new(),
+            open: Vec::new(),
         });
     }
     let svg = draw(&Sheet {

@@ -19,5 +19,5 @@ pub use mid::{mid_field, stress_of};
 pub use sum::Sum;
 pub use upper::{
     Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Pull, Repair, Row, Until, Violation, admissible, bernstein,
-    holds, holds_at, of_pair, repaired, repaired_at_contact, sides, supports_agree,
+    holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides, supports_agree,
 };

@@ -192,25 +192,33 @@ impl<'a> Along<'a> {
     /// A penalty and what it costs.
     fn told_penalty(&self, name: String, penalty: &Penalty, deepest: usize, energies: Energies) -> Finding {
         let work: f64 = self.sites.iter().map(|s| self.pressing(*s) * self.depth(*s).max(0.0)).sum();
-        // 𝓛(u_h) ≥ 𝓛(u) + Σ R d + ½|u_h − u|² for the constrained solution u_h, whose energy is at most that of any
-        // admissible field.
-        let most = (energies.admissible - energies.own).max(work);
-        let stress = ((most - work).max(0.0) / self.solution.strain.max(f64::MIN_POSITIVE)).sqrt();
+        // 𝓛(u_h) ≥ 𝓛(u) + Σ R d + ½|u_h − u|² for the constrained solution u_h of the same space, whose energy is at most that
+        // of any admissible field there.
+        let most = energies.admissible.map(|admissible| admissible - energies.own).filter(|most| *most >= work);
+        let costs = match most {
+            Some(most) => {
+                let stress = ((most - work) / self.solution.strain.max(f64::MIN_POSITIVE)).sqrt();
+                format!(
+                    "lowers the energy by {} to {} and changes the stresses by at most {} % in the energy norm",
+                    number(work),
+                    number(most),
+                    number(100.0 * stress)
+                )
+            }
+            None => format!("lowers the energy by {} or more", number(work)),
+        };
         let unit = match penalty.kind {
             Kind::Area => "for each unit of area",
             Kind::Node => "for each node",
         };
         let sentence = format!(
             "contact {} is a penalty with the stiffness {} {unit}; it gives way by up to {} ({:.1e} of the largest displacement) at {}, \
-             lowers the energy by {} to {} and changes the stresses by at most {} in the energy norm",
+             {costs}",
             self.name,
             number(penalty.stiffness),
             number(self.depth(deepest)),
             self.depth(deepest) / self.solution.largest,
-            self.solution.named(self.solution.sites.list[deepest].first),
-            number(work),
-            number(most),
-            format_args!("{} %", number(100.0 * stress))
+            self.solution.named(self.solution.sites.list[deepest].first)
         );
         Finding::new(name, Some(penalty.stiffness), None, sentence)
     }

@@ -93,13 +93,13 @@ impl Trial {
     }
 }
 
-/// Energies of a field as it is, and of the nearest admissible one.
+/// Energies of a field as it is, and of an admissible one of its space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Energies {
     /// 𝓛 of the field.
     pub own: f64,
-    /// 𝓛 of the admissible field.
-    pub admissible: f64,
+    /// 𝓛 of a field of the same space that does not penetrate, where there is one other than the field itself.
+    pub admissible: Option<f64>,
     /// 𝓛 and ½a(u, u) as the program that made the field reports them, relative to those of the field.
     pub reported: Option<[f64; 2]>,
 }

@@ -196,7 +196,14 @@ mod tests {
             title: "errors & \"time\"".to_string(),
             labels: ["x".to_string(), "y".to_string()],
             x: Scale::Logarithmic,
-            series: vec![Series { label: "a < b".to_string(), ink: 1, secondary: false, points, spread: Vec::new(), open: Vec::new() }],
+            series: vec![Series {
+                label: "a < b".to_string(),
+                ink: 1,
+                secondary: false,
+                points,
+                spread: Vec::new(),
+                open: Vec::new(),
+            }],
             front: Vec::new(),
             level: None,
             notes: Vec::new(),
@@ -216,7 +223,11 @@ mod tests {
             .filter_map(|rest| rest.split(end).next()?.split("points=\"").nth(1)?.split('"').next())
             .map(|points| {
                 let number = |word: &str| word.trim().parse().expect("a coordinate");
-                points.split_whitespace().filter_map(|p| p.split_once(',')).map(|(x, y)| [number(x), number(y)]).collect()
+                points
+                    .split_whitespace()
+                    .filter_map(|p| p.split_once(','))
+                    .map(|(x, y)| [number(x), number(y)])
+                    .collect()
             })
             .collect();
         let upright: Vec<i32> = (lines.iter())

@@ -1,6 +1,6 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
-use crate::bounds::NoUpperBound;
+use crate::bounds::{NoUpperBound, lifted_within, potential};
 use crate::compare::{Allowances, Check, Comparison, Judged, Solution};
 use crate::diagnose::{Diagnosis, Energies, diagnose};
 use crate::problem::{Problem, Scales};
@@ -23,7 +23,8 @@ pub struct Claim {
 pub fn claim(problem: &Problem, judged: &Judged, allow: &Allowances) -> Result<Claim, NoUpperBound> {
     let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?;
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
-    let diagnosis = checks.iter().any(|c| !c.passed || c.excused).then(|| diagnose(&solution, energies(judged)));
+    let diagnosis =
+        checks.iter().any(|c| !c.passed || c.excused).then(|| diagnose(&solution, energies(problem, judged)));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
 }
 
@@ -38,18 +39,19 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
     };
     let explained = |judged: &Judged| {
         let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?;
-        diagnose(&solution, energies(judged))
+        diagnose(&solution, energies(problem, judged))
     };
     comparison.judged.iter().filter(wrong).filter_map(explained).collect()
 }
 
-fn energies(judged: &Judged) -> Energies {
+fn energies(problem: &Problem, judged: &Judged) -> Energies {
     let own = judged.field.potential;
     let candidate = &judged.candidate;
     let reported = candidate.reported.zip(candidate.reported_strain);
+    let lifted = lifted_within(problem, &candidate.vertex, &candidate.middle, candidate.degree.min(2));
     Energies {
         own: own.total(),
-        admissible: judged.admissible.potential.total(),
+        admissible: lifted.ok().flatten().map(|field| potential(problem, &field).total()),
         reported: reported.map(|(whole, strain)| [whole / own.total(), strain / own.strain]),
     }
 }

@@ -194,6 +194,13 @@ fn a_soft_contact_is_repaired_for_what_it_is_worth() {
         };
         let (right, soft) = (energy("right"), energy("penalty_soft"));
         let (_, report) = certified(folder.path(), &format!("{degree}/penalty_soft"), &[]);
+        let told = report["diagnosis"][0]["sentence"].as_str().expect("a sentence");
+        let between = told.split_once("lowers the energy by ").and_then(|(_, rest)| rest.split_once(" and changes"));
+        let ends: Vec<f64> = (between.expect("two ends").0.split(" to "))
+            .map(|end| end.replace('−', "-").parse().unwrap_or_else(|_| panic!("{told}")))
+            .collect();
+        assert!(ends[0] <= 1.001 * (right - soft) && right - soft <= 1.001 * ends[1], "{degree}: {told}");
+        assert!(ends[0] < ends[1], "{degree}: nothing is known that exactly: {told}");
         // ½‖u_ε − u‖² ≤ 𝓛(u) − 𝓛(u_ε) for the constrained solution u, and the repair moves by about as much.
         let bound = |report: &Value| report["primal"][0]["relative_error_bound"].as_f64().expect("a number");
         let (_, honest) = certified(folder.path(), &format!("{degree}/right"), &[]);

@@ -10,8 +10,8 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Col, Side};
 
 use super::holds::{Hold, Holds};
-use super::nodes::NodalValues;
-use super::rows::{Row, bernstein};
+use super::nodes::{NodalValues, Nodes};
+use super::rows::{Row, bernstein, rows};
 use crate::bounds::strain::{gradients, shape_gradients};
 use crate::dual::modes::materials;
 use crate::problem::Problem;
@@ -26,18 +26,30 @@ const ROUNDS: usize = 6;
 /// Above so many nodes the change is not looked for.
 const MOST_NODES: usize = 400_000;
 
-/// The changed quadratic field; `None` where nothing penetrates or the change cannot be computed.
-pub fn lifted(problem: &Problem, holds: &Holds, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Option<NodalValues> {
+/// The changed field of degree 1 or 2, to which the change belongs too; `None` where nothing penetrates or the change cannot be
+/// computed. Values at edge midpoints are those of a quadratic field, a linear one has none of its own.
+pub fn lifted(
+    problem: &Problem,
+    holds: &Holds,
+    vertex: &[[f64; 2]],
+    middle: &[[f64; 2]],
+    degree: usize,
+) -> Option<NodalValues> {
     let vertices = vertex.len();
-    let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle).copied().collect();
+    let quadratic = degree > 1;
+    let linear = Nodes::new(vertices, std::iter::repeat_n(1, problem.mesh.edges.len()));
+    let mut values: Vec<[f64; 2]> = vertex.iter().chain(middle.iter().filter(|_| quadratic)).copied().collect();
     if values.len() > MOST_NODES || values.iter().flatten().any(|x| !x.is_finite()) {
         return None;
     }
     for (value, hold) in values.iter_mut().zip(holds.vertices.iter().chain(&holds.edges)) {
         *value = hold.impose(*value);
     }
-    let rows: Vec<Row> = problem.pairs().flat_map(|pair| bernstein(pair, vertices)).collect();
-    let model = Model::new(problem, holds);
+    let rows: Vec<Row> = match quadratic {
+        true => problem.pairs().flat_map(|pair| bernstein(pair, vertices)).collect(),
+        false => rows(problem, &linear).concat(),
+    };
+    let model = Model::new(problem, holds, quadratic);
     let size = values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let enough = 16.0 * f64::EPSILON * size;
     let mut active: Vec<usize> = Vec::new();
@@ -53,12 +65,16 @@ pub fn lifted(problem: &Problem, holds: &Holds, vertex: &[[f64; 2]], middle: &[[
         lifted = Some(model.change(&rows, &active, &values)?);
     }
     let mut lifted = lifted?;
+    if !quadratic {
+        return Some(NodalValues { nodes: linear, values: lifted });
+    }
     let middle = lifted.split_off(vertices);
     Some(NodalValues::quadratic(&problem.mesh, &lifted, &middle))
 }
 
-/// The stiffness of quadratic displacements in the directions that supports leave free.
+/// The stiffness of linear or quadratic displacements in the directions that supports leave free.
 struct Model {
+    quadratic: bool,
     /// First unknown of every node, and the directions of its unknowns.
     free: Vec<(usize, Vec<[f64; 2]>)>,
     count: usize,
@@ -67,7 +83,7 @@ struct Model {
 }
 
 impl Model {
-    fn new(problem: &Problem, holds: &Holds) -> Self {
+    fn new(problem: &Problem, holds: &Holds, quadratic: bool) -> Self {
         let mut count = 0;
         let directions = |hold: &Hold| match *hold {
             Hold::Free => vec![[1.0, 0.0], [0.0, 1.0]],
@@ -77,14 +93,14 @@ impl Model {
         let free = holds
             .vertices
             .iter()
-            .chain(&holds.edges)
+            .chain(holds.edges.iter().filter(|_| quadratic))
             .map(|hold| {
                 let own = directions(hold);
                 count += own.len();
                 (count - own.len(), own)
             })
             .collect();
-        let mut model = Model { free, count, entries: Vec::new(), largest: 0.0 };
+        let mut model = Model { quadratic, free, count, entries: Vec::new(), largest: 0.0 };
         model.assemble(problem);
         model
     }
@@ -97,7 +113,8 @@ impl Model {
             let material = &materials[mesh.body[t]];
             let g = gradients(mesh.corners(t));
             let middles = mesh.triangle_edges[t].map(|e| mesh.points.len() + e);
-            let nodes: Vec<usize> = corners.iter().copied().chain(middles).collect();
+            let nodes: Vec<usize> =
+                corners.iter().copied().chain(middles.into_iter().filter(|_| self.quadratic)).collect();
             let weight = mesh.area(t) / 3.0;
             let unknowns: Vec<(usize, usize, [f64; 2])> = nodes
                 .iter()
@@ -109,7 +126,7 @@ impl Model {
                 .collect();
             let mut local = vec![0.0; unknowns.len() * unknowns.len()];
             for at in 0..3 {
-                let shape = shape_gradients(&g, at);
+                let shape = if self.quadratic { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
                 let strain = |a: usize, d: [f64; 2]| {
                     let s = shape[a];
                     [s[0] * d[0], s[1] * d[1], 0.5 * (s[1] * d[0] + s[0] * d[1])]

@@ -178,21 +178,41 @@ pub fn repaired(
     let rows = rows::rows(problem, &start.nodes);
     let (field, farthest) = restricted(problem, &holds, &rows, start)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
-    let made = |field: NodalValues| {
-        let (vertex, inner) = field.values.split_at(field.nodes.vertices());
-        Displacement::quadratic(&problem.mesh, vertex, inner)
-    };
-    let nearest = made(field);
+    let nearest = quadratic(problem, field);
     if repair == Repair::OfLeastEnergy
         && penetration > WORTH_LIFTING
-        && let Some(lifted) = lift::lifted(problem, &holds, vertex, middle)
+        && let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, 2)
     {
-        let lifted = made(restricted(problem, &holds, &rows, lifted)?.0);
+        let lifted = quadratic(problem, restricted(problem, &holds, &rows, lifted)?.0);
         if potential(problem, &lifted).total() < potential(problem, &nearest).total() {
             return Ok((lifted, violation));
         }
     }
     Ok((nearest, violation))
+}
+
+fn quadratic(problem: &Problem, field: NodalValues) -> Displacement {
+    let (vertex, inner) = field.values.split_at(field.nodes.vertices());
+    Displacement::quadratic(&problem.mesh, vertex, inner)
+}
+
+/// An admissible field of degree 1 or 2 as the given one, changed from it by little energy: what the minimiser of that space
+/// lies below. `None` where nothing penetrates or the change cannot be computed.
+///
+/// # Errors
+/// [`NoUpperBound`] as for [`admissible`].
+pub fn lifted_within(
+    problem: &Problem,
+    vertex: &[[f64; 2]],
+    middle: &[[f64; 2]],
+    degree: usize,
+) -> Result<Option<Displacement>, NoUpperBound> {
+    let holds = holds(problem)?;
+    let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, degree) else { return Ok(None) };
+    let rows = rows::rows(problem, &lifted.nodes);
+    let field = restricted(problem, &holds, &rows, lifted)?.0;
+    let nodes = Nodes::new(field.nodes.vertices(), std::iter::repeat_n(2, field.nodes.edges()));
+    Ok(Some(quadratic(problem, field.on(&problem.mesh, &nodes))))
 }
 
 /// The field whose values along the contact and on supports are the nearest that these allow, and how far from admissible
