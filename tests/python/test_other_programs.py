@@ -1,0 +1,73 @@
+"""Solutions of CalculiX, with its own elements and contact, as they are and with mistakes made there."""
+
+import re
+
+import numpy as np
+import other_programs
+import pytest
+import scenes
+
+PENALTY = "contact/left_face|right_face/penalty"
+LOAD = 1e-7
+"""CalculiX turns the direction of contact with the displacement, which is then of second order to seven digits."""
+
+
+@pytest.fixture(scope="module")
+def blocks(hypercircle, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("calculix")
+    scene = hypercircle.Scene(scenes.two_blocks(folder, 8, (4 * LOAD, -7 * LOAD))[0])
+    problem, solution = scene.problem(), scene.solve()
+
+    def judged(**made):
+        field = other_programs.calculix(problem, folder, **made)
+        verdict = solution.certify(problem["points"], problem["triangles"], field, solution=True, name="calculix")
+        assert "round-off" not in verdict.verdict
+        return field, verdict
+
+    judged.problem = problem
+    return judged
+
+
+def strain_energy(problem, field):
+    """½a(u, u) of linear elements in plane strain with E = 1 and ν = 0.3."""
+    corners, values = problem["points"][problem["triangles"]], field[problem["triangles"]]
+    sides, moved = (np.stack([x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]], 2) for x in (corners, values))
+    gradient = moved @ np.linalg.inv(sides)
+    strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
+    shear, lame = 0.5 / 1.3, 0.3 / (1.3 * 0.4)
+    density = 0.5 * lame * np.trace(strain, axis1=1, axis2=2) ** 2 + shear * (strain**2).sum((1, 2))
+    return 0.5 * np.abs(np.linalg.det(sides)) @ density
+
+
+def test_a_stiff_penalty_is_a_solution(blocks):
+    _, verdict = blocks(stiffness=1e6)
+    assert verdict.passed and verdict.diagnosis is None
+
+
+@pytest.mark.parametrize("stiffness", [20.0, 100.0])
+def test_what_a_penalty_costs_is_what_a_stiffer_one_gains(blocks, stiffness):
+    problem = blocks.problem
+    (stiff, _), (soft, verdict) = blocks(stiffness=1e6), blocks(stiffness=stiffness)
+    assert not verdict.passed
+    (finding,) = verdict.diagnosis["findings"]
+    # Every node stands for the eighth of a unit; those at the ends are open or stand for half of it.
+    assert finding["name"] == PENALTY and abs(finding["value"] - stiffness / 8) < 0.01 * stiffness / 8
+    number = r"([0-9.]+(?:e[-+]?[0-9]+)?)"
+    told = re.search(f"lowers the energy by {number} to {number} and changes the stresses by at most {number} %", finding["sentence"])
+    least, most, percent = map(float, told.groups())
+    potential = lambda u: strain_energy(problem, u) - (other_programs.nodal_forces(problem) * u).sum()
+    assert 0.999 * least <= potential(stiff) - potential(soft) <= 1.001 * most
+    change = np.sqrt(strain_energy(problem, soft - stiff) / strain_energy(problem, stiff))
+    assert change <= 0.01 * percent <= 3 * change
+
+
+def test_another_modulus_is_named(blocks):
+    _, verdict = blocks(stiffness=1e6, young=(1.05, 1.0))
+    (finding,) = verdict.diagnosis["findings"]
+    assert finding["name"] == "body/left/young" and abs(finding["value"] - 1.05) < 1e-3
+
+
+def test_sides_that_are_tied_are_named(blocks):
+    _, verdict = blocks(stiffness=None)
+    assert not verdict.passed
+    assert [f["name"] for f in verdict.diagnosis["findings"]] == ["contact/left_face|right_face/tied"]
