@@ -34,7 +34,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 "lower": certified.bracket.lower(), "upper": free.upper(),
             }));
         }
-        series.push(Series { label: normals.to_string(), ink, secondary: false, points, spread: Vec::new() });
+        series.push(Series {
+            label: normals.to_string(),
+            ink,
+            secondary: false,
+            points,
+            spread: Vec::new(),
+            open: Vec::new(),
+        });
     }
     let svg = draw(&Sheet {
         title: "A disc pressed into its bore".to_string(),

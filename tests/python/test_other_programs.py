@@ -61,6 +61,15 @@ def test_what_a_penalty_costs_is_what_a_stiffer_one_gains(blocks, stiffness):
     assert change <= 0.01 * percent <= 3 * change
 
 
+def test_contact_that_turns_with_the_sides_is_named(hypercircle, tmp_path):
+    scene = hypercircle.Scene(scenes.two_blocks(tmp_path, 8, (4e-4, -7e-4))[0])
+    problem = scene.problem()
+    field = other_programs.calculix(problem, tmp_path, stiffness=1e6)
+    verdict = scene.certify(problem["points"], problem["triangles"], field, solution=True, name="calculix")
+    assert not verdict.passed and "contact turns with the sides" in verdict.diagnosis["sentence"]
+    assert "round-off" not in verdict.verdict
+
+
 def test_another_modulus_is_named(blocks):
     _, verdict = blocks(stiffness=1e6, young=(1.05, 1.0))
     (finding,) = verdict.diagnosis["findings"]
