@@ -1,4 +1,4 @@
-"""Solutions of CalculiX, with its own elements and contact, as they are and with mistakes made there."""
+"""Solutions of CalculiX and GetFEM, with their own elements and contact, as they are and with mistakes made there."""
 
 import re
 
@@ -80,3 +80,14 @@ def test_sides_that_are_tied_are_named(blocks):
     _, verdict = blocks(stiffness=None)
     assert not verdict.passed
     assert [f["name"] for f in verdict.diagnosis["findings"]] == ["contact/left_face|right_face/tied"]
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_getfem_solves_what_it_claims(hypercircle, tmp_path, degree):
+    scene = hypercircle.Scene(scenes.two_blocks(tmp_path, 8)[0])
+    problem, solution = scene.problem(), scene.solve()
+    right = solution.certify(*other_programs.getfem(problem, degree), solution=True, name="getfem")
+    assert right.passed and right.diagnosis is None, right.verdict
+    wrong = solution.certify(*other_programs.getfem(problem, degree, young=(1.0, 1.1)), solution=True, name="getfem")
+    (finding,) = wrong.diagnosis["findings"]
+    assert finding["name"] == "body/right/young" and abs(finding["value"] - 1.1) < 1e-6
