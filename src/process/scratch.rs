@@ -50,7 +50,7 @@ impl Scratch {
             let alive = match OpenOptions::new().write(true).create_new(true).open(&lock) {
                 Ok(alive) => alive,
                 Err(error) => {
-                    forget(folder.path());
+                    remove(folder.path());
                     if error.kind() == io::ErrorKind::NotFound {
                         continue;
                     }
@@ -61,7 +61,7 @@ impl Scratch {
             if !taken && lock.exists() {
                 return Ok(Scratch { folder, _alive: alive });
             }
-            forget(folder.path());
+            remove(folder.path());
         }
     }
 
@@ -83,7 +83,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        forget(self.folder.path());
+        remove(self.folder.path());
     }
 }
 
@@ -103,8 +103,11 @@ fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
     FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn forget(folder: &Path) {
-    folders().retain(|other| other != folder);
+/// Removes a folder; until it is gone, a signal waits for that, so that this process does not end in the middle.
+fn remove(folder: &Path) {
+    let mut folders = folders();
+    let _ = fs::remove_dir_all(folder);
+    folders.retain(|other| other != folder);
 }
 
 /// Removes the folders in `root` that belong to this user and to no living process.
@@ -158,6 +161,18 @@ mod tests {
         assert!(folders().contains(&path));
         drop(scratch);
         assert!(!path.exists() && !folders().contains(&path));
+    }
+
+    #[test]
+    fn a_signal_finds_a_folder_for_as_long_as_it_exists() {
+        let root = tempfile::tempdir().expect("a folder");
+        let scratch = Scratch::within(root.path()).expect("writable");
+        let path = scratch.path().to_path_buf();
+        (0..3000).for_each(|k| fs::write(path.join(k.to_string()), "").expect("writable"));
+        let removing = std::thread::spawn(move || drop(scratch));
+        while folders().contains(&path) {}
+        assert!(!path.exists(), "it is still being removed, and nobody would wait for that");
+        removing.join().expect("removed");
     }
 
     #[test]
