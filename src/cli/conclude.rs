@@ -6,7 +6,7 @@ use super::session::{DualRun, Session};
 use super::{CliError, Exit, ci, say};
 use crate::cause::{outcome, told};
 use crate::compare::Comparison;
-use crate::diagnose::Diagnosis;
+use crate::diagnose::{Diagnosis, Finding};
 use crate::problem::Note;
 use crate::report::{self, BaselineRow, Dossier, Status};
 use crate::study::{Answer, Certified, Fields, Findings, Sharpened, assemble};
@@ -127,12 +127,19 @@ impl Session {
                 say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
             }
             for cause in &report.causes {
-                say::line(&format!("  {} {} {}", cause.sentence, cause.suggests, cause.remedy));
+                // The verdict begins with the first.
+                let is_told = report.verdict.starts_with(&cause.sentence);
+                let sentence = if is_told { String::new() } else { format!("{} ", cause.sentence) };
+                say::line(&format!("  {sentence}{} {}", cause.suggests, cause.remedy));
                 for check in report.checks.iter().filter(|check| cause.checks.contains(&check.name)) {
                     say::line(&format!("    {}: {}: {}", outcome(check), check.name, told(check)));
                 }
             }
-            for diagnosis in &report.diagnosis {
+            let is_told = |diagnosis: &&Diagnosis| {
+                let told = |finding: &Finding| report.verdict.contains(&finding.sentence);
+                !diagnosis.findings.is_empty() && diagnosis.findings.iter().all(told)
+            };
+            for diagnosis in report.diagnosis.iter().filter(|diagnosis| !is_told(diagnosis)) {
                 say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {

@@ -43,7 +43,7 @@ fn one(report: &Report, number: usize, cause: &Cause) -> Markup {
     let own: Vec<&Check> = report.checks.iter().filter(|check| cause.checks.contains(&check.name)).collect();
     html! {
         li id={ "cause-" (number) } {
-            p.cause { b { (clean(&cause.sentence)) } }
+            @if number > 1 || super::verdict::leading(report).is_none() { p.cause { b { (clean(&cause.sentence)) } } }
             p { (clean(&cause.suggests)) }
             p { b { "Try: " } (clean(&cause.remedy)) }
             @if cause.place.is_some() {

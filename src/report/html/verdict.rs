@@ -20,7 +20,10 @@ pub(super) fn first_screen(dossier: &Dossier) -> Markup {
                 span.symbol aria-hidden="true" { (status_symbol(report.status)) }
                 div {
                     div.word { (headline(report).to_uppercase()) (gloss(report)) }
-                    p { (clean(&report.verdict)) }
+                    @match leading(report) {
+                        Some((sentence, rest)) => { p.cause { b { (clean(sentence)) } } p { (clean(rest)) } },
+                        None => p { (clean(&report.verdict)) },
+                    }
                 }
             }
             (super::causes::causes(report))
@@ -36,6 +39,13 @@ pub(super) fn first_screen(dossier: &Dossier) -> Markup {
             (super::scene::card(dossier))
         }
     }
+}
+
+/// The sentence of the first cause where the verdict begins with it, and what follows.
+pub(super) fn leading(report: &Report) -> Option<(&str, &str)> {
+    let sentence = &report.causes.first()?.sentence;
+    let rest = report.verdict.strip_prefix(sentence.as_str())?;
+    Some((sentence, rest.trim_start()))
 }
 
 /// What the verdict means, where the word alone does not say it.
