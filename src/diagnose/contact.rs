@@ -226,8 +226,13 @@ impl<'a> Along<'a> {
             None => format!("lowers the energy by {} or more", number(work)),
         };
         let unit = match penalty.kind {
-            Kind::Area => "for each unit of area",
-            Kind::Node => "for each node",
+            Kind::Area => "for each unit of area".to_string(),
+            Kind::Node => match self.area_inside() {
+                Some(area) => {
+                    format!("for each node ({} for each unit of area, ends apart)", number(penalty.stiffness / area))
+                }
+                None => "for each node".to_string(),
+            },
         };
         let sentence = format!(
             "contact {} is a penalty with the stiffness {} {unit}; it gives way by up to {} ({:.1e} of the largest displacement) at {}, \
@@ -239,6 +244,16 @@ impl<'a> Along<'a> {
             self.solution.named(self.solution.sites.list[deepest].first)
         );
         Finding::new(name, Some(penalty.stiffness), None, sentence)
+    }
+}
+
+impl Along<'_> {
+    /// The area that a node stands for, where all but those at the ends stand for the same.
+    fn area_inside(&self) -> Option<f64> {
+        let areas = self.sites.iter().map(|s| self.solution.sites.list[*s].weight);
+        let largest = areas.clone().fold(0.0, f64::max);
+        let others = areas.filter(|area| (area - largest).abs() > 1e-6 * largest).count();
+        (largest > 0.0 && others <= 2).then_some(self.solution.problem.scene.thickness * largest)
     }
 }
 

@@ -52,6 +52,8 @@ def test_what_a_penalty_costs_is_what_a_stiffer_one_gains(blocks, stiffness):
     (finding,) = verdict.diagnosis["findings"]
     # Every node stands for the eighth of a unit; those at the ends are open or stand for half of it.
     assert finding["name"] == PENALTY and abs(finding["value"] - stiffness / 8) < 0.01 * stiffness / 8
+    # CalculiX was given it for each unit of area.
+    assert f"({stiffness:#.4g} for each unit of area" in finding["sentence"]
     number = r"([0-9.]+(?:e[-+]?[0-9]+)?)"
     told = re.search(f"lowers the energy by {number} to {number} and changes the stresses by at most {number} %", finding["sentence"])
     least, most, percent = map(float, told.groups())

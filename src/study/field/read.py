@@ -57,6 +57,8 @@ def read():
                 missing(lacking)
             except Exception:
                 pass
+        if source.lower().endswith(".frd"):
+            sys.exit("the results of CalculiX are none of its formats: have them written with OUTPUT=2D, and into VTU by ccx2paraview")
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
 
