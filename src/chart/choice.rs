@@ -1,6 +1,6 @@
 //! Which method, which mesh: Pareto front, slopes, and the fastest run for a wanted accuracy.
 
-use super::data::{Plot, Run, SceneChart};
+use super::data::{Plot, Run, SceneChart, distances};
 use crate::measure::{Asked, Method};
 
 /// Relative errors that tables of fastest choices name.
@@ -95,10 +95,8 @@ impl SceneChart {
             Of::Energy => Some(self.reference.as_ref().ok()?.errors(plot.lower.or(plot.upper)?)),
             Of::Quantity(name) => {
                 let value = plot.quantities.iter().find(|q| q.name == name)?.value?;
-                let [lower, upper] = self.known(name)?;
-                let off = [lower - value, value - upper].into_iter().fold(0.0, f64::max);
-                let most = (value - lower).abs().max((value - upper).abs());
-                Some([off, most].map(|distance| distance / value.abs())).filter(|[_, most]| most.is_finite())
+                let relative = distances(self.known(name)?, value).map(|distance| distance / value.abs());
+                Some(relative).filter(|[_, most]| most.is_finite())
             }
         }
     }

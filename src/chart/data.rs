@@ -68,15 +68,19 @@ impl Reference {
 
     /// Least and most that √(|E − energy| / 𝒮) can be for an exact energy E anywhere in the bracket.
     pub fn errors(&self, energy: f64) -> [f64; 2] {
-        let off = [self.lower - energy, energy - self.upper].into_iter().fold(0.0, f64::max);
-        let most = (self.lower - energy).abs().max((self.upper - energy).abs());
-        [off, most].map(|distance| (distance / self.strain).sqrt())
+        distances([self.lower, self.upper], energy).map(|distance| (distance / self.strain).sqrt())
     }
 
     /// √(|E − energy| / 𝒮) for the exact energy E in the middle of the bracket.
     pub fn error(&self, energy: f64) -> f64 {
         ((0.5 * (self.lower + self.upper) - energy).abs() / self.strain).sqrt()
     }
+}
+
+/// Least and most distance of `value` from a point of an interval.
+pub(super) fn distances([lower, upper]: [f64; 2], value: f64) -> [f64; 2] {
+    let least = [lower - value, value - upper].into_iter().fold(0.0, f64::max);
+    [least, (lower - value).abs().max((upper - value).abs())]
 }
 
 /// What the first run of a degree pays for and no later one.

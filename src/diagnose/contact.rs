@@ -126,7 +126,7 @@ impl<'a> Along<'a> {
 
     /// What a distance suggests that is no more than the square of the displacements over the length of the contact.
     fn turned(&self, distance: f64) -> String {
-        let ends = self.solution.sites.spans.iter().filter(|span| self.sites.contains(&span.ends[0]));
+        let ends = self.solution.sites.spans.iter().filter(|span| self.sites.binary_search(&span.ends[0]).is_ok());
         let length: f64 = ends.map(|span| span.length).sum();
         let turn = self.solution.largest / length;
         // A turn of a tenth is no small one, and no program that takes it for one has anything to do with it.
@@ -207,6 +207,14 @@ impl<'a> Along<'a> {
         sums
     }
 
+    /// The area that a node stands for, where all but those at the ends stand for the same.
+    fn area_inside(&self) -> Option<f64> {
+        let areas = self.sites.iter().map(|s| self.solution.sites.list[*s].weight);
+        let largest = areas.clone().fold(0.0, f64::max);
+        let others = areas.filter(|area| (area - largest).abs() > 1e-6 * largest).count();
+        (largest > 0.0 && others <= 2).then_some(self.solution.problem.scene.thickness * largest)
+    }
+
     /// A penalty and what it costs.
     fn told_penalty(&self, name: String, penalty: &Penalty, deepest: usize, energies: Energies) -> Finding {
         let work: f64 = self.sites.iter().map(|s| self.pressing(*s) * self.depth(*s).max(0.0)).sum();
@@ -244,16 +252,6 @@ impl<'a> Along<'a> {
             self.solution.named(self.solution.sites.list[deepest].first)
         );
         Finding::new(name, Some(penalty.stiffness), None, sentence)
-    }
-}
-
-impl Along<'_> {
-    /// The area that a node stands for, where all but those at the ends stand for the same.
-    fn area_inside(&self) -> Option<f64> {
-        let areas = self.sites.iter().map(|s| self.solution.sites.list[*s].weight);
-        let largest = areas.clone().fold(0.0, f64::max);
-        let others = areas.filter(|area| (area - largest).abs() > 1e-6 * largest).count();
-        (largest > 0.0 && others <= 2).then_some(self.solution.problem.scene.thickness * largest)
     }
 }
 

@@ -48,10 +48,13 @@ fn energies(problem: &Problem, judged: &Judged) -> Energies {
     let own = judged.field.potential;
     let candidate = &judged.candidate;
     let reported = candidate.reported.zip(candidate.reported_strain);
-    let lifted = lifted_within(problem, &candidate.vertex, &candidate.middle, candidate.degree.min(2));
+    let lifted =
+        || lifted_within(problem, &candidate.vertex, &candidate.middle, candidate.degree.min(2)).ok().flatten();
+    // What is admissible already is changed by nothing.
+    let lifted = if judged.is_admissible() { None } else { lifted() };
     Energies {
         own: own.total(),
-        admissible: lifted.ok().flatten().map(|field| potential(problem, &field).total()),
+        admissible: lifted.map(|field| potential(problem, &field).total()),
         reported: reported.map(|(whole, strain)| [whole / own.total(), strain / own.strain]),
     }
 }
