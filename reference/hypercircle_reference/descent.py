@@ -69,24 +69,29 @@ class Minimum:
 
 
 class Descent:
-    """The quadratic and its bounds. ``A`` is a PETSc matrix with unit diagonal, the vectors are arrays."""
+    """The quadratic and its bounds. ``A`` is a PETSc matrix with unit diagonal, the vectors are arrays; ``terms`` are
+    the sums of absolute values that rounding of ``b`` comes from, by default those of its entries."""
 
-    def __init__(self, A: PETSc.Mat, b: np.ndarray, lower: np.ndarray, upper: np.ndarray):
+    def __init__(
+        self, A: PETSc.Mat, b: np.ndarray, lower: np.ndarray, upper: np.ndarray, terms: np.ndarray | None = None
+    ):
         self.comm, self.A, self.b, self.lower, self.upper = A.getComm().tompi4py(), A, b, lower, upper
+        self.terms = np.abs(b) if terms is None else terms
         self.absolute = absolute(A)
         self._in, self._out = A.createVecRight(), A.createVecLeft()
         self.begin = A.getOwnershipRange()[0]
 
-    def minimise(self) -> Minimum:
-        """Start with every bounded unknown at its bound, since a body may be held by contact alone, and descend."""
+    def minimise(self, near: np.ndarray | float = np.inf) -> Minimum:
+        """Start with every unknown at its bound where that is nearer than ``near``, since a body may be held by contact
+        alone, and descend. From a bound far away, rounding can hide the way back."""
         nothing = np.zeros_like(self.b)
         if self._count((self.b != 0.0) | (self.lower > 0.0) | (self.upper < 0.0)) == 0:
             return Minimum(nothing, nothing, nothing, 0.0, 1, AT_ROUNDING)
-        bounded = np.isfinite(self.lower) | np.isfinite(self.upper)
-        w = np.where(np.isfinite(self.upper), self.upper, np.where(bounded, self.lower, 0.0))
-        face, floor = _Face(self, bounded), nothing
-        gradient, unit = self._gradient(w, floor)
-        w = w + face.step(w, gradient, unit)[0]
+        bound = np.where(np.isfinite(self.upper), self.upper, self.lower)
+        bounded = np.isfinite(bound) & (np.abs(bound) < near)
+        w, face = np.where(bounded, bound, np.clip(nothing, self.lower, self.upper)), _Face(self, bounded)
+        step, _ = face.step(w, *self._gradient(w, nothing))
+        w = np.clip(w + step, self.lower, self.upper)
         # Where the answer is zero, what remains of this start must not count.
         floor = EPSILON * EPSILON * self.product(self.absolute, np.abs(w))
         faces, idle, met = 1, 0, None
@@ -122,7 +127,7 @@ class Descent:
 
     def _gradient(self, w: np.ndarray, floor: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A w − b, and a unit in the last place of each row."""
-        size = self.product(self.absolute, np.abs(w)) + np.abs(self.b)
+        size = self.product(self.absolute, np.abs(w)) + self.terms
         return self.product(self.A, w) - self.b, EPSILON * size + floor
 
     def _search(self, w: np.ndarray, step: np.ndarray, gradient: np.ndarray):
@@ -206,7 +211,9 @@ class _Face:
             curvature = it.dot(direction, image)
             size = np.abs(direction)
             if curvature <= 4.0 * EPSILON * it.dot(size, it.product(it.absolute, size)):
-                reach = self._reach(w + step, direction)
+                wrong = unit + EPSILON * it.product(it.absolute, np.abs(step))
+                noise = np.sqrt(it.dot(wrong * wrong, direction * direction))
+                reach = self._reach(w + step, direction) if slope > ROUNDING * noise else None
                 if reach is not None:
                     return step + reach * direction, left
                 if slope > UNHELD / EPSILON * np.sqrt(it.dot(unit, unit) * it.dot(direction, direction)):

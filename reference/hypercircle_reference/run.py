@@ -23,6 +23,7 @@ def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=Non
     """
     start = perf_counter()
     mesh = Mesh(comm, problem)
+    extent = float(np.max(np.ptp(problem.points, axis=0)))
     seconds_import, seconds_mesh = seconds[0], seconds[1] + perf_counter() - start
     results = []
     for degree in degrees:
@@ -32,10 +33,10 @@ def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=Non
         seconds_constraints = perf_counter() - start
         model = build_model(mesh, degree, flip_sign=sabotage == "flip-sign")
         start = perf_counter()
-        solution = minimise(comm, model, constraints)
+        solution = minimise(comm, model, constraints, extent)
         if sabotage == "drop-row":
             constraints = without_strongest_row(constraints, solution)
-            solution = minimise(comm, model, constraints)
+            solution = minimise(comm, model, constraints, extent)
         phases = {
             "import": seconds_import,
             "mesh": seconds_mesh,

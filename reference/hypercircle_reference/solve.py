@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from hypercircle_process import Failure
+from hypercircle_process import Failure, log
 
 from .constraints import Constraints
 from .descent import EPSILON, Descent, Minimum, absolute
@@ -44,8 +44,9 @@ class Solution:
 class Reduced:
     """The model in the unknowns w, distributed over the ranks by where their nodes live."""
 
-    def __init__(self, comm, model: Model, constraints: Constraints):
+    def __init__(self, comm, model: Model, constraints: Constraints, extent: float):
         self.comm, self.model, self.constraints = comm, model, constraints
+        self.reach = extent + float(np.max(np.abs(constraints.offset), initial=0.0))
         nodes, ranges = model.numbering.nodes, model.numbering.ranges
         T = constraints.T.tocsc()
         T.sort_indices()
@@ -69,21 +70,42 @@ class Reduced:
         right.axpy(-1.0, model.stiffness * self.offset)
         self.b = self.A.createVecRight()
         self.T.multTranspose(right, self.b)
+        self.terms = self._terms()
         diagonal = self.A.getDiagonal()
         self.scale = diagonal.duplicate()
         self.scale.array[:] = 1.0 / np.sqrt(diagonal.array_r)
         self.A.diagonalScale(self.scale, self.scale)
         self.b.pointwiseMult(self.b, self.scale)
+        self.terms *= self.scale.array_r
         self.lower, self.upper = self._mine(constraints.lower), self._mine(constraints.upper)
+
+    def _terms(self) -> np.ndarray:
+        """|T|ᵀ(|f| + |K| |u0|): what the entries of b are sums of, before they cancel."""
+        offset, size, result = self.offset.copy(), self.model.load.copy(), self.b.duplicate()
+        offset.abs()
+        size.abs()
+        size.axpy(1.0, absolute(self.model.stiffness) * offset)
+        absolute(self.T).multTranspose(size, result)
+        return result.array_r.copy()
 
     def _mine(self, values: np.ndarray) -> np.ndarray:
         """This rank's share of bounds, scaled like the unknowns."""
         return values[self.order[self.begin : self.end]] / self.scale.array_r
 
     def minimise(self) -> Solution:
-        """Run the solver, check equilibrium and bounds, and gather the solution."""
-        found = Descent(self.A, self.b.array_r.copy(), self.lower, self.upper).minimise()
-        self._check(found)
+        """Run the solver, check equilibrium and bounds, and gather the solution. Start with contacts closed whose gap
+        the bodies could be thought to cross; where that fails, once more with those alone that are closed already."""
+        descent = Descent(self.A, self.b.array_r.copy(), self.lower, self.upper, self.terms)
+        try:
+            found = descent.minimise(self.reach / self.scale.array_r)
+            self._check(found)
+        except Failure as failure:
+            log(self.comm, f"{failure}; once more, from no displacement")
+            try:
+                found = descent.minimise(np.finfo(float).tiny)
+                self._check(found)
+            except Failure:
+                raise failure from None
         return self._gather(found)
 
     def _displacement(self, w: PETSc.Vec) -> PETSc.Vec:
@@ -162,10 +184,10 @@ class Reduced:
         return np.sqrt(2.0 * energy) * change + 0.5 * change * change + 4.0 * sums
 
 
-def minimise(comm, model: Model, constraints: Constraints) -> Solution:
-    """Solve the reduced problem; :class:`Failure` says why there is no solution to trust."""
+def minimise(comm, model: Model, constraints: Constraints, extent: float) -> Solution:
+    """Solve the reduced problem on a mesh of that ``extent``; :class:`Failure` says why no solution can be trusted."""
     try:
-        return Reduced(comm, model, constraints).minimise()
+        return Reduced(comm, model, constraints, extent).minimise()
     except PETSc.Error as error:
         raise Failure(f"PETSc stopped with error {error.ierr}: {error}") from error
 

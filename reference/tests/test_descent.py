@@ -1,5 +1,6 @@
 """The minimiser alone against enumeration, and scenes on which steps that may raise the energy go round for ever."""
 
+import math
 from itertools import product
 
 import numpy as np
@@ -95,6 +96,21 @@ def test_a_body_moved_rigidly_is_without_energy(solve, degree):
     assert abs(result["energy"]) <= result["energy_rounding"] < 1e-24 * at_stake
     assert result["contacts"][0]["resultant"] == [0.0, 0.0]
     assert np.array(result["vertex_displacement"]) == pytest.approx(np.tile([1e6, -2e6], (16, 1)), rel=1e-12)
+
+
+@pytest.mark.parametrize("degree", (1, 2, 3))
+def test_a_wide_gap_that_stays_open_is_found_open(solve, degree):
+    """A block free to slide along a roller, all but across a gap of 500: it would slide 1.7e5 times its size until that
+    closes, whence rounding hides the way back. The other block is moved by its clamp. Nothing is strained."""
+    b, lean = Builder(), 0.003
+    sliding = b.block(b.body("sliding", 1.7), 3, 4, lambda s, t: (s + lean * t * (1.0 - s), t))
+    moved = b.block(b.body("moved", 0.13, 0.2), 3, 4, lambda s, t: (1.0 + s, t))
+    b.roller(sliding["left"], (-1.0 / math.hypot(1.0, lean), lean / math.hypot(1.0, lean)))
+    b.clamp(moved["right"], (0.28, 0.0))
+    b.contact(sliding["right"], moved["left"], (1.0, 0.0), lambda x, y: 500.0)
+    result = solve(b.data, degree)
+    assert abs(result["energy"]) < 1e-24
+    assert result["contacts"][0]["resultant"] == [0.0, 0.0]
 
 
 def test_rounding_of_the_energy_is_told(solve):
