@@ -167,7 +167,8 @@ def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tol
     coarse vectors that the coarse matrix all but annihilates."""
     coarse = target.ptap(nodal)
     diagonal = coarse.getDiagonal()
-    # A vertex that moves no unknown.
+    # A vertex that moves no unknown has a row without entries.
+    coarse.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
     diagonal.array = np.where(diagonal.array_r == 0.0, 1.0, diagonal.array_r)
     coarse.setDiagonal(diagonal)
     coarse.setBlockSize(2)

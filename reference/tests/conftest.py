@@ -1,5 +1,6 @@
-"""Makes the package and the scene builders importable, and runs problems in this process."""
+"""Makes the package and the scene builders importable, and runs problems in this process or on two ranks."""
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -21,3 +22,11 @@ def solve():
         return solve_all(MPI.COMM_WORLD, parse_problem(data), [degree], **options)[0]
 
     return run
+
+
+@pytest.fixture
+def mpirun():
+    """Starts two ranks; a missing launcher is an error, not a reason to skip."""
+    if shutil.which("mpirun") is None:
+        pytest.fail("mpirun is missing: ci/setup tests installs it, from Debian's openmpi-bin")
+    return "mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"

@@ -97,6 +97,41 @@ def test_ranks_that_do_not_see_each_other_are_refused(tmp_path):
     assert done.returncode == 3 and "1 of 2 ranks see each other" in done.stderr, done.stderr
 
 
+TWO_LEVELS = """
+import numpy as np
+from hypercircle_dual import compat
+
+comm, n = compat.MPI.COMM_WORLD, 8
+own = np.arange(n) + n * comm.rank
+target = compat.matrix(comm, n, 2, np.full(n, n), np.zeros(n))
+compat.add_blocks(target, own[None], (2.0 * np.eye(n) + 0.1)[None])
+compat.finish(target)
+# Four vertices on each rank; the last one moves nothing.
+moving = own[:6] if comm.rank == comm.size - 1 else own
+nodal = compat.entries(comm, (n, n), 2, moving, moving, np.ones(len(moving)))
+motions = [compat.vector(comm, n) for _ in range(3)]
+for motion, values in zip(motions, ([1.0, 0.0], [0.0, 1.0], [0.0, 1.0])):
+    motion.array = np.tile(values, 4)
+motions[2].array = motions[2].array_r * own
+solver = compat.multigrid(target, nodal, motions, 1e-10, 50)
+load = compat.vector(comm, n)
+load.array = 1.0 + own
+out = load.duplicate()
+compat.solve(solver, load, out)
+missing = (target * out - load).norm() / load.norm()
+assert missing < 1e-9, missing
+"""
+
+
+def test_a_vertex_that_moves_nothing_is_in_no_way(mpirun):
+    done = subprocess.run(
+        [*mpirun, sys.executable, "-c", TWO_LEVELS],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_missing_package_is_named(tmp_path):
     (tmp_path / "petsc4py.py").write_text("raise ModuleNotFoundError('no petsc4py here', name='petsc4py')")
     (tmp_path / "problem.json").write_text(json.dumps(HEADER))

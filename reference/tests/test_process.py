@@ -3,7 +3,6 @@
 import copy
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -32,14 +31,6 @@ def call(folder, *arguments, data=None, text=None, launcher=(), python=(), **env
 
 def result(folder, degree):
     return json.loads((folder / "out" / f"primal-P{degree}.json").read_text())
-
-
-@pytest.fixture
-def mpirun():
-    """Starts two ranks; a missing launcher is an error, not a reason to skip."""
-    if shutil.which("mpirun") is None:
-        pytest.fail("mpirun is missing: ci/setup tests installs it, from Debian's openmpi-bin")
-    return "mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"
 
 
 def test_writes_what_the_format_promises(tmp_path):
