@@ -30,7 +30,13 @@ class NotInstalled(Failure):
 def log(comm, text: str) -> None:
     """One line of progress on stderr, from rank 0 only."""
     if comm.rank == 0:
-        print(text, file=sys.stderr, flush=True)
+        say(text)
+
+
+def say(text: str) -> None:
+    """One line on stderr, written in one piece: what several ranks write in several pieces becomes one line of all."""
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()
 
 
 def finish(name: str, work: Callable[[], None]) -> None:
@@ -38,13 +44,13 @@ def finish(name: str, work: Callable[[], None]) -> None:
     try:
         work()
     except (NotInstalled, ImportError) as missing:
-        print(f"{name}: not installed: {_missing(missing)}", file=sys.stderr)
+        say(f"{name}: not installed: {_missing(missing)}")
         _leave(NotInstalled.exit_code)
     except Failure as failure:
-        print(f"{name}: {failure}", file=sys.stderr)
+        say(f"{name}: {failure}")
         _leave(failure.exit_code)
     except (MemoryError, OSError, RuntimeError, ValueError) as error:
-        print(f"{name}: {type(error).__name__}: {error}", file=sys.stderr)
+        say(f"{name}: {type(error).__name__}: {error}")
         _leave(Failure.exit_code)
 
 
@@ -54,7 +60,6 @@ def _missing(error: Exception) -> str:
 
 def _leave(code: int) -> None:
     """End this rank; of several, one that fails takes the others along, which would wait for it forever."""
-    sys.stderr.flush()
     if "mpi4py.MPI" in sys.modules:
         from mpi4py import MPI
 

@@ -113,6 +113,31 @@ def test_missing_package(tmp_path):
     assert done.stderr.count("\n") == 1
 
 
+def test_a_failure_is_written_in_one_piece(monkeypatch):
+    """What is written unbuffered, as ``PYTHONUNBUFFERED`` asks, mixes with what other ranks write at the same time."""
+    from hypercircle_process import Failure, NotInstalled, finish
+
+    class Pieces(list):
+        write = list.append
+
+        def flush(self):
+            pass
+
+    def fails(with_what):
+        raise with_what
+
+    for failure, code, said in [
+        (NotInstalled("nothing is here"), 4, "name: not installed: nothing is here\n"),
+        (Failure("no contact"), 3, "name: no contact\n"),
+        (ValueError("three"), 3, "name: ValueError: three\n"),
+    ]:
+        pieces = Pieces()
+        monkeypatch.setattr(sys, "stderr", pieces)
+        with pytest.raises(SystemExit) as end:
+            finish("name", lambda: fails(failure))
+        assert (end.value.code, pieces) == (code, [said])
+
+
 def changed(path, value):
     data = copy.deepcopy(two_blocks(2))
     place = data
