@@ -206,7 +206,8 @@ def minimise(K, f, C, d, B, g):
         if np.array_equal(follow, closed):
             return u, np.maximum(reactions, 0.0), step
         closed = follow
-    raise SystemExit("scikit-fem: the contact has not settled")
+    print("scikit-fem: the contact has not settled", file=sys.stderr)
+    raise SystemExit(3)
 
 
 def solve(problem, degree):

@@ -180,10 +180,7 @@ impl Spread {
 impl Run {
     /// What it is called: the method, or the solver in the place of FEniCSx with its degree.
     pub fn name(&self) -> String {
-        match &self.solver {
-            Some(solver) => format!("{solver} P{}", self.method.degree()),
-            None => self.method.name().to_string(),
-        }
+        self.method.name_with(self.solver.as_deref())
     }
 }
 

@@ -7,6 +7,7 @@ use super::options::{MemoryOptions, RunOptions, positive};
 use super::progress::Progress;
 use super::{CliError, Exit, say};
 use crate::measure::Method;
+use crate::primal::SolverCommand;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
 
 /// Seconds that one run may take.
@@ -25,6 +26,10 @@ pub struct Args {
     /// Only these methods; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known_method)]
     pub method: Vec<Method>,
+    /// Run COMMAND in the place of FEniCSx, as `verify` does: {problem} stands for the file to read, {out} for the folder to write
+    /// into, {degrees} for the degrees that are wanted. It is judged like this program's own methods
+    #[arg(long, value_name = "COMMAND")]
+    pub reference: Option<SolverCommand>,
     /// End a run after SECONDS
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     pub budget: Option<f64>,
@@ -49,6 +54,7 @@ impl Args {
         words.extend(self.reduced.then(|| "--reduced".to_string()));
         words.extend(self.regime.iter().map(|r| format!("--regime {}", r.id)));
         words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.reference.iter().map(|program| format!("--reference {}", quoted(program.line()))));
         words.extend(self.budget.map(|s| format!("--budget {s}")));
         words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
         words.join(" ")
@@ -60,7 +66,7 @@ fn known(id: &str) -> Result<&'static Regime, String> {
     stability::regime(id).ok_or_else(|| format!("there is no regime {id}; choose from {}", names.join(", ")))
 }
 
-/// Runs every method in every regime. Exit code 1 says that a method of this program is wrong without saying so, crashed,
+/// Runs every method in every regime. Exit code 1 says that a method of this program, or a solver handed in, is wrong without saying so, crashed,
 /// or is not correct where it is promised to be.
 ///
 /// # Errors
@@ -81,6 +87,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         workers: args.threads.map_or(processors, |n| n as usize),
         budget: args.budget.unwrap_or(if args.reduced { BUDGET_REDUCED } else { BUDGET }),
         memory: args.memory.budget(1),
+        solver: args.reference.as_ref(),
         program: &program,
         command: args.command(),
         journal: &journal,
@@ -98,16 +105,16 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     Ok(if complaints.is_empty() { Exit::Agree } else { Exit::Disagree })
 }
 
-/// One line for each step of the program's own methods that is wrong, crashed, or not correct where it is promised to be.
+/// One line for each step of the program's own methods, or of a solver handed in, that is wrong, crashed, or not correct where it is promised to be.
 fn complaints(matrix: &Matrix) -> Vec<String> {
     let line = |row: &stability::Row, cell: &stability::Cell, i: usize| {
         let (value, step) = (row.values.get(i)?, cell.steps.get(i)?);
-        Some(format!("{} in {} at {value}: {}: {}", cell.method.name(), row.id, step.outcome.words(), step.why))
+        Some(format!("{} in {} at {value}: {}: {}", cell.name(), row.id, step.outcome.words(), step.why))
     };
     let mut lines: Vec<String> =
         matrix.defects().into_iter().filter_map(|(row, cell)| line(row, cell, cell.worst_at()?)).collect();
     for (row, cell, i) in matrix.shortfalls() {
-        let text = line(row, cell, i).unwrap_or_else(|| format!("{} in {}: no run", cell.method.name(), row.id));
+        let text = line(row, cell, i).unwrap_or_else(|| format!("{} in {}: no run", cell.name(), row.id));
         lines.push(format!("{text} (promised to be correct)"));
     }
     lines

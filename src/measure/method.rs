@@ -71,6 +71,14 @@ impl Method {
         }
     }
 
+    /// Its name, or that of a displacement `solver` that was run in the place of FEniCSx, with the degree.
+    pub fn name_with(self, solver: Option<&str>) -> String {
+        match solver {
+            Some(solver) => format!("{solver} P{}", self.degree()),
+            None => self.name().to_string(),
+        }
+    }
+
     /// The method of that name.
     pub fn of_name(name: &str) -> Option<Method> {
         Self::ALL.into_iter().find(|m| m.name() == name)

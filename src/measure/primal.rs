@@ -102,6 +102,7 @@ fn failure(error: PrimalError) -> End {
     match error {
         PrimalError::NotInstalled(_) | PrimalError::NotFound(_) => End::NotApplicable(text),
         PrimalError::TimedOut { .. } => End::NotConverged(text),
+        PrimalError::NoAnswer { log, .. } => End::Refused(log.lines().last().unwrap_or(&text).to_string()),
         // The package gives one line for everything it noticed itself; anything else is a crash of the interpreter.
         PrimalError::Failed { ref log, .. } => {
             match log.lines().rev().find_map(|l| l.strip_prefix("hypercircle-reference: ")) {

@@ -16,6 +16,8 @@ use crate::process::{Outcome, Scratch, package, python, supervise, words};
 const PROBLEM: &str = "{problem}";
 /// What stands for the folder of the result files.
 const OUT: &str = "{out}";
+/// The exit code of a program that has no answer, and says why.
+const NO_ANSWER: i32 = 3;
 /// What stands for the degrees that are wanted, with commas between.
 const DEGREES: &str = "{degrees}";
 
@@ -78,6 +80,7 @@ impl SolverCommand {
         match ended.outcome {
             Outcome::TimedOut => Err(PrimalError::TimedOut { of: of(), limit, log }),
             Outcome::Lost(error) => Err(PrimalError::Failed { of: of(), status: format!("lost: {error}"), log }),
+            Outcome::Exit(status) if status.code() == Some(NO_ANSWER) => Err(PrimalError::NoAnswer { of: of(), log }),
             Outcome::Exit(status) if !status.success() => {
                 Err(PrimalError::Failed { of: of(), status: package::words(status), log })
             }

@@ -94,6 +94,14 @@ pub enum PrimalError {
         /// The last lines it printed.
         log: String,
     },
+    /// The solver of the user's says, by exit code 3, that it has no answer.
+    #[error("{of} failed (exit code 3); the end of its log:\n{log}")]
+    NoAnswer {
+        /// Whose process.
+        of: String,
+        /// The last lines it printed.
+        log: String,
+    },
     /// The process did not end in time and was stopped.
     #[error("{of} was stopped after {} s; the end of its log:\n{log}", limit.as_secs_f64())]
     TimedOut {

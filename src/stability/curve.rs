@@ -32,7 +32,7 @@ pub fn curve(row: &Row) -> Result<String, PlotError> {
                 .collect();
             if !points.is_empty() {
                 series.push(Series {
-                    label: format!("{}, {words}", cell.method.name()),
+                    label: format!("{}, {words}", cell.name()),
                     ink: cell.method.index(),
                     secondary,
                     points,

@@ -50,6 +50,9 @@ pub struct Row {
 pub struct Cell {
     /// The method.
     pub method: Method,
+    /// The displacement solver that was run in the place of FEniCSx.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solver: Option<String>,
     /// The worst outcome.
     pub worst: Outcome,
     /// What happened at each value.
@@ -120,6 +123,11 @@ impl Outcome {
 }
 
 impl Cell {
+    /// What it is called: the method, or the solver in the place of FEniCSx with its degree.
+    pub fn name(&self) -> String {
+        self.method.name_with(self.solver.as_deref())
+    }
+
     /// The last value before the first that is not correct; `None` where the first is not.
     pub fn correct_to(&self) -> Option<usize> {
         let good = self.steps.iter().take_while(|s| s.outcome == Outcome::Correct).count();
@@ -133,11 +141,13 @@ impl Cell {
 }
 
 impl Matrix {
-    /// Cells of this program's own methods that are wrong without saying so or crashed: none, if all is well.
+    /// Cells of this program's own methods, and of a solver handed in, that are wrong without saying so or crashed: none, if
+    /// all is well.
     pub fn defects(&self) -> Vec<(&Row, &Cell)> {
         let mut found = Vec::new();
         for row in &self.rows {
-            let bad = |c: &&Cell| c.method.has_bracket() && matches!(c.worst, Outcome::Wrong | Outcome::Crash);
+            let on_trial = |c: &Cell| c.method.has_bracket() || c.solver.is_some();
+            let bad = |c: &&Cell| on_trial(c) && matches!(c.worst, Outcome::Wrong | Outcome::Crash);
             found.extend(row.cells.iter().filter(bad).map(|c| (row, c)));
         }
         found

@@ -12,8 +12,8 @@ pub fn markdown(matrix: &Matrix) -> String {
         if matrix.reduced { ", reduced sweeps" } else { "" },
         matrix.command
     );
-    let methods: Vec<&str> =
-        matrix.rows.first().map(|r| r.cells.iter().map(|c| c.method.name()).collect()).unwrap_or_default();
+    let methods: Vec<String> =
+        matrix.rows.first().map(|r| r.cells.iter().map(|c| escaped(&c.name())).collect()).unwrap_or_default();
     let _ = writeln!(text, "| regime | swept | {} |", methods.join(" | "));
     let _ = writeln!(text, "|---|---|{}", "---|".repeat(methods.len()));
     for row in &matrix.rows {
@@ -58,8 +58,8 @@ pub fn markdown(matrix: &Matrix) -> String {
 }
 
 /// Methods that fail at the same value in the same words share a line.
-fn together(row: &Row, cells: &[&Cell]) -> Vec<(Vec<&'static str>, String)> {
-    let mut lines: Vec<(Vec<&'static str>, String)> = Vec::new();
+fn together(row: &Row, cells: &[&Cell]) -> Vec<(Vec<String>, String)> {
+    let mut lines: Vec<(Vec<String>, String)> = Vec::new();
     for cell in cells {
         let Some((value, step)) = cell.worst_at().and_then(|i| Some((row.values.get(i)?, cell.steps.get(i)?))) else {
             continue;
@@ -67,8 +67,8 @@ fn together(row: &Row, cells: &[&Cell]) -> Vec<(Vec<&'static str>, String)> {
         let why = step.why.lines().next().unwrap_or_default();
         let what = format!(" at {value}: {}: {}", cell.worst.words(), shortened(why));
         match lines.iter_mut().find(|(_, w)| *w == what) {
-            Some((methods, _)) => methods.push(cell.method.name()),
-            None => lines.push((vec![cell.method.name()], what)),
+            Some((methods, _)) => methods.push(escaped(&cell.name())),
+            None => lines.push((vec![escaped(&cell.name())], what)),
         }
     }
     lines

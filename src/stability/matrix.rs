@@ -13,6 +13,7 @@ use super::regimes::Regime;
 use super::truth::Truth;
 use crate::budget::Budget;
 use crate::measure::{self, Answer, Ended, Limits, Machine, Method};
+use crate::primal::SolverCommand;
 
 /// What to run.
 pub struct Sweep<'a> {
@@ -28,6 +29,8 @@ pub struct Sweep<'a> {
     pub budget: f64,
     /// Memory that all runs of a time may take.
     pub memory: Budget,
+    /// A displacement solver to run in the place of FEniCSx; it is judged, and its energies bound nothing.
+    pub solver: Option<&'a SolverCommand>,
     /// This program.
     pub program: &'a Path,
     /// The command that makes the matrix again, for its readers.
@@ -186,6 +189,9 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
         option("--tolerance", TOLERANCE.to_string());
         option("--max-triangles", MOST_TRIANGLES.to_string());
     }
+    if let Some(solver) = what.solver.filter(|_| task == Task::Primal) {
+        option("--reference", solver.line().to_string());
+    }
     option("--seconds", what.budget.to_string());
     arguments
 }
@@ -218,9 +224,10 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
     let truths: Vec<Option<Truth>> = steps
         .iter()
         .map(|&step| {
-            // The displacement model's energy is an upper bound that owes nothing to the stress methods.
+            // The energy of FEniCSx is an upper bound that owes nothing to the stress methods.
             let known = (regime.known)(regime.values[step]);
-            let runs: Vec<Ended> = [Task::Finer, Task::Primal].into_iter().filter_map(|t| of(step, t)).collect();
+            let witnesses: &[Task] = if what.solver.is_some() { &[Task::Finer] } else { &[Task::Finer, Task::Primal] };
+            let runs: Vec<Ended> = witnesses.iter().filter_map(|&t| of(step, t)).collect();
             Truth::new(&known, &runs)
         })
         .collect();
@@ -230,8 +237,9 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
         .iter()
         .map(|&method| {
             let task = if method.is_primal() { Task::Primal } else { Task::One(method) };
+            let mut solver = what.solver.filter(|_| method.is_primal()).map(SolverCommand::name);
             if !is_run(what, regime, method) {
-                return Cell { method, worst: Outcome::NotApplicable, steps: Vec::new() };
+                return Cell { method, solver, worst: Outcome::NotApplicable, steps: Vec::new() };
             }
             let first: Option<Answer> = match of(steps[0], task) {
                 Some(Ended::Told(results)) => {
@@ -258,7 +266,10 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
                 })
                 .collect();
             let worst = judged.iter().map(|s| s.outcome).max().unwrap_or(Outcome::NotApplicable);
-            Cell { method, worst, steps: judged }
+            if let Some(told) = judged.iter().find_map(|step| step.answer.as_ref()?.solver.clone()) {
+                solver = Some(told);
+            }
+            Cell { method, solver, worst, steps: judged }
         })
         .collect();
     Row {
@@ -267,7 +278,7 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
         parameter: regime.parameter.to_string(),
         values: steps.iter().map(|&s| regime.label(s)).collect(),
         promised: steps.iter().filter(|&&s| s < regime.promised).count(),
-        truth: regime.truth.to_string(),
+        truth: regime.truth_with(what.solver.is_some()).to_string(),
         reported: regime.reported.to_string(),
         cells,
     }

@@ -45,7 +45,7 @@ fn table(matrix: &Matrix) -> Markup {
         div.scroll role="region" aria-label="methods and regimes" tabindex="0" { table {
             thead { tr {
                 th { "regime" }
-                @if let Some(row) = matrix.rows.first() { @for cell in &row.cells { th { (cell.method.name()) } } }
+                @if let Some(row) = matrix.rows.first() { @for cell in &row.cells { th { (cell.name()) } } }
             } }
             tbody {
                 @for row in &matrix.rows {
@@ -82,8 +82,8 @@ fn details(row: &Row, figures: &[(String, String)]) -> Markup {
             @for (_, svg) in figures.iter().filter(|(n, _)| *n == name) { figure.plot { (PreEscaped(svg)) } }
             @for cell in &row.cells {
                 details id=(format!("{}-{}", row.id, cell.method.index())) open[cell.worst > Outcome::Correct] {
-                    summary { (cell.method.name()) ": " (cell.worst.words()) }
-                    div.scroll role="region" aria-label={ (row.title) ", " (cell.method.name()) } tabindex="0" { table {
+                    summary { (cell.name()) ": " (cell.worst.words()) }
+                    div.scroll role="region" aria-label={ (row.title) ", " (cell.name()) } tabindex="0" { table {
                         thead { tr { th { "value" } th { "outcome" } th.n { "guaranteed" } th.n { "true" } th { "why" } } }
                         tbody {
                             @for (value, step) in row.values.iter().zip(&cell.steps) {

@@ -140,7 +140,7 @@ fn a_scaled_answer_must_be_the_same_to_round_off() {
 fn promising(method: Method, outcomes: [Outcome; 3]) -> Matrix {
     let step = |outcome| Step { outcome, why: String::new(), error: None, bound: None, answer: None };
     let worst = outcomes.into_iter().max().expect("three");
-    let cell = Cell { method, worst, steps: outcomes.map(step).to_vec() };
+    let cell = Cell { method, solver: None, worst, steps: outcomes.map(step).to_vec() };
     let text = || "row".to_string();
     let row = Row {
         id: text(),

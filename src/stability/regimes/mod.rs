@@ -62,6 +62,8 @@ const PLAIN: Regime = Regime {
 
 /// Where nothing better is known.
 const FINER: &str = "energy: bracket on a finer mesh, cut with the FEniCSx P2 energy; forces: statics";
+/// The same where another program stands in the place of FEniCSx: it is judged, and is no witness.
+const FINER_ALONE: &str = "energy: bracket on a finer mesh; forces: statics";
 /// Where a closed solution is known.
 const CLOSED: &str = "closed solution: energy, forces and pressure";
 
@@ -77,6 +79,11 @@ impl Regime {
     /// The value as a reader sees it.
     pub fn label(&self, step: usize) -> String {
         self.labels.get(step).map_or_else(|| format!("{}", Shown(self.values[step])), ToString::to_string)
+    }
+
+    /// How the truth is known; with an `own_solver` in the place of FEniCSx, without its energies.
+    pub fn truth_with(&self, own_solver: bool) -> &'static str {
+        if own_solver && self.truth == FINER { FINER_ALONE } else { self.truth }
     }
 
     /// The step length to iterate with, where the regime is about it.

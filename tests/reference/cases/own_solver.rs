@@ -34,6 +34,16 @@ fn example() -> PathBuf {
     root().join("examples/scikit_fem_solver.py")
 }
 
+/// The example with loads 2 % too large, in `folder`.
+fn spoilt(folder: &Path) -> PathBuf {
+    let text = std::fs::read_to_string(example()).expect("the example");
+    let whole = "self.length[edge] / 6 * share";
+    assert_eq!(text.matches(whole).count(), 1);
+    let path = folder.join("spoilt.py");
+    std::fs::write(&path, text.replace(whole, &format!("1.02 * {whole}"))).expect("writable");
+    path
+}
+
 #[test]
 fn a_correct_solver_agrees_under_its_own_name() {
     // Without contact to speak of, with contact that opens, with one whose direction turns, with three bodies.
@@ -56,12 +66,7 @@ fn a_correct_solver_agrees_under_its_own_name() {
 #[test]
 fn a_mistake_of_the_solver_is_found_and_named() {
     let folder = tempfile::tempdir().expect("a folder");
-    let text = std::fs::read_to_string(example()).expect("the example");
-    let whole = "self.length[edge] / 6 * share";
-    assert_eq!(text.matches(whole).count(), 1);
-    let spoilt = folder.path().join("spoilt.py");
-    std::fs::write(&spoilt, text.replace(whole, &format!("1.02 * {whole}"))).expect("writable");
-    let run = verify("two_blocks", &solver(&spoilt));
+    let run = verify("two_blocks", &solver(&spoilt(folder.path())));
     assert_eq!(run.code, Some(1), "{}{}", run.stdout, run.stderr);
     let report = run.report();
     for name in ["primal/equilibrium/scikit-fem P1", "primal/equilibrium/scikit-fem P2"] {
@@ -121,4 +126,33 @@ fn a_chart_has_a_column_for_it() {
     assert!((own["plot"]["upper"].as_f64().expect("a number") + 1.79590394773).abs() < 1e-9, "{own}");
     assert!(own["plot"]["whole"]["median"].as_f64().is_some_and(|seconds| seconds > 0.05), "{own}");
     assert!(read("chart.html").contains("scikit-fem P2") && read("chart.csv").contains("scikit-fem P2"));
+}
+
+/// A right solver has the closed solution, which is quadratic; one whose loads are wrong is no witness against the stresses.
+#[test]
+fn a_stability_matrix_has_a_column_for_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sweep = |file: &Path, out: &str, code: i32| -> (Value, String) {
+        let mut command =
+            hypercircle(folder.path(), ["stability", "--reduced", "--quiet", "--regime", "poisson-exact"]);
+        command.args(["--method", "condensed", "--method", "FEniCSx P2", "--reference", &solver(file), "--out", out]);
+        command.env("PYTHONPATH", packages()).env("HYPERCIRCLE_PYTHON", "/nonexistent/python3");
+        let said = run(command);
+        ended("stability", &said, code, &[]);
+        let read = |name: &str| std::fs::read_to_string(folder.path().join(out).join(name)).expect("written");
+        assert!(read("stability.html").contains("scikit-fem P2") && read("stability.md").contains("scikit-fem P2"));
+        assert!(!read("stability.html").contains("FEniCSx"));
+        (
+            serde_json::from_str(&read("stability.json")).expect("JSON"),
+            String::from_utf8_lossy(&said.stderr).into_owned(),
+        )
+    };
+    let (right, _) = sweep(&example(), "right", 0);
+    let [stresses, own] = [0, 1].map(|i| &right["rows"][0]["cells"][i]);
+    assert_eq!((&stresses["worst"], &own["worst"]), (&"correct".into(), &"correct".into()), "{right}");
+    assert_eq!(own["solver"], "scikit-fem");
+    let (wrong, said) = sweep(&spoilt(folder.path()), "wrong", 1);
+    assert!(said.contains("scikit-fem P2 in poisson-exact"), "{said}");
+    let [stresses, own] = [0, 1].map(|i| &wrong["rows"][0]["cells"][i]["worst"]);
+    assert_eq!((stresses, own), (&"correct".into(), &"wrong".into()), "{wrong}");
 }
