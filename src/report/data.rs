@@ -252,6 +252,9 @@ pub struct Dossier<'a> {
     pub dual: Option<&'a DualSolution>,
     /// Displacements by name; the first is the free upper bound where there is one.
     pub displacements: Vec<(String, &'a Displacement)>,
+    /// Linear and quadratic displacements that were held against the bound, by name, as they were given: values at vertices, and
+    /// at edge middles behind them where they are quadratic.
+    pub given: Vec<(String, Vec<[f64; 2]>)>,
     /// The stress half-way between λ_h and that of the best displacement.
     pub mid: Option<&'a StressField>,
     /// Stresses of the displacement models, by name.

@@ -79,6 +79,7 @@ impl Sample {
             report: report(&self.problem, self.verdict),
             problem: &self.problem,
             dual: (!infeasible).then_some(&self.dual),
+            given: Vec::new(),
             displacements: self.displacements.iter().map(|(name, field)| (name.clone(), field)).collect(),
             mid: None,
             stresses: Vec::new(),

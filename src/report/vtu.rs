@@ -27,7 +27,9 @@ const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 /// Point data: `dual_stress`, `mid_stress`, `stress_…` of every displacement model and `stress_difference_…`, λ_h less that, as
 /// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
 /// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
-/// everywhere, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8.
+/// everywhere, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
+/// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, and the
+/// values of `displacement_…` at as many of these nodes as it has; not in files for looking at.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
     let run = format!(" run {} ", dossier.report.run);
@@ -43,6 +45,9 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     out.open("FieldData", &[])?;
     out.text("scene", &dossier.report.scene)?;
     out.text("scene_sha256", &dossier.report.provenance.scene_sha256)?;
+    if precision == Precision::Whole && !dossier.given.is_empty() {
+        given(&mut out, dossier)?;
+    }
     out.close("FieldData")?;
     out.open("Piece", &[("NumberOfPoints", &(points.len() / 3).to_string()), ("NumberOfCells", &cells.to_string())])?;
     point_data(&mut out, dossier, &lattice)?;
@@ -59,6 +64,32 @@ pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
         out.close(name)?;
     }
     out.finish()
+}
+
+/// The mesh as it was solved, and the displacements at its nodes.
+fn given(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
+    let mesh = &dossier.problem.mesh;
+    let middles = mesh.edges.iter().map(|edge| {
+        let [a, b] = edge.vertices.map(|v| mesh.points[v]);
+        [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+    });
+    let bytes = |rows: &[[f64; 2]]| rows.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    let nodes: Vec<[f64; 2]> =
+        mesh.points.iter().copied().chain(middles).map(|p| dossier.problem.scene.as_written(p)).collect();
+    out.table("nodes", "Float64", 2, nodes.len(), &bytes(&nodes))?;
+    let triangles = mesh.triangles.iter().zip(&mesh.triangle_edges);
+    let nodes_of = triangles.flat_map(|(corners, edges)| {
+        // Edge i lies opposite vertex i.
+        let middles = [2, 0, 1].map(|i| mesh.points.len() + edges[i]);
+        corners.iter().copied().chain(middles).collect::<Vec<usize>>()
+    });
+    let indices: Vec<u8> = nodes_of.flat_map(|n| (n as i32).to_le_bytes()).collect();
+    out.table("nodes_of_triangles", "Int32", 6, mesh.triangles.len(), &indices)?;
+    let mut names = Vec::new();
+    for (name, values) in &dossier.given {
+        out.table(&unique_key("displacement", name, &mut names), "Float64", 2, values.len(), &bytes(values))?;
+    }
+    Ok(())
 }
 
 fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::Result<()> {

@@ -59,11 +59,21 @@ pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
     for judged in &findings.comparison.judged {
         displacements.push((judged.candidate.name.clone(), &judged.field.displacement));
     }
+    let mesh = &problem.mesh;
+    let candidates = findings.comparison.judged.iter().map(|judged| &judged.candidate);
+    let fitting = candidates.filter(|own| {
+        own.higher.is_none() && [own.vertex.len(), own.middle.len()] == [mesh.points.len(), mesh.edges.len()]
+    });
+    let given = fitting.map(|own| {
+        let middle = if own.degree == 2 { own.middle.as_slice() } else { &[] };
+        (own.name.clone(), [own.vertex.as_slice(), middle].concat())
+    });
     Dossier {
         report,
         problem,
         dual: Some(dual),
         displacements,
+        given: given.collect(),
         mid: fields.mid.as_ref(),
         stresses: fields.stresses.iter().map(|(name, stress)| (name.clone(), stress)).collect(),
         maps: fields.maps.clone(),
@@ -228,6 +238,7 @@ pub fn infeasible<'a>(
         problem,
         dual: None,
         displacements: Vec::new(),
+        given: Vec::new(),
         mid: None,
         stresses: Vec::new(),
         maps: Vec::new(),

@@ -95,6 +95,13 @@ impl Sheet {
         self.element(name, "UInt8", &[("NumberOfTuples", tuples.as_str())], text.as_bytes())
     }
 
+    /// Rows of so many numbers, as field data.
+    pub fn table(&mut self, name: &str, kind: &str, columns: usize, rows: usize, data: &[u8]) -> std::io::Result<()> {
+        let (columns, rows) = (columns.to_string(), rows.to_string());
+        let shape = [("NumberOfComponents", columns.as_str()), ("NumberOfTuples", rows.as_str())];
+        self.element(name, kind, &shape, data)
+    }
+
     /// An array whose components have these names; one of a single component has none.
     pub fn array(&mut self, name: &str, kind: &str, components: &[&str], data: Vec<u8>) -> std::io::Result<()> {
         let count = components.len().to_string();

@@ -71,6 +71,9 @@ pub struct FieldArrays {
 struct Content {
     points: Vec<Vec<Option<f64>>>,
     single: bool,
+    /// Whether it is a file of this program, where a linear field has no values at the middles of edges.
+    #[serde(default)]
+    own: bool,
     triangles: Vec<Vec<usize>>,
     others: Vec<String>,
     fields: BTreeMap<String, Data>,
@@ -134,11 +137,12 @@ impl ForeignField {
             return Err(FieldError { file: name.into(), what, remedy });
         }
         let fields = BTreeMap::from([("displacement".to_string(), Data { values: Some(values), single })]);
-        let content = Content { points: finite(points), single: false, triangles, others: Vec::new(), fields };
+        let content =
+            Content { points: finite(points), single: false, own: false, triangles, others: Vec::new(), fields };
         Self::checked(content, Path::new(name), sha256, None)
     }
 
-    fn checked(content: Content, file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
+    fn checked(mut content: Content, file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
         if let Some(kind) = content.others.first() {
             let what = format!("it has cells of the kind '{kind}'");
@@ -149,6 +153,11 @@ impl ForeignField {
         }
         let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
         let rows = data.values.as_deref().unwrap_or_default();
+        if content.own && rows.len() < content.points.len() {
+            // A linear field: vertices come first.
+            content.points.truncate(rows.len());
+            content.triangles.iter_mut().for_each(|nodes| nodes.truncate(3));
+        }
         let points: Option<Vec<[f64; 2]>> =
             content.points.iter().map(|p| Some([*p.first()?.as_ref()?, *p.get(1)?.as_ref()?])).collect();
         let Some(points) = points else {

@@ -38,13 +38,25 @@ def missing(error):
     sys.exit(45)
 
 
+def given(mesh):
+    """The mesh and the displacements that fields.vtu keeps beside what it shows; nothing in other files."""
+    arrays = dict(mesh.field_data)
+    nodes, triangles = arrays.pop("nodes", None), arrays.pop("nodes_of_triangles", None)
+    if "scene_sha256" not in arrays:
+        return None
+    if nodes is None or triangles is None:
+        sys.exit("it shows fields and keeps none to be handed in again, as that of a scene of 10,000 triangles or more does")
+    fields = {name: values for name, values in arrays.items() if name.startswith("displacement_")}
+    return nodes, [meshio.CellBlock("triangle6", triangles)], fields, True
+
+
 def read():
-    """Points, cell blocks and point data; of a time series the last step."""
+    """Points, cell blocks, point data, and whether it is a file of this program; of a time series the last step."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(readable())
-        return mesh.points, mesh.cells, mesh.point_data
+        return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
     except ModuleNotFoundError as error:
         missing(error)
     except (Exception, SystemExit) as error:
@@ -52,7 +64,7 @@ def read():
             try:
                 with meshio.xdmf.TimeSeriesReader(source) as series:
                     points, cells = series.read_points_cells()
-                    return points, cells, series.read_data(series.num_steps - 1)[1]
+                    return points, cells, series.read_data(series.num_steps - 1)[1], False
             except ModuleNotFoundError as lacking:
                 missing(lacking)
             except Exception:
@@ -68,7 +80,7 @@ def rows(array):
     return [[float(x) if math.isfinite(x) else None for x in row] for row in array]
 
 
-points, cells, data = read()
+points, cells, data, own = read()
 shapes = {"triangle": 3, "triangle6": 6, "VTK_LAGRANGE_TRIANGLE": None}
 triangles, others = [], []
 for block in cells:
@@ -88,6 +100,7 @@ with open(target, "w", encoding="utf-8") as out:
     json.dump({
         "points": rows(points),
         "single": points.dtype.itemsize < 8,
+        "own": own,
         "triangles": triangles,
         "others": others,
         "fields": fields,

@@ -63,3 +63,25 @@ fn a_baseline_holds_later_runs_to_it() {
     let allowed = Run::new("verify", &scene, &[&given[..], &["--allow", "baseline/energy.lower=1e-5"]].concat());
     assert_eq!(allowed.code, Some(0), "{}{}", allowed.stdout, allowed.stderr);
 }
+
+/// Scenes whose mesh got vertices where the sides of a contact do not match, and where the gap has kinks.
+#[test]
+fn fields_of_a_report_can_be_handed_in_again() {
+    if !with_reference() {
+        return;
+    }
+    for scene in ["two_blocks", "stack", "inclined"] {
+        let verified = Run::new("verify", &case(scene), &[]);
+        assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
+        let fields = verified.folder.path().join("out/fields.vtu");
+        for (model, name) in ["displacement_FEniCSx_P1", "displacement_FEniCSx_P2"].into_iter().enumerate() {
+            let field = fields.to_str().expect("a plain path");
+            let certified =
+                Run::new("certify", &case(scene), &["--displacement", field, "--field", name, "--solution"]);
+            assert_eq!(certified.code, Some(0), "{scene} {name}: {}{}", certified.stdout, certified.stderr);
+            let energy = |run: &Run, model: usize| run.report().number(&format!("/primal/{model}/energy"));
+            let [before, after] = [energy(&verified, model), energy(&certified, 0)];
+            assert!((before - after).abs() < 1e-12 * before.abs(), "{scene} {name}: {before} {after}");
+        }
+    }
+}
