@@ -58,6 +58,7 @@ class Scene:
         max_seconds: float | None = None,
         max_memory: str | None = None,
         threads: int = 1,
+        element: _Stresses | None = None,
         out: str | PathLike[str] | None = None,
     ) -> Solution: ...
     def certify(
@@ -223,12 +224,16 @@ class Certificate:
 
 _Formula = Callable[[NDArray[np.float64], float, float], ArrayLike]
 
+class _Stresses(Protocol):
+    degree: int
+    def stresses(self, corners: NDArray[np.float64], /) -> ArrayLike: ...
+
 class _HasFormula(Protocol):
     def stiffness(self, nodes: NDArray[np.float64], young: float, poisson: float, /) -> ArrayLike: ...
 
 def workbench(
-    element: ArrayLike | _Formula | _HasFormula,
-    nodes: ArrayLike,
+    element: ArrayLike | _Formula | _HasFormula | _Stresses,
+    nodes: ArrayLike | None = None,
     young: float | None = None,
     poisson: float | None = None,
     kinematics: _Kinematics = "plane-strain",

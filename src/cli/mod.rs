@@ -33,6 +33,7 @@ pub mod version;
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::panic::AssertUnwindSafe;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -101,7 +102,7 @@ pub fn main() -> ExitCode {
     show::install_panic_message();
     signals::watch();
     clear();
-    match std::panic::catch_unwind(|| run(&cli.command, &given)) {
+    match std::panic::catch_unwind(AssertUnwindSafe(|| run(&cli.command, &given))) {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
             show::error(&error);

@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum, value_parser};
 use super::{CliError, Exit};
 use crate::budget::{self, Budget};
 use crate::dual::LinearSolver;
+use crate::element::Elements;
 use crate::report;
 use crate::scene::Scene;
 use crate::study::{Adapt, GivenValue, Wanted};
@@ -78,6 +79,9 @@ pub struct SolveOptions {
     /// A degree for each triangle in place of one for all; no option has it.
     #[arg(skip)]
     pub degrees: Option<Vec<u8>>,
+    /// An element of the user's in place of the block; no option has it.
+    #[arg(skip)]
+    pub element: Option<Elements>,
     /// Refine the mesh uniformly N times before solving
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
     pub refine: u32,

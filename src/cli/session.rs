@@ -158,9 +158,10 @@ impl Session {
     fn options(&self, solve: &SolveOptions) -> Options {
         let adaptive = solve.is_adaptive() && solve.adapt() == Adapt::Hp;
         let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
-        let elements = match &solve.degrees {
-            Some(degrees) => Elements::Blocks(degrees.as_slice().into()),
-            None => Elements::Uniform(block(degree as usize)),
+        let elements = match (&solve.element, &solve.degrees) {
+            (Some(element), _) => element.clone(),
+            (None, Some(degrees)) => Elements::Blocks(degrees.as_slice().into()),
+            (None, None) => Elements::Uniform(block(degree as usize)),
         };
         let keep_factor = !self.scene.quantities.is_empty();
         Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }

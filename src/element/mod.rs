@@ -20,6 +20,7 @@ pub mod plain;
 pub mod quadrature;
 pub mod side;
 mod side_values;
+pub mod spanned;
 mod split;
 pub mod subdivision;
 pub mod subtriangle;
@@ -33,6 +34,7 @@ pub use field::{StressField, lattice, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use plain::PlainDisplacement;
 pub use side_values::{SideValues, parts, starts};
+pub use spanned::Spanned;
 
 use std::borrow::Cow;
 

@@ -11,6 +11,7 @@ mod element;
 mod errors;
 mod kinematics;
 mod line;
+mod own_element;
 mod problem;
 mod scene;
 mod solution;

@@ -10,12 +10,13 @@ use super::aside::{aside, threads};
 use super::certificate::{Certificate, Claims, certify};
 use super::errors::fault;
 use super::line::Line;
+use super::own_element::{balanced, spanned};
 use super::problem::{body_entry, list, problem_entry};
 use super::solution::Solution;
 use crate::cli::CliError;
 use crate::cli::session::Session;
 use crate::cli::solve::{Args, solved};
-use crate::element::MAX_DEGREE;
+use crate::element::{Elements, MAX_DEGREE};
 use crate::problem::Problem;
 use crate::scene;
 
@@ -102,12 +103,12 @@ impl Scene {
     }
 
     /// Solves in stresses and brackets the energy, with the options of `hypercircle solve`. `degrees` has one degree for each
-    /// triangle; `tolerance_of` maps quantities to tolerances; `max_memory` is text such as `2G`. With `out`, the report goes into
+    /// triangle; `element` is an equilibrium element of your own, an object with `degree` and `stresses(corners)`, in place of the block; `tolerance_of` maps quantities to tolerances; `max_memory` is text such as `2G`. With `out`, the report goes into
     /// that folder. Other Python threads run meanwhile.
     ///
     /// Raises `InputError`, `InfeasibleError` where the scene has no equilibrium, `SolveError` where a solver gives no answer.
     #[pyo3(signature = (*, method = "condensed", degree = None, degrees = None, refine = 0, tolerance = None, tolerance_of = None,
-        adapt = None, max_triangles = None, max_seconds = None, max_memory = None, threads = 1, out = None))]
+        adapt = None, max_triangles = None, max_seconds = None, max_memory = None, threads = 1, element = None, out = None))]
     #[allow(clippy::too_many_arguments)]
     pub fn solve(
         &self,
@@ -123,6 +124,7 @@ impl Scene {
         max_seconds: Option<f64>,
         max_memory: Option<&str>,
         threads: i64,
+        element: Option<&Bound<'_, PyAny>>,
         out: Option<PathBuf>,
     ) -> PyResult<Solution> {
         let line = Line::default()
@@ -139,7 +141,26 @@ impl Scene {
             .path("out", out.as_deref());
         let mut args: Args = line.parsed()?;
         args.solve.degrees = degrees.map(|degrees| each_known(&degrees, &args)).transpose()?;
-        self.solve_as(py, args)
+        let Some(object) = element else { return self.solve_as(py, args) };
+        if args.solve.degree.is_some() || args.solve.degrees.is_some() || args.solve.is_adaptive() {
+            return Err(fault("an element has a degree, and a tolerance makes other meshes; give element, or these"));
+        }
+        let own = spanned(object)?;
+        let refine = args.solve.refine as usize;
+        args.solve.element = Some(Elements::Uniform(own));
+        // A scene that cannot be used says so when it is solved.
+        let given = |py| aside(py, 1, || Problem::load((*self.of).clone())?.refine_uniform(refine));
+        if let Ok(problem) = given(py)? {
+            py.detach(|| balanced(own, &problem)).map_err(fault)?;
+        }
+        let solved = self.solve_as(py, args);
+        if let Some(reason) = own.fault() {
+            return Err(fault(reason));
+        }
+        let solution = solved?;
+        // Where pressure needs vertices of its own, other triangles were solved on.
+        py.detach(|| balanced(own, solution.problem())).map_err(fault)?;
+        Ok(solution)
     }
 
     /// Holds a displacement field, or values of quantities, against guaranteed bounds, as `hypercircle certify` does: the stress

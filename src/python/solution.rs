@@ -17,6 +17,7 @@ use crate::cli::session::Session;
 use crate::cli::solve::{Args, Solved};
 use crate::cli::{CliError, Exit};
 use crate::element::{SideValues, lattice};
+use crate::problem::Problem;
 use crate::report::{self, Dossier};
 use crate::study::summaries;
 
@@ -32,6 +33,11 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// Scene and mesh that were solved on.
+    pub fn problem(&self) -> &Problem {
+        &self.solved.run.certified.problem
+    }
+
     /// What `session` found.
     pub fn new(args: Args, session: Session, solved: Solved) -> Self {
         let starts = solved.run.certified.dual.stress.starts().iter().map(|n| *n as i64).collect();

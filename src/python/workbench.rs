@@ -7,6 +7,8 @@ use pyo3::prelude::*;
 
 use super::errors::fault;
 use super::kinematics::kinematics_named;
+use super::own_element::{is_element, spanned};
+use crate::workbench::stress::Equilibrium;
 use crate::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
 /// Rows of numbers as a matrix.
@@ -49,15 +51,20 @@ fn called(
 /// `waive` and `claim` name properties that the element does not claim, and that it claims beside the usual ones. With `out`,
 /// report.json, report.html and junit.xml go into that folder. `passed` is `None` for a property that was not made.
 ///
+/// An object with `degree` and a method `stresses(corners)` is an equilibrium element: its stresses are looked at, and `waive`, `claim` and
+/// `out` are all that it takes. `stresses` is given a 3 × 2 array and returns m fields that span its space, m × 3 subtriangles × nodes ×
+/// (xx, yy, xy); subtriangle i has the corners (a_{i+1}, a_{i+2}, centroid), and nodes as `Solution.stress_points` has them. A method
+/// `particular(corners, body_force)` may return the field that balances a body force.
+///
 /// Raises `InputError` for a matrix, nodes or a material that are none.
 #[pyfunction]
-#[pyo3(signature = (element, nodes, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
+#[pyo3(signature = (element, nodes = None, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
     precision = None, waive = Vec::new(), claim = Vec::new(), name = "element", out = None))]
 #[allow(clippy::too_many_arguments)]
 pub fn workbench<'py>(
     py: Python<'py>,
     element: &Bound<'py, PyAny>,
-    nodes: Vec<[f64; 2]>,
+    nodes: Option<Vec<[f64; 2]>>,
     young: Option<f64>,
     poisson: Option<f64>,
     kinematics: &str,
@@ -77,6 +84,21 @@ pub fn workbench<'py>(
     if let Some(name) = waive.iter().chain(&claim).find(|name| !is_property(name)) {
         return Err(fault(format!("no property is called '{name}'; the findings name them")));
     }
+    let options = Options { waived: waive, claimed: claim };
+    if is_element(element)? {
+        if nodes.is_some() || young.is_some() || poisson.is_some() {
+            return Err(fault(
+                "an equilibrium element is looked at on triangles and materials of many kinds; leave out nodes, young and poisson",
+            ));
+        }
+        let own = spanned(element)?;
+        let report = py.detach(move || Report::of_stress(&Equilibrium(own), &options));
+        if let Some(reason) = own.fault() {
+            return Err(fault(reason));
+        }
+        return written(py, &report, out);
+    }
+    let nodes = nodes.ok_or_else(|| fault("a displacement element has nodes; give one row x, y for each"))?;
     let state = kinematics_named(kinematics)?;
     let material = |young, poisson| Material::new(state, young, poisson, thickness).map_err(fault);
     let given = match (young, poisson) {
@@ -99,9 +121,14 @@ pub fn workbench<'py>(
     let usual = made.precision;
     let made = made.with_precision(precision.filter(|p| *p > 0.0).unwrap_or(usual));
     // The formula comes back for the interpreter.
-    let report = py.detach(move || Report::of_displacement(&made, &Options { waived: waive, claimed: claim }));
+    let report = py.detach(move || Report::of_displacement(&made, &options));
+    written(py, &report, out)
+}
+
+/// The report as a dictionary, and in the folder `out`.
+fn written<'py>(py: Python<'py>, report: &Report, out: Option<PathBuf>) -> PyResult<Bound<'py, PyAny>> {
     if let Some(out) = out {
         report.write(&out).map_err(fault)?;
     }
-    super::from_json(py, serde_json::to_string(&report))
+    super::from_json(py, serde_json::to_string(report))
 }

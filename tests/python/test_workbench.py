@@ -14,6 +14,7 @@ ELEMENTS = {
     "P2": (skfem.MeshTri, skfem.ElementTriP2),
     "Q4": (skfem.MeshQuad, skfem.ElementQuad1),
 }
+ROOT = Path(__file__).resolve().parents[2]
 CORNERS = np.array([[0.1, -0.1], [1.2, 0.1], [0.9, 1.1], [-0.1, 0.8]])
 
 
@@ -94,8 +95,8 @@ def test_an_object_with_a_method_is_a_formula_too(hypercircle):
 
 
 def test_the_example_of_the_page_does_what_the_page_says(hypercircle, tmp_path, monkeypatch, capsys):
-    page = (Path(__file__).resolve().parents[2] / "docs/workbench.md").read_text()
-    first, second = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    page = (ROOT / "docs/workbench.md").read_text()
+    first, second, third = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     names = {}
     exec(first, names)
@@ -106,6 +107,10 @@ def test_the_example_of_the_page_does_what_the_page_says(hypercircle, tmp_path, 
     exec(second, names)
     assert "hourglass" in capsys.readouterr().out and (tmp_path / "out/mine/report.html").exists()
     assert finding(names["report"], "bound")["passed"] is False
+    exec(third, names)
+    assert capsys.readouterr().out.strip() in page
+    lower = hypercircle.Scene(ROOT / "cases/two_blocks.toml").solve(element=names["Single"]()).lower
+    assert lower < -1.7964, "a bound, and a poor one"
 
 
 def test_what_is_no_element_is_an_input_error(hypercircle):
