@@ -49,15 +49,22 @@ impl DualMethod for Condensed {
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         match self.condense(problem, motions, options) {
-            // Where the open part of a contact leaves a body without hold, the Schur complement does not tell the state. The
-            // active set bears that, at the price of a factorisation in each step.
-            Err(DualError::ContactUndetermined) => {
-                let mut found = ActiveSet::default().solve(problem, motions, options)?;
-                found.notes.push(
-                    "the Schur complement on the contact did not determine its state, which was found by active sets"
-                        .to_string(),
-                );
-                Ok(found)
+            // Where the open part of a contact leaves a body without hold, the Schur complement does not tell the state, or one
+            // factor for all states does not reach round-off. The active set bears that, at the price of a factorisation in
+            // each step.
+            Err(first @ (DualError::ContactUndetermined | DualError::NotConverged { .. })) => {
+                let why = match first {
+                    DualError::ContactUndetermined => "the Schur complement on the contact did not determine its state",
+                    _ => "refinement with the factor of all contact states left more than round-off",
+                };
+                match ActiveSet::default().solve(problem, motions, options) {
+                    Ok(mut found) => {
+                        found.notes.push(format!("{why}; contact was found by active sets"));
+                        Ok(found)
+                    }
+                    Err(_) if matches!(first, DualError::NotConverged { .. }) => Err(first),
+                    Err(other) => Err(other),
+                }
             }
             other => other,
         }

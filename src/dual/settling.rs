@@ -21,6 +21,9 @@ const MOST_CHANGES: usize = 12;
 /// Tension and penetration, relative as in [`Ends`], where the changes have come to an end: more is no contact state.
 const UNSETTLED: f64 = 1e-8;
 
+/// Part of what is allowed below which remainders on the unknowns need no measure on the stresses: the two differ by the shape of triangles.
+const CLEAR: f64 = 1e-3;
+
 /// What is settled, and with what.
 pub struct Settling<'a> {
     /// The scene.
@@ -89,7 +92,7 @@ impl Settling<'_> {
         // The measure itself takes longer; where the remainders are very small against the load, it can only agree. A
         // sum notices what a maximum passes over: values that are not numbers.
         let numbers = now.r.iter().sum::<f64>().is_finite();
-        if numbers && left <= 0.1 * allowed * load_scale(&Scales::new(self.problem), || stress.clone()) {
+        if numbers && left <= CLEAR * allowed * load_scale(&Scales::new(self.problem), || stress.clone()) {
             return Ok(());
         }
         let residual = Equilibrium::measure(self.problem, stress, moments).residual();
