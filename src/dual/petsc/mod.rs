@@ -110,7 +110,10 @@ impl DualMethod for Petsc {
                 iterations: answer.steps + answer.iterations,
                 residual,
                 wanted: self.accuracy(),
-                advice: "use --linear-solver mumps, or leave --engine out".to_string(),
+                advice: match self.linear_solver {
+                    LinearSolver::Mumps => "leave --engine out".to_string(),
+                    LinearSolver::Gamg => "use --linear-solver mumps, or leave --engine out".to_string(),
+                },
             });
         }
         let seconds = Phases {
