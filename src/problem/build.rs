@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use super::contact::{gap_note, pair_up};
-use super::curves::curved;
+use super::curves::{beside_long_edges, curved};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::{Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
@@ -12,6 +12,9 @@ use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
 use crate::mesh::{self, Curved, Triangulation};
 use crate::scene::{Load, Normals, Scene, SupportKind};
+
+/// Bisections of the triangles at the edges of circles until these are even.
+const MOST_TO_BE_EVEN: usize = 60;
 
 /// What a boundary name stands for.
 #[derive(Clone, Copy)]
@@ -143,6 +146,11 @@ impl Problem {
         self.pairs().any(|pair| !pair.direction.is_constant())
     }
 
+    /// Whether refinement puts vertices on the curves that edges stand for.
+    pub fn follows_curves(&self) -> bool {
+        !curved(self).is_empty()
+    }
+
     /// The edges of the two sides of all contacts between bodies, facing each other.
     pub fn facing_edges(&self) -> Vec<[usize; 2]> {
         let pairs = self.pairs();
@@ -156,6 +164,26 @@ impl Problem {
     /// # Errors
     /// None that [`Problem::new`] did not have.
     pub fn bisect(
+        &self,
+        refinement: &RefinementEdges,
+        marked: &[usize],
+    ) -> Result<(Problem, RefinementEdges, Vec<usize>), ProblemError> {
+        let (mut problem, mut refinement, mut parent) = self.bisected(refinement, marked)?;
+        if self.refinement == Refinement::FollowsCurvesEvenly {
+            for _ in 0..MOST_TO_BE_EVEN {
+                let long = beside_long_edges(&problem);
+                if long.is_empty() {
+                    break;
+                }
+                let (finer, edges, within) = problem.bisected(&refinement, &long)?;
+                parent = within.into_iter().map(|t| parent[t]).collect();
+                (problem, refinement) = (finer, edges);
+            }
+        }
+        Ok((problem, refinement, parent))
+    }
+
+    fn bisected(
         &self,
         refinement: &RefinementEdges,
         marked: &[usize],

@@ -8,6 +8,12 @@ use crate::scene::{Circle, Gap, MeshSource, Normals, Scene};
 const ON_CIRCLE: f64 = 1e-6;
 /// The same for vertices that were put on an arc of the scene.
 const ON_ARC: f64 = 1e-9;
+/// Directions of contact of two edges that differ by less meet without a corner.
+const NO_CORNER: f64 = 1e-9;
+/// Part of the radius by which the circles of two edges may differ, and are one.
+const SAME_CIRCLE: f64 = 1e-5;
+/// An edge that is longer than another of its circle by this factor was not divided with it.
+const LONGER: f64 = 1.5;
 /// Part of the height of a triangle by which its side may be moved.
 const ROOM: f64 = 0.3;
 
@@ -38,6 +44,36 @@ pub(super) fn curved(problem: &Problem) -> Curved {
     found
 }
 
+/// The triangles at edges of a circle that are longer than others of it.
+pub(super) fn beside_long_edges(problem: &Problem) -> Vec<usize> {
+    let mesh = &problem.mesh;
+    let length = |e: usize| {
+        let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+        (b[0] - a[0]).hypot(b[1] - a[1])
+    };
+    let mut edges: Vec<(usize, Circle)> = curved(problem).into_iter().collect();
+    edges.sort_unstable_by_key(|(e, _)| *e);
+    let mut circles: Vec<(Circle, f64)> = Vec::new();
+    let same = |a: &Circle, b: &Circle| {
+        let apart = (a.centre[0] - b.centre[0]).hypot(a.centre[1] - b.centre[1]) + (a.radius - b.radius).abs();
+        apart <= SAME_CIRCLE * a.radius
+    };
+    for (e, circle) in &edges {
+        match circles.iter_mut().find(|(other, _)| same(other, circle)) {
+            Some((_, shortest)) => *shortest = shortest.min(length(*e)),
+            None => circles.push((*circle, length(*e))),
+        }
+    }
+    let is_long = |e: usize, circle: &Circle| {
+        circles.iter().any(|(other, shortest)| same(other, circle) && length(e) > LONGER * shortest)
+    };
+    let long = edges.iter().filter(|(e, circle)| is_long(*e, circle));
+    let mut triangles: Vec<usize> = long.flat_map(|(e, _)| mesh.edges[*e].triangles.into_iter().flatten()).collect();
+    triangles.sort_unstable();
+    triangles.dedup();
+    triangles
+}
+
 /// The circle of pair `k`: through the vertices of three pairs in a row, of which it is one.
 fn around(problem: &Problem, pairs: &[ContactPair], k: usize) -> Option<Circle> {
     if pairs[k].direction.is_constant() {
@@ -47,7 +83,8 @@ fn around(problem: &Problem, pairs: &[ContactPair], k: usize) -> Option<Circle> 
     (k.saturating_sub(2)..=k).find_map(|from| {
         let [a, b, c] = pairs.get(from..from + 3)? else { return None };
         let joined = a.first[1] == b.first[0] && b.first[1] == c.first[0];
-        let smooth = a.direction.ends[1] == b.direction.ends[0] && b.direction.ends[1] == c.direction.ends[0];
+        let apart = |[x, y]: [f64; 2], [u, v]: [f64; 2]| (x - u).hypot(y - v);
+        let smooth = [(a, b), (b, c)].iter().all(|(p, q)| apart(p.direction.ends[1], q.direction.ends[0]) < NO_CORNER);
         let circle = Circle::through(point(a.first[0]), point(b.first[0]), point(c.first[1]))?;
         (joined && smooth && circle.holds(point(b.first[1]), ON_CIRCLE)).then_some(circle)
     })

@@ -57,6 +57,8 @@ pub enum Refinement {
     /// New vertices lie on the curve: a finer mesh is another domain, with other admissible fields.
     #[default]
     FollowsCurves,
+    /// The same, and edges of one circle are divided together, so that what is symmetric stays it.
+    FollowsCurvesEvenly,
     /// Polygon and gap stay as they are: fields of the mesh are fields of every finer one.
     KeepsEdges,
 }

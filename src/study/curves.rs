@@ -1,10 +1,11 @@
 //! How much of an answer is the polygon, and how much the curve that it stands for.
 
 use super::Certified;
-use crate::problem::Note;
+use crate::problem::{ContactPair, Note, Problem, Refinement};
 use crate::report::HistoryRow;
 use crate::report::number::{percent, significant};
 use crate::scene::{Gap, Touching};
+use crate::statics::Statics;
 
 /// Part of the largest pressure from which an edge counts as closed.
 const CLOSED: f64 = 1e-6;
@@ -15,6 +16,27 @@ pub fn remarks(certified: &Certified, history: &[HistoryRow]) -> Vec<Note> {
     let mut texts = interpolated(certified);
     texts.extend(last_step(certified, history));
     texts.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect()
+}
+
+/// Divides edges of one circle together in all refinement to come where a body slides freely along a curved contact: vertices that
+/// move to the curve here and there would shift the centre of its weight, and nothing holds it against the moment.
+pub fn divide_evenly_what_slides(problem: &mut Problem, statics: &Statics) {
+    if problem.refinement != Refinement::FollowsCurves || statics.held.is_empty() || !problem.follows_curves() {
+        return;
+    }
+    let motions = statics.held_at_vertices(problem);
+    let slides = |pair: &ContactPair| {
+        let vertices = || pair.first.iter().chain(pair.second.iter().flatten());
+        !pair.direction.is_constant() && motions.iter().any(|motion| vertices().any(|&v| motion[v] != [0.0; 2]))
+    };
+    let Some(curve) = problem.interfaces.iter().find(|interface| interface.pairs.iter().any(slides)) else { return };
+    let text = format!(
+        "contact {}: a body slides freely along it. Refinement divides all edges of a circle together, since vertices moved \
+         to it here and there would shift the centre of the body's weight, and nothing would hold it",
+        curve.name
+    );
+    problem.refinement = Refinement::FollowsCurvesEvenly;
+    problem.notes.push(Note { weakens_guarantee: false, text });
 }
 
 /// The distance of a gap that is linear between vertices from its curve, l²/8R, relative to the largest gap that closes.
@@ -49,7 +71,8 @@ fn last_step(certified: &Certified, history: &[HistoryRow]) -> Option<String> {
     let problem = &certified.problem;
     let curves = problem.scene.contacts.iter().any(|c| matches!(c.gap, Gap::Circle(_) | Gap::Parabola(_)));
     let [.., before, last] = history else { return None };
-    if !(problem.contact_turns() || curves) {
+    let follows = problem.contact_turns() && problem.refinement != Refinement::KeepsEdges;
+    if !(follows || curves) {
         return None;
     }
     let middle = |row: &HistoryRow| 0.5 * (row.lower + row.upper);

@@ -1,6 +1,7 @@
 //! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
 
 use super::certified::{Certified, StudyError, balance, certify, solve_balanced};
+use super::curves::divide_evenly_what_slides;
 use super::trend::Way;
 use super::warm_start::{carried, closed_coefficients};
 use crate::dual::{DualMethod, Options, Size, contact_coefficients};
@@ -116,6 +117,7 @@ impl Stage {
     fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
         for round in 0..MOST_AT_ENDS {
             let statics = balance(&self.problem, &self.elements)?;
+            divide_evenly_what_slides(&mut self.problem, &statics);
             if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
                 return Ok((self, statics));
             }

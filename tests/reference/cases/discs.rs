@@ -34,3 +34,16 @@ fn pressed_through_its_centre_both_models_agree() {
     let force = [0, 1].map(|c| report.number(&format!("/contact/0/resultant/dual/{c}")));
     assert!(force[0].abs() < 1e-9 * weight && (force[1] - weight).abs() < 1e-9 * weight, "{force:?} for {weight}");
 }
+
+/// Vertices that refinement moves to the circle here and there would shift the centre of the weight, and turn the disc.
+#[test]
+fn refined_towards_a_tolerance_it_stays_at_rest() {
+    let (_folder, scene) = written(&disc(24, "force", "smooth"));
+    for adapt in ["h", "hp"] {
+        let run = Run::new("solve", &scene, &["--tolerance", "0.02", "--adapt", adapt, "--max-triangles", "4000"]);
+        assert_eq!(run.code, Some(0), "{adapt}: {}{}", run.stdout, run.stderr);
+        let report = run.report();
+        assert!(report.number("/energy/relative_error_bound") <= 0.02, "{adapt}");
+        assert!(report.notes().contains("slides freely along it"), "{}", report.notes());
+    }
+}
