@@ -76,12 +76,9 @@ pub struct SolveOptions {
     /// Polynomial degree of the stresses, 1 where it is missing; the one to begin with where --tolerance raises it, 3 where it is missing
     #[arg(long, value_name = "P", value_parser = value_parser!(u32).range(1..=MOST_DEGREE))]
     pub degree: Option<u32>,
-    /// A degree for each triangle in place of one for all; no option has it.
+    /// Elements in place of blocks of one degree: of a degree for each triangle, or the user's own; no option has them.
     #[arg(skip)]
-    pub degrees: Option<Vec<u8>>,
-    /// An element of the user's in place of the block; no option has it.
-    #[arg(skip)]
-    pub element: Option<Elements>,
+    pub elements: Option<Elements>,
     /// Refine the mesh uniformly N times before solving
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
     pub refine: u32,

@@ -158,11 +158,7 @@ impl Session {
     fn options(&self, solve: &SolveOptions) -> Options {
         let adaptive = solve.is_adaptive() && solve.adapt() == Adapt::Hp;
         let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
-        let elements = match (&solve.element, &solve.degrees) {
-            (Some(element), _) => element.clone(),
-            (None, Some(degrees)) => Elements::Blocks(degrees.as_slice().into()),
-            (None, None) => Elements::Uniform(block(degree as usize)),
-        };
+        let elements = solve.elements.clone().unwrap_or_else(|| Elements::Uniform(block(degree as usize)));
         let keep_factor = !self.scene.quantities.is_empty();
         Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }
     }
@@ -194,7 +190,9 @@ impl Session {
         }
         let mut problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
         let triangles = problem.mesh.triangles.len();
-        if let Some(degrees) = solve.degrees.as_ref().filter(|degrees| degrees.len() != triangles) {
+        if let Some(Elements::Blocks(degrees)) = &solve.elements
+            && degrees.len() != triangles
+        {
             let what = format!("{} degrees for {triangles} triangles", degrees.len());
             return Err(CliError::stopped(
                 Exit::BadInput,

@@ -66,8 +66,8 @@ fn known(id: &str) -> Result<&'static Regime, String> {
     stability::regime(id).ok_or_else(|| format!("there is no regime {id}; choose from {}", names.join(", ")))
 }
 
-/// Runs every method in every regime. Exit code 1 says that a method of this program, or a solver handed in, is wrong without saying so, crashed,
-/// or is not correct where it is promised to be.
+/// Runs every method in every regime. Exit code 1 says that a method of this program, or a solver handed in, is wrong without
+/// saying so or crashed, or that a method of this program is not correct where it is promised to be.
 ///
 /// # Errors
 /// No answer can be given.
@@ -105,7 +105,8 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     Ok(if complaints.is_empty() { Exit::Agree } else { Exit::Disagree })
 }
 
-/// One line for each step of the program's own methods, or of a solver handed in, that is wrong, crashed, or not correct where it is promised to be.
+/// One line for each step of the program's own methods, or of a solver handed in, that is wrong, crashed, or not correct where it is
+/// promised to be.
 fn complaints(matrix: &Matrix) -> Vec<String> {
     let line = |row: &stability::Row, cell: &stability::Cell, i: usize| {
         let (value, step) = (row.values.get(i)?, cell.steps.get(i)?);

@@ -140,27 +140,25 @@ impl Scene {
             .value("threads", Some(threads))
             .path("out", out.as_deref());
         let mut args: Args = line.parsed()?;
-        args.solve.degrees = degrees.map(|degrees| each_known(&degrees, &args)).transpose()?;
+        args.solve.elements = degrees.map(|degrees| each_known(&degrees, &args)).transpose()?;
         let Some(object) = element else { return self.solve_as(py, args) };
-        if args.solve.degree.is_some() || args.solve.degrees.is_some() || args.solve.is_adaptive() {
+        if args.solve.degree.is_some() || args.solve.elements.is_some() || args.solve.is_adaptive() {
             return Err(fault("an element has a degree, and a tolerance makes other meshes; give element, or these"));
         }
         let own = spanned(object)?;
         let refine = args.solve.refine as usize;
-        args.solve.element = Some(Elements::Uniform(own));
-        // A scene that cannot be used says so when it is solved.
-        let given = |py| aside(py, 1, || Problem::load((*self.of).clone())?.refine_uniform(refine));
-        if let Ok(problem) = given(py)? {
-            py.detach(|| balanced(own, &problem)).map_err(fault)?;
-        }
+        args.solve.elements = Some(Elements::Uniform(own));
         let solved = self.solve_as(py, args);
-        if let Some(reason) = own.fault() {
-            return Err(fault(reason));
-        }
-        let solution = solved?;
-        // Where pressure needs vertices of its own, other triangles were solved on.
-        py.detach(|| balanced(own, solution.problem())).map_err(fault)?;
-        Ok(solution)
+        let outcome = match &solved {
+            Ok(solution) => py.detach(|| balanced(own, solution.problem())),
+            // Stresses that do not balance are the reason of whatever else goes wrong with them.
+            Err(_) => match aside(py, 1, || Problem::load((*self.of).clone())?.refine_uniform(refine))? {
+                Ok(problem) => py.detach(|| balanced(own, &problem)),
+                Err(_) => Ok(()),
+            },
+        };
+        outcome.map_err(fault)?;
+        solved
     }
 
     /// Holds a displacement field, or values of quantities, against guaranteed bounds, as `hypercircle certify` does: the stress
@@ -249,7 +247,7 @@ impl Scene {
 }
 
 /// One degree for each triangle.
-fn each_known(degrees: &[i64], args: &Args) -> PyResult<Vec<u8>> {
+fn each_known(degrees: &[i64], args: &Args) -> PyResult<Elements> {
     if args.solve.degree.is_some() {
         return Err(fault("give degree or degrees, not both"));
     }
@@ -260,5 +258,5 @@ fn each_known(degrees: &[i64], args: &Args) -> PyResult<Vec<u8>> {
         Ok(p) if (1..=MAX_DEGREE).contains(&p.into()) => Ok(p),
         _ => Err(fault(format!("degrees: {p} is not in 1..={MAX_DEGREE}; use one of these"))),
     };
-    degrees.iter().map(known).collect()
+    Ok(Elements::Blocks(degrees.iter().map(known).collect::<PyResult<_>>()?))
 }

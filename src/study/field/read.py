@@ -44,8 +44,8 @@ def given(mesh):
     nodes, triangles = arrays.pop("nodes", None), arrays.pop("nodes_of_triangles", None)
     if "scene_sha256" not in arrays:
         return None
-    if nodes is None or triangles is None:
-        sys.exit("it shows fields and keeps none to be handed in again, as that of a scene of 10,000 triangles or more does")
+    if nodes is None or triangles is None or nodes.ndim != 2 or triangles.ndim != 2:
+        sys.exit("it shows fields and keeps no linear or quadratic displacement to be handed in again, or has 10,000 triangles or more")
     fields = {name: values for name, values in arrays.items() if name.startswith("displacement_")}
     return nodes, [meshio.CellBlock("triangle6", triangles)], fields, True
 
@@ -56,7 +56,6 @@ def read():
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(readable())
-        return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
     except ModuleNotFoundError as error:
         missing(error)
     except (Exception, SystemExit) as error:
@@ -73,6 +72,7 @@ def read():
             sys.exit("the results of CalculiX are none of its formats: have them written with OUTPUT=2D, and into VTU by ccx2paraview")
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
+    return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
 
 
 def rows(array):

@@ -74,6 +74,12 @@ fn fields_of_a_report_can_be_handed_in_again() {
         let verified = Run::new("verify", &case(scene), &[]);
         assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
         let fields = verified.folder.path().join("out/fields.vtu");
+        let shown = Run::new("solve", &case(scene), &[]).folder;
+        let shown = shown.path().join("out/fields.vtu");
+        let refused = Run::new("certify", &case(scene), &["--displacement", shown.to_str().expect("a plain path")]);
+        assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+        let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains("keeps no linear or quadratic displacement"), "{said}");
         for (model, name) in ["displacement_FEniCSx_P1", "displacement_FEniCSx_P2"].into_iter().enumerate() {
             let field = fields.to_str().expect("a plain path");
             let certified =
