@@ -15,7 +15,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::scene::{Extent, Target};
 use hypercircle::study::{answers, certify};
 use support::Blocks;
-use support::asked::quantity;
+use support::asked::{ask, quantity};
 
 const REPEATS: usize = 3;
 
@@ -26,7 +26,7 @@ fn main() {
     for n in sizes {
         let mut problem = Blocks { n, ..Blocks::default() }.problem();
         let of = Extent::Boundary("left_west".to_string());
-        problem.scene.quantities = vec![quantity("tip", Target::Displacement { of, direction: [1.0, 0.0] })];
+        ask(&mut problem, vec![quantity("tip", Target::Displacement { of, direction: [1.0, 0.0] })]);
         let options = Options { keep_factor: true, ..Options::default() };
         let certified = certify(problem, &Condensed::default(), &options).expect("an answer");
         let (mut bracket, mut interval, mut width) = (f64::INFINITY, f64::INFINITY, 0.0);

@@ -6,7 +6,7 @@ use std::path::Path;
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::plot::{Scale, Series, Sheet, draw};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{MeshSource, Scene};
+use hypercircle::scene::Scene;
 use hypercircle::study::{Goal, adapt, certify};
 
 const TOLERANCE: f64 = 5e-4;
@@ -16,12 +16,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut curves, mut series) = (Vec::new(), Vec::new());
     for (ink, poisson) in [0.3, 0.4999].into_iter().enumerate() {
-        let mut scene = Scene::read(&root.join("cases/two_blocks.toml"))?;
-        scene.bodies.iter_mut().for_each(|b| b.poisson = poisson);
-        if let MeshSource::Geometry { size, .. } = &mut scene.mesh {
-            *size = None;
-        }
-        let coarsest = Problem::load(scene)?;
+        let scene = Scene::read(&root.join("cases/two_blocks.toml"))?;
+        let scene = scene.changed(|draft| draft.bodies.iter_mut().for_each(|b| b.poisson = poisson))?;
+        let coarsest = Problem::load(scene.coarsest())?;
         let options = Options::default();
         let run = adapt(coarsest.clone(), &Condensed::default(), &options, &Goal::new(TOLERANCE), |_| ())?;
         let adaptive: Vec<[f64; 2]> =

@@ -8,7 +8,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, MAX_DEGREE, block};
 use hypercircle::plot::{Scale, Series, Sheet, draw};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{MeshSource, Scene};
+use hypercircle::scene::Scene;
 use hypercircle::study::{Adapt, Goal, adapt, certify};
 
 /// Where refinement of linear stresses ends, and where all others do.
@@ -16,14 +16,9 @@ const LINEAR: f64 = 5e-4;
 const TOLERANCE: f64 = 1e-5;
 
 fn blocks(poisson: f64, coarsest: bool) -> Result<Problem, Box<dyn Error>> {
-    let mut scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml"))?;
-    scene.bodies.iter_mut().for_each(|b| b.poisson = poisson);
-    if let MeshSource::Geometry { size, .. } = &mut scene.mesh
-        && coarsest
-    {
-        *size = None;
-    }
-    Ok(Problem::load(scene)?)
+    let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml"))?;
+    let scene = scene.changed(|draft| draft.bodies.iter_mut().for_each(|b| b.poisson = poisson))?;
+    Ok(Problem::load(if coarsest { scene.coarsest() } else { scene })?)
 }
 
 fn of_degree(degree: usize) -> Options {

@@ -16,7 +16,7 @@ use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Answer, StudyError, answers, certify_divided};
 use serde_json::json;
-use support::asked::{everything, of_degree};
+use support::asked::{ask, everything, of_degree};
 use support::random::Random;
 use support::scenes::sample;
 
@@ -100,7 +100,8 @@ fn both(seed: u64) -> Option<[Vec<Answer>; 2]> {
     if problem.contact_turns() || problem.mesh.triangles.len() > MOST_TRIANGLES {
         return None;
     }
-    problem.scene.quantities = everything(&problem, &mut Random::new(seed));
+    let quantities = everything(&problem, &mut Random::new(seed));
+    ask(&mut problem, quantities);
     let found = |problem: Problem, degree: usize| {
         let options = of_degree(degree);
         match certify_divided(problem, &Condensed::default(), &options) {

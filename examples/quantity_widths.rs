@@ -15,7 +15,7 @@ use hypercircle::scene::{Component, Extent, Gap, Kinematics, Region, Target};
 use hypercircle::study::{answers, certify_divided};
 use serde_json::{Value, json};
 use support::Blocks;
-use support::asked::{of_degree, quantity};
+use support::asked::{ask, of_degree, quantity};
 
 const COMMAND: &str = "cargo run --release --example quantity_widths";
 
@@ -34,12 +34,13 @@ fn asked(problem: &mut Problem) {
     let of = Extent::Boundary("left_west".to_string());
     let square = vec![[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]];
     let window = Some([0.125, 0.25, 0.375, 0.5]);
-    let (region, component) = (Region::Polygon(square), Component([1.0, 0.0, 0.0]));
-    problem.scene.quantities = vec![
+    let (region, component) = (Region::Polygon(square), Component::XX);
+    let quantities = vec![
         quantity("displacement", Target::Displacement { of, direction: [1.0, 0.0] }),
         quantity("force", Target::ContactForce { contact: 0, window }),
         quantity("stress", Target::Stress { body: 0, region, component }),
     ];
+    ask(problem, quantities);
 }
 
 /// By how much mistakes change what the two blocks are asked: an interval of less than half of that tells them.

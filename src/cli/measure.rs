@@ -12,7 +12,7 @@ use crate::measure::{Clock, Method, Settings, measure};
 use crate::primal::SolverCommand;
 use crate::problem::Problem;
 use crate::process::end_with_parent;
-use crate::scene::{MeshSource, Scene};
+use crate::scene::Scene;
 use crate::stability;
 
 /// Options of `measure`.
@@ -106,12 +106,11 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let results = match &args.what {
         What::Scene { scene, .. } => {
             let make = || {
-                let mut scene = Scene::read(scene).map_err(|e| e.to_string())?;
-                // As `solve --tolerance` does: refinement to a tolerance starts from the coarsest mesh.
-                if let (Some(_), MeshSource::Geometry { size, .. }) = (options.tolerance, &mut scene.mesh) {
-                    *size = None;
-                }
-                refined(Problem::load(scene).map_err(|e| e.to_string())?)
+                let scene = Scene::read(scene).map_err(|e| e.to_string())?;
+                let load = |scene| Problem::load(scene).map_err(|e| e.to_string());
+                // As `solve --tolerance` does.
+                let adaptive = options.tolerance.is_some();
+                refined(if adaptive { Problem::to_refine(&scene, load)? } else { load(scene)? })
             };
             measure(make, &options.method, &settings, clock)
         }

@@ -13,7 +13,7 @@ use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Petsc, Size, Uzawa};
 use crate::element::{Elements, block};
 use crate::mesh;
-use crate::problem::{Note, Problem};
+use crate::problem::Problem;
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
@@ -167,20 +167,19 @@ impl Session {
         let refused = |e: crate::problem::ProblemError| {
             CliError::stopped(Exit::BadInput, format!("{}: {e}", self.scene.path.display()), "")
         };
-        let mut scene = self.scene.clone();
-        let mut coarsened = None;
-        if let (true, MeshSource::Geometry { size, .. }) = (solve.is_adaptive(), &mut scene.mesh) {
-            coarsened = size.take();
-        }
-        if let Some(triangles) = mesh::expected_triangles(&scene) {
-            let size = Size { triangles, distinct: triangles, contact_ends: 0.0 };
-            let cause = match &scene.mesh {
-                MeshSource::Geometry { size: Some(size), .. } => format!("geometry.size = {size:?}"),
-                _ => "geometry.polygons".to_string(),
-            };
-            admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
-        }
-        let problem = Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)?;
+        let load = |scene: Scene| {
+            if let Some(triangles) = mesh::expected_triangles(&scene) {
+                let size = Size { triangles, distinct: triangles, contact_ends: 0.0 };
+                let cause = match &scene.mesh {
+                    MeshSource::Geometry { size: Some(size), .. } => format!("geometry.size = {size:?}"),
+                    _ => "geometry.polygons".to_string(),
+                };
+                admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
+            }
+            Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)
+        };
+        let problem =
+            if solve.is_adaptive() { Problem::to_refine(&self.scene, load) } else { load(self.scene.clone()) }?;
         study::refuse_quantities(&problem)
             .map_err(|why| CliError::stopped(Exit::BadInput, format!("{}: {why}", self.scene.path.display()), ""))?;
         if solve.refine > 0 {
@@ -188,7 +187,7 @@ impl Session {
             let cause = format!("--refine {}", solve.refine);
             admission.admit(size, None).map_err(|excess| too_fine(&self.scene, &cause, size.triangles, excess))?;
         }
-        let mut problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
+        let problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
         let triangles = problem.mesh.triangles.len();
         if let Some(Elements::Blocks(degrees)) = &solve.elements
             && degrees.len() != triangles
@@ -200,13 +199,6 @@ impl Session {
                 "give one degree for each triangle of the mesh that is solved on",
             ));
         }
-        problem.notes.extend(coarsened.map(|size| Note {
-            weakens_guarantee: false,
-            text: format!(
-                "geometry.size = {size} was not used: refinement to a tolerance starts from the coarsest mesh that \
-                 represents the scene."
-            ),
-        }));
         Ok(problem)
     }
 

@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::element::Elements;
     use crate::mesh::{RawMesh, Triangulation};
-    use crate::scene::{Body, Kinematics, MeshSource, Scene};
+    use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
     #[test]
     fn every_block_is_ordered_once_and_a_strip_is_cut_across() {
@@ -184,20 +184,9 @@ mod tests {
             let (a, b, c, d) = (2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
             raw.triangles.extend([[a, b, c], [a, c, d]].map(|t| (t, "strip".to_string())));
         }
-        let scene = Scene {
-            name: "strip".to_string(),
-            title: String::new(),
-            path: "strip.toml".into(),
-            origin: [0.0; 2],
-            kinematics: Kinematics::PlaneStrain,
-            thickness: 1.0,
-            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
-            bodies: vec![Body { name: "strip".to_string(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] }],
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            contacts: Vec::new(),
-            quantities: Vec::new(),
-        };
+        let source = MeshSource::Geometry { size: None, polygons: Vec::new() };
+        let bodies = vec![Body { name: "strip".to_string(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] }];
+        let scene = Scene::unchecked(Draft { bodies, ..Draft::new("strip", Kinematics::PlaneStrain, source) });
         let (mesh, notes) = Triangulation::new(raw, &scene).expect("a strip");
         let problem = Problem::new(scene, mesh, notes).expect("a problem");
         let unknowns = Unknowns::new(&problem, &Elements::Uniform(&crate::element::Block));

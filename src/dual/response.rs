@@ -113,7 +113,7 @@ impl Responses<'_> {
             (Cow::Borrowed(self.problem), system.modes.clone())
         } else {
             let mut other = self.problem.clone();
-            other.scene.bodies.iter_mut().zip(&load.force).for_each(|(body, force)| body.body_force = *force);
+            other.scene.draft.bodies.iter_mut().zip(&load.force).for_each(|(body, force)| body.body_force = *force);
             let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
             (Cow::Owned(other), modes)
         };

@@ -145,7 +145,7 @@ pub fn names(scenes: &[PathBuf]) -> Vec<String> {
 /// The scene file, the mesh that it names and `others`, in one number. What cannot be read counts as empty: the run will
 /// say so.
 pub fn content(scene: &Path, others: &[PathBuf]) -> String {
-    let mesh = match Scene::read(scene).map(|scene| scene.mesh) {
+    let mesh = match Scene::read(scene).map(|scene| scene.mesh.clone()) {
         Ok(MeshSource::File(path)) => Some(path),
         _ => None,
     };

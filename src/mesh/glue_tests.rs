@@ -97,7 +97,7 @@ fn break_points_of_the_gap_become_vertices() {
     assert!(problem.notes.iter().all(|n| !n.weakens_guarantee));
 
     let mut rigid = scene(&["a"]);
-    rigid.contacts.push(Contact::new(ContactSides::Rigid("a_right".into()), gap));
+    rigid.draft.contacts.push(Contact::new(ContactSides::Rigid("a_right".into()), gap));
     let (mesh, _) = Triangulation::new(grid("a", [0.0; 2], [1.0; 2], [2, 2]), &rigid).expect("a good mesh");
     let (mesh, _) = glue(mesh, &rigid).expect("nothing to match");
     assert_consistent(&mesh);

@@ -4,46 +4,36 @@ use std::collections::HashMap;
 
 use super::{RawMesh, Triangulation};
 use crate::scene::{
-    Body, Contact, ContactSides, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind, Traction,
+    Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind,
+    Traction,
 };
 
 /// A scene with the named bodies, without conditions, whose mesh is meant to come from a file.
 pub(crate) fn scene(bodies: &[&str]) -> Scene {
     let body = |name: &&str| Body { name: name.to_string(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
-    Scene {
-        name: "test".into(),
-        title: "test".into(),
-        path: "test.toml".into(),
-        origin: [0.0; 2],
-        kinematics: Kinematics::PlaneStrain,
-        thickness: 1.0,
-        mesh: MeshSource::File("test.msh".into()),
-        bodies: bodies.iter().map(body).collect(),
-        supports: Vec::new(),
-        tractions: Vec::new(),
-        contacts: Vec::new(),
-        quantities: Vec::new(),
-    }
+    let mesh = MeshSource::File("test.msh".into());
+    let bodies = bodies.iter().map(body).collect();
+    Scene::unchecked(Draft { bodies, ..Draft::new("test", Kinematics::PlaneStrain, mesh) })
 }
 
 pub(crate) fn clamp(mut scene: Scene, on: &str) -> Scene {
-    scene.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });
+    scene.draft.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });
     scene
 }
 
 pub(crate) fn load(mut scene: Scene, on: &str, load: Load) -> Scene {
-    scene.tractions.push(Traction { on: on.into(), load });
+    scene.draft.tractions.push(Traction { on: on.into(), load });
     scene
 }
 
 pub(crate) fn contact(mut scene: Scene, first: &str, second: &str, gap: Gap) -> Scene {
     let sides = ContactSides::Between([first.into(), second.into()]);
-    scene.contacts.push(Contact::new(sides, gap));
+    scene.draft.contacts.push(Contact::new(sides, gap));
     scene
 }
 
 pub(crate) fn geometry(mut scene: Scene, size: Option<f64>, polygons: Vec<Polygon>) -> Scene {
-    scene.mesh = MeshSource::Geometry { size, polygons };
+    scene.draft.mesh = MeshSource::Geometry { size, polygons };
     scene
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
-use crate::scene::{Body, Kinematics, MeshSource, Scene};
+use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// The unit square, pressure 2 on its left, a rigid wall on its right, rollers below; E = 1, ν = 0, thickness ½.
 ///
@@ -36,20 +36,11 @@ pub(crate) fn pressed_square() -> Problem {
         gap: [0.0, 0.0],
     };
     Problem {
-        scene: Scene {
-            name: "square".to_owned(),
-            title: "square".to_owned(),
-            path: PathBuf::from("square.toml"),
-            origin: [0.0; 2],
-            kinematics: Kinematics::PlaneStress,
+        scene: Scene::unchecked(Draft {
             thickness: 0.5,
-            mesh: MeshSource::File(PathBuf::from("square.msh")),
             bodies: vec![Body { name: "square".to_owned(), young: 1.0, poisson: 0.0, body_force: [0.0, 0.0] }],
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            contacts: Vec::new(),
-            quantities: Vec::new(),
-        },
+            ..Draft::new("square", Kinematics::PlaneStress, MeshSource::File(PathBuf::from("square.msh")))
+        }),
         mesh,
         conditions: vec![
             Condition::Roller,

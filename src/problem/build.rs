@@ -4,14 +4,14 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use super::contact::{gap_note, pair_up};
-use super::curves::{beside_long_edges, curved};
+use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::{Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
 use crate::mesh::{self, Curved, Triangulation};
-use crate::scene::{Load, Normals, Scene, SupportKind};
+use crate::scene::{Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
@@ -42,6 +42,32 @@ impl Problem {
         Problem::new(scene, mesh, notes)
     }
 
+    /// The problem to refine to a tolerance, by a `load` that the caller has: on the coarsest mesh that represents `scene`,
+    /// whose `geometry.size` is not used then; with that size where the direction of a contact comes from the normals of the
+    /// mesh, which on a coarser one would be another field, and with it another problem. A note says which.
+    ///
+    /// # Errors
+    /// Those of `load`.
+    pub fn to_refine<E>(scene: &Scene, load: impl Fn(Scene) -> Result<Problem, E>) -> Result<Problem, E> {
+        let mut problem = load(scene.coarsest())?;
+        let MeshSource::Geometry { size: Some(size), .. } = scene.mesh else { return Ok(problem) };
+        let text = if let Some(contact) = turned_by_the_mesh(&problem) {
+            let contact = problem.scene.contacts[contact].name();
+            problem = load(scene.clone())?;
+            format!(
+                "geometry.size = {size} was kept: contact {contact} turns where no arc is given, and on a coarser mesh its \
+                 direction would be another."
+            )
+        } else {
+            format!(
+                "geometry.size = {size} was not used: refinement to a tolerance starts from the coarsest mesh that \
+                 represents the scene."
+            )
+        };
+        problem.notes.push(Note { weakens_guarantee: false, text });
+        Ok(problem)
+    }
+
     /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was
     /// made; remarks about the data are added to it.
     ///
@@ -58,7 +84,7 @@ impl Problem {
         mut notes: Vec<Note>,
         coarser: Option<&Coarser>,
     ) -> Result<Problem, ProblemError> {
-        let roles = roles(&scene)?;
+        let roles = roles(&scene);
         let mut conditions: Vec<Condition> = (0..mesh.edges.len())
             .map(|e| {
                 let edge = &mesh.edges[e];
@@ -196,22 +222,12 @@ impl Problem {
 }
 
 /// The role of every boundary that the scene mentions.
-fn roles(scene: &Scene) -> Result<HashMap<&str, Role>, ProblemError> {
-    let mut all: Vec<(&str, Role)> = Vec::new();
-    all.extend(scene.supports.iter().map(|s| (s.on.as_str(), Role::Support(s.kind))));
-    all.extend(scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t.load))));
-    all.extend(contact_names(scene).into_iter().map(|name| (name, Role::Contact)));
-    let mut roles = HashMap::new();
-    for (name, role) in all {
-        if roles.insert(name, role).is_some() {
-            return Err(ProblemError::Condition {
-                name: name.to_string(),
-                what: "has two conditions".into(),
-                remedy: "give every boundary one of support, traction and contact side".into(),
-            });
-        }
-    }
-    Ok(roles)
+fn roles(scene: &Scene) -> HashMap<&str, Role> {
+    let supports = scene.supports.iter().map(|s| (s.on.as_str(), Role::Support(s.kind)));
+    let loads = scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t.load)));
+    let contacts = contact_names(scene).into_iter().map(|name| (name, Role::Contact));
+    // A boundary of a valid scene has one condition.
+    supports.chain(loads).chain(contacts).collect()
 }
 
 /// P at the two ends of edge `e`.

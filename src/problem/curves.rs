@@ -44,6 +44,17 @@ pub(super) fn curved(problem: &Problem) -> Curved {
     found
 }
 
+/// The first contact whose direction turns along an edge that stands for no circle: from the normals of the mesh that was
+/// made, and another field on a finer one.
+pub(super) fn turned_by_the_mesh(problem: &Problem) -> Option<usize> {
+    let on_circles = curved(problem);
+    problem.interfaces.iter().position(|interface| {
+        let turns = |pair: &&ContactPair| !pair.direction.is_constant();
+        let follows = |pair: &ContactPair| pair.edges.iter().flatten().all(|e| on_circles.contains_key(e));
+        interface.pairs.iter().filter(turns).any(|pair| !follows(pair))
+    })
+}
+
 /// The triangles at edges of a circle that are longer than others of it.
 pub(super) fn beside_long_edges(problem: &Problem) -> Vec<usize> {
     let mesh = &problem.mesh;

@@ -18,14 +18,4 @@ pub enum ProblemError {
         /// What to do.
         remedy: String,
     },
-    /// Two conditions of the scene meet on one edge.
-    #[error("boundary '{name}': {what}; {remedy}")]
-    Condition {
-        /// Name of the boundary.
-        name: String,
-        /// What was found.
-        what: String,
-        /// What to do.
-        remedy: String,
-    },
 }

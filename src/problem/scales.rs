@@ -243,9 +243,9 @@ mod tests {
     #[test]
     fn loads_have_sizes_of_their_own() {
         let mut scene = load(squares(0.0), "a_left", Load::Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] });
-        scene.thickness = 0.5;
-        scene.bodies[1].body_force = [0.0, -2.0];
-        scene.bodies[1].young = 10.0;
+        scene.draft.thickness = 0.5;
+        scene.draft.bodies[1].body_force = [0.0, -2.0];
+        scene.draft.bodies[1].young = 10.0;
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);
         assert!((found.data.displacement - 7.0).abs() < 1e-14 && (found.data.energy - 24.5).abs() < 1e-13);
@@ -265,8 +265,8 @@ mod tests {
     fn units_of_length_and_stress_scale_the_sizes() {
         let made = |length: f64, stress: f64| {
             let mut scene = load(squares(0.0), "a_left", Load::Pressure(2.0 * stress));
-            scene.supports[0].kind = SupportKind::Clamped { displacement: [0.01 * length, 0.0] };
-            scene.bodies.iter_mut().for_each(|body| body.young *= stress);
+            scene.draft.supports[0].kind = SupportKind::Clamped { displacement: [0.01 * length, 0.0] };
+            scene.draft.bodies.iter_mut().for_each(|body| body.young *= stress);
             let mut problem = Problem::load(scene).expect("a good scene");
             problem.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
             Scales::new(&problem)

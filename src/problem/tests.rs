@@ -15,7 +15,7 @@ fn two_blocks(gap: Gap, n: usize) -> Scene {
         Load::Affine { value: [4.0, 0.0], gradient: [[0.0, -7.0], [0.5, 0.0]] },
     );
     let mut scene = load(scene, "a_top", Load::Pressure(2.0));
-    scene.supports.push(Support { on: "a_bottom".into(), kind: SupportKind::Roller });
+    scene.draft.supports.push(Support { on: "a_bottom".into(), kind: SupportKind::Roller });
     contact(scene, "a_right", "b_left", gap)
 }
 
@@ -97,7 +97,7 @@ fn arc_length_goes_on_over_the_pieces_of_a_side() {
     let mut scene = scene(&["a"]);
     let mut raw = both(grid("a", [2.0, 0.0], [3.0, 1.0], [2, 1]), grid("a", [0.0, 0.0], [1.0, 1.0], [4, 1]));
     raw.segments.retain(|s| s.1 == "a_bottom");
-    scene.contacts.push(Contact::new(
+    scene.draft.contacts.push(Contact::new(
         ContactSides::Rigid("a_bottom".into()),
         Gap::Table(vec![[0.0, 0.0], [1.25, 0.5], [2.0, 0.5]]),
     ));

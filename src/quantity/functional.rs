@@ -99,7 +99,7 @@ impl Functional {
         match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
             Target::Displacement { of: Extent::Body(body), direction } => on_body(problem, *body, *direction),
-            Target::Stress { body, region, component } => mean_stress(problem, *body, region, component.0),
+            Target::Stress { body, region, component } => mean_stress(problem, *body, region, component.factors()),
             Target::ContactForce { contact, window } => {
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
                 // Pressure is positive.

@@ -1,7 +1,6 @@
 //! Made-up dossiers for the tests of the outputs: two unit squares in contact, fields from formulas.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 pub(crate) use super::Status as Verdict;
 use super::sample_numbers::report;
@@ -222,20 +221,12 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
 
 fn scene() -> Scene {
     let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0, 0.0] };
-    Scene {
-        name: "two_blocks".into(),
+    let mesh = MeshSource::Geometry { size: None, polygons: Vec::new() };
+    Scene::unchecked(Draft {
         title: "Two blocks <a&b>, \"eccentric\" traction".into(),
-        path: PathBuf::from("two_blocks.toml"),
-        origin: [0.0; 2],
-        kinematics: Kinematics::PlaneStrain,
-        thickness: 1.0,
-        mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
         bodies: vec![body("left <a&b>"), body("right")],
-        supports: Vec::new(),
-        tractions: Vec::new(),
-        contacts: Vec::new(),
-        quantities: Vec::new(),
-    }
+        ..Draft::new("two_blocks", Kinematics::PlaneStrain, mesh)
+    })
 }
 
 /// p(y) = max(0, 2 − 4y): closed below, open above the middle, resultant ½.

@@ -29,7 +29,7 @@ impl Scene {
         if middle == [0.0; 2] {
             return (self, middle);
         }
-        if let MeshSource::Geometry { polygons, .. } = &mut self.mesh {
+        if let MeshSource::Geometry { polygons, .. } = &mut self.draft.mesh {
             for polygon in polygons {
                 let through = polygon.arcs.iter_mut().map(|arc| &mut arc.through);
                 for p in polygon.points.iter_mut().chain(through) {
@@ -37,13 +37,13 @@ impl Scene {
                 }
             }
         }
-        for traction in &mut self.tractions {
+        for traction in &mut self.draft.tractions {
             if let Load::Affine { value, gradient } = &mut traction.load {
                 *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
             }
         }
-        self.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
-        self.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
+        self.draft.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
+        self.draft.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
         (self, middle)
     }
 

@@ -8,6 +8,7 @@
 mod centre;
 mod circle;
 mod conditions;
+mod draft;
 pub mod error;
 mod fault;
 mod geometry;
@@ -23,6 +24,7 @@ mod validate;
 use std::path::PathBuf;
 
 pub use circle::Circle;
+pub use draft::Draft;
 pub use error::{Fault, SceneError};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
@@ -32,34 +34,10 @@ pub(crate) use validate::scene_name;
 /// Most bytes a scene file may have; a device that never ends is not read for ever.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// A valid scene.
+/// A valid scene: a [`Draft`] that was checked, whose fields are read as if they were its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// File stem of the scene file; names the output folder.
-    pub name: String,
-    /// `title`, or the name where none was given.
-    pub title: String,
-    /// The scene file; mesh paths are relative to its folder.
-    pub path: PathBuf,
-    /// The point in the coordinates of the file from which coordinates and load gradients count; [0, 0] unless the scene
-    /// lies far away (see [`Scene::as_written`]).
-    pub origin: [f64; 2],
-    /// Plane strain or plane stress.
-    pub kinematics: Kinematics,
-    /// Thickness t > 0 of the plate; multiplies energies and resultants.
-    pub thickness: f64,
-    /// Where the triangles come from.
-    pub mesh: MeshSource,
-    /// Bodies in the order of the file.
-    pub bodies: Vec<Body>,
-    /// Γ_u and Γ_0.
-    pub supports: Vec<Support>,
-    /// Γ_τ.
-    pub tractions: Vec<Traction>,
-    /// Γ_K.
-    pub contacts: Vec<Contact>,
-    /// What the scene is solved for, in the order of the file.
-    pub quantities: Vec<Quantity>,
+    pub(crate) draft: Draft,
 }
 
 /// The plane state, which fixes the compliance constants α, β, γ after (3.2).

@@ -7,7 +7,7 @@ use super::conditions::{Conditions, conditions};
 use super::error::{Fault, SceneError};
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
-use super::{Body, Kinematics, MeshSource, Scene, geometry};
+use super::{Body, Draft, Kinematics, MeshSource, Scene, geometry};
 
 /// The text under examination; makes errors that point into it.
 pub(super) struct Source<'a> {
@@ -144,7 +144,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let Conditions { supports, tractions, contacts } = conditions;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
-    Ok(Scene {
+    Ok(Scene::unchecked(Draft {
         name,
         title,
         path,
@@ -157,7 +157,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         tractions,
         contacts,
         quantities,
-    })
+    }))
 }
 
 /// The stem of the file, where it can be the name of a folder: `...toml` has the stem `..`.

@@ -1,18 +1,17 @@
 //! Rectangular bodies on grids, put together in memory.
 
-use std::path::PathBuf;
-
 use crate::mesh::{RawMesh, Triangulation, glue};
 use crate::problem::Problem;
 use crate::scene::{
-    Body, Contact, ContactSides, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind, Traction,
+    Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind,
+    Traction,
 };
 
 /// A scene with its mesh, before it is checked.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// Bodies and conditions.
-    pub scene: Scene,
+    pub scene: Draft,
     /// Triangles and named segments.
     pub raw: RawMesh,
 }
@@ -20,20 +19,8 @@ pub struct Model {
 impl Model {
     /// Nothing yet, in plane strain.
     pub fn new() -> Self {
-        let scene = Scene {
-            name: "regime".to_string(),
-            title: "regime".to_string(),
-            path: PathBuf::from("regime.toml"),
-            origin: [0.0; 2],
-            kinematics: Kinematics::PlaneStrain,
-            thickness: 1.0,
-            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
-            bodies: Vec::new(),
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            contacts: Vec::new(),
-            quantities: Vec::new(),
-        };
+        let mesh = MeshSource::File("regime.msh".into());
+        let scene = Draft::new("regime", Kinematics::PlaneStrain, mesh);
         Model { scene, raw: RawMesh::default() }
     }
 
@@ -173,10 +160,12 @@ impl Model {
     /// # Errors
     /// What is wrong with scene or mesh, in words.
     pub fn problem(self) -> Result<Problem, String> {
-        let (mesh, mut notes) = Triangulation::new(self.raw, &self.scene).map_err(|e| e.to_string())?;
-        let (mesh, more) = glue::glue(mesh, &self.scene).map_err(|e| e.to_string())?;
+        // Its triangles are no file's and no polygons'.
+        let scene = Scene::unchecked(self.scene);
+        let (mesh, mut notes) = Triangulation::new(self.raw, &scene).map_err(|e| e.to_string())?;
+        let (mesh, more) = glue::glue(mesh, &scene).map_err(|e| e.to_string())?;
         notes.extend(more);
-        Problem::new(self.scene, mesh, notes).map_err(|e| e.to_string())
+        Problem::new(scene, mesh, notes).map_err(|e| e.to_string())
     }
 
     /// Meshes polygons instead of the grids, with edges of length `size`.
@@ -185,7 +174,7 @@ impl Model {
     /// As [`Model::problem`].
     pub fn polygons(mut self, polygons: Vec<Polygon>, size: f64) -> Result<Problem, String> {
         self.scene.mesh = MeshSource::Geometry { size: Some(size), polygons };
-        Problem::load(self.scene).map_err(|e| e.to_string())
+        Problem::load(Scene::new(self.scene).map_err(|e| e.to_string())?).map_err(|e| e.to_string())
     }
 
     /// A body without triangles of its own, for [`Model::polygons`].

@@ -9,6 +9,7 @@ use hypercircle::dual::{self, Condensed, Options};
 use hypercircle::element::PlainDisplacement;
 use hypercircle::mesh::Edge;
 use hypercircle::problem::Problem;
+use hypercircle::scene::Draft;
 
 fn problem(n: usize) -> Problem {
     Blocks { n, materials: [(1.0, 0.0); 2], load: (1.0, 0.0), ..Blocks::default() }.problem()
@@ -181,12 +182,13 @@ fn solutions_of_other_data_are_out_of_balance_by_the_size_of_the_change() {
         };
         assert!(remainder(&checks(&problem, candidate())) < 1e-13);
         for change in [1e-2, 1e-4] {
-            let mut heavier = problem.clone();
-            heavier.scene.bodies[0].body_force = [0.0, change];
-            let mut stiffer = problem.clone();
-            stiffer.scene.bodies[0].young *= 1.0 + change;
-            let mut thicker = problem.clone();
-            thicker.scene.thickness *= 1.0 + change;
+            let with = |changed: &dyn Fn(&mut Draft)| Problem {
+                scene: problem.scene.changed(changed).expect("a valid scene"),
+                ..problem.clone()
+            };
+            let heavier = with(&|draft| draft.bodies[0].body_force = [0.0, change]);
+            let stiffer = with(&|draft| draft.bodies[0].young *= 1.0 + change);
+            let thicker = with(&|draft| draft.thickness *= 1.0 + change);
             for other in [heavier, stiffer] {
                 let left = remainder(&checks(&other, candidate()));
                 assert!(left > 0.03 * change && left < 3.0 * change, "{left} for {change}");

@@ -3,7 +3,7 @@
 //! Random scenes by seed; set `HYPERCIRCLE_SCENES` for another number than a dozen.
 
 use crate::support::Blocks;
-use crate::support::asked::{everything, of_degree, quantity};
+use crate::support::asked::{ask, everything, of_degree, quantity};
 use crate::support::random::Random;
 use crate::support::scenes::sample;
 use hypercircle::dual::{Condensed, Options};
@@ -27,8 +27,8 @@ fn square(low: f64, high: f64) -> Region {
 fn asked(problem: &mut Problem) -> [f64; 3] {
     let displacement = Target::Displacement { of: Extent::Boundary("left_west".into()), direction: [1.0, 0.0] };
     let window = Some([0.125, 0.25, 0.375, 0.5]);
-    let stress = Target::Stress { body: 0, region: square(0.25, 0.75), component: Component([1.0, 0.0, 0.0]) };
-    problem.scene.quantities = vec![
+    let stress = Target::Stress { body: 0, region: square(0.25, 0.75), component: Component::XX };
+    let quantities = vec![
         quantity("tip", displacement),
         quantity("seat", Target::ContactForce { contact: 0, window }),
         quantity("core", stress),
@@ -36,6 +36,7 @@ fn asked(problem: &mut Problem) -> [f64; 3] {
         quantity("wall", Target::SupportForce { support: 0, direction: [1.0, 0.0] }),
         quantity("turn", Target::Moment { of: Holder::Support(0), about: [2.0, 0.5] }),
     ];
+    ask(problem, quantities);
     [0.801499, 0.233537, -0.566502]
 }
 
@@ -183,7 +184,8 @@ fn intervals_of_coarse_and_fine_meshes_never_contradict_each_other() {
             continue;
         }
         let mut random = Random::new(seed);
-        problem.scene.quantities = everything(&problem, &mut random);
+        let quantities = everything(&problem, &mut random);
+        ask(&mut problem, quantities);
         let options = of_degree(1 + (seed % 3) as usize);
         let coarse = match certify_divided(problem.clone(), &Condensed::default(), &options) {
             Ok(coarse) => coarse,
@@ -230,7 +232,7 @@ fn intervals_of_two_degrees_never_contradict_each_other_at_the_extremes() {
                 continue;
             }
             let of = Extent::Body(0);
-            problem.scene.quantities = vec![quantity("body", Target::Displacement { of, direction: [0.6, -0.8] })];
+            ask(&mut problem, vec![quantity("body", Target::Displacement { of, direction: [0.6, -0.8] })]);
             let interval = |degree: usize| {
                 let options = of_degree(degree);
                 let certified = certify_divided(problem.clone(), &Condensed::default(), &options).ok()?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use hypercircle::problem::{Condition, Problem};
 use hypercircle::scene::{
-    Body, Contact, ContactSides, Gap, Kinematics, Load, MeshSource, Scene, Support, SupportKind, Traction,
+    Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Scene, Support, SupportKind, Traction,
 };
 
 fn meshes() -> PathBuf {
@@ -14,14 +14,7 @@ fn meshes() -> PathBuf {
 /// Two blocks in contact, pressed against a wall; the boundaries by their names.
 fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4]) -> Scene {
     let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
-    Scene {
-        name: "blocks".into(),
-        title: "blocks".into(),
-        path: "blocks.toml".into(),
-        origin: [0.0; 2],
-        kinematics: Kinematics::PlaneStrain,
-        thickness: 1.0,
-        mesh: MeshSource::File(mesh),
+    let draft = Draft {
         bodies: bodies.map(body).into(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }],
         tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
@@ -29,8 +22,9 @@ fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4
             ContactSides::Between([first.into(), second.into()]),
             Gap::Table(vec![[0.0, 0.0], [0.25, 0.0], [1.0, 0.1]]),
         )],
-        quantities: Vec::new(),
-    }
+        ..Draft::new("blocks", Kinematics::PlaneStrain, MeshSource::File(mesh))
+    };
+    Scene::new(draft).expect("a valid scene")
 }
 
 const NAMES: [&str; 4] = ["left_face", "right face", "load", "wall"];
@@ -75,8 +69,8 @@ fn gmsh_files_become_problems() {
 fn a_shared_curve_in_two_groups_is_a_contact() {
     for version in ["22", "22_binary", "41", "41_binary", "quadratic_41"] {
         let file = meshes().join(format!("shared_curve_{version}.msh"));
-        let mut scene = scene(file, ["left", "right"], ["face", "opposite", "wall", "wall"]);
-        scene.tractions.clear();
+        let scene = scene(file, ["left", "right"], ["face", "opposite", "load", "wall"]);
+        let scene = scene.changed(|draft| draft.tractions.clear()).expect("a valid scene");
         let problem = Problem::load(scene).expect("a good file");
         assert_eq!(problem.interfaces[0].pairs.len(), 3);
         assert!((length(&problem, |c| matches!(c, Condition::Contact { .. })) - 2.0).abs() < 1e-9);
@@ -137,12 +131,9 @@ fn scenes_that_do_not_fit_their_mesh() {
         &["contact 'left_face|77'", "the vertex (1, 0) of 'left_face'", "coinciding polylines"],
     );
     refuse(scene(file(), ["left", "rigth"], NAMES), &["'right'", "no body of the scene", "did you mean 'rigth'?"]);
-    let mut twice = names("left_face", "right face", "load", "wall");
-    twice.supports[0].on = "load".into();
-    refuse(twice, &["'load'", "two conditions", "one of support, traction"]);
     let shared = meshes().join("shared_curve_41.msh");
     refuse(
-        scene(shared, ["left", "right"], ["face", "wall", "opposite", "wall"]),
+        scene(shared, ["left", "right"], ["face", "wall", "opposite", "far wall"]),
         &["'face'", "share the edge (1, 0)", "physical curves 'face' and 'wall'"],
     );
 }

@@ -8,13 +8,15 @@ use example::{PLAIN, solution};
 use hypercircle::bounds::{Bracket, complementary};
 use hypercircle::element::block;
 use hypercircle::problem::Problem;
+use hypercircle::scene::Draft;
 
 /// Lift-off between blocks of two materials, on triangles of every shape, with and without weight.
 fn problems() -> Vec<Problem> {
     let bent = |[x, y]: [f64; 2]| [x, y + 0.1 * (3.0 * x).sin() * y * (1.0 - y)];
     let heavy = || {
         let mut problem = blocks([(1.0, 0.3), (3.0, 0.1)], [3, 4], tilting).map(bent).build();
-        problem.scene.bodies[0].body_force = [0.2, -0.4];
+        let weight = |draft: &mut Draft| draft.bodies[0].body_force = [0.2, -0.4];
+        problem.scene = problem.scene.changed(weight).expect("a valid scene");
         problem
     };
     vec![heavy(), blocks([(1.0, 0.4999), (0.5, 0.4)], [4, 3], tilting).map(bent).build()]

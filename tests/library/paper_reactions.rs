@@ -3,8 +3,6 @@
 //! Ω″ is the left block (the upper one in Example 3). All resultants of loads are worked out from the geometry here;
 //! all resultants of λ_h are integrated over its stresses.
 
-use std::path::PathBuf;
-
 use crate::support::theory::contact::free_motions;
 use crate::support::theory::meshes::{Family, blocks};
 use crate::support::theory::quadrature::gauss;
@@ -20,14 +18,7 @@ type Affine = ([f64; 2], [[f64; 2]; 2]);
 
 fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]) -> Scene {
     let body = |name: &str, young, poisson, body_force| Body { name: name.to_string(), young, poisson, body_force };
-    Scene {
-        name: "reactions".to_string(),
-        title: "Reactions".to_string(),
-        path: PathBuf::from("reactions.toml"),
-        origin: [0.0; 2],
-        kinematics: Kinematics::PlaneStress,
-        thickness: 1.0,
-        mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
+    let draft = Draft {
         bodies: vec![body("left", 1.0, 0.3, forces[0]), body("right", 5.0, 0.1, forces[1])],
         supports,
         tractions: loads
@@ -41,8 +32,9 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]
             ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
             Gap::Constant(0.0),
         )],
-        quantities: Vec::new(),
-    }
+        ..Draft::new("reactions", Kinematics::PlaneStress, MeshSource::File("made".into()))
+    };
+    Scene::new(draft).expect("a valid scene")
 }
 
 fn solve(scene: Scene, shape: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> (Problem, StressField) {

@@ -28,7 +28,7 @@ fn blocks(quantities: &str) -> String {
 fn quantities_are_what_the_file_says() {
     let scene = Scene::read(&root("tests/malformed/valid/quantities.toml")).expect("a scene");
     let edge = |name: &str, direction| Target::Displacement { of: Extent::Boundary(name.into()), direction };
-    let along = |d: [f64; 2]| Component([d[0] * d[0], d[1] * d[1], 2.0 * d[0] * d[1]]);
+    let along = Component::along;
     let region = |points: &[[f64; 2]]| Region::Polygon(points.to_vec());
     let expected = [
         ("tip", edge("left_load", [1.0, 0.0])),
@@ -40,13 +40,13 @@ fn quantities_are_what_the_file_says() {
         ("rail", Target::SupportForce { support: 1, direction: [0.0, 1.0] }),
         ("tilt", Target::Moment { of: Holder::Support(0), about: [2.0, 0.5] }),
         ("turn", Target::Moment { of: Holder::Contact(0), about: [1.0, 0.0] }),
-        ("all", Target::Stress { body: 1, region: Region::Whole, component: Component([0.0, 0.0, 1.0]) }),
+        ("all", Target::Stress { body: 1, region: Region::Whole, component: Component::XY }),
         (
             "core",
             Target::Stress {
                 body: 0,
                 region: region(&[[0.25, 0.25], [0.75, 0.25], [0.75, 0.5], [0.25, 0.5]]),
-                component: Component([1.0, 0.0, 0.0]),
+                component: Component::XX,
             },
         ),
         (

@@ -16,6 +16,11 @@ pub fn quantity(name: &str, target: Target) -> Quantity {
     Quantity { name: name.to_string(), target }
 }
 
+/// Asks a problem for `quantities` and no others.
+pub fn ask(problem: &mut Problem, quantities: Vec<Quantity>) {
+    problem.scene = problem.scene.changed(|draft| draft.quantities = quantities).expect("a valid scene");
+}
+
 /// Everything that can be asked of a scene without knowing it.
 pub fn everything(problem: &Problem, random: &mut Random) -> Vec<Quantity> {
     let scene = &problem.scene;

@@ -12,8 +12,6 @@ pub mod theory;
 pub mod toml;
 pub mod trial;
 
-use std::path::PathBuf;
-
 use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
 use hypercircle::scene::*;
@@ -65,14 +63,7 @@ impl Blocks {
             poisson,
             body_force: [0.0, 0.0],
         };
-        Scene {
-            name: "two_blocks".to_string(),
-            title: "Two blocks".to_string(),
-            path: PathBuf::from("two_blocks.toml"),
-            origin: [0.0; 2],
-            kinematics: self.kinematics,
-            thickness: 1.0,
-            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
+        let draft = Draft {
             bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],
             supports: vec![
                 Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0, 0.0] } },
@@ -89,7 +80,8 @@ impl Blocks {
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
                 self.gap.clone(),
             )],
-            quantities: Vec::new(),
-        }
+            ..Draft::new("two_blocks", self.kinematics, MeshSource::File("made".into()))
+        };
+        Scene::new(draft).expect("a valid scene")
     }
 }

@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn causes_with_a_place_are_marked_where_the_bodies_are_drawn() {
         let mut sample = Sample::new(2, Verdict::Disagree);
-        sample.problem.scene.origin = [100.0, 0.0];
+        sample.problem.scene.draft.origin = [100.0, 0.0];
         let report = sample.dossier().report;
         assert_eq!(marks(&sample.problem, &report), [Mark { at: [-99.0, 0.0], number: 1, triangle: Some(0) }]);
     }

@@ -97,9 +97,21 @@ pub enum Region {
 /// Factors of (σ_xx, σ_yy, σ_xy): [1, 0, 0], [0, 1, 0], [0, 0, 1], and [d0², d1², 2 d0 d1] for the normal stress d·σd
 /// along a unit vector d.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Component(pub [f64; 3]);
+pub struct Component([f64; 3]);
 
 impl Component {
+    /// σ_xx.
+    pub const XX: Component = Component([1.0, 0.0, 0.0]);
+    /// σ_yy.
+    pub const YY: Component = Component([0.0, 1.0, 0.0]);
+    /// σ_xy.
+    pub const XY: Component = Component([0.0, 0.0, 1.0]);
+
+    /// The three factors.
+    pub fn factors(self) -> [f64; 3] {
+        self.0
+    }
+
     /// d·σd.
     pub fn along([x, y]: [f64; 2]) -> Self {
         Component([x * x, y * y, 2.0 * x * y])

@@ -48,9 +48,9 @@ impl Context<'_> {
 
     pub(super) fn component(&self, word: &At<String>) -> Result<Component, SceneError> {
         match word.value.as_str() {
-            "xx" => Ok(Component([1.0, 0.0, 0.0])),
-            "yy" => Ok(Component([0.0, 1.0, 0.0])),
-            "xy" => Ok(Component([0.0, 0.0, 1.0])),
+            "xx" => Ok(Component::XX),
+            "yy" => Ok(Component::YY),
+            "xy" => Ok(Component::XY),
             other => {
                 let known = ["xx", "yy", "xy"].map(String::from).to_vec();
                 let (table, found) = (self.table.to_owned(), other.to_owned());

@@ -2,7 +2,7 @@
 
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
-use crate::scene::{Body, Kinematics, MeshSource, Scene};
+use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 use std::collections::HashMap;
 
 type Point = [f64; 2];
@@ -207,20 +207,9 @@ impl Build {
             let second = other.map_or("rigid", |b| &self.bodies[b].name);
             interfaces.push(Interface { name: format!("{}|{second}", self.bodies[*body].name), pairs });
         }
-        let scene = Scene {
-            name: "test".into(),
-            title: "test".into(),
-            path: "test.toml".into(),
-            origin: [0.0; 2],
-            kinematics: Kinematics::PlaneStrain,
-            thickness: 1.0,
-            mesh: MeshSource::File("test.msh".into()),
-            bodies: self.bodies.clone(),
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            contacts: Vec::new(),
-            quantities: Vec::new(),
-        };
+        let source = MeshSource::File("test.msh".into());
+        let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };
+        let scene = Scene::unchecked(draft);
         Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
     }
 }
@@ -243,7 +232,7 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
         let [x, y] = turn(*p);
         *p = [length * x + shift[0], length * y + shift[1]];
     }
-    for body in &mut problem.scene.bodies {
+    for body in &mut problem.scene.draft.bodies {
         body.body_force = turn(body.body_force).map(|f| f * force / length);
     }
     for condition in &mut problem.conditions {

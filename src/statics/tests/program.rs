@@ -68,7 +68,7 @@ proptest! {
     ) {
         let mut problem = (cases()[which].scene)(excess);
         if disturb {
-            for (body, force) in problem.scene.bodies.iter_mut().zip(forces) {
+            for (body, force) in problem.scene.draft.bodies.iter_mut().zip(forces) {
                 body.body_force = [body.body_force[0] + force[0], body.body_force[1] + force[1]];
             }
         }

@@ -2,6 +2,7 @@
 
 use hypercircle::dual::{self, Condensed, DualSolution, Motion, Options};
 use hypercircle::problem::{Condition, Problem};
+use hypercircle::scene::Draft;
 use hypercircle::statics;
 
 use super::{Role, Setup};
@@ -58,8 +59,13 @@ pub fn scaled(problem: &Problem, length: f64, force: f64, young: f64) -> Problem
     let mut p = problem.clone();
     let displacement = length * force / young;
     p.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
-    p.scene.bodies.iter_mut().for_each(|b| b.young *= young);
-    p.scene.bodies.iter_mut().for_each(|b| b.body_force.iter_mut().for_each(|f| *f *= force / length));
+    let change = |draft: &mut Draft| {
+        for body in &mut draft.bodies {
+            body.young *= young;
+            body.body_force.iter_mut().for_each(|f| *f *= force / length);
+        }
+    };
+    p.scene = p.scene.changed(change).expect("a valid scene");
     for condition in &mut p.conditions {
         match condition {
             Condition::Traction(t) => t.as_flattened_mut().iter_mut().for_each(|t| *t *= force),

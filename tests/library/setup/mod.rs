@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use hypercircle::mesh::{Edge, Triangulation};
 use hypercircle::problem::{Condition, ContactPair, Direction, Interface, Problem};
-use hypercircle::scene::{Body, Kinematics, MeshSource, Scene};
+use hypercircle::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// What holds on a named side.
 #[derive(Clone, Copy)]
@@ -215,20 +215,8 @@ impl Setup {
             let name = format!("{first}|{}", second.as_deref().unwrap_or("rigid"));
             interfaces.push(Interface { name, pairs });
         }
-        let scene = Scene {
-            name: "test".into(),
-            title: "test".into(),
-            path: "test.toml".into(),
-            origin: [0.0; 2],
-            kinematics,
-            thickness: 1.0,
-            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
-            bodies,
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            contacts: Vec::new(),
-            quantities: Vec::new(),
-        };
+        let draft = Draft { bodies, ..Draft::new("test", kinematics, MeshSource::File("made".into())) };
+        let scene = Scene::new(draft).expect("a valid scene");
         let (triangles, body) = triangles.into_iter().unzip();
         let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };
         Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }

@@ -3,8 +3,6 @@
 //! Both have the layout of Theorem 2.3: two unit blocks with Γ_K on x = 0, Γ_0 on y = 0. The exact tractions on Γ_τ are
 //! not linear; their side-wise L² projections are prescribed, which is what r_h does on an edge.
 
-use std::path::PathBuf;
-
 use hypercircle::dual::Motion;
 use hypercircle::mesh::Triangulation;
 use hypercircle::problem::{Condition, Problem};
@@ -85,14 +83,7 @@ impl Solution {
             Solution::Pressed(_) => support("right_east", SupportKind::Clamped { displacement: [0.0, 0.0] }),
             Solution::LiftOff(_) => support("right_south", SupportKind::Roller),
         };
-        Scene {
-            name: "known_solution".to_string(),
-            title: "Known solution".to_string(),
-            path: PathBuf::from("known_solution.toml"),
-            origin: [0.0; 2],
-            kinematics: Kinematics::PlaneStrain,
-            thickness: 1.0,
-            mesh: MeshSource::Geometry { size: None, polygons: Vec::new() },
+        let draft = Draft {
             bodies: vec![body(0, "left"), body(1, "right")],
             supports: vec![support("left_south", SupportKind::Roller), other],
             tractions: Vec::new(),
@@ -100,8 +91,9 @@ impl Solution {
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),
                 Gap::Constant(0.0),
             )],
-            quantities: Vec::new(),
-        }
+            ..Draft::new("known_solution", Kinematics::PlaneStrain, MeshSource::File("made".into()))
+        };
+        Scene::new(draft).expect("a valid scene")
     }
 
     /// The discrete problem on an n × n mesh of each block.

@@ -1,5 +1,7 @@
 //! What cannot be right about the answers to one scene.
 
+use serde_json::Value;
+
 use super::run::{Ended, Way};
 
 /// Something that is wrong.
@@ -21,8 +23,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// Every fault in the runs of one scene.
 ///
-/// `rounding` is what arithmetic alone can cost a displacement model in energy, and `rounds` says that the finer mesh is
-/// another polygon for the same curve, which bounds nothing on this one.
+/// `rounding` is what arithmetic alone can cost a displacement model in energy, and `rounds` says that other meshes are
+/// other polygons for the same curve, which bound nothing on this one.
 pub fn faults(runs: &[(Way, Ended)], rounding: f64, rounds: bool) -> Vec<Fault> {
     let mut faults: Vec<Fault> = runs.iter().flat_map(|(way, ended)| of_one(*way, ended)).collect();
     let codes: Vec<(Way, bool)> =
@@ -31,9 +33,13 @@ pub fn faults(runs: &[(Way, Ended)], rounding: f64, rounds: bool) -> Vec<Fault> 
         let list: Vec<_> = codes.iter().filter(|c| c.1).map(|c| c.0.name()).collect();
         faults.push(Fault::new("infeasible for some", format!("infeasible for {} only", list.join(", "))));
     }
-    let same: Vec<&(Way, Ended)> = runs.iter().filter(|(way, _)| !(rounds && *way == Way::Finer)).collect();
+    let same: Vec<&(Way, Ended)> = runs.iter().filter(|(way, _)| !(rounds && is_other_mesh(*way))).collect();
     faults.extend(contradictions(&same, rounding));
     faults
+}
+
+fn is_other_mesh(way: Way) -> bool {
+    matches!(way, Way::Finer | Way::Adaptive(_))
 }
 
 fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
@@ -45,7 +51,10 @@ fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
     let mut faults: Vec<Fault> = match ended.code {
         0 | 5 => Vec::new(),
         1 => {
-            let checks = ended.failed_checks();
+            // Refinement may end at its limits.
+            let may_fail = |check: &&Value| matches!(way, Way::Adaptive(_)) && check["name"] == "bracket/tolerance";
+            let all = ended.failed_checks();
+            let checks: Vec<&Value> = all.iter().copied().filter(|check| !may_fail(check)).collect();
             let list = checks.iter().map(|check| {
                 let what = check["name"].as_str().unwrap_or("a check without a name");
                 let text =
@@ -53,7 +62,7 @@ fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
                 Fault::new(format!("{name}: {verdict}: {}", anonymous(what)), text)
             });
             let mut found: Vec<Fault> = list.collect();
-            if found.is_empty() {
+            if all.is_empty() {
                 found.push(Fault::new(format!("{name}: {verdict}, and no check failed"), ended.message()));
             }
             found
@@ -64,7 +73,7 @@ fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
         3 if way == Way::Method("clarabel") && says(ended, &["clarabel stopped after"]) => Vec::new(),
         _ => vec![Fault::new(format!("{name}: {verdict}: {}", gist(&ended.message())), ended.message())],
     };
-    if ended.code == 0 {
+    if ended.code == 0 || ended.code == 1 && faults.is_empty() {
         faults.extend(bracketed(name, ended));
     }
     faults

@@ -14,6 +14,9 @@ use super::scenes::Sample;
 /// The methods of the dual problem.
 pub const METHODS: [&str; 4] = ["condensed", "active-set", "clarabel", "uzawa"];
 
+/// What is refined on the way to a tolerance.
+pub const ADAPTIVE: [&str; 2] = ["h", "hp"];
+
 /// What became of a scene.
 pub struct Trial {
     pub seed: u64,
@@ -32,6 +35,7 @@ impl Trial {
         let results = folder.join(format!("seed-{}", sample.seed));
         let mut ways: Vec<Way> = METHODS.map(Way::Method).to_vec();
         ways.push(Way::Finer);
+        ways.extend(ADAPTIVE.map(Way::Adaptive));
         ways.extend(models.then_some(Way::Verify));
         let runs: Vec<(Way, Ended)> = ways.into_iter().map(|way| (way, program.run(way, &scene, &results))).collect();
         let faults = faults(&runs, sample.rounding, sample.rounds);

@@ -24,6 +24,8 @@ pub enum Way {
     Method(&'static str),
     /// `solve` on the mesh refined once.
     Finer,
+    /// `solve` to a tolerance, by refining the mesh (`h`) or mesh and degrees (`hp`).
+    Adaptive(&'static str),
     /// `verify`.
     Verify,
 }
@@ -33,6 +35,7 @@ impl Way {
         match self {
             Way::Method(name) => name,
             Way::Finer => "finer",
+            Way::Adaptive(name) => name,
             Way::Verify => "verify",
         }
     }
@@ -41,6 +44,9 @@ impl Way {
         match self {
             Way::Method(name) => vec!["solve", "--method", name],
             Way::Finer => vec!["solve", "--refine", "1"],
+            Way::Adaptive(name) => {
+                vec!["solve", "--adapt", name, "--tolerance", "0.02", "--max-triangles", "1500", "--max-seconds", "30"]
+            }
             Way::Verify => vec!["verify"],
         }
     }

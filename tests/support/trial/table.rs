@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use super::run::Ended;
-use super::{METHODS, Trial};
+use super::run::{Ended, Way};
+use super::{ADAPTIVE, METHODS, Trial};
 
 /// One line about a trial; verdicts in the order of its runs.
 pub fn row(trial: &Trial) -> String {
     let seconds: f64 = trial.runs.iter().map(|r| r.1.seconds).sum();
     let triangles = trial.runs[0].1.number("/dual/triangles").map_or("–".to_owned(), |n| n.to_string());
     let runs: Vec<String> = trial.runs.iter().map(|r| r.1.verdict()).collect();
-    let error = trial.runs.iter().rev().find_map(|r| r.1.number("/energy/relative_error_bound"));
+    let last = trial.runs.iter().rev().filter(|(way, _)| !matches!(way, Way::Adaptive(_)));
+    let error = last.filter_map(|r| r.1.number("/energy/relative_error_bound")).next();
     let error = error.map_or("–".to_owned(), |e| format!("{e:.1e}"));
     let mut faults: Vec<&str> = trial.faults.iter().map(|f| f.kind.as_str()).collect();
     faults.dedup();
@@ -26,6 +27,7 @@ pub fn row(trial: &Trial) -> String {
 pub fn head(models: bool) -> String {
     let mut names: Vec<&str> = METHODS.to_vec();
     names.push("finer");
+    names.extend(ADAPTIVE);
     names.extend(models.then_some("verify"));
     let rule = "|---".repeat(names.len());
     format!(

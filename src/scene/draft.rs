@@ -1,0 +1,267 @@
+//! What a scene is made of before it is checked, and the text it would be in a file.
+//!
+//! A scene made by a program passes the same checks as one that is read: it is written as TOML and parsed. Messages point into
+//! that text.
+
+use std::fmt::Write;
+use std::ops::Deref;
+use std::path::PathBuf;
+
+use toml::Value;
+
+use super::{
+    Body, Component, Contact, ContactSides, Extent, Gap, Holder, Kinematics, Load, MeshSource, Normals, Polygon,
+    Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching, Traction,
+};
+
+/// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    /// Names the output folder; the file stem of a scene file.
+    pub name: String,
+    /// `title`, or the name where none was given.
+    pub title: String,
+    /// The scene file; mesh paths in it are relative to its folder.
+    pub path: PathBuf,
+    /// The point in the coordinates of the file from which coordinates and load gradients count; [0, 0] unless the scene
+    /// lies far away (see [`Scene::as_written`]).
+    pub origin: [f64; 2],
+    /// Plane strain or plane stress.
+    pub kinematics: Kinematics,
+    /// Thickness t > 0 of the plate; multiplies energies and resultants.
+    pub thickness: f64,
+    /// Where the triangles come from.
+    pub mesh: MeshSource,
+    /// Bodies in the order of the file.
+    pub bodies: Vec<Body>,
+    /// Γ_u and Γ_0.
+    pub supports: Vec<Support>,
+    /// Γ_τ.
+    pub tractions: Vec<Traction>,
+    /// Γ_K.
+    pub contacts: Vec<Contact>,
+    /// What the scene is solved for, in the order of the file.
+    pub quantities: Vec<Quantity>,
+}
+
+impl Draft {
+    /// Without bodies and conditions, of thickness one.
+    pub fn new(name: &str, kinematics: Kinematics, mesh: MeshSource) -> Self {
+        Draft {
+            name: name.to_owned(),
+            title: name.to_owned(),
+            path: PathBuf::from(format!("{name}.toml")),
+            origin: [0.0; 2],
+            kinematics,
+            thickness: 1.0,
+            mesh,
+            bodies: Vec::new(),
+            supports: Vec::new(),
+            tractions: Vec::new(),
+            contacts: Vec::new(),
+            quantities: Vec::new(),
+        }
+    }
+
+    /// The scene file that says the same, in coordinates that count from `origin`.
+    pub fn to_toml(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string does not fail.
+        let _ = self.write(&mut text);
+        text
+    }
+
+    fn write(&self, text: &mut String) -> std::fmt::Result {
+        writeln!(text, "title = {}", quoted(&self.title))?;
+        writeln!(
+            text,
+            "model = {{ kinematics = {:?}, thickness = {} }}",
+            self.kinematics.name(),
+            number(self.thickness)
+        )?;
+        match &self.mesh {
+            MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
+            MeshSource::Geometry { size: Some(size), .. } => writeln!(text, "geometry.size = {}", number(*size))?,
+            MeshSource::Geometry { .. } => (),
+        }
+        if let MeshSource::Geometry { polygons, .. } = &self.mesh {
+            let tables: Vec<String> = polygons.iter().map(polygon).collect();
+            writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
+        }
+        for Body { name, young, poisson, body_force } in &self.bodies {
+            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
+            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force} }}")?;
+        }
+        let lists = [
+            ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
+            ("tractions", self.tractions.iter().map(traction).collect()),
+            ("contacts", self.contacts.iter().map(contact).collect()),
+            ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
+        ];
+        for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
+            writeln!(text, "{key} = [")?;
+            tables.iter().try_for_each(|table| writeln!(text, "    {{ {table} }},"))?;
+            writeln!(text, "]")?;
+        }
+        Ok(())
+    }
+
+    fn quantity(&self, quantity: &Quantity) -> String {
+        // An index that belongs to nothing is a name that nothing has.
+        let body = |i: usize| quoted(self.bodies.get(i).map_or("", |body| &body.name));
+        let contact = |i: usize| quoted(&self.contacts.get(i).map_or_else(String::new, Contact::name));
+        let support = |i: usize| quoted(self.supports.get(i).map_or("", |support| &support.on));
+        let what = match &quantity.target {
+            Target::Displacement { of, direction } => {
+                let of = match of {
+                    Extent::Boundary(name) => quoted(name),
+                    Extent::Body(i) => body(*i),
+                };
+                format!("displacement = {of}, direction = {}", list(direction))
+            }
+            Target::ContactForce { contact: of, window: None } => format!("force = {}", contact(*of)),
+            Target::ContactForce { contact: of, window: Some(window) } => {
+                format!("force = {}, window = {}", contact(*of), list(window))
+            }
+            Target::SupportForce { support: of, direction } => {
+                format!("force = {}, direction = {}", support(*of), list(direction))
+            }
+            Target::Moment { of, about } => {
+                let of = match of {
+                    Holder::Contact(i) => contact(*i),
+                    Holder::Support(i) => support(*i),
+                };
+                format!("moment = {of}, about = {}", list(about))
+            }
+            Target::Stress { body: of, region, component } => {
+                let region = match region {
+                    Region::Whole => String::new(),
+                    Region::Polygon(points) => format!(", polygon = {}", rows(points)),
+                };
+                format!("stress = {}{region}, {}", body(*of), written(component))
+            }
+        };
+        format!("name = {}, {what}", quoted(&quantity.name))
+    }
+}
+
+impl Scene {
+    /// The scene of these parts, if it is one.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`], for the text of [`Draft::to_toml`].
+    pub fn new(draft: Draft) -> Result<Self, SceneError> {
+        let checked = Scene::parse(&draft.to_toml(), &draft.path)?;
+        // Directions have the length one now; what the text cannot say is as it was.
+        let Draft { name, title, path, origin, mesh, .. } = draft;
+        Ok(Scene { draft: Draft { name, title, path, origin, mesh, ..checked.draft } })
+    }
+
+    /// The scene with some parts changed, if it is one.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn changed(&self, change: impl FnOnce(&mut Draft)) -> Result<Self, SceneError> {
+        let mut draft = self.draft.clone();
+        change(&mut draft);
+        Scene::new(draft)
+    }
+
+    /// The same without the size of [`MeshSource::Geometry`].
+    pub fn coarsest(&self) -> Self {
+        let mut draft = self.draft.clone();
+        if let MeshSource::Geometry { size, .. } = &mut draft.mesh {
+            *size = None;
+        }
+        Scene { draft }
+    }
+
+    /// The scene of parts that are known to make one.
+    pub(crate) fn unchecked(draft: Draft) -> Self {
+        Scene { draft }
+    }
+}
+
+impl Deref for Scene {
+    type Target = Draft;
+
+    fn deref(&self) -> &Draft {
+        &self.draft
+    }
+}
+
+fn quoted(text: &str) -> String {
+    Value::from(text).to_string()
+}
+
+fn number(number: f64) -> String {
+    Value::from(number).to_string()
+}
+
+fn list(numbers: &[f64]) -> String {
+    Value::from(numbers.to_vec()).to_string()
+}
+
+fn rows(rows: &[[f64; 2]]) -> String {
+    let rows: Vec<Value> = rows.iter().map(|row| Value::from(row.to_vec())).collect();
+    Value::from(rows).to_string()
+}
+
+fn polygon(polygon: &Polygon) -> String {
+    let Polygon { body, points, edges, arcs } = polygon;
+    let names: Vec<String> = edges.iter().map(|name| quoted(name)).collect();
+    let arcs: Vec<String> =
+        arcs.iter().map(|arc| format!("{{ edge = {}, through = {} }}", arc.edge, list(&arc.through))).collect();
+    let (body, points, names, arcs) = (quoted(body), rows(points), names.join(", "), arcs.join(", "));
+    format!("{{ body = {body}, points = {points}, edges = [{names}], arcs = [{arcs}] }}")
+}
+
+fn support(Support { on, kind }: &Support) -> String {
+    let on = quoted(on);
+    match kind {
+        SupportKind::Clamped { displacement } => {
+            format!("on = {on}, type = \"clamped\", displacement = {}", list(displacement))
+        }
+        SupportKind::Roller => format!("on = {on}, type = \"roller\""),
+    }
+}
+
+fn traction(Traction { on, load }: &Traction) -> String {
+    let on = quoted(on);
+    match load {
+        Load::Affine { value, gradient } => {
+            format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
+        }
+        Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),
+    }
+}
+
+fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
+    let sides = match sides {
+        ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
+        ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
+    };
+    let gap = match gap {
+        Gap::Constant(g) => number(*g),
+        Gap::Table(table) => rows(table),
+        Gap::Circle(Touching { radius, at }) => format!("{{ circle = {}, at = {} }}", number(*radius), number(*at)),
+        Gap::Parabola(Touching { radius, at }) => format!("{{ parabola = {}, at = {} }}", number(*radius), number(*at)),
+    };
+    let normals = match normals {
+        Normals::Smooth => "",
+        Normals::Facets => ", normals = \"facets\"",
+    };
+    let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    format!("{sides}, gap = {gap}{normals}{direction}")
+}
+
+fn written(component: &Component) -> String {
+    let name = ["xx", "yy", "xy"].into_iter().zip([Component::XX, Component::YY, Component::XY]);
+    match name.into_iter().find(|(_, known)| known == component) {
+        Some((name, _)) => format!("component = {name:?}"),
+        None => {
+            let [xx, yy, xy] = component.factors();
+            format!("direction = {}", list(&[xx.sqrt().copysign(xy), yy.sqrt()]))
+        }
+    }
+}
