@@ -8,6 +8,7 @@ use super::{CliError, Exit};
 use crate::job;
 use crate::report;
 use crate::scene;
+use crate::workbench;
 
 /// Options of `schema`.
 #[derive(Debug, clap::Args)]
@@ -26,6 +27,8 @@ pub enum File {
     Report,
     /// job.json
     Job,
+    /// report.json of `element`
+    Element,
 }
 
 /// Prints the JSON Schema on stdout.
@@ -37,6 +40,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         File::Scene => scene::schema(),
         File::Report => report::schema(),
         File::Job => job::schema(),
+        File::Element => workbench::schema(),
     };
     match writeln!(std::io::stdout(), "{schema:#}") {
         // A reader such as `head` may have had enough.

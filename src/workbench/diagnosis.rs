@@ -4,6 +4,7 @@
 //! of K − R is 1 − |K − M|² / |K − R|². The simplest one that explains all but rounding is named.
 
 use nalgebra::{DMatrix, Matrix3};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::displacement::{DisplacementElement, Order};
@@ -18,7 +19,7 @@ const UNEXPLAINED: &str = "unexplained";
 const FEW: usize = 4;
 
 /// What is wrong with a matrix.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Diagnosis {
     /// Stable name of the mistake; `unexplained` where none is found.
     pub cause: String,

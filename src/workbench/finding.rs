@@ -1,11 +1,12 @@
 //! What a property came to: one finding, with a number, a sentence and where it helps a picture.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::report::number::significant;
 
 /// One property of an element under test.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Finding {
     /// Stable name, for example `patch-forces`.
     pub name: String,

@@ -1,13 +1,15 @@
 //! What an element is made of.
 
 use nalgebra::Matrix3;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::element::Compliance;
 use crate::scene::Kinematics;
 
 /// An isotropic material in the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(into = "Written")]
 pub struct Material {
     /// Plane strain or plane stress.
     pub kinematics: Kinematics,
@@ -69,14 +71,22 @@ impl Material {
     }
 }
 
-impl Serialize for Material {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        use serde::ser::SerializeStruct;
-        let mut out = serializer.serialize_struct("Material", 4)?;
-        out.serialize_field("kinematics", self.kinematics.name())?;
-        out.serialize_field("young", &self.young)?;
-        out.serialize_field("poisson", &self.poisson)?;
-        out.serialize_field("thickness", &self.thickness)?;
-        out.end()
+/// A material as files have it.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Material")]
+pub(super) struct Written {
+    /// `plane-strain` or `plane-stress`.
+    kinematics: &'static str,
+    /// Young's modulus.
+    young: f64,
+    /// Poisson's ratio.
+    poisson: f64,
+    /// Thickness.
+    thickness: f64,
+}
+
+impl From<Material> for Written {
+    fn from(Material { kinematics, young, poisson, thickness }: Material) -> Self {
+        Written { kinematics: kinematics.name(), young, poisson, thickness }
     }
 }

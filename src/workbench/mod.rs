@@ -24,5 +24,5 @@ pub use displacement::{DisplacementElement, Order};
 pub use finding::{Fault, Finding, Measured, Property};
 pub use material::Material;
 pub use outline::Outline;
-pub use report::{NAMES, Options, Report, is_property};
+pub use report::{NAMES, Options, Report, is_property, schema};
 pub use shipped::{SHIPPED, Shipped, Subject, shipped};

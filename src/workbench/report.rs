@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use quick_junit::{NonSuccessKind, Report as JunitReport, TestCase, TestCaseStatus, TestSuite, XmlString};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::diagnosis::{Diagnosis, diagnose};
 use super::displacement::{self, DisplacementElement};
 use super::finding::{Finding, Property};
-use super::material::Material;
+use super::material::{Material, Written};
 use super::page;
 use super::stress::{self, StressElement};
 use crate::report::folder;
@@ -43,8 +44,8 @@ pub fn is_property(name: &str) -> bool {
     names.any(|known| known == name)
 }
 
-/// All findings on one element.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// All findings on one element: `report.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Report {
     /// Version of this layout.
     pub schema_version: u32,
@@ -57,6 +58,7 @@ pub struct Report {
     /// Its nodes, or nothing.
     pub nodes: Vec<[f64; 2]>,
     /// Its material, where one is known.
+    #[schemars(with = "Option<Written>")]
     pub material: Option<Material>,
     /// Whether no property that it claims is missing.
     pub passed: bool,
@@ -66,6 +68,11 @@ pub struct Report {
     pub diagnosis: Option<Diagnosis>,
     /// Property by property.
     pub findings: Vec<Finding>,
+}
+
+/// The JSON Schema of `report.json`.
+pub fn schema() -> serde_json::Value {
+    schemars::schema_for!(Report).to_value()
 }
 
 impl Report {

@@ -36,6 +36,33 @@ fn element(folder: &Path, arguments: &[&str]) -> Output {
 const MATRIX: [&str; 10] =
     ["--matrix", "K.mtx", "--nodes", "nodes.csv", "--young", "1", "--poisson", "0", "--kinematics", "plane-stress"];
 
+/// That an object has the keys of its schema, no others, and all those that the schema requires.
+#[track_caller]
+fn has_keys_of(value: &Value, schema: &Value) {
+    let keys: Vec<&String> = value.as_object().expect("an object").keys().collect();
+    let known = schema["properties"].as_object().expect("properties");
+    assert!(keys.iter().all(|key| known.contains_key(*key)), "{keys:?} of {:?}", known.keys());
+    let required = schema["required"].as_array().expect("required");
+    assert!(required.iter().all(|name| keys.iter().any(|key| *key == name)), "{required:?} in {keys:?}");
+}
+
+#[test]
+fn the_schema_of_a_report_on_an_element_fits_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), |i, j| f64::from(TEXTBOOK[i][j]) / 2.0);
+    ended("a matrix", &element(folder.path(), &[&MATRIX[..], &["--out", "out"]].concat()), 1, &[]);
+    let text = std::fs::read(folder.path().join("out/report.json")).expect("a report");
+    let report: Value = serde_json::from_slice(&text).expect("JSON");
+    let output = run(hypercircle(folder.path(), ["schema", "element"]));
+    let schema: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    has_keys_of(&report, &schema);
+    has_keys_of(&report["material"], &schema["$defs"]["Material"]);
+    has_keys_of(&report["diagnosis"], &schema["$defs"]["Diagnosis"]);
+    for finding in report["findings"].as_array().expect("findings") {
+        has_keys_of(finding, &schema["$defs"]["Finding"]);
+    }
+}
+
 #[test]
 fn without_a_name_the_elements_are_listed() {
     let folder = tempfile::tempdir().expect("a folder");
