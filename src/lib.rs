@@ -53,6 +53,10 @@
 //! # }
 //! ```
 
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct Library;
+
 pub mod bounds;
 pub mod budget;
 pub mod cause;
