@@ -78,9 +78,9 @@ def test_a_scene_far_away_has_its_own_coordinates(hypercircle):
 
 def test_a_tolerance_is_reached_or_the_status_says_so(hypercircle, tmp_path):
     scene = hypercircle.Scene(CASES / "two_blocks.toml")
-    reached = scene.solve(tolerance=0.01)
-    assert reached.relative_error_bound <= 0.01 and reached.status == "agree"
-    stopped = scene.solve(tolerance=1e-4, max_triangles=400, out=tmp_path / "out")
+    reached = scene.solve(tolerance=0.05)
+    assert reached.relative_error_bound <= 0.05 and reached.status == "agree"
+    stopped = scene.solve(tolerance=1e-4, max_triangles=60, out=tmp_path / "out")
     assert stopped.relative_error_bound > 1e-4 and stopped.status == "disagree"
     written = json.loads((tmp_path / "out/report.json").read_text())
     assert written["energy"] == stopped.report["energy"] and written["verdict"] == stopped.verdict
@@ -189,7 +189,8 @@ def test_a_field_is_certified_as_the_command_does(hypercircle, tmp_path):
 
 def test_values_are_certified_without_a_field(hypercircle):
     asked = '[[quantities]]\nname = "seat"\nforce = "left_face|right_face"\n'
-    scene = hypercircle.Scene.from_text((CASES / "two_blocks.toml").read_text() + asked)
+    text = (CASES / "two_blocks.toml").read_text().replace("size = 0.125", "size = 0.5") + asked
+    scene = hypercircle.Scene.from_text(text)
     # The load is 4 - 7 y over a side of length one.
     assert scene.certify(values={"seat": 0.5}).passed
     solution = scene.solve()

@@ -38,7 +38,7 @@ fn reading_has_a_limit_that_can_be_set() {
 fn meshio_ends_with_its_parent_by_any_signal() {
     for signal in ["KILL", "TERM", "INT", "HUP"] {
         let (place, library) = with_meshio(HANGS);
-        let mut command = place.command(&["solve", "scene.toml"]);
+        let mut command = place.heeding(&["solve", "scene.toml"]);
         let mut child = command.env("PYTHONPATH", library.path()).spawn().expect("the program starts");
         let note = library.path().join("pid");
         assert!(soon(|| note.exists()), "meshio was not started");

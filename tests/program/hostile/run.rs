@@ -1,7 +1,7 @@
 //! Starts the program in a folder of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use hypercircle::report::NAMES;
@@ -40,6 +40,21 @@ impl Place {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = hypercircle(self.folder.path(), arguments);
         command.env("TMPDIR", self.temporary.path());
+        command
+    }
+
+    /// The program with all signals as they are by default: what started these tests may ignore some, as `nohup` does.
+    pub fn heeding(&self, arguments: &[&str]) -> Command {
+        let own = self.command(arguments);
+        let mut command = Command::new("env");
+        command.arg("--default-signal").arg(own.get_program()).args(own.get_args()).current_dir(self.folder.path());
+        for (name, value) in own.get_envs() {
+            match value {
+                Some(value) => command.env(name, value),
+                None => command.env_remove(name),
+            };
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 

@@ -15,26 +15,11 @@ fn waiting(place: &Place) -> std::path::PathBuf {
     script(place.path("python3"), &format!("echo $$ > {}\nexec sleep 300", place.path("pid").display()))
 }
 
-/// The program with all signals as they are by default: what started these tests may ignore some, as `nohup` does.
-fn heeding(place: &Place, arguments: &[&str]) -> Command {
-    let own = place.command(arguments);
-    let mut command = Command::new("env");
-    command.arg("--default-signal").arg(own.get_program()).args(own.get_args()).current_dir(place.folder.path());
-    for (name, value) in own.get_envs() {
-        match value {
-            Some(value) => command.env(name, value),
-            None => command.env_remove(name),
-        };
-    }
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
 #[test]
 fn the_exchange_folder_and_the_reference_go_with_the_process() {
     for signal in ["TERM", "INT", "HUP"] {
         let place = Place::with(&case("patch"));
-        let mut command = heeding(&place, &["verify", "scene.toml"]);
+        let mut command = place.heeding(&["verify", "scene.toml"]);
         let mut child = command.env("HYPERCIRCLE_PYTHON", waiting(&place)).spawn().expect("the program starts");
         let note = place.path("pid");
         let pid = || std::fs::read_to_string(&note).unwrap_or_default();
