@@ -13,15 +13,16 @@
 //! 3. *Equilibrium inside the elements*, where it is a property of the basis and not measured: a rounding error of λ_h
 //!    times the displacement along the boundary of the triangle.
 //! 4. *Admissibility* of the displacement: supports and gaps are met to a rounding error of the displacement, and what
-//!    that is worth is the traction times that error; the same expression.
-//!
-//! [`Equilibrium`]: crate::dual::Equilibrium
+//!    that is worth is the traction times that error; the same expression. Where triangles are tiny, rounding of their corners
+//!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
+//!    measured.
 
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+use super::jump::side_coefficients;
 use super::upper::{NoUpperBound, NodalValues, admissible};
-use crate::dual::DualSolution;
+use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, StressField, side};
-use crate::problem::{Problem, Scales};
+use crate::problem::{Condition, Problem, Scales};
 
 /// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
 /// error of at most half a unit.
@@ -62,7 +63,8 @@ impl UpperBound {
         let potential = potential(problem, &displacement);
         let local = local_gap(problem, &dual.stress, &displacement);
         let size = |t: usize| displacement.largest(t);
-        let widening = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
+        let rounding = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
+        let widening = rounding + across_rollers(problem, &dual.stress, &displacement);
         UpperBound { widening, displacement, potential, local }
     }
 
@@ -122,6 +124,22 @@ impl Bracket {
     }
 }
 
+/// ∫ |what is left of equilibrium · v|, thickness included: by how much the energies of λ_h and v can miss the identity of the gap.
+pub fn work_of_remainders(problem: &Problem, dual: &DualSolution, v: &Displacement) -> f64 {
+    let mut moments = dual.moments.clone();
+    for e in 0..moments.len() {
+        let (length, _) = problem.mesh.edge_frame(e);
+        let u = side_coefficients(problem, v, e);
+        let own = moments.of_mut(e);
+        for c in 0..2 {
+            let along: Vec<f64> = u.iter().map(|u| u[c]).collect();
+            let found = side::moments(&along, own.len() - 1);
+            own.iter_mut().zip(found).for_each(|(moment, found)| moment[c] = length * found);
+        }
+    }
+    problem.scene.thickness * Equilibrium::measure(problem, &dual.stress, &moments).work
+}
+
 /// A rounding error of the tractions on the boundary of every triangle times the displacement there, whose size `size`
 /// gives by triangle; thickness included.
 fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize) -> f64) -> f64 {
@@ -132,4 +150,20 @@ fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize
         perimeter * largest * size(t)
     };
     ROUNDING_PER_VALUE * problem.scene.thickness * (0..mesh.triangles.len()).map(term).sum::<f64>()
+}
+
+/// The traction on rollers times the displacement across them; thickness included.
+fn across_rollers(problem: &Problem, stress: &StressField, v: &Displacement) -> f64 {
+    let mesh = &problem.mesh;
+    let term = |e: usize| {
+        let (length, [x, y]) = mesh.edge_frame(e);
+        let Some(t) = mesh.edges[e].triangles[0] else { return 0.0 };
+        let Some(side) = mesh.triangle_edges[t].iter().position(|&own| own == e) else { return 0.0 };
+        let pressing = |[xx, yy, xy]: [f64; 3]| (x * x * xx + y * y * yy + 2.0 * x * y * xy).abs();
+        let traction = stress.on_side(t, side).map(pressing).fold(0.0, f64::max);
+        let across = v.side(t, side).map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
+        length * traction * across
+    };
+    let rollers = (0..mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller);
+    problem.scene.thickness * rollers.map(term).sum::<f64>()
 }

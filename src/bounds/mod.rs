@@ -10,7 +10,7 @@ mod sum;
 pub mod upper;
 
 pub use at_rest::without_stress;
-pub use bracket::{Bracket, ROUNDING_PER_TERM, UpperBound};
+pub use bracket::{Bracket, ROUNDING_PER_TERM, UpperBound, work_of_remainders};
 pub use energy::{
     Complementary, LocalGap, Potential, complementary, local_gap, potential, support_work, work, work_of,
 };

@@ -102,10 +102,10 @@ pub fn compare(
     let scales = Scales::new(problem).from_closed_contacts(problem);
     let mut comparison = Comparison { judged, best, contacts: Vec::new(), stress: None, checks: Vec::new() };
     let upper = comparison.upper(bracket).map_or(f64::INFINITY, |(u, _)| u.upper());
-    comparison.checks = energy::dual_checks(&scales, dual, bracket, upper);
+    comparison.checks = energy::dual_checks(problem, &scales, (dual, bracket), upper);
     comparison.checks.extend(refused);
     for judged in &comparison.judged {
-        comparison.checks.extend(energy::primal_checks(problem, &scales, bracket, judged));
+        comparison.checks.extend(energy::primal_checks(problem, &scales, (dual, bracket), judged));
     }
     comparison.checks.extend(energy::degree_order(problem, &scales, &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);

@@ -58,7 +58,7 @@ impl DualMethod for ActiveSet {
         let mut closed = vec![true; system.jump_bound.len()];
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
-        let (mut seen, mut careful) = (HashSet::new(), false);
+        let (mut seen, mut careful, mut from_closed) = (HashSet::new(), false, true);
         let mut left = f64::INFINITY;
         for step in 1..=self.most_steps + 4 * closed.len() {
             let start = Instant::now();
@@ -97,7 +97,13 @@ impl DualMethod for ActiveSet {
             let mut next = next_state(&closed, &misses);
             left = misses.iter().fold(0.0, |m, by| by.max(m));
             careful |= !seen.insert(closed.clone());
-            if careful && next != closed {
+            let at_rounding = careful && left <= self.accuracy();
+            let anew = at_rounding && next != closed && from_closed;
+            if anew {
+                // What misses is rounding of jumps that nothing holds: with open contact nothing presses them either.
+                from_closed = false;
+                next = vec![false; closed.len()];
+            } else if careful && next != closed {
                 // Back in a state it has been in: from here on one end at a time, which cannot cycle.
                 next.clone_from(&closed);
                 if let Some(last) = misses.iter().rposition(|by| *by > GRAZING) {
@@ -105,7 +111,8 @@ impl DualMethod for ActiveSet {
                 }
             }
             seconds.contact += start.elapsed().as_secs_f64();
-            if next == closed {
+            // In a state that it has been in, what misses by no more than the result may is rounding.
+            if next == closed || (at_rounding && !anew) {
                 let start = Instant::now();
                 let stress = system.modes.stresses(problem, &now.s);
                 let moments = system.unknowns.moments(problem, &now.x);

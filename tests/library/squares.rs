@@ -223,9 +223,9 @@ fn every_row_is_answered_alike_by_all_methods() {
 #[test]
 fn direction_and_units_change_nothing() {
     let rows = Row::all();
-    for (frame, start) in [((1e-3, 1e9, 30.0), 0), ((1e3, 1e-3, 45.0), 1), ((1.0, 1e9, 45.0), 2), ((1e3, 1.0, 30.0), 3)]
+    for (frame, start) in [((1e-3, 1e9, 30.0), 0), ((1e3, 1e-3, 45.0), 2), ((1.0, 1e9, 45.0), 4), ((1e3, 1.0, 30.0), 6)]
     {
-        let some: Vec<Row> = rows.iter().skip(start).step_by(4).copied().collect();
+        let some: Vec<Row> = rows.iter().skip(start).step_by(8).copied().collect();
         all_agree(&some, frame);
     }
 }

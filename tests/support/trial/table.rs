@@ -41,7 +41,9 @@ pub fn groups(trials: &[Trial]) -> String {
     let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
     let mut kinds: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
     for trial in trials {
-        let last: Option<&Ended> = trial.runs.last().map(|r| &r.1);
+        // An adaptive run may end at its limits.
+        let mut others = trial.runs.iter().rev().filter(|(way, _)| !matches!(way, Way::Adaptive(_)));
+        let last: Option<&Ended> = others.next().map(|r| &r.1);
         *verdicts.entry(last.map_or(String::new(), Ended::verdict)).or_default() += 1;
         for fault in &trial.faults {
             let seeds = kinds.entry(&fault.kind).or_default();
