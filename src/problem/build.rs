@@ -55,8 +55,8 @@ impl Problem {
             let contact = problem.scene.contacts[contact].name();
             problem = load(scene.clone())?;
             format!(
-                "geometry.size = {size} was kept: contact {contact} turns where no arc is given, and on a coarser mesh its \
-                 direction would be another."
+                "geometry.size = {size} was kept: contact {contact} turns along edges that stand for no arc, and on a coarser \
+                 mesh its direction would be another."
             )
         } else {
             format!(

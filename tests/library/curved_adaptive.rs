@@ -4,7 +4,7 @@ use crate::arcs::{Arcs, between_arcs};
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Adapted, Goal, adapt, certify};
+use hypercircle::study::{Adapted, Goal, adapt, certify, certify_divided};
 
 /// Most triangles for one per cent.
 const MOST: usize = 3000;
@@ -69,5 +69,39 @@ fn bounds_of_every_mesh_hold_for_the_finest() {
         assert!(lower < upper, "{all:?}");
         // The finest mesh contains the last of the run.
         assert_eq!([lower, upper], fine);
+    }
+}
+
+/// The normals of a foot with a slight kink turn along whole edges: those of the mesh that the size of the scene gives are kept.
+/// Where edges stand for arcs, however flat, refinement leads to the arcs from anywhere.
+#[test]
+fn refinement_begins_on_a_mesh_that_has_the_directions_of_the_scene() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes");
+    let kinked = Scene::read(&folder.join("standing_on_a_kink.toml")).expect("a scene");
+    let load = |scene: Scene| Problem::load(scene);
+    let begun = |scene: &Scene| Problem::to_refine(scene, load).expect("a problem");
+    let told = |problem: &Problem, word: &str| problem.notes.iter().any(|note| note.text.contains(word));
+    let (given, begin) = (load(kinked.clone()).expect("a problem"), begun(&kinked));
+    assert!(told(&begin, "was kept") && begin.mesh == given.mesh);
+    let [low, high] = [given, refined(begin, 0.05).certified.problem].map(|problem| {
+        let found = certify_divided(problem, &Condensed::default(), &Options::default());
+        let bracket = found.expect("solves").bracket;
+        [bracket.lower(), bracket.free.expect("an upper bound").upper()]
+    });
+    assert!(low[0] <= high[1] && high[0] <= low[1], "{low:?} {high:?}");
+
+    for rise in [0.02, -0.03, 0.12] {
+        let text = between_arcs(rise).replace("[geometry]\n", "[geometry]\nsize = 0.1\n");
+        let begin = begun(&Scene::parse(&text, "arcs.toml".as_ref()).expect("a scene"));
+        assert!(told(&begin, "was not used"), "{rise}");
+        let run = refined(begin, 0.01);
+        let problem = &run.certified.problem;
+        let radius = (0.25 + rise * rise) / (2.0 * rise);
+        for pair in problem.pairs() {
+            let [x, y] = problem.mesh.points[pair.first[1]];
+            let off = (x - 0.5).hypot(y - (0.5 + rise - radius)) - radius.abs();
+            assert!(off.abs() < 1e-9, "{rise}: ({x}, {y}) is {off:e} from the arc");
+        }
+        assert!(problem.pairs().count() > 6, "{rise}: {}", problem.pairs().count());
     }
 }

@@ -55,7 +55,7 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
     Ok(outlines)
 }
 
-/// The polygon with facets in place of its arcs: equal ones, no longer than `size`.
+/// The polygon with facets in place of its arcs: equal ones, no longer than `size`, and three at least, which tell a contact its circle.
 fn faceted(polygon: &Polygon, size: Option<f64>) -> Polygon {
     let mut all = Polygon { points: Vec::new(), edges: Vec::new(), arcs: Vec::new(), ..polygon.clone() };
     for (i, (start, name)) in polygon.points.iter().zip(&polygon.edges).enumerate() {
@@ -70,7 +70,7 @@ fn faceted(polygon: &Polygon, size: Option<f64>) -> Polygon {
         // Counter-clockwise where that meets the point between first.
         let sweep = if ahead(by) < ahead(to) { ahead(to) } else { ahead(to) - TAU };
         let longest = size.map_or(f64::INFINITY, |size| 2.0 * (0.5 * size / circle.radius).min(1.0).asin());
-        let count = (sweep.abs() / longest.min(LARGEST) * (1.0 - CLOSE)).ceil().clamp(2.0, MOST_FACETS) as usize;
+        let count = (sweep.abs() / longest.min(LARGEST) * (1.0 - CLOSE)).ceil().clamp(3.0, MOST_FACETS) as usize;
         for k in 1..count {
             let (sine, cosine) = (from + sweep * (k as f64 / count as f64)).sin_cos();
             let [x, y] = circle.centre;
