@@ -62,6 +62,19 @@ impl Axis {
         if self.log { self.log_ticks(count) } else { self.linear_ticks(count) }
     }
 
+    /// Ticks whose labels stand beside each other without touching.
+    fn ticks_side_by_side(&self) -> Vec<(f64, String)> {
+        let apart = |ticks: &[(f64, String)]| {
+            ticks.windows(2).all(|pair| {
+                let [(a, left), (b, right)] = pair else { return true };
+                self.at(*b) - self.at(*a) >= half_width(left) + half_width(right) + DIGIT
+            })
+        };
+        let most = if self.end - self.start < 340.0 { 4 } else { 6 };
+        let several = (1..=most).rev().map(|count| self.ticks(count));
+        several.clone().find(|ticks| apart(ticks)).or_else(|| several.last()).unwrap_or_default()
+    }
+
     fn linear_ticks(&self, count: usize) -> Vec<(f64, String)> {
         let span = self.to - self.from;
         let raw = span / count.max(1) as f64;
@@ -117,11 +130,11 @@ impl Axis {
 
     /// Draws the axis horizontally at `y`, with grid lines up to `top`.
     pub fn draw_below(&self, svg: &mut Svg, y: f64, top: f64, title: &str) {
-        for (x, label) in self.ticks(if self.end - self.start < 340.0 { 4 } else { 6 }) {
+        for (x, label) in self.ticks_side_by_side() {
             let at = self.at(x);
             svg.line(look::GRID, "", [at, top], [at, y + 4.0]);
             // A label near the edge of the page keeps to it.
-            let half = 0.5 * DIGIT * label.chars().count() as f64;
+            let half = half_width(&label);
             let inside = at.min(svg.width - half).max(half);
             svg.text(&format!("{} {}", look::DIM, look::HALO), [inside, y + 18.0], Anchor::Middle, &label);
         }
@@ -142,12 +155,31 @@ impl Axis {
     }
 }
 
+fn half_width(label: &str) -> f64 {
+    0.5 * DIGIT * label.chars().count() as f64
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn labels(from: f64, to: f64, log: bool) -> Vec<String> {
         Axis { from, to, start: 0.0, end: 1.0, log }.ticks(5).into_iter().map(|t| t.1).collect()
+    }
+
+    #[test]
+    fn long_labels_do_not_touch() {
+        for (from, to) in [(-1.7964170, -1.7964098), (0.0, 1.0), (-1.23456789012e-7, -1.23456789011e-7), (1e-9, 1e9)] {
+            for log in [false, from > 0.0] {
+                let axis = Axis { from, to, start: 250.0, end: 600.0, log };
+                let ticks = axis.ticks_side_by_side();
+                let ends = ticks.windows(2).map(|pair| {
+                    [axis.at(pair[0].0) + half_width(&pair[0].1), axis.at(pair[1].0) - half_width(&pair[1].1)]
+                });
+                assert!(ends.clone().all(|[before, after]| before < after), "{ticks:?}");
+                assert!(!ticks.is_empty(), "{from} {to}");
+            }
+        }
     }
 
     #[test]
