@@ -165,7 +165,10 @@ impl Session {
 
     fn problem(&self, solve: &SolveOptions, admission: &Admission<'_>) -> Result<Problem, CliError> {
         let refused = |e: crate::problem::ProblemError| {
-            CliError::stopped(Exit::BadInput, format!("{}: {e}", self.scene.path.display()), "")
+            // Where a mesh is made of the scene, its error names the scene already.
+            let (path, text) = (self.scene.path.display().to_string(), e.to_string());
+            let text = if text.starts_with(&path) { text } else { format!("{path}: {text}") };
+            CliError::stopped(Exit::BadInput, text, "")
         };
         let load = |scene: Scene| {
             if let Some(triangles) = mesh::expected_triangles(&scene) {

@@ -12,6 +12,24 @@ use crate::element::{Block, Elements, SideValues, StressField};
 use crate::problem::Problem;
 
 /// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use hypercircle::bounds::complementary;
+/// use hypercircle::dual::{ActiveSet, Condensed, DualMethod, Options, solve};
+/// use hypercircle::problem::Problem;
+/// use hypercircle::scene::Scene;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let problem = Problem::load(Scene::read(Path::new("cases/two_blocks.toml"))?)?;
+/// let methods: [&dyn DualMethod; 2] = [&Condensed::default(), &ActiveSet::default()];
+/// let [a, b] = methods.map(|method| solve(method, &problem, &[], &Options::default()));
+/// let [a, b] = [a?, b?].map(|found| complementary(&problem, &found.stress).lower());
+/// assert!((a - b).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
 pub trait DualMethod: Sync {
     /// Name on the command line and in reports.
     fn name(&self) -> &'static str;

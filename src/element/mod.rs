@@ -66,6 +66,28 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 /// Traction coefficients are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
 /// the p + 1 Bernstein coefficients of the outward traction ([`side`]) from its first to its second end, each with its x and y
 /// component. They are conjugate to the moments ∫ u B_k ds. For p = 1 they are the values at the ends.
+///
+/// Every mode holds itself in balance: the force of its tractions on the three sides is zero.
+///
+/// ```
+/// use hypercircle::element::{Compliance, block};
+/// use hypercircle::scene::Kinematics;
+///
+/// let (element, corners) = (block(2), [[0.0, 0.0], [2.0, 0.0], [0.5, 1.0]]);
+/// let modes = element.modes(corners, &Compliance::new(Kinematics::PlaneStrain, 1.0, 0.3), [0.0; 2]);
+/// assert_eq!((modes.parameters(), element.tractions()), (6 * 3 - 3, 6 * 3));
+/// for traction in modes.tractions() {
+///     let force_x: f64 = (0..3)
+///         .map(|side| {
+///             let [a, b] = [corners[(side + 1) % 3], corners[(side + 2) % 3]];
+///             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+///             // ∫ B_k ds is length/(p + 1); x stands before y.
+///             length / 3.0 * (0..3).map(|k| traction[6 * side + 2 * k]).sum::<f64>()
+///         })
+///         .sum();
+///     assert!(force_x.abs() < 1e-12);
+/// }
+/// ```
 pub trait EquilibriumElement: Sync {
     /// Name for reports.
     fn name(&self) -> &'static str;

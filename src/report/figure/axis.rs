@@ -71,8 +71,8 @@ impl Axis {
             })
         };
         let most = if self.end - self.start < 340.0 { 4 } else { 6 };
-        let several = (1..=most).rev().map(|count| self.ticks(count));
-        several.clone().find(|ticks| apart(ticks)).or_else(|| several.last()).unwrap_or_default()
+        let mut several = (1..=most).rev().map(|count| self.ticks(count));
+        several.find(|ticks| apart(ticks)).unwrap_or_else(|| self.ticks(1))
     }
 
     fn linear_ticks(&self, count: usize) -> Vec<(f64, String)> {

@@ -26,6 +26,15 @@ use super::material::Material;
 use crate::element::{Compliance, EquilibriumElement};
 
 /// A space of stresses under test.
+///
+/// ```
+/// use hypercircle::element::block;
+/// use hypercircle::workbench::stress::Equilibrium;
+/// use hypercircle::workbench::{Options, Report};
+///
+/// let report = Report::of_stress(&Equilibrium(block(1)), &Options::default());
+/// assert!(report.passed, "{}", report.verdict);
+/// ```
 pub trait StressElement {
     /// What it is called.
     fn name(&self) -> &str;
