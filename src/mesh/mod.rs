@@ -166,7 +166,7 @@ pub struct Triangulation {
     pub points: Vec<[f64; 2]>,
     /// Counter-clockwise vertex indices of each triangle.
     pub triangles: Vec<[usize; 3]>,
-    /// Body of each triangle, as an index into [`crate::scene::Scene::bodies`].
+    /// Body of each triangle, as an index into [`crate::scene::Draft::bodies`].
     pub body: Vec<usize>,
     /// All edges. A pair of coinciding contact sides is two sets of boundary edges.
     pub edges: Vec<Edge>,

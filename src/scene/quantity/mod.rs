@@ -35,7 +35,7 @@ pub enum Target {
     },
     /// The normal force that presses the sides of a contact together, positive in compression.
     ContactForce {
-        /// Index into [`Scene::contacts`].
+        /// Index into [`Draft::contacts`](super::Draft::contacts).
         contact: usize,
         /// [s0, s1, s2, s3], a weight in the arc length s of the first side, counted as for [`super::Gap::Table`]: 0 up to
         /// s0 and from s3 on, 1 from s1 to s2, linear between. s0 ≤ s1 ≤ s2 < s3 with s0 < s1, or s1 ≤ 0: then the weight
@@ -44,7 +44,7 @@ pub enum Target {
     },
     /// The force along a direction that a support exerts on the bodies.
     SupportForce {
-        /// Index into [`Scene::supports`].
+        /// Index into [`Draft::supports`](super::Draft::supports).
         support: usize,
         /// Unit vector.
         direction: [f64; 2],
@@ -53,12 +53,12 @@ pub enum Target {
     Moment {
         /// What exerts them.
         of: Holder,
-        /// The point the moment is taken about, counted from [`Scene::origin`].
+        /// The point the moment is taken about, counted from [`Draft::origin`](super::Draft::origin).
         about: [f64; 2],
     },
     /// Mean of a stress component over a region of a body.
     Stress {
-        /// Index into [`Scene::bodies`].
+        /// Index into [`Draft::bodies`](super::Draft::bodies).
         body: usize,
         /// The region; whether it lies inside the body only the mesh can tell.
         region: Region,
@@ -72,16 +72,16 @@ pub enum Target {
 pub enum Extent {
     /// A boundary by its name, with or without a condition.
     Boundary(String),
-    /// Index into [`Scene::bodies`].
+    /// Index into [`Draft::bodies`](super::Draft::bodies).
     Body(usize),
 }
 
 /// What exerts forces on bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holder {
-    /// Index into [`Scene::contacts`].
+    /// Index into [`Draft::contacts`](super::Draft::contacts).
     Contact(usize),
-    /// Index into [`Scene::supports`].
+    /// Index into [`Draft::supports`](super::Draft::supports).
     Support(usize),
 }
 
@@ -90,7 +90,7 @@ pub enum Holder {
 pub enum Region {
     /// All of it.
     Whole,
-    /// The inside of a simple polygon, counter-clockwise, its corners counted from [`Scene::origin`]; a box has four.
+    /// The inside of a simple polygon, counter-clockwise, its corners counted from [`Draft::origin`](super::Draft::origin); a box has four.
     Polygon(Vec<[f64; 2]>),
 }
 
