@@ -20,6 +20,7 @@
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::jump::side_coefficients;
 use super::upper::{NoUpperBound, NodalValues, admissible};
+use crate::dual::equilibrium::edge_traction;
 use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, StressField, side};
 use crate::problem::{Condition, Problem, Scales};
@@ -154,16 +155,13 @@ fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize
 
 /// The traction on rollers times the displacement across them; thickness included.
 fn across_rollers(problem: &Problem, stress: &StressField, v: &Displacement) -> f64 {
-    let mesh = &problem.mesh;
     let term = |e: usize| {
-        let (length, [x, y]) = mesh.edge_frame(e);
-        let Some(t) = mesh.edges[e].triangles[0] else { return 0.0 };
-        let Some(side) = mesh.triangle_edges[t].iter().position(|&own| own == e) else { return 0.0 };
-        let pressing = |[xx, yy, xy]: [f64; 3]| (x * x * xx + y * y * yy + 2.0 * x * y * xy).abs();
-        let traction = stress.on_side(t, side).map(pressing).fold(0.0, f64::max);
-        let across = v.side(t, side).map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
-        length * traction * across
+        let (length, [x, y]) = problem.mesh.edge_frame(e);
+        let across = |values: &[[f64; 2]]| values.iter().map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
+        let degree = problem.mesh.edges[e].triangles[0].map_or(0, |t| stress.degree(t));
+        let traction = edge_traction(problem, stress, e, 0, degree);
+        length * across(&traction) * across(&side_coefficients(problem, v, e))
     };
-    let rollers = (0..mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller);
+    let rollers = (0..problem.mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller);
     problem.scene.thickness * rollers.map(term).sum::<f64>()
 }

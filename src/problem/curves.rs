@@ -58,10 +58,7 @@ pub(super) fn turned_by_the_mesh(problem: &Problem) -> Option<usize> {
 /// The triangles at edges of a circle that are longer than others of it.
 pub(super) fn beside_long_edges(problem: &Problem) -> Vec<usize> {
     let mesh = &problem.mesh;
-    let length = |e: usize| {
-        let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-        (b[0] - a[0]).hypot(b[1] - a[1])
-    };
+    let length = |e: usize| mesh.edge_frame(e).0;
     let mut edges: Vec<(usize, Circle)> = curved(problem).into_iter().collect();
     edges.sort_unstable_by_key(|(e, _)| *e);
     let mut circles: Vec<(Circle, f64)> = Vec::new();
