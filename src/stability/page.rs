@@ -9,7 +9,8 @@ use crate::report::document::{PLOTS, document};
 use crate::report::number::{clean, percent};
 
 const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{background:var(--good-bg)}.inaccurate,.no-convergence{background:var(--warn-bg)}\
-.refused{background:var(--sheet)}.crash,.wrong{background:var(--bad-bg);font-weight:700}.not-applicable{color:var(--dim)}";
+.refused{background:var(--sheet)}.crash,.wrong{background:var(--bad-bg);font-weight:700}.not-applicable{color:var(--dim)}\
+@page{size:A4 landscape}@media print{table{font-size:7pt}}";
 
 /// The page; `figures` are the curves by name.
 pub fn page(matrix: &Matrix, figures: &[(String, String)]) -> String {

@@ -1,11 +1,13 @@
 """fields.vtu in the library of ParaView, summary.md through a renderer."""
 
 import csv
+import re
 
 import pytest
 from markdown_it import MarkdownIt
 from vtkmodules.vtkFiltersTensor import vtkTensorPrincipalInvariants
 
+from conftest import ROOT
 from vtu import read
 
 COMPONENTS = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
@@ -52,6 +54,19 @@ def test_the_file_says_of_which_scene_it_is(made):
     data = read(made / "agree" / "fields.vtu").GetFieldData()
     text = lambda name: bytes(int(data.GetArray(name).GetValue(k)) for k in range(data.GetArray(name).GetNumberOfValues())).decode()  # noqa: E731
     assert text("scene") == "two_blocks" and len(text("scene_sha256")) == 64
+
+
+def test_every_array_and_column_is_in_the_documentation(made):
+    page = (ROOT / "docs" / "fields.md").read_text()
+    models = {"MODEL": r"(FEniCSx_P[12]|free_upper_bound)", "NAME": "tip"}
+    rows = [re.findall(r"`([^`]+)`", line.split("|")[1]) for line in page.splitlines() if line.startswith("| `")]
+    known = [re.sub("MODEL|NAME", lambda found: models[found[0]], name) for row in rows for name in row]
+    grid = read(made / "agree" / "fields.vtu")
+    for data in (grid.GetPointData(), grid.GetCellData(), grid.GetFieldData()):
+        for name in (data.GetArrayName(k) for k in range(data.GetNumberOfArrays())):
+            assert any(re.fullmatch(pattern, name) for pattern in known), name
+    for path in (made / "agree").glob("*.csv"):
+        assert path.name in known
 
 
 def test_the_summary_is_markdown(made):

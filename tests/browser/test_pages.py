@@ -26,6 +26,22 @@ def test_a_telephone_shows_all_of_it(opened, pages, name):
 
 
 @pytest.mark.parametrize("name", PAGES)
+def test_nothing_is_cut_on_paper(opened, pages, name):
+    page = opened(pages[name])
+    # What margins leave of A4, at 96 pixels an inch.
+    width, height = (1009, 688) if name == "stability" else (688, 1009)
+    page.set_viewport_size({"width": width, "height": height})
+    page.emulate_media(media="print")
+    wide = page.evaluate(
+        "[...document.querySelectorAll('main *, header *')].filter(e => e.checkVisibility() && "
+        "!e.closest('svg') && e.getBoundingClientRect().right > innerWidth + 1).map(e => e.outerHTML.slice(0, 80))"
+    )
+    assert not wide
+    tall = page.evaluate("[...document.querySelectorAll('figure')].filter(e => e.offsetHeight > innerHeight / 2).map(e => e.id)")
+    assert not tall
+
+
+@pytest.mark.parametrize("name", PAGES)
 def test_there_is_one_heading_and_one_main_part(opened, pages, name):
     page = opened(pages[name], java_script_enabled=False)
     assert page.locator("h1").count() == 1 and page.locator("main").count() == 1

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::drawn::{Drawn, size};
 use super::mark::{Mark, draw};
 use super::outline::{View, loops, outline, polyline};
 use super::svg::{Svg, look, px};
@@ -13,54 +14,26 @@ const WIDTH: f64 = 560.0;
 /// Up to this many triangles their edges are drawn.
 const MESH_SHOWN: usize = 1500;
 
-/// The factor 1, 2 or 5 times a power of ten that makes the largest of `fields` about an eighth of the size of the scene.
-pub fn deformation_scale(problem: &Problem, fields: &[&Displacement]) -> f64 {
-    let nodes = fields.iter().flat_map(|f| (0..f.len()).flat_map(|t| f.block(t)));
-    let largest = nodes.map(|u| u[0].hypot(u[1])).filter(|d| d.is_finite()).fold(0.0, f64::max);
-    round_down(0.13 * size(problem) / largest)
-}
-
-/// Largest extent of the scene.
-fn size(problem: &Problem) -> f64 {
-    let extent = |c: usize| {
-        let (low, high) =
-            problem.mesh.points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[c]), h.max(p[c])));
-        high - low
-    };
-    extent(0).max(extent(1))
-}
-
-fn round_down(x: f64) -> f64 {
-    if !(x.is_finite() && x > 0.0) {
-        return 1.0;
-    }
-    let power = 10f64.powf(x.log10().floor());
-    power * [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= x * 1.000001).unwrap_or(1.0)
-}
-
-/// The bodies displaced by `scale` times `field`, over their undeformed outlines. All pictures with equal `scale` and
+/// The bodies displaced by `field` as `drawn` says, over their undeformed outlines. All pictures with equal `drawn` and
 /// `all` (the fields that have to fit) have the same frame, so that they can be laid side by side.
 pub fn deformed(
     problem: &Problem,
     name: &str,
     field: &Displacement,
     all: &[&Displacement],
-    scale: f64,
+    drawn: &Drawn,
     marks: &[Mark],
 ) -> String {
     let mesh = &problem.mesh;
     let bodies = problem.scene.bodies.len();
-    let moved = |t: usize, k: usize, f: &Displacement| {
-        let (p, u) = (mesh.corners(t)[k], f.corner(t, k));
-        [0, 1].map(|c| p[c] + scale * u[c])
-    };
+    let moved = |t: usize, k: usize, f: &Displacement| drawn.place(problem, t, mesh.corners(t)[k], f.corner(t, k));
     let curved = |e: usize, t: usize| {
         let i = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
         let [a, b] = [1, 2].map(|n| mesh.corners(t)[(i + n) % 3]);
         let k = field.degree(t);
         let at = |(j, u): (usize, [f64; 2])| {
             let s = j as f64 / k as f64;
-            [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c] + scale * u[c])
+            drawn.place(problem, t, [0, 1].map(|c| (1.0 - s) * a[c] + s * b[c]), u)
         };
         pieces(&field.side(t, i).enumerate().map(at).collect::<Vec<_>>())
     };
@@ -69,8 +42,10 @@ pub fn deformed(
         .iter()
         .filter(fits)
         .flat_map(|f| (0..mesh.triangles.len()).flat_map(move |t| (0..3).map(move |k| moved(t, k, f))));
-    let (view, height) = View::fit(mesh.points.iter().copied().chain(corners), WIDTH, 460.0, 14.0);
-    let mut svg = Svg::new(WIDTH, height, format!("Deformed shape, {name}, displacements times {scale}"));
+    let apart = |t: usize| drawn.apart(mesh.body[t]);
+    let before = (0..mesh.triangles.len()).flat_map(|t| mesh.corners(t).map(|p| [0, 1].map(|c| p[c] + apart(t)[c])));
+    let (view, height) = View::fit(before.chain(corners), WIDTH, 460.0, 14.0);
+    let mut svg = Svg::new(WIDTH, height, format!("Deformed shape, {name}, displacements times {}", drawn.scale));
     if field.len() != mesh.triangles.len() {
         return svg.finish();
     }
@@ -91,7 +66,7 @@ pub fn deformed(
         svg.path(
             look::LINE,
             r#"stroke-width="0.8" stroke-dasharray="3 4" stroke-opacity="0.55""#,
-            &outline(mesh, body, &view),
+            &outline(mesh, body, &view.moved(drawn.apart(body))),
         );
         let d = curved_outline(problem, body, &view, curved);
         svg.path(look::LINE, r#"stroke-width="1.1""#, &d);
@@ -106,18 +81,18 @@ pub fn deformed(
         let dash = if side == 0 { "" } else { r#" stroke-dasharray="7 3""# };
         svg.path(look::CONTACT, &format!(r#"stroke-width="2.4"{dash}"#), &d);
     }
-    draw(&mut svg, marks, |mark| view.at(displaced(problem, field, scale, mark)));
+    draw(&mut svg, marks, |mark| view.at(displaced(problem, field, drawn, mark)));
     svg.finish()
 }
 
 /// Where a mark is once its triangle has been displaced.
-fn displaced(problem: &Problem, field: &Displacement, scale: f64, mark: &Mark) -> [f64; 2] {
+fn displaced(problem: &Problem, field: &Displacement, drawn: &Drawn, mark: &Mark) -> [f64; 2] {
     let Some(t) = mark.triangle.filter(|t| *t < field.len()) else { return mark.at };
     let [a, b, c] = problem.mesh.corners(t);
     let twice = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let area = twice(a, b, c);
     let u = field.at(t, [twice(mark.at, b, c) / area, twice(a, mark.at, c) / area, twice(a, b, mark.at) / area]);
-    [0, 1].map(|k| mark.at[k] + scale * u[k])
+    drawn.place(problem, t, mark.at, u)
 }
 
 /// The rigid motion that nothing stops: outlines before and after, and arrows.
@@ -217,16 +192,12 @@ mod tests {
     use crate::report::sample::{Sample, Verdict, assert_well_formed};
 
     #[test]
-    fn scale_is_round_and_keeps_the_picture_readable() {
+    fn both_sides_of_a_contact_are_marked() {
         let sample = Sample::new(2, Verdict::Agree);
         let dossier = sample.dossier();
         let fields: Vec<&Displacement> = dossier.displacements.iter().map(|d| d.1).collect();
-        // The largest displacement of the formula is hypot(1.8, …) < 2.5 in a scene of size 2.
-        assert_eq!(deformation_scale(&sample.problem, &fields), 0.1);
-        assert_eq!(deformation_scale(&sample.problem, &[]), 1.0);
-        assert_eq!(round_down(0.3), 0.2);
-        assert_eq!(round_down(1000.0), 1000.0);
-        let text = deformed(&sample.problem, "<free>", fields[0], &fields, 0.1, &[]);
+        let drawn = Drawn::of(&sample.problem, &fields);
+        let text = deformed(&sample.problem, "<free>", fields[0], &fields, &drawn, &[]);
         assert_well_formed(&text);
         assert_eq!(text.matches("class=\"contact\"").count(), 2);
     }
@@ -237,7 +208,7 @@ mod tests {
         let mesh = &sample.problem.mesh;
         let edge = vec![[0.0, 0.5]; mesh.edges.len()];
         let field = Displacement::from_p2(mesh, &vec![[0.0; 2]; mesh.points.len()], &edge);
-        let text = deformed(&sample.problem, "bow", &field, &[&field], 1.0, &[]);
+        let text = deformed(&sample.problem, "bow", &field, &[&field], &Drawn::of(&sample.problem, &[&field]), &[]);
         assert!(text.contains('Q'));
     }
 

@@ -37,6 +37,12 @@ impl View {
         (View { scale, origin: [left - low[0] * scale, used - margin + low[1] * scale] }, used)
     }
 
+    /// The view in which everything appears moved by `by` in the plane.
+    pub fn moved(self, by: [f64; 2]) -> Self {
+        let [x, y] = self.origin;
+        View { origin: [x + self.scale * by[0], y - self.scale * by[1]], ..self }
+    }
+
     /// Page coordinates of a point of the plane.
     pub fn at(&self, p: [f64; 2]) -> [f64; 2] {
         [self.origin[0] + self.scale * p[0], self.origin[1] - self.scale * p[1]]

@@ -5,6 +5,7 @@ use maud::{Markup, PreEscaped, html};
 use super::links;
 use super::tables::scroll;
 use crate::element::Displacement;
+use crate::report::figure::drawn::Drawn;
 use crate::report::figure::mark::{Mark, marks};
 use crate::report::figure::{deformed, history, pressure, scene};
 use crate::report::number::{clean, optional, percent, significant};
@@ -56,20 +57,18 @@ fn scene_figure(dossier: &Dossier, marks: &[Mark]) -> Markup {
 
 fn shapes(dossier: &Dossier, marks: &[Mark]) -> Markup {
     let all: Vec<&Displacement> = dossier.displacements.iter().map(|(_, field)| *field).collect();
-    let scale = deformed::deformation_scale(dossier.problem, &all);
-    let gap = dossier.problem.pairs().flat_map(|p| p.gap).any(|g| g > 0.0);
+    let drawn = Drawn::of(dossier.problem, &all);
     html! {
         @for (i, (name, field)) in dossier.displacements.iter().enumerate() {
             @let name = if name == "free" { "from the dual model (free upper bound)".to_string() } else { clean(name) };
             figure id=[(i == 0).then_some("shapes")] {
-                (PreEscaped(deformed::deformed(dossier.problem, &name, field, &all, scale, marks)))
+                (PreEscaped(deformed::deformed(dossier.problem, &name, field, &all, &drawn, marks)))
                 figcaption {
                     b { "Deformed shape, " (name) ". " }
-                    "Displacements times " b { (significant(scale, 3)) } ". Dashed grey: undeformed. Red: the two sides of the contact; where they part, \
+                    "Displacements times " b { (significant(drawn.scale, 3)) } ". Dashed grey: undeformed. Red: the two sides of the contact; where they part, \
                     it has opened."
-                    @if gap && scale > 1.0 {
-                        " The bodies start with a gap that is not drawn to this scale, so the sides may seem to overlap."
-                    }
+                    @if drawn.gaps_scaled { " Gaps between bodies are drawn as many times as wide." }
+                    @if drawn.held_back { " A larger picture would show bodies that do not penetrate as if they did." }
                     @if i == 0 { (links::checks_of("shapes", &dossier.report)) }
                 }
             }

@@ -88,11 +88,16 @@ svg .b0{fill:#234566}svg .b1{fill:#57461f}svg .b2{fill:#24503a}svg .b3{fill:#4d3
 svg .s0{stroke:#58a6ff}svg .s1{stroke:#ff9457}svg .s2{stroke:#3ccf9b}svg .s3{stroke:#d990c4}svg .s4{stroke:#d9b23c}svg .s5{stroke:#aab4bf}
 svg text[paint-order]{stroke:#151b23}svg .mesh{stroke:#8b98a5}svg .m{stroke:none}svg .m.s0{fill:#58a6ff}svg .m.s1{fill:#ff9457}svg .m.s2{fill:#3ccf9b}svg .m.s3{fill:#d990c4}svg .m.s4{fill:#d9b23c}svg .m.s5{fill:#aab4bf}
 }
+@page{size:A4;margin:15mm 14mm}
 @media print{
-body{font-size:11pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}
-figure,.card:not(.asked),.asked-for>div,tr,.failures li,.verdict{break-inside:avoid}h2{break-after:avoid}
-.scroll{overflow:visible}table{font-size:8.5pt}.tools,.how,.skip,#map output{display:none!important}
-figcaption,p,li{orphans:3;widows:3}thead{display:table-header-group}td.why{min-width:240px}td.long{min-width:120px}td.n,th.n{white-space:normal}.back,figcaption details{display:none}.gallery{display:block}.gallery figure{margin-bottom:12px}
+body{font-size:10.5pt}header,main,footer{max-width:none;padding-left:0;padding-right:0}header{padding-top:0}
+#pictures,#checks,#energy{break-before:page}h2{margin-top:26px}#pictures h2,#checks h2,#energy h2{margin-top:0}
+figure,.card:not(.asked),.asked-for>div,tr,.failures li,.verdict,dl.words div{break-inside:avoid}h2,caption,dt{break-after:avoid}
+.first{display:block}.first>*,.answers>*{margin-bottom:12px}.card svg{max-height:92mm}
+.gallery{display:block}.gallery figure{margin-bottom:10px}figure svg{max-height:84mm}.stage{max-width:140mm}#map figcaption,figcaption{font-size:9pt}
+.scroll{overflow:visible}table{font-size:8pt}td,th{padding:3px 8px 3px 0}thead{display:table-header-group}td.long a,summary::marker{display:none}p{max-width:none}td,th{min-width:0!important;white-space:normal!important}td.long,td.why{min-width:80px!important}
+.sortable tr{display:grid;grid-template-columns:minmax(0,42mm) 12mm repeat(5,minmax(0,1fr)) 19mm;padding:2px 0;border-bottom:1px solid var(--rule)}.sortable td,.sortable th{border:0;padding:1px 6px 1px 0}.sortable td.why,.sortable th:last-child{grid-column:1/-1}
+figcaption,p,li{orphans:3;widows:3}.tools,.how,.skip,#map output{display:none!important}.back,figcaption details{display:none}
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}
 }
 "#;
