@@ -16,6 +16,8 @@ const PREFIX: &str = "hypercircle-";
 const LOCK: &str = ".alive";
 /// A folder without a lock that is younger than this may be about to get one, unless the process in its name is gone.
 const YOUNG: Duration = Duration::from_secs(60);
+/// How long a process that was about to become another one may keep the lock of the one that started it.
+const LETTING_GO: Duration = Duration::from_millis(400);
 
 /// The folders that a signal has to take away.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -89,12 +91,14 @@ impl Drop for Scratch {
 
 /// Removes every folder of this process: it is about to end.
 pub(super) fn remove_all() {
-    for folder in folders().iter() {
-        // A thread of this process may be writing into it still.
-        for _ in 0..10 {
-            if fs::remove_dir_all(folder).is_ok() || !folder.exists() {
-                break;
-            }
+    folders().iter().for_each(|folder| remove_busy(folder));
+}
+
+/// Removes a folder into which a thread of this process, or what a dead one started, may be writing still.
+fn remove_busy(folder: &Path) {
+    for _ in 0..10 {
+        if fs::remove_dir_all(folder).is_ok() || !folder.exists() {
+            break;
         }
     }
 }
@@ -118,15 +122,24 @@ fn sweep(root: &Path) {
         // The entry itself: a link that somebody left here is not followed.
         let own = |e: &fs::DirEntry| e.metadata().is_ok_and(|m| m.is_dir() && m.uid() == user);
         if named && own(&entry) && is_dead(&entry) {
-            let _ = fs::remove_dir_all(entry.path());
+            remove_busy(&entry.path());
         }
     }
 }
 
 fn is_dead(folder: &fs::DirEntry) -> bool {
+    let gone = || is_gone(&folder.file_name().to_string_lossy());
     match File::open(folder.path().join(LOCK)) {
-        Ok(alive) => flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok(),
-        Err(_) if is_gone(&folder.file_name().to_string_lossy()) => true,
+        Ok(alive) => {
+            let free = || flock(&alive, FlockOperation::NonBlockingLockExclusive).is_ok();
+            // What a process was starting when it was killed holds its lock until it has become the other program.
+            let let_go = || {
+                std::thread::sleep(LETTING_GO / 20);
+                free()
+            };
+            free() || gone() && (0..20).any(|_| let_go())
+        }
+        Err(_) if gone() => true,
         Err(_) => {
             let age = folder.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
             age.is_some_and(|age| age > YOUNG)
@@ -173,6 +186,29 @@ mod tests {
         while folders().contains(&path) {}
         assert!(!path.exists(), "it is still being removed, and nobody would wait for that");
         removing.join().expect("removed");
+    }
+
+    #[test]
+    fn what_a_dead_process_was_starting_keeps_its_folder_for_a_moment_only() {
+        let root = tempfile::tempdir().expect("a folder");
+        // No process has a number as large; a lock belongs to the open file, so this thread plays its child.
+        let folder = root.path().join("hypercircle-4294967295-x");
+        fs::create_dir(&folder).expect("writable");
+        let alive = File::create(folder.join(LOCK)).expect("writable");
+        flock(&alive, FlockOperation::NonBlockingLockExclusive).expect("free");
+        let child = std::thread::spawn(move || {
+            std::thread::sleep(LETTING_GO / 8);
+            drop(alive);
+        });
+        sweep(root.path());
+        assert!(!folder.exists());
+        child.join().expect("ended");
+        // In another container, say, where the number means another process.
+        fs::create_dir(&folder).expect("writable");
+        let elsewhere = File::create(folder.join(LOCK)).expect("writable");
+        flock(&elsewhere, FlockOperation::NonBlockingLockExclusive).expect("free");
+        sweep(root.path());
+        assert!(folder.exists());
     }
 
     #[test]
