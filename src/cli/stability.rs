@@ -21,7 +21,7 @@ pub struct Args {
     #[arg(long)]
     pub reduced: bool,
     /// Only these regimes; may be repeated
-    #[arg(long, value_name = "NAME", value_parser = known)]
+    #[arg(long, value_name = "NAME", value_parser = known, help = regimes())]
     pub regime: Vec<&'static Regime>,
     /// Only these methods; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known_method)]
@@ -62,8 +62,17 @@ impl Args {
 }
 
 fn known(id: &str) -> Result<&'static Regime, String> {
-    let names: Vec<&str> = REGIMES.iter().copied().flatten().map(|r| r.id).collect();
-    stability::regime(id).ok_or_else(|| format!("there is no regime {id}; choose from {}", names.join(", ")))
+    stability::regime(id).ok_or_else(|| format!("there is no regime {id}; choose from {}", names()))
+}
+
+/// Names of all regimes.
+fn names() -> String {
+    REGIMES.iter().copied().flatten().map(|r| r.id).collect::<Vec<_>>().join(", ")
+}
+
+/// What `--help` says of `--regime`.
+fn regimes() -> String {
+    format!("Only these regimes; may be repeated. One of {}", names())
 }
 
 /// Runs every method in every regime. Exit code 1 says that a method of this program, or a solver handed in, is wrong without

@@ -1,7 +1,7 @@
 //! `hypercircle stability`: cells say what happened, planted lies are found, and the program's own methods hold.
 
 use hypercircle::measure::{Answer, End, Ended, Machine, Measured, Method, Seconds};
-use hypercircle::stability::{Cell, Claim, Known, Matrix, Outcome, Row, Step, Truth, judge};
+use hypercircle::stability::{Cell, Claim, Known, Matrix, Outcome, REGIMES, Row, Step, Truth, judge};
 
 use crate::command::{ended, hypercircle, run};
 
@@ -220,4 +220,13 @@ fn a_sweep_leaves_its_files_and_is_resumed() {
     assert!(again.contains("\"iterations\":77"));
     let name = |line: &str| line.split('"').nth(3).map(str::to_string);
     assert_eq!(again.lines().last().and_then(name), name(&removed));
+}
+
+#[test]
+fn the_help_names_every_regime() {
+    let output = run(&mut hypercircle(std::path::Path::new("."), ["stability", "--help"]));
+    let text = String::from_utf8(output.stdout).expect("UTF-8").split_whitespace().collect::<Vec<_>>().join(" ");
+    for regime in REGIMES.iter().copied().flatten() {
+        assert!(text.contains(&format!(" {}", regime.id)), "{}", regime.id);
+    }
 }
