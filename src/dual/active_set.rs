@@ -26,6 +26,9 @@ pub struct ActiveSet {
 /// Bytes of the sparse matrix for each triangle.
 const MATRIX: f64 = 1500.0;
 
+/// Steps for contact that another method did not settle: each is a factorisation.
+const STEPS_OF_A_RESCUE: usize = 240;
+
 impl Default for ActiveSet {
     fn default() -> Self {
         ActiveSet { most_steps: 60, most_refinements: 50 }
@@ -43,6 +46,31 @@ impl DualMethod for ActiveSet {
     }
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        self.step_from(None, usize::MAX, problem, motions, options)
+    }
+}
+
+impl ActiveSet {
+    /// Solves where another method came to the state `closed` and no further, in a limited number of steps, none of which
+    /// begins after the deadline of `options`.
+    pub(super) fn rescue(
+        &self,
+        problem: &Problem,
+        motions: &[Motion],
+        options: &Options,
+        closed: Option<Vec<bool>>,
+    ) -> Result<Found, DualError> {
+        self.step_from(closed, STEPS_OF_A_RESCUE, problem, motions, options)
+    }
+
+    fn step_from(
+        &self,
+        from: Option<Vec<bool>>,
+        most_steps: usize,
+        problem: &Problem,
+        motions: &[Motion],
+        options: &Options,
+    ) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
         let system = System::new(problem, options);
@@ -55,12 +83,16 @@ impl DualMethod for ActiveSet {
         let symbolic = structure(problem, &system, options)?;
         seconds.factor = start.elapsed().as_secs_f64();
 
-        let mut closed = vec![true; system.jump_bound.len()];
+        let mut closed = from.unwrap_or_else(|| vec![true; system.jump_bound.len()]);
+        let most_steps = most_steps.min(self.most_steps + 4 * closed.len());
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
         let (mut seen, mut careful, mut from_closed) = (HashSet::new(), false, true);
         let mut left = f64::INFINITY;
-        for step in 1..=self.most_steps + 4 * closed.len() {
+        for step in 1..=most_steps {
+            if step > 1 && options.deadline.is_some_and(|end| Instant::now() > end) {
+                break;
+            }
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
             let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
@@ -145,7 +177,7 @@ impl DualMethod for ActiveSet {
         }
         Err(DualError::NotConverged {
             method: self.name(),
-            iterations: self.most_steps + 4 * closed.len(),
+            iterations: most_steps,
             residual: left,
             wanted: GRAZING,
             advice:
@@ -179,4 +211,32 @@ fn constrained(system: &System, held: &[usize], closed: &[bool]) -> (SparseColMa
     let mut matrix = (*system.matrix).clone();
     isolate(&mut matrix, |d| fixed[d].is_some());
     (matrix, fixed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    fn two_blocks() -> Problem {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml");
+        Problem::load(Scene::read(&path).expect("a scene")).expect("a problem")
+    }
+
+    #[test]
+    fn a_rescue_goes_on_from_the_state_that_was_reached() {
+        let (problem, options) = (two_blocks(), Options::default());
+        let whole = ActiveSet::default().solve(&problem, &[], &options).expect("an answer");
+        assert!(whole.iterations > 2);
+        let closed: Vec<bool> = whole.closed.values().to_vec();
+        let rescued = ActiveSet::default().rescue(&problem, &[], &options, Some(closed)).expect("an answer");
+        assert_eq!((rescued.iterations, &rescued.closed), (1, &whole.closed));
+    }
+
+    #[test]
+    fn no_step_begins_after_the_deadline_but_the_first() {
+        let options = Options { deadline: Some(Instant::now()), ..Options::default() };
+        let error = ActiveSet::default().rescue(&two_blocks(), &[], &options, None).expect_err("not settled");
+        assert!(matches!(error, DualError::NotConverged { .. }), "{error}");
+    }
 }

@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use super::ends::Ends;
 use super::hybrid::Motion;
+use super::qp::ContactState;
 use super::reduced::{Contact, Reduced};
 use super::refinement::Refined;
 use super::rigid::unsupported;
@@ -52,12 +53,15 @@ impl DualMethod for Condensed {
             // Where the open part of a contact leaves a body without hold, the Schur complement does not tell the state, or one
             // factor for all states does not reach round-off. The active set bears that, at the price of a factorisation in
             // each step.
-            Err(first @ (DualError::ContactUndetermined | DualError::NotConverged { .. })) => {
+            Err(Unsettled {
+                error: first @ (DualError::ContactUndetermined | DualError::NotConverged { .. }),
+                closed,
+            }) => {
                 let why = match first {
                     DualError::ContactUndetermined => "the Schur complement on the contact did not determine its state",
                     _ => "refinement with the factor of all contact states left more than round-off",
                 };
-                match ActiveSet::default().solve(problem, motions, options) {
+                match ActiveSet::default().rescue(problem, motions, options, closed) {
                     Ok(mut found) => {
                         found.notes.push(format!("{why}; contact was found by active sets"));
                         Ok(found)
@@ -66,13 +70,25 @@ impl DualMethod for Condensed {
                     Err(other) => Err(other),
                 }
             }
-            other => other,
+            other => other.map_err(|unsettled| unsettled.error),
         }
     }
 }
 
+/// Why no answer came of it, and the contact state that it came to.
+struct Unsettled {
+    error: DualError,
+    closed: Option<Vec<bool>>,
+}
+
+impl From<DualError> for Unsettled {
+    fn from(error: DualError) -> Self {
+        Unsettled { error, closed: None }
+    }
+}
+
 impl Condensed {
-    fn condense(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+    fn condense(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, Unsettled> {
         let mut seconds = Phases::default();
         let start = Instant::now();
         let mut system = System::new(problem, options);
@@ -104,11 +120,13 @@ impl Condensed {
             most_steps: self.most_refinements,
         };
         let now = Refined::new(problem, &system, x);
-        let now = settling.run(now, &mut state)?;
+        let reached = |error, state: &ContactState| Unsettled { error, closed: Some(state.closed.clone()) };
+        let now = settling.run(now, &mut state).map_err(|error| reached(error, &state))?;
         let stress = system.modes.stresses(problem, &now.s);
         let moments = system.unknowns.moments(problem, &now.x);
         if self.most_refinements > 0 {
-            settling.accept(&now, &stress, &moments, &state, self.accuracy())?;
+            let accepted = settling.accept(&now, &stress, &moments, &state, self.accuracy());
+            accepted.map_err(|error| reached(error, &state))?;
         }
         seconds.recover = start.elapsed().as_secs_f64();
         let (notes, unknowns) = (contact.notes(state.steps), system.unknowns.count);

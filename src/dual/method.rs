@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 use faer::Par;
 
@@ -84,6 +85,8 @@ pub struct Options {
     pub keep_factor: bool,
     /// Memory that the process may hold.
     pub budget: Budget,
+    /// When what takes many factorisations gives up.
+    pub deadline: Option<Instant>,
     /// Told now and then how many iterations an iterative method has made and what residual it has reached.
     pub progress: Option<Progress>,
 }
@@ -99,6 +102,7 @@ impl Default for Options {
             closed: None,
             keep_factor: false,
             budget: Budget::UNLIMITED,
+            deadline: None,
             progress: None,
         }
     }

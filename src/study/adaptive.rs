@@ -6,7 +6,7 @@
 //! their sum is what the tolerance is set on. Both bounds hold on every mesh, so refinement decides how soon the
 //! tolerance is reached and nothing else.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::admission::Admission;
 use super::answers::answers;
@@ -122,8 +122,11 @@ pub fn adapt(
     let mut forecast = Forecast::default();
     let mut last: Option<Measured> = None;
     let mut shortest = SHORTEST;
+    let by_then = goal.max_seconds.and_then(|most| start.checked_add(Duration::try_from_secs_f64(most).ok()?));
     loop {
         let began = Instant::now();
+        // The first mesh has no result before it to end with.
+        let options = &Options { deadline: by_then.filter(|_| last.is_some()), ..options.clone() };
         let outcome = stage.solved(method, options, last.as_ref().map(|last| &last.solved.certified));
         let (solved, fault) = match (outcome, last.take()) {
             (Ok(solved), before) => {

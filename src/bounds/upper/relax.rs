@@ -33,6 +33,9 @@ const WORTH_A_SWEEP: f64 = 3e-3;
 /// is off by a little everywhere, which sweeps take away slowly.
 const WORTH_WHERE_TURNING: f64 = 1e-3;
 
+/// Part of the energy below which a gain is rounding, however little is wanted.
+const NO_GAIN: f64 = 1e-13;
+
 /// A gap above this part of the energy makes a poor bound, and smaller gains are worth a sweep in proportion: sweeps that
 /// gain little lead to others that gain much.
 const GOOD: f64 = 1e-3;
@@ -89,7 +92,7 @@ impl Until {
     /// Whether a sweep that gained `gained` and led to the values was the last one.
     fn is_reached(self, problem: &Problem, model: &Model<'_>, values: &[[f64; 2]], gained: f64) -> bool {
         match self {
-            Until::Gains(least) => gained <= least,
+            Until::Gains(least) => gained <= least || gained <= NO_GAIN * model.energy(values).abs(),
             Until::Near(floor) => {
                 let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
                 let gap = (model.energy(values) - floor).max(0.0);
