@@ -32,6 +32,9 @@ const SHORTEST: f64 = 1e-11;
 const COARSER: f64 = 30.0;
 const LONGEST: f64 = 1e-5;
 
+/// A mesh that makes the error smaller by less than this power of its unknowns is hardly worth them.
+const STALLED: f64 = 0.1;
+
 /// How far from its tolerance a quantity is taken to be that has no interval yet.
 const UNKNOWN: f64 = 10.0;
 
@@ -155,13 +158,16 @@ pub fn adapt(
         }
         let spent = start.elapsed().as_secs_f64();
         let mesh = (&certified.problem, &solved.solved.elements);
-        let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest);
+        let seconds = goal.max_seconds.map(|most| [most - spent, row.step_seconds]);
+        let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest, seconds);
         let finer = match (goal.max_seconds, fault, terms) {
             (_, Some(fault), _) if shortest > LONGEST => Err(fault),
             (Some(most), ..) if spent >= most => Err(format!("{most} seconds have passed")),
             _ if stalls(&history, goal) => Err("it no longer makes the error smaller".to_string()),
             (.., Err(reason)) => Err(format!("no upper bound could be built ({reason})")),
-            (.., Ok(terms)) => rounds.next(&solved.solved, terms, *left)?,
+            (.., Ok(terms)) => {
+                rounds.next(&solved.solved, terms, *left, row.rate.is_some_and(|rate| rate < STALLED))?
+            }
         };
         stage = match finer {
             Ok(finer) => finer,

@@ -11,6 +11,7 @@ use super::trend::{EXPECTED, inherited, raised};
 use crate::dual::Size;
 use crate::element::Elements;
 use crate::problem::Problem;
+use crate::report::number::vector;
 
 /// Unknowns of the next mesh per unknown of this one: the solves on meshes that grow by g cost g/(g − 1) times the last one,
 /// if a solve costs in proportion to its unknowns, and less where it costs more.
@@ -34,6 +35,17 @@ const WORTH_A_SOLVE: f64 = 1.1;
 /// farther.
 const DEEPEST: f64 = 1e-6;
 
+/// The time that a mesh takes grows like this power of its unknowns.
+const TIME: f64 = 1.4;
+
+/// What is left of the error that cannot be refined away ends a run from this part of all of it on, and from the other on
+/// where the last mesh was hardly worth its unknowns: the fields differ around such a place, too.
+const MOST_OF_IT: f64 = 0.5;
+const SOME_OF_IT: f64 = 0.02;
+
+/// Coordinates that are zero when they are told, relative to the smallest area.
+const NOWHERE: f64 = 1e4;
+
 /// From a mesh that was solved to the next one.
 pub struct Rounds<'a> {
     goal: &'a Goal,
@@ -45,6 +57,8 @@ pub struct Rounds<'a> {
     kept: Size,
     /// No triangle of less area is refined.
     smallest: f64,
+    /// Seconds that are left, and those that the last mesh took.
+    seconds: Option<[f64; 2]>,
 }
 
 /// How far a mesh is to go.
@@ -68,28 +82,42 @@ enum Round {
 
 impl<'a> Rounds<'a> {
     /// From the mesh of `problem` with its `elements`; triangles `shortest` across, relative to the farthest corner, are not
-    /// refined.
+    /// refined. Of `seconds`, where they are limited, the first are left and the second are what the last mesh took.
     pub fn new(
         goal: &'a Goal,
         admission: &'a Admission<'a>,
         forecast: &'a Forecast,
         (problem, elements): (&'a Problem, &Elements),
         shortest: f64,
+        seconds: Option<[f64; 2]>,
     ) -> Self {
         let kept = Size::of_degrees(problem, elements);
-        Rounds { goal, admission, forecast, problem, kept, smallest: smallest_area(problem, shortest) }
+        Rounds { goal, admission, forecast, problem, kept, smallest: smallest_area(problem, shortest), seconds }
     }
 
     /// The next mesh, or the reason why there is none; `terms` are those of what is larger by the factor `left` than it may
-    /// be.
+    /// be, which the last mesh hardly made smaller where it `stalls`.
     ///
     /// # Errors
     /// [`StudyError::Mesh`].
-    pub fn next(&self, solved: &Solved, terms: &Indicators, left: f64) -> Result<Result<Stage, String>, StudyError> {
+    pub fn next(
+        &self,
+        solved: &Solved,
+        terms: &Indicators,
+        left: f64,
+        stalls: bool,
+    ) -> Result<Result<Stage, String>, StudyError> {
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
         stage.ways.clone_from(&solved.ways);
+        if let Some(reason) = self.beyond_numbers(&stage, terms, left, stalls) {
+            return Ok(Err(reason));
+        }
         let solved = unknowns(&stage);
-        let growth = GROWTH.min(MORE * (left / (AIM * AIM)).powf(SLOWEST));
+        let in_time = self.seconds.map_or(GROWTH, |[left, last]| (left / last).powf(1.0 / TIME));
+        if in_time < WORTH_A_SOLVE {
+            return Ok(Err("the time that is left is too short for the next mesh".to_string()));
+        }
+        let growth = GROWTH.min(in_time).min(MORE * (left / (AIM * AIM)).powf(SLOWEST));
         let aim = Aim { enough: terms.total() * AIM * AIM / left, solved, most: growth * solved };
         let mut terms = terms.clone();
         loop {
@@ -105,6 +133,26 @@ impl<'a> Rounds<'a> {
                 return Ok(Ok(stage));
             }
         }
+    }
+
+    /// Why no refinement reaches what is wanted: most of the error, and more than may stay, lies in triangles that are as small
+    /// as numbers can resolve, as where supports turn by a little in a corner.
+    fn beyond_numbers(&self, stage: &Stage, terms: &Indicators, left: f64, stalls: bool) -> Option<String> {
+        let mesh = &self.problem.mesh;
+        let stays = |t: &usize| mesh.area(*t) <= self.smallest && !stage.rises(*t);
+        let staying: Vec<usize> = (0..mesh.triangles.len()).filter(stays).collect();
+        let share = staying.iter().map(|&t| terms.of(t)).sum::<f64>() / terms.total();
+        let worst = staying.into_iter().max_by(|&a, &b| terms.of(a).total_cmp(&terms.of(b)))?;
+        let corner = mesh.corners(worst)[0].map(|x| if x.abs() * x.abs() <= NOWHERE * self.smallest { 0.0 } else { x });
+        let place = vector(self.problem.scene.as_written(corner), 6);
+        let most = share > MOST_OF_IT && share * left > 1.0;
+        let where_it_is = if most {
+            "most of what is left of the error lies"
+        } else {
+            "the error no longer becomes smaller, and a part of it lies"
+        };
+        (most || stalls && share > SOME_OF_IT)
+            .then(|| format!("{where_it_is} at {place}, where the triangles are as small as numbers can resolve"))
     }
 
     /// One round of marking. The last one is tried with smaller parts of the gap, down to a sixteenth, while it would
