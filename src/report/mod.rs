@@ -4,6 +4,7 @@
 
 mod csv;
 mod data;
+mod deflate;
 pub(crate) mod document;
 pub mod figure;
 pub mod folder;

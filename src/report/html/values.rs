@@ -5,11 +5,11 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use miniz_oxide::deflate::compress_to_vec_zlib;
 use serde::Serialize;
 
 use crate::problem::Problem;
 use crate::report::Map;
+use crate::report::deflate::deflated;
 use crate::report::figure::map::{self, Scale, WIDTH};
 use crate::report::figure::raster::raster;
 use crate::report::figure::viridis::{LEVELS, colour};
@@ -96,7 +96,7 @@ pub(super) fn values(problem: &Problem, maps: &[(&Map, Scale)]) -> Values {
         bodies: problem.scene.bodies.iter().map(|body| clean(&body.name)).collect(),
         colours: (0..LEVELS).map(colour).collect(),
         maps: maps.iter().map(|(map, scale)| shown(map, scale)).collect(),
-        data: STANDARD.encode(compress_to_vec_zlib(&bytes, 9)),
+        data: STANDARD.encode(deflated(&bytes, 9)),
     }
 }
 

@@ -2,14 +2,15 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use miniz_oxide::deflate::compress_to_vec_zlib;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 
+use crate::report::deflate::deflated;
+
 /// Bytes that are compressed together.
 const BLOCK: usize = 1 << 20;
-/// How hard to compress, from 0 to 10.
-const LEVEL: u8 = 6;
+/// How hard to compress, from 0 to 9.
+const LEVEL: u32 = 6;
 /// Bits of the mantissa that are kept where numbers are for looking at: they then have four digits.
 const KEPT_BITS: u32 = 13;
 
@@ -117,7 +118,7 @@ impl Sheet {
 
     /// Inline binary, compressed in blocks: numbers of blocks and bytes in base64, and the blocks in base64.
     fn element(&mut self, name: &str, kind: &str, more: &[(&str, &str)], data: &[u8]) -> std::io::Result<()> {
-        let blocks: Vec<Vec<u8>> = data.chunks(BLOCK).map(|block| compress_to_vec_zlib(block, LEVEL)).collect();
+        let blocks: Vec<Vec<u8>> = data.chunks(BLOCK).map(|block| deflated(block, LEVEL)).collect();
         let counts = [blocks.len(), BLOCK, data.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len));
         let head: Vec<u8> = counts.flat_map(|n| (n as u64).to_le_bytes()).collect();
         let attributes = [("type", kind), ("Name", name), ("format", "binary")];

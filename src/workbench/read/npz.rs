@@ -2,6 +2,9 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::io::Read;
+
+use flate2::read::DeflateDecoder;
 
 use super::{Array, Fault, npy};
 
@@ -26,7 +29,7 @@ pub fn parse(bytes: &[u8]) -> Result<BTreeMap<String, Array>, Fault> {
 }
 
 /// What a deflated file may take at most: arrays have no more than a million numbers.
-const LARGEST: usize = 9 << 20;
+const LARGEST: u64 = 9 << 20;
 
 /// The content of a file.
 fn content<'a>(bytes: &'a [u8], entry: &Entry) -> Result<Cow<'a, [u8]>, Fault> {
@@ -34,9 +37,14 @@ fn content<'a>(bytes: &'a [u8], entry: &Entry) -> Result<Cow<'a, [u8]>, Fault> {
     let packed = packed(bytes, entry).ok_or_else(|| fault("is cut off"))?;
     match entry.method {
         STORED => Ok(Cow::Borrowed(packed)),
-        DEFLATED => miniz_oxide::inflate::decompress_to_vec_with_limit(packed, LARGEST)
-            .map(Cow::Owned)
-            .map_err(|_| fault("is damaged, or larger than 9 MiB")),
+        DEFLATED => {
+            let mut content = Vec::new();
+            let read = DeflateDecoder::new(packed).take(LARGEST + 1).read_to_end(&mut content);
+            match read {
+                Ok(count) if count as u64 <= LARGEST => Ok(Cow::Owned(content)),
+                _ => Err(fault("is damaged, or larger than 9 MiB")),
+            }
+        }
         _ => Err(fault("is packed in a way that NumPy does not write")),
     }
 }
