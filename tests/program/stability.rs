@@ -224,7 +224,7 @@ fn a_sweep_leaves_its_files_and_is_resumed() {
 
 #[test]
 fn the_help_names_every_regime() {
-    let output = run(&mut hypercircle(std::path::Path::new("."), ["stability", "--help"]));
+    let output = run(hypercircle(std::path::Path::new("."), ["stability", "--help"]));
     let text = String::from_utf8(output.stdout).expect("UTF-8").split_whitespace().collect::<Vec<_>>().join(" ");
     for regime in REGIMES.iter().copied().flatten() {
         assert!(text.contains(&format!(" {}", regime.id)), "{}", regime.id);
