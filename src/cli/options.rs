@@ -150,7 +150,7 @@ pub struct Limits {
     /// Stop refining before a mesh has more than N triangles
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub max_triangles: Option<usize>,
-    /// Start no further refinement after S seconds
+    /// Refine for S seconds: no mesh is begun that would take longer, judged by the last one
     #[arg(long, value_name = "S", value_parser = positive)]
     pub max_seconds: Option<f64>,
 }
