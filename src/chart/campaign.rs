@@ -7,7 +7,7 @@ use super::data::{Chart, Cold, Plot, Run, SCHEMA_VERSION, SceneChart, Status};
 use super::judge::judge;
 use super::reference::{self, REFERENCE_ADAPTIVE, REFERENCE_PRIMAL, from_runs};
 use super::store::{self, StoreError};
-use crate::measure::{self, End, Ended, Limits, Machine, Measured, Method};
+use crate::measure::{self, End, Ended, Limits, Machine, Measured, Method, Step};
 use crate::primal::SolverCommand;
 use crate::scene::Scene;
 
@@ -85,6 +85,13 @@ struct One<'a> {
     quantities: &'a [String],
 }
 
+/// Runs that were made, and those that are left at most.
+#[derive(Clone, Copy)]
+struct Waiting {
+    made: usize,
+    left: usize,
+}
+
 /// A chart in progress.
 pub struct Campaign<'a> {
     /// What to run.
@@ -96,7 +103,7 @@ pub struct Campaign<'a> {
     /// The command that makes the chart again, for its readers.
     pub command: String,
     /// Told what is being run.
-    pub progress: &'a dyn Fn(String),
+    pub progress: &'a dyn Fn(Step),
 }
 
 impl Campaign<'_> {
@@ -120,6 +127,7 @@ impl Campaign<'_> {
             command: self.command.clone(),
             scenes: Vec::new(),
         };
+        let mut waiting = Waiting { made: 0, left: scenes.len() * self.plan.methods.len() * self.plan.levels };
         for scene in scenes {
             let sha256 = hash(&scene.path)?;
             let earlier = kept.as_mut().and_then(|chart| {
@@ -131,7 +139,7 @@ impl Campaign<'_> {
                 None => SceneChart {
                     name: scene.name.clone(),
                     title: scene.title.clone(),
-                    reference: self.reference(scene)?,
+                    reference: self.reference(scene, waiting)?,
                     sha256,
                     cold: Vec::new(),
                     runs: Vec::new(),
@@ -139,13 +147,13 @@ impl Campaign<'_> {
             };
             chart.scenes.push(own);
             store::save(&chart, self.folder)?;
-            self.scene(scene, &mut chart)?;
+            self.scene(scene, &mut chart, &mut waiting)?;
         }
         Ok(chart)
     }
 
     /// The runs of the last scene of `chart`.
-    fn scene(&self, scene: &Scene, chart: &mut Chart) -> Result<(), CampaignError> {
+    fn scene(&self, scene: &Scene, chart: &mut Chart, waiting: &mut Waiting) -> Result<(), CampaignError> {
         for &method in &self.plan.methods {
             let mut stopped: Option<String> = None;
             for level in 0..self.plan.levels {
@@ -155,16 +163,18 @@ impl Campaign<'_> {
                     && level == 0
                     && own.cold.iter().all(|c| c.method != method)
                 {
-                    own.cold.extend(self.cold(scene, method)?);
+                    own.cold.extend(self.cold(scene, method, *waiting)?);
                 }
                 let run = match (own.run(method, level), &stopped) {
                     (Some(run), _) if self.is_of_the_plan(run) => run.clone(),
                     (_, Some(reason)) => self.without_numbers(method, level, Status::Skipped(reason.clone())),
                     _ => {
-                        (self.progress)(format!("{}: {}, level {level}", scene.name, method.name()));
+                        self.tell(format!("{}: {}, level {level}", scene.name, method.name()), *waiting);
+                        waiting.made += 1;
                         self.repeat(scene, method, level, own)?
                     }
                 };
+                waiting.left -= 1;
                 if let Status::OverBudget | Status::Failed(_) = run.status {
                     stopped = Some(format!("level {level} was over the budget or failed"));
                 }
@@ -175,6 +185,10 @@ impl Campaign<'_> {
         }
         chart.scenes.last_mut().into_iter().for_each(SceneChart::sharpen);
         Ok(store::save(chart, self.folder)?)
+    }
+
+    fn tell(&self, what: String, Waiting { made, left }: Waiting) {
+        (self.progress)(Step { what, done: made, left });
     }
 
     /// Whether a run was made, and bounded what every run is to bound.
@@ -246,8 +260,8 @@ impl Campaign<'_> {
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
 
-    fn reference(&self, scene: &Scene) -> Result<Result<super::Reference, String>, CampaignError> {
-        (self.progress)(format!("{}: the bracket to measure errors against", scene.name));
+    fn reference(&self, scene: &Scene, waiting: Waiting) -> Result<Result<super::Reference, String>, CampaignError> {
+        self.tell(format!("{}: the bracket to measure errors against", scene.name), waiting);
         let budget = REFERENCE_BUDGETS * self.plan.budget;
         let mut runs = Vec::new();
         for method in reference::OF.into_iter().filter(|m| self.plan.methods.contains(m) || m.has_bracket()) {
@@ -262,8 +276,8 @@ impl Campaign<'_> {
     }
 
     /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.
-    fn cold(&self, scene: &Scene, method: Method) -> Result<Option<Cold>, CampaignError> {
-        (self.progress)(format!("{}: first use of {}", scene.name, method.name()));
+    fn cold(&self, scene: &Scene, method: Method, waiting: Waiting) -> Result<Option<Cold>, CampaignError> {
+        self.tell(format!("{}: first use of {}", scene.name, method.name()), waiting);
         let Ok(cache) = crate::process::Scratch::new() else { return Ok(None) };
         let phase = |name: &str| -> Result<Option<[f64; 2]>, CampaignError> {
             let one = One { method, refine: 0, tolerance: None, quantities: &[] };

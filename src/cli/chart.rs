@@ -13,6 +13,7 @@ use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
 use crate::measure::Method;
 use crate::primal::SolverCommand;
+use crate::process::signals::LastWords;
 use crate::scene::Scene;
 
 const REFINE: u32 = 3;
@@ -194,8 +195,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         program: &program,
         folder: &folder,
         command: args.command(),
-        progress: &|what| progress.phase(what),
+        progress: &|step| progress.step(step),
     };
+    let _kept = (!args.run.quiet).then(|| LastWords::kept_in(&folder, ", on this machine"));
     let chart = campaign.run(&scenes, kept).map_err(failed)?;
     chart::write(&chart, &folder).map_err(|e| failed(e.into()))?;
     drop(progress);

@@ -13,6 +13,7 @@ use super::{CliError, Exit, ci, say};
 use crate::budget::Budget;
 use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Shard};
 use crate::process::limit;
+use crate::process::signals::LastWords;
 use crate::report;
 use crate::report::number::{percent, seconds};
 use crate::scene::Scene;
@@ -152,6 +153,7 @@ fn several(order: &Order<'_>) -> Result<Exit, CliError> {
     let progress = Progress::new(order.run.quiet);
     progress.phase(format!("{own} scenes, {processes} at a time"));
     let ended = AtomicUsize::new(0);
+    let kept = (!order.run.quiet).then(|| LastWords::kept_in(&out, ""));
     let finished = runner
         .run(&plan, &|planned, record| {
             let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
@@ -163,7 +165,7 @@ fn several(order: &Order<'_>) -> Result<Exit, CliError> {
     if finished > 0 {
         progress.line(&format!("  {finished} were finished before"));
     }
-    drop(progress);
+    drop((progress, kept));
     if shard != Shard::WHOLE {
         return part_of_job(&out, &plan, shard, order.run.quiet);
     }

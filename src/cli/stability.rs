@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::{CliError, Exit, say};
 use crate::measure::Method;
 use crate::primal::SolverCommand;
+use crate::process::signals::LastWords;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
 
 /// Seconds that one run may take.
@@ -87,6 +88,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let all = || REGIMES.iter().copied().flatten().collect();
     let failed = |text: String| CliError::stopped(Exit::Failed, text, "");
+    let _kept = (!args.run.quiet).then(|| LastWords::kept_in(&folder, ", with this build of the program"));
     let journal = Journal::open(&folder, &program, args.resume)
         .map_err(|(path, error)| failed(format!("{}: {error}", path.display())))?;
     let what = Sweep {
@@ -100,7 +102,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         program: &program,
         command: args.command(),
         journal: &journal,
-        progress: &|what| progress.phase(what),
+        progress: &|step| progress.step(step),
     };
     let matrix = sweep(&what).map_err(|e| failed(e.to_string()))?;
     stability::write(&matrix, &folder).map_err(|e| failed(e.to_string()))?;

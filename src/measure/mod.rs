@@ -18,3 +18,14 @@ pub use machine::Machine;
 pub use method::{Family, Method};
 pub use record::{Answer, Asked, End, Measured, Seconds, finite_or_null};
 pub use solve::{Settings, measure};
+
+/// What is being measured, for whoever waits.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// Its name.
+    pub what: String,
+    /// Runs that have ended, those kept from before left out.
+    pub done: usize,
+    /// Runs that are still to be made.
+    pub left: usize,
+}

@@ -1,5 +1,7 @@
 //! Signals that ask this process to end: what it started and its temporary folders go first.
 
+use std::io::Write;
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -7,6 +9,9 @@ use signal_hook::iterator::Signals;
 use signal_hook::low_level::emulate_default_handler;
 
 use super::{child, scratch};
+
+/// What to say when a signal ends this process.
+static LAST_WORDS: Mutex<Option<String>> = Mutex::new(None);
 
 /// Held while files change places, which is not to be left half done.
 static CHANGING: Mutex<()> = Mutex::new(());
@@ -23,11 +28,39 @@ pub fn watch() {
             let _unbroken = unbroken();
             child::end_all();
             scratch::remove_all();
+            if let Some(words) = last_words().take() {
+                let _ = writeln!(std::io::stderr(), "{words}");
+            }
             let _ = emulate_default_handler(signal);
         }
     };
     // Without a thread, signals end the process as they always do, and the next one cleans up.
     let _ = std::thread::Builder::new().name("signals".into()).spawn(work);
+}
+
+/// Said when a signal ends this process, as long as this value lives.
+#[derive(Debug)]
+pub struct LastWords(());
+
+impl LastWords {
+    /// That runs are kept in `folder`, and how to go on, which `needs` something.
+    pub fn kept_in(folder: &Path, needs: &str) -> Self {
+        *last_words() = Some(format!(
+            "interrupted: the runs that have ended are kept in {}; the same command with --resume goes on from there{needs}",
+            folder.display()
+        ));
+        LastWords(())
+    }
+}
+
+impl Drop for LastWords {
+    fn drop(&mut self) {
+        *last_words() = None;
+    }
+}
+
+fn last_words() -> MutexGuard<'static, Option<String>> {
+    LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// As long as the result is held, no such signal ends this process.

@@ -12,7 +12,7 @@ use super::judge::{Claim, judge};
 use super::regimes::Regime;
 use super::truth::Truth;
 use crate::budget::Budget;
-use crate::measure::{self, Answer, Ended, Limits, Machine, Method};
+use crate::measure::{self, Answer, Ended, Limits, Machine, Method, Step};
 use crate::primal::SolverCommand;
 
 /// What to run.
@@ -38,7 +38,7 @@ pub struct Sweep<'a> {
     /// Where runs are kept.
     pub journal: &'a Journal,
     /// Told what is being run.
-    pub progress: &'a (dyn Fn(String) + Sync),
+    pub progress: &'a (dyn Fn(Step) + Sync),
 }
 
 /// Why there is no matrix.
@@ -83,17 +83,21 @@ pub fn sweep(what: &Sweep<'_>) -> Result<Matrix, SweepError> {
     let jobs = jobs(what);
     let mut seen = HashSet::new();
     let todo: Vec<&Job> = jobs.iter().filter(|j| what.journal.get(&j.name).is_none() && seen.insert(&j.name)).collect();
-    let next = AtomicUsize::new(0);
+    let (next, ended) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failed: Mutex<Option<std::io::Error>> = Mutex::new(None);
     std::thread::scope(|scope| {
         for _ in 0..what.workers.max(1) {
             scope.spawn(|| {
                 while let Some(job) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let (regime, done) = (what.regimes[job.regime], ended.load(Ordering::Relaxed));
+                    let name = format!("{}: {}", regime.id, regime.label(job.step));
+                    (what.progress)(Step { what: name, done, left: todo.len() - done });
                     let kept = once(what, job).and_then(|ended| what.journal.put(job.name.clone(), ended));
                     if let Err(error) = kept {
                         *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
                         next.store(todo.len(), Ordering::Relaxed);
                     }
+                    ended.fetch_add(1, Ordering::Relaxed);
                 }
             });
         }
@@ -198,7 +202,6 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
 
 fn once(what: &Sweep<'_>, job: &Job) -> std::io::Result<Ended> {
     let regime = what.regimes[job.regime];
-    (what.progress)(format!("{}: {}", regime.id, regime.label(job.step)));
     let mut arguments: Vec<OsString> = vec!["regime".into(), regime.id.into(), job.step.to_string().into()];
     arguments.extend(job.options.iter().cloned());
     let share = what.memory.bytes() / what.workers.max(1) as f64;

@@ -52,3 +52,23 @@ fn an_ignored_hangup_stays_ignored() {
     kill("TERM", child.id());
     child.wait().expect("ends");
 }
+
+/// Runs that are kept are of use to those who know how to go on from them.
+#[test]
+fn an_interrupted_sweep_says_how_to_go_on() {
+    for (arguments, folder) in [
+        (&["stability", "--method", "uzawa", "--threads", "1"][..], "out/stability"),
+        (&["chart", "scene.toml", "--method", "condensed", "--repeats", "9", "--refine", "6"], "out/scene"),
+    ] {
+        let place = Place::with(&case("patch"));
+        let mut command = place.heeding(arguments);
+        let mut child = command.stderr(Stdio::piped()).spawn().expect("the program starts");
+        assert!(soon(|| place.path(folder).exists()), "nothing is kept in {folder}: {:?}", names(&place.path("out")));
+        kill("TERM", child.id());
+        let status = child.wait().expect("ends");
+        assert!(std::os::unix::process::ExitStatusExt::signal(&status).is_some(), "{status}");
+        let mut said = String::new();
+        std::io::Read::read_to_string(&mut child.stderr.take().expect("a pipe"), &mut said).expect("UTF-8");
+        assert!(said.contains(&format!("are kept in {folder}; the same command with --resume")), "{said}");
+    }
+}
