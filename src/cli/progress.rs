@@ -30,7 +30,7 @@ impl Progress {
         let (bar, began) = (ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()), Instant::now());
         let mut told = None;
         if !quiet && !stderr().is_terminal() {
-            let phase = told.insert(Arc::new(Mutex::new(String::new())));
+            let phase = told.insert(Arc::new(Mutex::new("working".to_string())));
             let late = Arc::downgrade(phase);
             let _ = std::thread::Builder::new().spawn(move || {
                 loop {

@@ -236,28 +236,13 @@ fn a_beam_over_a_gap_is_refined_to_one_per_cent() {
 /// triangle has.
 #[test]
 fn what_numbers_cannot_resolve_ends_a_run_with_its_place() {
-    const KINK: &str = r#"
-        [model]
-        kinematics = "plane-strain"
-        [geometry]
-        size = 0.5
-        [[geometry.polygons]]
-        body = "a"
-        points = [[0, 0], [1, 0.02], [2, 0], [2, 1], [0, 1]]
-        edges = ["foot", "foot", "", "top", ""]
-        [bodies.a]
-        young = 1.0
-        poisson = 0.3
-        [[supports]]
-        on = "foot"
-        type = "roller"
-        [[tractions]]
-        on = "top"
-        value = [0.1, -1.0]
-    "#;
-    let problem = Problem::load(Scene::parse(KINK, "kink.toml".as_ref()).expect("a scene")).expect("a problem");
+    let kink = Toml::default()
+        .polygon("a", &[[0.0, 0.0], [1.0, 0.02], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["foot", "foot", "", "top", ""])
+        .material("a", 1.0, 0.3)
+        .roller("foot")
+        .table("[[tractions]]\non = \"top\"\nvalue = [0.1, -1.0]");
     let goal = Goal { adapt: Adapt::H, max_triangles: Some(20_000), ..Goal::new(0.01) };
-    let adapted = adapt(problem, &Condensed::default(), &Options::default(), &goal, |_| ()).expect("an answer");
+    let adapted = adapt(problem(&kink), &Condensed::default(), &Options::default(), &goal, |_| ()).expect("an answer");
     let stopped = adapted.stopped.expect("out of reach");
     assert!(stopped.contains("at (1, 0.02), where the triangles are as small as numbers can resolve"), "{stopped}");
     // More triangles would be spent elsewhere, for nothing.
