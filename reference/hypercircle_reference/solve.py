@@ -97,16 +97,25 @@ class Reduced:
         the bodies could be thought to cross; where that fails, once more with those alone that are closed already."""
         descent = Descent(self.A, self.b.array_r.copy(), self.lower, self.upper, self.terms)
         try:
-            found = descent.minimise(self.reach / self.scale.array_r)
-            self._check(found)
+            found = self._checked(descent, self.reach / self.scale.array_r)
         except Failure as failure:
             log(self.comm, f"{failure}; once more, from no displacement")
             try:
-                found = descent.minimise(np.finfo(float).tiny)
-                self._check(found)
+                found = self._checked(descent, np.finfo(float).tiny)
             except Failure:
                 raise failure from None
         return self._gather(found)
+
+    def _checked(self, descent: Descent, near: np.ndarray | float) -> Minimum:
+        """The minimum found from bounds nearer than ``near``, improved where it fails its check."""
+        found = descent.minimise(near)
+        try:
+            self._check(found)
+        except Failure as failure:
+            log(self.comm, f"{failure}; once more, with further motion resisted")
+            found = descent.improved(found)
+            self._check(found)
+        return found
 
     def _displacement(self, w: PETSc.Vec) -> PETSc.Vec:
         """u = T w + u0 of the unscaled unknowns."""
