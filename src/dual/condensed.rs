@@ -61,7 +61,10 @@ impl DualMethod for Condensed {
                     DualError::ContactUndetermined => "the Schur complement on the contact did not determine its state",
                     _ => "refinement with the factor of all contact states left more than round-off",
                 };
-                match ActiveSet::default().rescue(problem, motions, options, closed) {
+                let rescue = |from| ActiveSet::default().rescue(problem, motions, options, from);
+                // What was reached may be a state that its own stresses bear out and that leaves too much of equilibrium.
+                let from_there = closed.map(|closed| rescue(Some(closed)));
+                match from_there.filter(Result::is_ok).unwrap_or_else(|| rescue(None)) {
                     Ok(mut found) => {
                         found.notes.push(format!("{why}; contact was found by active sets"));
                         Ok(found)
