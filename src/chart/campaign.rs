@@ -85,13 +85,6 @@ struct One<'a> {
     quantities: &'a [String],
 }
 
-/// Runs that were made, and those that are left at most.
-#[derive(Clone, Copy)]
-struct Waiting {
-    made: usize,
-    left: usize,
-}
-
 /// A chart in progress.
 pub struct Campaign<'a> {
     /// What to run.
@@ -127,7 +120,8 @@ impl Campaign<'_> {
             command: self.command.clone(),
             scenes: Vec::new(),
         };
-        let mut waiting = Waiting { made: 0, left: scenes.len() * self.plan.methods.len() * self.plan.levels };
+        let left = scenes.len() * self.plan.methods.len() * self.plan.levels;
+        let mut step = Step { what: String::new(), done: 0, left };
         for scene in scenes {
             let sha256 = hash(&scene.path)?;
             let earlier = kept.as_mut().and_then(|chart| {
@@ -139,7 +133,7 @@ impl Campaign<'_> {
                 None => SceneChart {
                     name: scene.name.clone(),
                     title: scene.title.clone(),
-                    reference: self.reference(scene, waiting)?,
+                    reference: self.reference(scene, &step)?,
                     sha256,
                     cold: Vec::new(),
                     runs: Vec::new(),
@@ -147,13 +141,13 @@ impl Campaign<'_> {
             };
             chart.scenes.push(own);
             store::save(&chart, self.folder)?;
-            self.scene(scene, &mut chart, &mut waiting)?;
+            self.scene(scene, &mut chart, &mut step)?;
         }
         Ok(chart)
     }
 
     /// The runs of the last scene of `chart`.
-    fn scene(&self, scene: &Scene, chart: &mut Chart, waiting: &mut Waiting) -> Result<(), CampaignError> {
+    fn scene(&self, scene: &Scene, chart: &mut Chart, step: &mut Step) -> Result<(), CampaignError> {
         for &method in &self.plan.methods {
             let mut stopped: Option<String> = None;
             for level in 0..self.plan.levels {
@@ -163,18 +157,18 @@ impl Campaign<'_> {
                     && level == 0
                     && own.cold.iter().all(|c| c.method != method)
                 {
-                    own.cold.extend(self.cold(scene, method, *waiting)?);
+                    own.cold.extend(self.cold(scene, method, step)?);
                 }
                 let run = match (own.run(method, level), &stopped) {
                     (Some(run), _) if self.is_of_the_plan(run) => run.clone(),
                     (_, Some(reason)) => self.without_numbers(method, level, Status::Skipped(reason.clone())),
                     _ => {
-                        self.tell(format!("{}: {}, level {level}", scene.name, method.name()), *waiting);
-                        waiting.made += 1;
+                        self.tell(format!("{}: {}, level {level}", scene.name, method.name()), step);
+                        step.done += 1;
                         self.repeat(scene, method, level, own)?
                     }
                 };
-                waiting.left -= 1;
+                step.left -= 1;
                 if let Status::OverBudget | Status::Failed(_) = run.status {
                     stopped = Some(format!("level {level} was over the budget or failed"));
                 }
@@ -187,8 +181,8 @@ impl Campaign<'_> {
         Ok(store::save(chart, self.folder)?)
     }
 
-    fn tell(&self, what: String, Waiting { made, left }: Waiting) {
-        (self.progress)(Step { what, done: made, left });
+    fn tell(&self, what: String, step: &Step) {
+        (self.progress)(Step { what, ..*step });
     }
 
     /// Whether a run was made, and bounded what every run is to bound.
@@ -260,8 +254,8 @@ impl Campaign<'_> {
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
 
-    fn reference(&self, scene: &Scene, waiting: Waiting) -> Result<Result<super::Reference, String>, CampaignError> {
-        self.tell(format!("{}: the bracket to measure errors against", scene.name), waiting);
+    fn reference(&self, scene: &Scene, step: &Step) -> Result<Result<super::Reference, String>, CampaignError> {
+        self.tell(format!("{}: the bracket to measure errors against", scene.name), step);
         let budget = REFERENCE_BUDGETS * self.plan.budget;
         let mut runs = Vec::new();
         for method in reference::OF.into_iter().filter(|m| self.plan.methods.contains(m) || m.has_bracket()) {
@@ -276,8 +270,8 @@ impl Campaign<'_> {
     }
 
     /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.
-    fn cold(&self, scene: &Scene, method: Method, waiting: Waiting) -> Result<Option<Cold>, CampaignError> {
-        self.tell(format!("{}: first use of {}", scene.name, method.name()), waiting);
+    fn cold(&self, scene: &Scene, method: Method, step: &Step) -> Result<Option<Cold>, CampaignError> {
+        self.tell(format!("{}: first use of {}", scene.name, method.name()), step);
         let Ok(cache) = crate::process::Scratch::new() else { return Ok(None) };
         let phase = |name: &str| -> Result<Option<[f64; 2]>, CampaignError> {
             let one = One { method, refine: 0, tolerance: None, quantities: &[] };

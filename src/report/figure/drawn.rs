@@ -9,8 +9,8 @@ const UNSEEN: f64 = 0.004;
 /// Points of the first side of a contact that are looked at.
 const POINTS: usize = 160;
 
-/// A displacement is drawn `scale` times as large, every body moved by its entry of `apart` first: a gap between bodies
-/// is drawn as many times as wide as the displacements that close it.
+/// A displacement is drawn `scale` times as large, every body moved by its entry of `apart` first: a gap that
+/// separates bodies is drawn as many times as wide as the displacements that close it.
 pub struct Drawn {
     pub scale: f64,
     /// Whether bodies are where the drawing of the gaps puts them.
@@ -65,7 +65,7 @@ impl Drawn {
             .iter()
             .filter_map(|pair| Some((self.side(problem, field, pair, 1)?, pair.direction.unit(0))))
             .collect();
-        let step = interface.pairs.len().div_ceil(POINTS / 2);
+        let step = interface.pairs.len().div_ceil(POINTS / 2).max(1);
         let own = interface.pairs.iter().step_by(step).filter_map(|pair| self.side(problem, field, pair, 0)).flatten();
         own.filter_map(|p| depth(p, &other)).fold(0.0, f64::max) + self.scale * within
     }
@@ -93,29 +93,30 @@ fn depth(p: [f64; 2], segments: &[([[f64; 2]; 2], [f64; 2])]) -> Option<f64> {
     segments.iter().map(beyond).min_by(|a, b| a.0.total_cmp(&b.0))?.1
 }
 
-/// How far every body is moved in a drawing so that gaps between bodies are `scale` times as wide as they are, on the average
-/// of each contact (in the mesh both sides are in one place): from the first body of every group on.
+/// How far every body is moved in a drawing so that the least gap of a contact is `scale` times as wide as it is (in the mesh
+/// both sides are in one place): from the first body of every group on.
 fn apart(problem: &Problem, scale: f64) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let mut apart: Vec<Option<[f64; 2]>> = vec![None; problem.scene.bodies.len()];
     let body = |e: usize| Some(mesh.body[mesh.edges[e].triangles[0]?]);
     let wider = |interface: &Interface| {
         let [first, second] = interface.pairs.first()?.edges;
-        // Around a corner or along a curve no one motion of a body widens the gap everywhere.
         let [x, y] = interface.pairs.first()?.direction.unit(0);
         let straight = |n: [f64; 2]| n[0] * x + n[1] * y > 0.999;
-        if !interface.pairs.iter().all(|pair| [0, 1].map(|end| pair.direction.unit(end)).into_iter().all(straight)) {
-            return None;
-        }
-        let length: f64 = interface.pairs.iter().map(|pair| pair.length).sum();
-        let by = |c: usize| {
-            let share =
-                |pair: &ContactPair| 0.5 * pair.length * (pair.gap[0] + pair.gap[1]) * pair.direction.unit(0)[c];
-            scale * interface.pairs.iter().map(share).sum::<f64>() / length
-        };
-        Some(([body(first?)?, body(second?)?], [by(0), by(1)]))
+        // Around a corner or along a curve no one motion of a body widens the gap everywhere.
+        let all =
+            interface.pairs.iter().all(|pair| [0, 1].map(|end| pair.direction.unit(end)).into_iter().all(straight));
+        let gaps = interface.pairs.iter().flat_map(|pair| pair.gap);
+        let least = if all { gaps.fold(f64::INFINITY, f64::min).max(0.0) } else { 0.0 };
+        Some(([body(first?)?, body(second?)?], [scale * least * x, scale * least * y]))
     };
-    let wider: Vec<([usize; 2], [f64; 2])> = problem.interfaces.iter().filter_map(wider).collect();
+    let bonded = mesh.edges.iter().filter_map(|edge| match edge.triangles.map(|t| t.map(|t| mesh.body[t])) {
+        [Some(a), Some(b)] if a != b => Some(([a, b], [0.0; 2])),
+        _ => None,
+    });
+    // The narrowest first: bodies that are one, or touch somewhere, are not drawn apart for what separates them elsewhere.
+    let mut wider: Vec<([usize; 2], [f64; 2])> = problem.interfaces.iter().filter_map(wider).chain(bonded).collect();
+    wider.sort_by(|(_, a), (_, b)| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1])));
     for root in 0..apart.len() {
         apart[root].get_or_insert([0.0; 2]);
         while let Some((n, d)) = wider.iter().find_map(|&([a, b], by)| match (apart[a], apart[b]) {
@@ -209,6 +210,8 @@ mod tests {
             }
         }
         let drawn = Drawn::of(&sample.problem, &[&field]);
+        // The sides touch in the middle, and are not drawn apart there.
+        assert!(!drawn.gaps_scaled && drawn.apart == [[0.0; 2]; 2]);
         assert!(drawn.held_back && drawn.scale >= 1.0 && drawn.scale < 10.0, "{}", drawn.scale);
     }
 }

@@ -67,7 +67,7 @@ fn shapes(dossier: &Dossier, marks: &[Mark]) -> Markup {
                     b { "Deformed shape, " (name) ". " }
                     "Displacements times " b { (significant(drawn.scale, 3)) } ". Dashed grey: undeformed. Red: the two sides of the contact; where they part, \
                     it has opened."
-                    @if drawn.gaps_scaled { " Gaps between bodies are drawn as many times as wide." }
+                    @if drawn.gaps_scaled { " Bodies that a gap separates are drawn as many times as far apart." }
                     @if drawn.held_back { " A larger picture would show bodies that do not penetrate as if they did." }
                     @if i == 0 { (links::checks_of("shapes", &dossier.report)) }
                 }
