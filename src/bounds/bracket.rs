@@ -19,7 +19,7 @@
 
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::jump::side_coefficients;
-use super::upper::{NoUpperBound, NodalValues, admissible};
+use super::upper::{NoUpperBound, NodalValues, Prepared, admissible_and_prepared};
 use crate::dual::equilibrium::edge_traction;
 use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, StressField, side};
@@ -56,6 +56,8 @@ pub struct UpperBound {
     pub widening: f64,
     /// 𝓛(v) + Π(λ_h) in local terms.
     pub local: LocalGap,
+    /// What was made on the way to it, where it is to be used again.
+    pub prepared: Prepared,
 }
 
 impl UpperBound {
@@ -66,7 +68,7 @@ impl UpperBound {
         let size = |t: usize| displacement.largest(t);
         let rounding = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
         let widening = rounding + across_rollers(problem, &dual.stress, &displacement);
-        UpperBound { widening, displacement, potential, local }
+        UpperBound { widening, displacement, potential, local, prepared: Prepared::default() }
     }
 
     /// 𝓛(v), plus what rounding can have cost.
@@ -78,11 +80,12 @@ impl UpperBound {
 impl Bracket {
     /// Computes both sides.
     pub fn new(problem: &Problem, dual: &DualSolution) -> Self {
-        Self::from_start(problem, dual, None)
+        Self::from_start(problem, dual, None, false)
     }
 
-    /// Computes both sides; the upper one may begin from `start`.
-    pub fn from_start(problem: &Problem, dual: &DualSolution, start: Option<NodalValues>) -> Self {
+    /// Computes both sides; the upper one may begin from `start`, and leaves what quantities on this mesh need again where it is
+    /// to `keep` it.
+    pub fn from_start(problem: &Problem, dual: &DualSolution, start: Option<NodalValues>, keep: bool) -> Self {
         let complementary = complementary(problem, &dual.stress);
         let size = |t: usize| {
             let edges = problem.mesh.triangle_edges[t];
@@ -97,7 +100,8 @@ impl Bracket {
         };
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = admissible(problem, dual, complementary.lower(), start).map(|v| UpperBound::new(problem, dual, v));
+        let free = admissible_and_prepared(problem, dual, complementary.lower(), start, keep)
+            .map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
         Bracket {
             complementary,
             lower_widening: rounding + remainder,

@@ -13,8 +13,7 @@ use super::strain::{Samples, Strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::{contact_traction, edge_traction};
 use crate::dual::modes::materials;
-use crate::element::quadrature::triangle_rule;
-use crate::element::{Displacement, StressField, side, triangle};
+use crate::element::{Displacement, Shapes, StressField, side, triangle};
 use crate::problem::{Condition, Problem};
 
 /// Complementary energy of a stress field.
@@ -50,9 +49,10 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
             let mut sum = 0.0;
+            let shapes = Shapes::of(stress.degree(t), stress.degree(t));
             for sub in 0..3 {
-                for (bary, weight) in triangle_rule(2 * stress.degree(t)) {
-                    let value = stress.at(t, sub, *bary);
+                for (q, (_, weight)) in shapes.points.iter().enumerate() {
+                    let value = stress.sample(t, sub, shapes, q);
                     sum += 0.5 * weight * third * material.product(value, value);
                 }
             }
@@ -252,14 +252,15 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
-            let samples = Samples::of(v.degree(t) - 1, stress.degree(t));
+            let (of_v, own) = (v.degree(t) - 1, stress.degree(t));
+            let (samples, shapes) = (Samples::of(of_v, own), Shapes::of(own, of_v.max(own)));
             let mut sum = 0.0;
             let mut strains = Strains::default();
             for sub in 0..3 {
                 strains.on(corners, v, t, sub);
-                for (q, (bary, weight)) in samples.points.iter().enumerate() {
+                for (q, (_, weight)) in samples.points.iter().enumerate() {
                     let e = strains.sample(samples, q);
-                    let of_stress = material.strain(stress.at(t, sub, *bary));
+                    let of_stress = material.strain(stress.sample(t, sub, shapes, q));
                     let d = [e[0] - of_stress[0], e[1] - of_stress[1], e[2] - of_stress[2]];
                     sum += 0.5 * weight * sub_area(corners) * material.strain_product(d, d);
                 }

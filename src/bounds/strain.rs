@@ -83,7 +83,11 @@ impl Strains {
 
     /// The strain at the point of the subtriangle with barycentric coordinates `l`.
     pub fn at(&self, l: [f64; 3]) -> [f64; 3] {
-        self.weighed(triangle::basis(self.degree, l))
+        match self.degree {
+            // The basis of degree 1 are the coordinates themselves.
+            1 => self.weighed(l.into_iter()),
+            degree => self.weighed(triangle::basis(degree, l)),
+        }
     }
 
     /// The strain at point `q` of `samples`, which are of the degree of these strains.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::element::{Compliance, Elements, Layout, Modes, StressField, parts, starts};
+use crate::element::{Compliance, Elements, Layout, Modes, StressField, congruent, parts, starts};
 use crate::problem::Problem;
 
 /// The modes of every triangle.
@@ -30,10 +30,6 @@ struct Class {
     start: usize,
 }
 
-/// Two triangles are congruent when their edge vectors agree to this fraction of their size: well above what rounding
-/// of the coordinates does, well below what equilibrium could notice.
-const CONGRUENT: f64 = 1.0 / (1_u64 << 42) as f64;
-
 impl std::fmt::Debug for ModeTable {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("ModeTable").field("elements", &self.elements).field("classes", &self.classes()).finish()
@@ -45,13 +41,13 @@ impl ModeTable {
     pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = materials(problem);
         let mesh = &problem.mesh;
-        let mut seen: HashMap<[i64; 7], u32> = HashMap::new();
+        let mut seen = HashMap::new();
         let mut classes: Vec<Class> = Vec::new();
         let mut end = 0;
         let class: Vec<u32> = (0..mesh.triangles.len())
             .map(|t| {
                 let next = classes.len() as u32;
-                let key = key(mesh.corners(t), mesh.body[t], elements.degree(t));
+                let key = (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
                 *seen.entry(key).or_insert_with(|| {
                     let layout = elements.of(t).layout();
                     classes.push(Class { triangle: t, layout, start: end });
@@ -136,14 +132,4 @@ impl ModeTable {
 pub fn materials(problem: &Problem) -> Vec<Compliance> {
     let scene = &problem.scene;
     scene.bodies.iter().map(|b| Compliance::new(scene.kinematics, b.young, b.poisson)).collect()
-}
-
-/// Edge vectors in units of the triangle's size (rounded up to a power of two), that size, the body, and the degree.
-fn key([a, b, c]: [[f64; 2]; 3], body: usize, degree: usize) -> [i64; 7] {
-    let sides = [b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]];
-    let largest = sides.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
-    let exponent = largest.log2().ceil();
-    let unit = exponent.exp2() * CONGRUENT;
-    let [p, q, r, s] = sides.map(|v| (v / unit).round() as i64);
-    [p, q, r, s, exponent as i64, body as i64, degree as i64]
 }

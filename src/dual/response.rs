@@ -7,6 +7,7 @@
 //! contact, solved by primal–dual steps. What rounding has cost is won back on the stresses, as for λ_h.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 use super::hybrid::{Motion, parameters, residual};
@@ -60,12 +61,19 @@ impl Factorised {
     }
 
     /// The responses to other loads on `problem`, which K belongs to, per unit thickness. Contacts of up to `longest_dense`
-    /// jumps have a dense Schur complement.
-    pub fn responses<'a>(&'a self, problem: &'a Problem, longest_dense: usize, options: &Options) -> Responses<'a> {
+    /// jumps have a dense Schur complement; remainders are weighed with the displacement whose edge moments are `moments`.
+    pub fn responses<'a>(
+        &'a self,
+        problem: &'a Problem,
+        moments: &SideValues<[f64; 2]>,
+        longest_dense: usize,
+        options: &Options,
+    ) -> Responses<'a> {
         let contact = Contact::new(&self.reduced, longest_dense, options.budget, |most| {
             unsupported(problem, &self.system.unknowns, most)
         });
-        Responses { problem, factorised: self, contact }
+        let displaced = self.system.unknowns.project(problem, |e, k| moments.of(e)[k]);
+        Responses { problem, factorised: self, contact, displaced }
     }
 }
 
@@ -89,6 +97,8 @@ pub struct Responses<'a> {
     problem: &'a Problem,
     factorised: &'a Factorised,
     contact: Contact<'a>,
+    /// The displacement that remainders are weighed with.
+    displaced: Vec<f64>,
 }
 
 /// A stress in equilibrium with a load.
@@ -125,7 +135,7 @@ impl Responses<'_> {
         let (y, c) = reduced.condense(&r);
         let weights = load.weights.iter().map(Vec::as_slice);
         let held = jump_moments(&problem, &system.unknowns, weights).into_iter().map(|m| -m).collect();
-        Loaded { responses: self, problem, system, start, y, c, held }
+        Loaded { responses: self, problem, system, start, y, c, held, begun: OnceCell::new(), refined: OnceCell::new() }
     }
 }
 
@@ -167,6 +177,9 @@ pub struct Loaded<'a> {
     c: Vec<f64>,
     /// Jumps of closed contact.
     held: Vec<f64>,
+    /// What all closed contact holds, as the factor gives it and refined, once it was asked for.
+    begun: OnceCell<Refined>,
+    refined: OnceCell<Refined>,
 }
 
 /// Which closed coefficients are at the floor, and the jumps of all.
@@ -183,79 +196,174 @@ pub struct Bounds<'a> {
     pub sign: f64,
 }
 
+impl Bounds<'_> {
+    /// A traction, or the floor where it lies below.
+    fn floored(&self, i: usize, s: f64) -> f64 {
+        if self.sign * s < self.floor[i] { self.sign * self.floor[i] } else { s }
+    }
+}
+
+/// What closed coefficients do: those that are `released` have the traction of their floor, those that are `closed` their jump.
+struct Holding<'a> {
+    released: &'a [bool],
+    closed: Vec<bool>,
+    bounds: Bounds<'a>,
+}
+
+impl Holding<'_> {
+    /// The traction that is given to a coefficient.
+    fn set(&self, i: usize) -> f64 {
+        if self.released[i] { self.bounds.sign * self.bounds.floor[i] } else { 0.0 }
+    }
+}
+
+/// What a stress leaves of equilibrium.
+struct Left {
+    /// The coefficients of s.
+    traction: Vec<f64>,
+    /// As [`Response::remainder`].
+    remainder: f64,
+    /// The largest remainder, the largest of loads and tractions, and what is noise.
+    largest: f64,
+    scale: f64,
+    noise: f64,
+}
+
+impl Left {
+    fn is_balanced(&self) -> bool {
+        self.largest.is_finite() && self.largest <= (UNBALANCED * self.scale).max(self.noise)
+    }
+}
+
 impl Loaded<'_> {
-    /// The stress of least energy that balances the load within `bounds`; remainders are weighed with the displacement whose
-    /// edge moments are `moments`.
+    /// The stress that balances the load where all of the `closed` coefficients hold, refined only where it would not balance it at
+    /// all.
+    ///
+    /// # Errors
+    /// As [`Self::respond`].
+    pub fn held_by_all(&self, closed: &[bool]) -> Result<Response, DualError> {
+        let floor = vec![f64::NEG_INFINITY; closed.len()];
+        self.respond(Bounds { closed, floor: &floor, sign: 1.0 }, f64::INFINITY)
+    }
+
+    /// The stress of least energy that balances the load within `bounds`, refined where its remainder is more than `enough`.
     ///
     /// # Errors
     /// [`DualError::ContactUndetermined`] where the contact that is held leaves a body loose, [`DualError::NotConverged`]
     /// where what was found does not balance the load.
-    pub fn respond(&self, bounds: Bounds<'_>, moments: &SideValues<[f64; 2]>) -> Result<Response, DualError> {
-        let Loaded { responses: Responses { factorised, contact, .. }, problem, system, .. } = self;
-        let reduced = &factorised.reduced;
-        let first = system.unknowns.first_jump;
+    pub fn respond(&self, bounds: Bounds<'_>, enough: f64) -> Result<Response, DualError> {
         let (released, jumps) = self.released(bounds)?;
-        let held: Vec<bool> = bounds.closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
-        let mut system = system.clone();
-        let set = |i: usize| if released[i] { bounds.sign * bounds.floor[i] } else { 0.0 };
-        (0..held.len()).for_each(|i| system.external[first + i] += set(i));
-        let x = reduced.expand(self.y.clone(), &jumps);
-        let moved = parameters(problem, &system, &x, false);
-        let s: Vec<f64> = self.start.iter().zip(moved).map(|(a, b)| a + b).collect();
-        let r = residual(problem, &system, &s);
+        let closed = bounds.closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
+        let held = Holding { released: &released, closed, bounds };
+        if !released.contains(&true) {
+            // The same for all floors.
+            let begun = self.begun.get_or_init(|| self.begin(&self.system, &jumps));
+            if let Some(response) = self.balanced(begun, &held, enough) {
+                return Ok(response);
+            }
+            let now = match self.refined.get() {
+                Some(now) => now,
+                None => {
+                    let now = self.refine(&self.system, &held.closed, begun.clone())?;
+                    self.refined.get_or_init(|| now)
+                }
+            };
+            return self.response(now, &held);
+        }
+        let mut system = self.system.clone();
+        let first = system.unknowns.first_jump;
+        system.external[first..].iter_mut().enumerate().for_each(|(i, f)| *f += held.set(i));
+        let begun = self.begin(&system, &jumps);
+        match self.balanced(&begun, &held, enough) {
+            Some(response) => Ok(response),
+            None => self.response(&self.refine(&system, &held.closed, begun)?, &held),
+        }
+    }
+
+    /// The unknowns with these jumps and their stresses, as the factor gives them.
+    fn begin(&self, system: &System, jumps: &[f64]) -> Refined {
+        let x = self.responses.factorised.reduced.expand(self.y.clone(), jumps);
+        let mut s = parameters(&self.problem, system, &x, false);
+        s.iter_mut().zip(&self.start).for_each(|(s, start)| *s += start);
+        let r = residual(&self.problem, system, &s);
+        Refined { x, s, r }
+    }
+
+    /// Wins back on the stresses what rounding has cost, with the jumps of `held` coefficients as they are.
+    fn refine(&self, system: &System, held: &[bool], begun: Refined) -> Result<Refined, DualError> {
+        let Responses { factorised: Factorised { reduced, .. }, contact, .. } = self.responses;
         let no_move = vec![0.0; held.len()];
         let correction = |r: &[f64]| {
             let (y, c) = reduced.condense(r);
-            let jumps = contact.with_closed(&c, &no_move, &held).ok_or(DualError::ContactUndetermined)?;
+            let jumps = contact.with_closed(&c, &no_move, held).ok_or(DualError::ContactUndetermined)?;
             Ok(reduced.expand(y, &jumps))
         };
-        let fixed = reduced.fixed(&held);
+        let fixed = reduced.fixed(held);
         let refinement = Refinement {
-            problem,
-            system: &system,
+            problem: &self.problem,
+            system,
             fixed: &fixed,
             solve: &correction,
             enough: ENOUGH,
             most_steps: MOST_REFINEMENTS,
         };
-        let now = refinement.run(Refined { x, s, r })?;
+        refinement.run(begun)
+    }
 
+    /// The stress of these unknowns, where it balances the load and leaves a remainder of no more than `enough`.
+    fn balanced(&self, now: &Refined, held: &Holding<'_>, enough: f64) -> Option<Response> {
+        let left = self.left(now, held);
+        (left.is_balanced() && left.remainder <= enough).then(|| self.stressed(now, left))
+    }
+
+    /// The stress of these unknowns.
+    fn response(&self, now: &Refined, held: &Holding<'_>) -> Result<Response, DualError> {
+        let left = self.left(now, held);
+        if left.is_balanced() {
+            return Ok(self.stressed(now, left));
+        }
+        Err(DualError::NotConverged {
+            method: "response to another load",
+            iterations: MOST_REFINEMENTS,
+            residual: left.largest / left.scale,
+            wanted: UNBALANCED,
+            advice: "nothing that is held balances the load, or triangles are too flat".to_string(),
+        })
+    }
+
+    fn stressed(&self, now: &Refined, left: Left) -> Response {
+        let Loaded { problem, system, .. } = self;
+        Response {
+            stress: system.modes.stresses(problem, &now.s),
+            moments: system.unknowns.moments_of_change(problem, &now.x),
+            contact: SideValues::new(system.unknowns.jump_blocks().map(|b| b.len), left.traction),
+            remainder: left.remainder,
+        }
+    }
+
+    /// What residuals leave of equilibrium.
+    fn left(&self, now: &Refined, held: &Holding<'_>) -> Left {
+        let Loaded { responses: Responses { displaced, .. }, system, .. } = self;
+        let first = system.unknowns.first_jump;
         // Where a jump is held its residual is minus the traction; all others are remainders, those of motions that nothing
         // resists among them: a load that does work on these is balanced by nothing.
-        let mut traction: Vec<f64> = (0..held.len()).map(set).collect();
-        let displaced = system.unknowns.project(problem, |e, k| moments.of(e)[k]);
+        let mut traction: Vec<f64> = (0..held.closed.len()).map(|i| held.set(i)).collect();
         let (mut remainder, mut largest) = (0.0, 0.0_f64);
-        let scale =
-            now.r[first..].iter().chain(&system.rhs).chain(&system.external).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let loads = now.r[first..].iter().chain(&system.rhs).chain(&system.external).chain(&traction);
+        let scale = loads.fold(0.0_f64, |m, v| m.max(v.abs()));
         for (i, r) in now.r.iter().enumerate() {
             let mut left = *r;
             let mut weight = displaced[i].abs();
-            if i >= first && held[i - first] {
-                let (own, floor) = (-r, bounds.floor[i - first]);
-                let kept = if bounds.sign * own < floor { bounds.sign * floor } else { own };
+            if i >= first && held.closed[i - first] {
+                let kept = held.bounds.floored(i - first, -r);
                 traction[i - first] = kept;
-                left = own - kept;
+                left = -r - kept;
                 weight += system.jump_bound[i - first].abs();
             }
             remainder += left.abs() * weight;
             largest = largest.max(left.abs());
         }
-        let noise = NOISE * system.size_of_terms(&self.held);
-        if !largest.is_finite() || largest > (UNBALANCED * scale).max(noise) {
-            return Err(DualError::NotConverged {
-                method: "response to another load",
-                iterations: MOST_REFINEMENTS,
-                residual: largest / scale,
-                wanted: UNBALANCED,
-                advice: "nothing that is held balances the load, or triangles are too flat".to_string(),
-            });
-        }
-        Ok(Response {
-            stress: system.modes.stresses(problem, &now.s),
-            moments: system.unknowns.moments_of_change(problem, &now.x),
-            contact: SideValues::new(system.unknowns.jump_blocks().map(|b| b.len), traction),
-            remainder,
-        })
+        Left { traction, remainder, largest, scale, noise: NOISE * system.size_of_terms(&self.held) }
     }
 
     /// Which closed coefficients are at the floor, and the jumps of all.

@@ -11,6 +11,7 @@
 
 mod block;
 mod compliance;
+pub mod congruent;
 pub mod displacement;
 mod elements;
 mod field;
@@ -30,7 +31,7 @@ pub use block::Block;
 pub use compliance::Compliance;
 pub use displacement::Displacement;
 pub use elements::Elements;
-pub use field::{StressField, lattice, lattice_len};
+pub use field::{Shapes, StressField, lattice, lattice_len};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use plain::PlainDisplacement;
 pub use side_values::{SideValues, parts, starts};

@@ -11,7 +11,7 @@
 
 use super::end::End;
 use super::functional::Functional;
-use super::pass::{Pass, strained};
+use super::pass::{Pass, square, strained};
 use super::search::Search;
 use super::value::displaced;
 use crate::bounds::{Bracket, Nearest, UpperBound, mid_field, openings};
@@ -95,8 +95,9 @@ pub struct Known<'a> {
     pub(super) nearest: Nearest<'a>,
     /// Coefficients of g − j(v) on every pair, not negative, in the degree of the bounds of z.
     pub(super) openings: Vec<Vec<f64>>,
-    /// m, of the degree of λ.
+    /// m, of the degree of λ, and ‖m‖_a.
     pub(super) middle: StressField,
+    pub(super) size: f64,
     /// Coefficients of t(λ) one after the other, zero where nothing presses.
     pub(super) pressure: Vec<f64>,
 }
@@ -114,23 +115,25 @@ impl<'a> Known<'a> {
         factorised: &'a Factorised,
         options: &Options,
     ) -> Result<Self, String> {
-        let nearest = Nearest::new(problem, &dual.moments).map_err(|error| error.to_string())?;
+        let nearest = Nearest::new(problem, &dual.moments, &upper.prepared).map_err(|error| error.to_string())?;
         let gap = (upper.upper() - bracket.lower()).max(0.0);
         let of_contact = upper.local.pairs.iter().flatten().map(|p| p.max(0.0)).sum::<f64>() + upper.widening;
-        let square = 0.5 * (gap + of_contact.min(gap)) / problem.scene.thickness;
+        let ball = 0.5 * (gap + of_contact.min(gap)) / problem.scene.thickness;
         let open = |(pair, count): (&ContactPair, usize)| {
             let found = openings(problem, &upper.displacement, pair);
             in_degree(&found, count.max(1) - 1).into_iter().map(|o| o.max(0.0)).collect()
         };
+        let middle = mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?;
         Ok(Known {
             problem,
             dual,
             upper,
-            square,
-            responses: factorised.responses(problem, LONGEST_DENSE, options),
+            square: ball,
+            responses: factorised.responses(problem, &dual.moments, LONGEST_DENSE, options),
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
-            middle: mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?,
+            size: square(problem, &middle).sqrt(),
+            middle,
             pressure: pressing(dual),
         })
     }
@@ -139,8 +142,7 @@ impl<'a> Known<'a> {
     pub fn interval(&self, functional: &Functional) -> Interval {
         let value = self.value(functional);
         let loaded = self.responses.to(&functional.load);
-        let free = vec![f64::NEG_INFINITY; self.pressure.len()];
-        let neutral = self.respond(&loaded, &free, 1.0);
+        let neutral = loaded.held_by_all(self.dual.closed.values()).map_err(not_held);
         let search = Search { known: self, functional, loaded: &loaded };
         let (mut ends, mut reasons) = ([f64::NEG_INFINITY, f64::INFINITY], [None, None]);
         let mut first_order = ends;
@@ -156,7 +158,8 @@ impl<'a> Known<'a> {
                     let best = match &found[0] {
                         // Without contact one pair serves both ends.
                         Some(lower) if self.pressure.is_empty() => Ok(search.turned(lower)),
-                        _ => search.best(&begun, sign),
+                        Some(lower) => search.best(&begun, sign, Some(&lower.nodes)),
+                        None => search.best(&begun, sign, None),
                     };
                     match best {
                         Ok(best) => {
@@ -192,12 +195,16 @@ impl<'a> Known<'a> {
         }
     }
 
-    pub(super) fn respond(&self, loaded: &Loaded<'_>, floor: &[f64], sign: f64) -> Result<Response, String> {
+    /// The response with s at least `floor`, with a remainder of at most `enough` where that can be had.
+    pub(super) fn respond(
+        &self,
+        loaded: &Loaded<'_>,
+        floor: &[f64],
+        sign: f64,
+        enough: f64,
+    ) -> Result<Response, String> {
         let bounds = Bounds { closed: self.dual.closed.values(), floor, sign };
-        loaded.respond(bounds, &self.dual.moments).map_err(|error| match error {
-            DualError::NotConverged { .. } | DualError::ContactUndetermined => NOT_HELD.to_string(),
-            other => other.to_string(),
-        })
+        loaded.respond(bounds, enough).map_err(not_held)
     }
 
     /// The ratio that the traction of `response` asks for where the contact presses.
@@ -225,6 +232,14 @@ impl<'a> Known<'a> {
         for ((share, square), gap) in shares.iter_mut().zip(&end.pass.squares).zip(&self.upper.local.triangles) {
             *share += 0.5 * (ratio * 0.5 * gap.max(0.0) / thickness + square.max(0.0) / (4.0 * ratio));
         }
+    }
+}
+
+/// The reason for that a response has no stress.
+fn not_held(error: DualError) -> String {
+    match error {
+        DualError::NotConverged { .. } | DualError::ContactUndetermined => NOT_HELD.to_string(),
+        other => other.to_string(),
     }
 }
 

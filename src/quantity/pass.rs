@@ -6,10 +6,10 @@ use super::functional::Functional;
 use super::region::{Cut, Piece};
 use crate::bounds::Sum;
 use crate::bounds::energy::shape;
-use crate::bounds::strain::{Strains, sub_area};
+use crate::bounds::strain::{Samples, Strains, sub_area};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Compliance, Displacement, StressField};
+use crate::element::{Compliance, Displacement, Shapes, StressField};
 use crate::problem::Problem;
 
 /// The fields of the problem that was solved, and of an adjoint pair.
@@ -84,6 +84,23 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
     }
 }
 
+/// ‖σ‖²_a, per unit thickness.
+pub fn square(problem: &Problem, sigma: &StressField) -> f64 {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let of = |t: usize| {
+        let material = &materials[mesh.body[t]];
+        let shapes = Shapes::of(sigma.degree(t), sigma.degree(t));
+        let at = |sub: usize, q: usize| sigma.sample(t, sub, shapes, q);
+        let points =
+            (0..3).flat_map(|sub| shapes.points.iter().enumerate().map(move |(q, (_, weight))| (sub, q, weight)));
+        let product = |(sub, q, weight): (usize, usize, &f64)| weight * material.product(at(sub, q), at(sub, q));
+        sub_area(mesh.corners(t)) * points.map(product).sum::<f64>()
+    };
+    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
+    terms.into_iter().collect::<Sum>().value()
+}
+
 /// Where the sums of a triangle stand: three of the pair, three without z, and one of each other kind.
 const PAIR: usize = 0;
 const ALONE: usize = 3;
@@ -115,8 +132,11 @@ fn triangle(
         Strain::Whole(chi) => material.stress(chi),
         _ => [0.0; 3],
     };
-    let k = displacement.degree(t).max(lifted.degree(t)) - 1;
-    let rule = triangle_rule(2 * k.max(stress.degree(t)).max(adjoint.degree(t)));
+    let [k, l] = [displacement, lifted].map(|v| v.degree(t) - 1);
+    let [p, r] = [stress, adjoint].map(|sigma| sigma.degree(t));
+    let half = k.max(l).max(p).max(r);
+    let (at_v, at_z) = (Samples::of(k, half), Samples::of(l, half));
+    let (at_stress, at_adjoint) = (Shapes::of(p, half), Shapes::of(r, half));
     let (mut of_v, mut of_z) = (Strains::default(), Strains::default());
     let mut out = [0.0; TERMS];
     let modulus = material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
@@ -125,10 +145,10 @@ fn triangle(
         of_z.on(corners, lifted, t, sub);
         out[PAIR + 2] += area * modulus * of_z.largest_spread().powi(2);
         out[UNCANCELLED] += area * modulus * of_v.largest_spread().powi(2);
-        for (l, weight) in rule {
-            let (balanced, lambda) = (adjoint.at(t, sub, *l), stress.at(t, sub, *l));
+        for (q, (_, weight)) in at_v.points.iter().enumerate() {
+            let (balanced, lambda) = (adjoint.sample(t, sub, at_adjoint, q), stress.sample(t, sub, at_stress, q));
             let sigma = plus(balanced, initial);
-            let (e_v, e_z) = (of_v.at(*l), of_z.at(*l));
+            let (e_v, e_z) = (of_v.sample(at_v, q), of_z.sample(at_z, q));
             // In strains: a σ_z − e(z), and a m.
             let a_sigma = material.strain(sigma);
             let off = minus(a_sigma, e_z);
@@ -148,7 +168,7 @@ fn triangle(
         for piece in &cut.pieces {
             of_v.on(corners, displacement, t, piece.sub);
             of_z.on(corners, lifted, t, piece.sub);
-            for (l, by) in points(piece, 2 * k.max(stress.degree(t)).max(adjoint.degree(t))) {
+            for (l, by) in points(piece, 2 * half) {
                 let sigma = adjoint.at(t, piece.sub, l);
                 let e_z = of_z.at(l);
                 let a_sigma = material.strain(sigma);

@@ -3,7 +3,7 @@
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
-use super::pass::Pass;
+use super::pass::square;
 use super::tried::Tried;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
 use crate::dual::modes::materials;
@@ -23,8 +23,14 @@ const MOST_TRIES: usize = 3;
 /// The largest weight of the stress of the scene in the pull at z, relative to that of the adjoint stress.
 const HEAVIEST: f64 = 100.0;
 
+/// Part of a sum below which its terms have cancelled: it is measured instead.
+const CANCELLED: f64 = 1e-8;
+
+/// Part of the width that a remainder of equilibrium may add.
+const UNSEEN: f64 = 1e-3;
+
 /// Part of the width that a sweep over z has to gain for another one to follow.
-const WORTH_A_SWEEP: f64 = 0.01;
+const WORTH_A_SWEEP: f64 = 1e-3;
 
 /// The search for one end.
 pub(super) struct Search<'s, 'a> {
@@ -36,27 +42,44 @@ pub(super) struct Search<'s, 'a> {
 /// What the search for either end begins with.
 pub(super) struct Begun {
     response: Response,
-    end: End,
+    /// Values of z at nodes.
+    nodes: NodalValues,
+    /// ‖σ̂‖_a, and ‖σ_z‖_a.
+    balanced: f64,
+    size: f64,
+    /// D.
+    distance: f64,
 }
 
 impl Search<'_, '_> {
     /// What the search for either end begins with: the response that is not bounded, and a displacement near to it.
     pub fn begin(&self, neutral: Response) -> Begun {
-        let nearest = &self.known.nearest;
+        let Known { problem, nearest, .. } = self.known;
         let sigma = self.stress(&neutral.stress, 1.0);
         let nodes = nearest.start(&sigma, &neutral.moments);
-        let lifted = nearest.filled(&nodes, Pull { scene: 0.0, stress: Some(&sigma) });
-        let end = self.measured(&neutral, (&lifted, 1.0), 1.0);
-        Begun { response: neutral, end: End { nodes, ..end } }
+        let balanced = square(problem, &neutral.stress);
+        let square = if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) };
+        // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
+        let pull = Pull { scene: 0.0, stress: Some(&sigma) };
+        let rest = square + 2.0 * nearest.energy(&nodes, pull);
+        let distance = if rest > CANCELLED * square {
+            rest.sqrt()
+        } else {
+            self.measured(&neutral, (&nearest.filled(&nodes, pull), 1.0), 1.0).distance
+        };
+        let [balanced, size] = [balanced, square].map(f64::sqrt);
+        Begun { response: neutral, nodes, balanced, size, distance }
     }
 
-    /// The best end for sign · Q that a few ratios give.
-    pub fn best(&self, begun: &Begun, sign: f64) -> Result<End, String> {
+    /// The best end for sign · Q that a few ratios give; `other` is z of the other end, turned as that is.
+    pub fn best(&self, begun: &Begun, sign: f64, other: Option<&NodalValues>) -> Result<End, String> {
         let known = self.known;
-        let mut tries = Tries::new(self, &begun.end, sign);
-        tries.add(self.first_ratio(&begun.end));
+        // But for what pressure and opening allow, z of one end is that of the other turned around.
+        let start = other.map_or_else(|| begun.nodes.scaled(sign), |z| z.scaled(-1.0));
+        let mut tries = Tries::new(self, begun, sign, start);
+        tries.add(self.first_ratio(begun));
         // A body that contact alone holds needs a pressure to take off from.
-        let mut ratio = self.first_ratio(&begun.end).max(known.needed(&begun.response, sign));
+        let mut ratio = self.first_ratio(begun).max(known.needed(&begun.response, sign));
         for _ in 0..MOST_RAISES {
             if tries.is_bounded() {
                 break;
@@ -84,10 +107,9 @@ impl Search<'_, '_> {
     }
 
     /// As if what is clipped, D² = c/ρ, had the size of the stresses; where D is far smaller than they, what costs nothing.
-    fn first_ratio(&self, begun: &End) -> f64 {
-        let square = self.known.square;
-        let [size, middle] = [begun.pass.balanced, begun.pass.middle].map(f64::sqrt);
-        let clipped = size / (2.0 * middle * square).cbrt();
+    fn first_ratio(&self, begun: &Begun) -> f64 {
+        let Known { square, size, .. } = self.known;
+        let clipped = begun.balanced / (2.0 * size * square).cbrt();
         let first = clipped.min(FAR * begun.distance / (2.0 * square.sqrt()));
         if first.is_finite() && first > 0.0 { first } else { 1.0 }
     }
@@ -131,7 +153,7 @@ impl Search<'_, '_> {
         start: NodalValues,
     ) -> Result<End, String> {
         let known = self.known;
-        let stress = less(self.stress(&response.stress, sign), 2.0 * weight, &known.middle);
+        let stress = less(&self.stress(&response.stress, sign), 2.0 * weight, &known.middle);
         let bounds: Vec<Vec<f64>> = known
             .openings
             .iter()
@@ -144,7 +166,7 @@ impl Search<'_, '_> {
             .collect();
         let pull = Pull { scene: 2.0 * weight, stress: Some(&stress) };
         let until = Until::Gains(WORTH_A_SWEEP * 4.0 * weight * weight * known.square);
-        let (z, nodes) = known.nearest.to(pull, &bounds, vec![start], until).map_err(|error| match error {
+        let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
@@ -159,6 +181,8 @@ struct Tries<'t, 's, 'a> {
     sign: f64,
     /// The largest weight of the stress of the scene: beyond it that leaves no digits of the adjoint one.
     heaviest: f64,
+    /// Remainders of equilibrium that do not show in the width.
+    enough: f64,
     /// What relaxing begins with.
     start: NodalValues,
     tried: Tried,
@@ -168,11 +192,11 @@ struct Tries<'t, 's, 'a> {
 }
 
 impl<'t, 's, 'a> Tries<'t, 's, 'a> {
-    fn new(search: &'t Search<'s, 'a>, End { pass: Pass { pair, middle, .. }, nodes, .. }: &End, sign: f64) -> Self {
-        let start = nodes.scaled(sign);
-        let heaviest = HEAVIEST * (pair.uncancelled / middle).sqrt();
+    fn new(search: &'t Search<'s, 'a>, begun: &Begun, sign: f64, start: NodalValues) -> Self {
+        let heaviest = HEAVIEST * begun.size / search.known.size;
         let heaviest = if heaviest > 0.0 { heaviest } else { f64::INFINITY };
-        Tries { search, sign, heaviest, start, tried: Tried::default(), best: None, reason: None }
+        let enough = UNSEEN * begun.distance * search.known.square.sqrt();
+        Tries { search, sign, heaviest, enough, start, tried: Tried::default(), best: None, reason: None }
     }
 
     fn is_bounded(&self) -> bool {
@@ -202,7 +226,7 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
     fn attempt(&self, ratio: f64) -> Result<(End, Response), String> {
         let Search { known, loaded, .. } = self.search;
         let floor: Vec<f64> = known.pressure.iter().map(|t| ratio * t).collect();
-        let response = known.respond(loaded, &floor, self.sign)?;
+        let response = known.respond(loaded, &floor, self.sign, self.enough)?;
         let weights = [ratio, ratio.min(self.heaviest)];
         let end = self.search.end(&response, self.sign, weights, self.start.clone())?;
         Ok((end, response))
@@ -210,18 +234,18 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
 }
 
 /// σ − factor · m, of the degree of m, which is no lower.
-fn less(sigma: StressField, factor: f64, middle: &StressField) -> StressField {
+fn less(sigma: &StressField, factor: f64, middle: &StressField) -> StressField {
     let mut out = middle.clone();
+    let from = |value: &mut [f64; 3], sigma: [f64; 3]| *value = [0, 1, 2].map(|c| sigma[c] - factor * value[c]);
     for t in 0..out.len() {
         let degree = middle.degree(t);
-        let nodes: Vec<[f64; 3]> = if degree == sigma.degree(t) {
-            sigma.block(t).to_vec()
+        let own = out.block_mut(t).iter_mut();
+        if degree == sigma.degree(t) {
+            own.zip(sigma.block(t)).for_each(|(value, sigma)| from(value, *sigma));
         } else {
             let points = || triangle::indices(degree).map(|i| i.map(|i| i as f64 / degree as f64));
-            (0..3).flat_map(|sub| points().map(move |l| (sub, l))).map(|(sub, l)| sigma.at(t, sub, l)).collect()
-        };
-        for (value, sigma) in out.block_mut(t).iter_mut().zip(nodes) {
-            *value = [0, 1, 2].map(|c| sigma[c] - factor * value[c]);
+            let at = (0..3).flat_map(|sub| points().map(move |l| sigma.at(t, sub, l)));
+            own.zip(at).for_each(|(value, sigma)| from(value, sigma));
         }
     }
     out

@@ -117,7 +117,7 @@ pub(super) fn solve_balanced(
     let motions = statics.held_at_vertices(&problem);
     let (mut dual, bracket) = options.on_threads(|| {
         let dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
-        let bracket = Bracket::from_start(&problem, &dual, start);
+        let bracket = Bracket::from_start(&problem, &dual, start, options.keep_factor);
         Ok::<_, DualError>((dual, bracket))
     })?;
     dual.seconds.total = began.elapsed().as_secs_f64();

@@ -16,7 +16,7 @@ use crate::bounds::strain::gradients;
 use crate::dual::modes::materials;
 use crate::element::displacement::MOST;
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, SideValues, StressField, triangle};
+use crate::element::{Compliance, Shapes, SideValues, StressField, triangle};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
@@ -61,7 +61,8 @@ fn corner_values(
     let centre = [0, 1].map(|c| ((corners[1][c] - origin[c]) + (corners[2][c] - origin[c])) / 3.0);
     let p = corners.map(|q| [q[0] - origin[0] - centre[0], q[1] - origin[1] - centre[1]]);
     let reference = Reference::of(stress.degree(t));
-    let strain = reference.strain(|sub, l| material.strain(stress.at(t, sub, l)));
+    let shapes = Shapes::of(stress.degree(t), stress.degree(t));
+    let strain = reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q)));
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
     let (mut shift, mut turn, mut inertia) = ([0.0; 2], 0.0, 0.0);
@@ -122,8 +123,8 @@ fn weighed(weights: &[f64], values: &[[f64; 3]]) -> [f64; 3] {
 
 /// What the fit needs that is the same for all triangles.
 struct Reference {
-    /// Points of each subtriangle, in its own barycentric coordinates.
-    samples: Vec<(usize, [f64; 3])>,
+    /// Points of each subtriangle: which, the number of the point in its rule, and where it is in its own barycentric coordinates.
+    samples: Vec<(usize, usize, [f64; 3])>,
     /// Coefficients of the nearest polynomial from the values there.
     projection: DMatrix<f64>,
     /// To each corner.
@@ -165,12 +166,13 @@ impl Reference {
             triangle::product(index(i), index(j))
         });
         let rule = triangle_rule(2 * p);
-        let samples: Vec<(usize, [f64; 3])> = (0..3).flat_map(|sub| rule.iter().map(move |(m, _)| (sub, *m))).collect();
+        let of_sub = |sub| rule.iter().enumerate().map(move |(q, (m, _))| (sub, q, *m));
+        let samples: Vec<(usize, usize, [f64; 3])> = (0..3).flat_map(of_sub).collect();
         let weights = rule.iter().map(|(_, weight)| weight / 3.0).cycle();
         let columns: Vec<f64> = samples
             .iter()
             .zip(weights)
-            .flat_map(|((sub, m), weight)| triangle::basis(p, in_triangle(*sub, *m)).map(move |b| weight * b))
+            .flat_map(|((sub, _, m), weight)| triangle::basis(p, in_triangle(*sub, *m)).map(move |b| weight * b))
             .collect();
         let moments = DMatrix::from_column_slice(size, samples.len(), &columns);
         let projection = mass.cholesky().map_or_else(|| moments.clone(), |mass| mass.solve(&moments));
@@ -187,10 +189,10 @@ impl Reference {
     }
 
     /// Coefficients of the nearest strain in L².
-    fn strain(&self, value: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
+    fn strain(&self, value: impl Fn(usize, usize, [f64; 3]) -> [f64; 3]) -> Vec<[f64; 3]> {
         let mut strain = vec![[0.0; 3]; self.projection.nrows()];
-        for ((sub, l), column) in self.samples.iter().zip(self.projection.column_iter()) {
-            let e = value(*sub, *l);
+        for ((sub, q, l), column) in self.samples.iter().zip(self.projection.column_iter()) {
+            let e = value(*sub, *q, *l);
             for (s, w) in strain.iter_mut().zip(column.iter()) {
                 (0..3).for_each(|c| s[c] += w * e[c]);
             }
@@ -243,7 +245,7 @@ mod tests {
         let place = |l: [f64; 3]| [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum::<f64>());
         for p in 3..=5 {
             let reference = Reference::of(p);
-            let found = reference.strain(|sub, m| strain(place(in_triangle(sub, m))));
+            let found = reference.strain(|sub, _, m| strain(place(in_triangle(sub, m))));
             let local = Local {
                 p: corners.map(|q| [q[0] - centre[0], q[1] - centre[1]]),
                 gradients: gradients(corners),

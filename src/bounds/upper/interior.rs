@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::cholesky;
 use super::model::Model;
 use super::nodes::{NodalValues, elevated};
+use super::pull::Pull;
 use super::split::Split;
-use super::stiffness::Pull;
 use crate::dual::modes::materials;
 use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
 use crate::element::{Displacement, side, triangle};
@@ -24,13 +24,13 @@ pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacem
 }
 
 /// Does the same with what `model` has kept, to the digits that one elimination leaves.
-pub fn fill_with(problem: &Problem, field: &NodalValues, model: &Model<'_>) -> Displacement {
+pub fn fill_with(problem: &Problem, field: &NodalValues, model: &Model) -> Displacement {
     completed(problem, field, |t, k, block| {
         let (boundary, within) = block.as_flattened_mut().split_at_mut(6 * k);
         let base = [boundary[0], boundary[1]];
         let about = |c: usize| boundary[c] - base[c % 2];
         let about: Vec<f64> = (0..boundary.len()).map(about).collect();
-        let found = model.elements[t].as_ref().and_then(|element| element.inside(&about));
+        let found = model.energies.of(t).map(|element| element.inside(&about));
         // Where nothing could be eliminated there is no unique minimum, and any values are admissible.
         let found = found.unwrap_or_else(|| vec![0.0; within.len()]);
         within.iter_mut().zip(found).enumerate().for_each(|(c, (own, found))| *own = found + base[c % 2]);

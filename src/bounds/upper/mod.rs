@@ -12,16 +12,20 @@ mod cholesky;
 mod contact;
 mod edges;
 mod ends;
+mod energies;
 mod fit;
 mod groups;
 mod holds;
 mod interior;
 mod lift;
+mod minimum;
 mod model;
 mod momentum;
 mod nearest;
 mod nodes;
-mod patch;
+mod patches;
+mod prepared;
+mod pull;
 mod relax;
 mod rows;
 mod sets;
@@ -32,10 +36,12 @@ pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
 use self::model::Model;
 pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
-use self::relax::Patches;
+use self::patches::Patches;
+use self::prepared::Made;
+pub use self::prepared::Prepared;
+pub use self::pull::Pull;
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein, of_pair, sides};
-pub use self::stiffness::Pull;
 use super::energy::potential;
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement};
@@ -78,6 +84,20 @@ pub fn admissible(
     floor: f64,
     start: Option<NodalValues>,
 ) -> Result<Displacement, NoUpperBound> {
+    Ok(admissible_and_prepared(problem, dual, floor, start, false)?.0)
+}
+
+/// Does the same, and keeps what was made on the way for others on this mesh where that is asked for.
+///
+/// # Errors
+/// As [`admissible`].
+pub fn admissible_and_prepared(
+    problem: &Problem,
+    dual: &DualSolution,
+    floor: f64,
+    start: Option<NodalValues>,
+    keep: bool,
+) -> Result<(Displacement, Prepared), NoUpperBound> {
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let nodes = Nodes::new(mesh.points.len(), dual.moments.iter().map(|moments| moments.len()));
@@ -100,16 +120,18 @@ pub fn admissible(
     contact::match_means(problem, dual, &mut field);
     contact::restrict_inside(problem, &rows, &mut field);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
-    let at_rest = restricted(problem, &holds, &rows, NodalValues::zeros(nodes.clone()))?.0;
+    let at_rest = || Ok(restricted(problem, &holds, &rows, NodalValues::zeros(nodes.clone()))?.0);
     let mut candidates = vec![field];
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
     }
-    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE, false);
+    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
     let mut patches = Patches::new(problem, &nodes);
     let relaxed =
-        relax::relax(problem, &model, &mut patches, Until::Near(floor / problem.scene.thickness), candidates, at_rest);
-    Ok(interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::SCENE))
+        relax::relax(problem, &model, &mut patches, Until::Near(floor / problem.scene.thickness), candidates, at_rest)?;
+    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::SCENE);
+    let prepared = if keep { Prepared::holding(Made { model, patches }) } else { Prepared::default() };
+    Ok((displacement, prepared))
 }
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.

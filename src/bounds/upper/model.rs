@@ -1,18 +1,18 @@
 //! The energy of a continuous displacement as a function of its nodes, with what holds them.
 
+use super::energies::{TriangleEnergies, TriangleEnergy};
 use super::groups::Group;
 use super::holds::{Hold, Holds};
 use super::nodes::Nodes;
+use super::pull::Pull;
 use super::rows::Row;
-use super::stiffness::{Condensed, Pull, condensed, reload};
 use crate::problem::Problem;
 
 /// What does not change while patches move.
 #[derive(Debug)]
-pub struct Model<'a> {
-    problem: &'a Problem,
+pub struct Model {
     /// ½uᵀKu − fᵀu of every triangle, `None` where its inside has no unique minimum.
-    pub elements: Vec<Option<Condensed>>,
+    pub energies: TriangleEnergies,
     /// The directions in which each node may move.
     pub free: Vec<Directions>,
     /// Bernstein coefficients of the jumps: at most zero.
@@ -21,23 +21,16 @@ pub struct Model<'a> {
     pub rows_at: Vec<Vec<usize>>,
     /// The nodes on the boundaries of the triangles, one after the other, and where each triangle begins.
     of_triangles: (Vec<usize>, Vec<usize>),
-    /// The edge of each node beyond the vertices.
-    edge: Vec<usize>,
+    /// The ends of the edge of each node beyond the vertices.
+    ends: Vec<[usize; 2]>,
+    vertices: usize,
 }
 
-impl<'a> Model<'a> {
+impl Model {
     /// Prepares the energy of all triangles and the conditions on all nodes.
     ///
     /// `groups` are the rows of every pair, `pull` what the energy has beside that of the strains.
-    /// Where it is to be used `again`, other loads and bounds can take their place.
-    pub fn new(
-        problem: &'a Problem,
-        holds: &Holds,
-        nodes: &Nodes,
-        groups: &[Vec<Row>],
-        pull: Pull<'_>,
-        again: bool,
-    ) -> Self {
+    pub fn new(problem: &Problem, holds: &Holds, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) -> Self {
         let mesh = &problem.mesh;
         let (mut of_triangles, mut start) = (Vec::new(), vec![0]);
         for t in 0..mesh.triangles.len() {
@@ -46,33 +39,43 @@ impl<'a> Model<'a> {
         }
         let rows_at = rows_at(problem, groups);
         Model {
-            problem,
-            elements: condensed(problem, nodes, pull, again),
+            energies: TriangleEnergies::new(problem, nodes, pull),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
             rows_at,
             of_triangles: (of_triangles, start),
-            edge: (0..nodes.edges()).flat_map(|e| std::iter::repeat_n(e, nodes.inside(e).len())).collect(),
+            ends: (0..nodes.edges())
+                .flat_map(|e| std::iter::repeat_n(mesh.edges[e].vertices, nodes.inside(e).len()))
+                .collect(),
+            vertices: mesh.points.len(),
         }
     }
 
     /// The same with another load and other bounds on the jumps.
-    pub fn with(&mut self, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
-        reload(self.problem, nodes, pull, &mut self.elements);
+    pub fn with(&mut self, problem: &Problem, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
+        self.energies.reload(problem, nodes, pull);
         self.rows = groups.iter().flatten().cloned().collect();
+    }
+
+    /// Whether nodes may move in the same directions where `holds` hold them.
+    pub fn is_free_as(&self, holds: &Holds, nodes: &Nodes) -> bool {
+        self.free == directions(holds, nodes)
     }
 
     /// 𝓛 of the values per unit thickness less that of zero values, without the triangles that have no unique minimum
     /// inside. With zero values the body force still moves the inside of the triangles.
     pub fn energy(&self, values: &[[f64; 2]]) -> f64 {
-        let mut u = Vec::new();
-        let mut of = |(t, element): (usize, &Condensed)| {
+        let (mut u, mut room) = (Vec::new(), Vec::new());
+        let of = |(t, element): (usize, TriangleEnergy<'_>)| {
             self.about_corner(t, values, &mut u);
-            let at = self.nodes(t).iter().flat_map(|&node| values[node]);
-            let work: f64 = element.load().iter().zip(at).map(|(f, u)| f * u).sum();
-            0.5 * element.form(&u, &u) - work
+            element.energy(&u, self.nodes(t).iter().flat_map(|&node| values[node]), &mut room)
         };
-        self.elements.iter().enumerate().filter_map(|(t, e)| Some(of((t, e.as_ref()?)))).sum()
+        self.energies.iter().map(of).sum()
+    }
+
+    /// 𝓛 of zero values per unit thickness, as [`Self::energy`] leaves it out.
+    pub fn energy_at_rest(&self) -> f64 {
+        self.energies.iter().map(|(_, element)| element.at_rest()).sum()
     }
 
     /// Values on the boundary of triangle `t` about its first corner: translations carry no energy and should cost no
@@ -92,12 +95,9 @@ impl<'a> Model<'a> {
 
     /// Whether a node moves with the vertices of a group.
     pub fn moves(&self, node: usize, group: &Group) -> bool {
-        match node.checked_sub(self.problem.mesh.points.len()) {
+        match node.checked_sub(self.vertices) {
             None => group.vertices.contains(&node),
-            Some(inside) => {
-                let e = self.edge[inside];
-                self.problem.mesh.edges[e].vertices.iter().any(|v| group.vertices.contains(v))
-            }
+            Some(inside) => self.ends[inside].iter().any(|v| group.vertices.contains(v)),
         }
     }
 }
@@ -113,7 +113,7 @@ fn directions(holds: &Holds, nodes: &Nodes) -> Vec<Directions> {
 }
 
 /// Up to two unit vectors.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Directions {
     /// How many.
     pub count: usize,
@@ -196,7 +196,7 @@ mod tests {
     fn energy(problem: &Problem, field: &NodalValues) -> f64 {
         let rows = rows(problem, &field.nodes);
         let holds = holds(problem).expect("supports agree");
-        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE, false).energy(&field.values)
+        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE).energy(&field.values)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.

@@ -16,7 +16,7 @@ pub struct Momentum {
 impl Momentum {
     /// Moves `values`, the result of a sweep from `before`, and gives the energy gained. No jump grows beyond its gap by
     /// more than `slack`.
-    pub fn push(&mut self, model: &Model<'_>, before: &[[f64; 2]], slack: f64, values: &mut [[f64; 2]]) -> f64 {
+    pub fn push(&mut self, model: &Model, before: &[[f64; 2]], slack: f64, values: &mut [[f64; 2]]) -> f64 {
         // Near the minimum a sweep moves little but rounding, and a factor may be large: what supports hold stays out.
         let moved = values.iter().zip(before).map(|(v, b)| [v[0] - b[0], v[1] - b[1]]);
         let sweep: Vec<[f64; 2]> = moved.zip(&model.free).map(|(step, free)| free.along(step)).collect();
@@ -27,8 +27,7 @@ impl Momentum {
         let mut force = Vector2::zeros();
         let (mut u, mut residual) = (Vec::new(), Vec::new());
         let mut steps = [Vec::new(), Vec::new()];
-        for (t, element) in model.elements.iter().enumerate() {
-            let Some(element) = element else { continue };
+        for (t, element) in model.energies.iter() {
             model.about_corner(t, values, &mut u);
             element.residual(&u, &mut residual);
             for (i, moves) in [&sweep, &self.step].into_iter().enumerate() {

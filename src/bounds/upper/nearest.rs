@@ -7,8 +7,10 @@ use std::cell::RefCell;
 
 use super::model::Model;
 use super::nodes::{NodalValues, Nodes};
+use super::patches::Patches;
+use super::prepared::{Made, Prepared};
 use super::rows::{Row, rows};
-use super::{Holds, NoUpperBound, Patches, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
+use super::{Holds, NoUpperBound, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -19,18 +21,21 @@ pub struct Nearest<'a> {
     nodes: Nodes,
     rows: Vec<Vec<Row>>,
     /// Stiffness and factors, from the first displacement on.
-    kept: RefCell<Option<(Model<'a>, Patches)>>,
+    made: RefCell<Option<Box<Made>>>,
 }
 
 impl<'a> Nearest<'a> {
-    /// For displacements of one degree more than edge moments `like` these.
+    /// For displacements of one degree more than edge moments `like` these; `prepared` is what the upper bound with such moments on
+    /// this mesh has left.
     ///
     /// # Errors
     /// None: supports that hold nothing in place agree.
-    pub fn new(problem: &'a Problem, like: &SideValues<[f64; 2]>) -> Result<Self, NoUpperBound> {
+    pub fn new(problem: &'a Problem, like: &SideValues<[f64; 2]>, prepared: &Prepared) -> Result<Self, NoUpperBound> {
         let nodes = Nodes::new(problem.mesh.points.len(), like.iter().map(|moments| moments.len()));
         let rows = rows(problem, &nodes);
-        Ok(Nearest { problem, holds: holds_at(problem, |_, _| [0.0; 2])?, nodes, rows, kept: RefCell::default() })
+        let holds = holds_at(problem, |_, _| [0.0; 2])?;
+        let made = prepared.take().filter(|made| made.model.is_free_as(&holds, &nodes));
+        Ok(Nearest { problem, holds, nodes, rows, made: RefCell::new(made) })
     }
 
     /// The number of coefficients that bound the jump on each pair, one interface after the other.
@@ -57,7 +62,7 @@ impl<'a> Nearest<'a> {
     }
 
     /// The displacement of least energy under `pull` whose jumps (v' − v'')·n̂ have coefficients of at most `bounds` on every
-    /// pair, and its values at nodes; it begins with the best of `starts`.
+    /// pair, and its values at nodes; it begins with `start`.
     ///
     /// # Errors
     /// [`NoUpperBound::ForcedPenetration`] where supports leave no room for the bounds.
@@ -65,7 +70,7 @@ impl<'a> Nearest<'a> {
         &self,
         pull: Pull<'_>,
         bounds: &[Vec<f64>],
-        starts: Vec<NodalValues>,
+        start: NodalValues,
         until: Until,
     ) -> Result<(Displacement, NodalValues), NoUpperBound> {
         let bounded = |(rows, bounds): (&Vec<Row>, &Vec<f64>)| {
@@ -73,10 +78,10 @@ impl<'a> Nearest<'a> {
         };
         let rows: Vec<Vec<Row>> = self.rows.iter().zip(bounds).map(bounded).collect();
         let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
-        let candidates = starts.into_iter().map(admissible).collect::<Result<Vec<_>, NoUpperBound>>()?;
-        let at_rest = admissible(NodalValues::zeros(self.nodes.clone()))?;
+        let candidates = vec![admissible(start)?];
+        let at_rest = || admissible(NodalValues::zeros(self.nodes.clone()));
         self.pulled(pull, &rows, |model, patches| {
-            let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest);
+            let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest)?;
             let relaxed = admissible(relaxed)?;
             Ok((interior::fill_with(self.problem, &relaxed, model), relaxed))
         })
@@ -87,15 +92,20 @@ impl<'a> Nearest<'a> {
         self.pulled(pull, &self.rows, |model, _| interior::fill_with(self.problem, values, model))
     }
 
+    /// The energy under `pull` of the displacement with these values at nodes, the inside of triangles of least energy.
+    pub fn energy(&self, values: &NodalValues, pull: Pull<'_>) -> f64 {
+        self.pulled(pull, &self.rows, |model, _| model.energy(&values.values) + model.energy_at_rest())
+    }
+
     /// What `ask` says of the energy under `pull` with jumps bounded by `rows`.
-    fn pulled<T>(&self, pull: Pull<'_>, rows: &[Vec<Row>], ask: impl FnOnce(&Model<'_>, &mut Patches) -> T) -> T {
-        let mut kept = self.kept.borrow_mut();
-        if let Some((model, _)) = kept.as_mut() {
-            model.with(&self.nodes, rows, pull);
+    fn pulled<T>(&self, pull: Pull<'_>, rows: &[Vec<Row>], ask: impl FnOnce(&Model, &mut Patches) -> T) -> T {
+        let mut made = self.made.borrow_mut();
+        if let Some(made) = made.as_mut() {
+            made.model.with(self.problem, &self.nodes, rows, pull);
         }
-        let (model, patches) = kept.get_or_insert_with(|| {
-            let model = Model::new(self.problem, &self.holds, &self.nodes, rows, pull, true);
-            (model, Patches::new(self.problem, &self.nodes))
+        let Made { model, patches } = &mut **made.get_or_insert_with(|| {
+            let model = Model::new(self.problem, &self.holds, &self.nodes, rows, pull);
+            Box::new(Made { model, patches: Patches::new(self.problem, &self.nodes) })
         });
         ask(model, patches)
     }

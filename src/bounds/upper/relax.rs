@@ -6,15 +6,12 @@
 //! to hold fields without change of volume, so that this works as ν → ½ as well. Every step stays admissible and lowers
 //! the energy.
 
-use nalgebra::{DMatrix, DVector};
-
-use super::cholesky::{column, packed};
+use super::NoUpperBound;
 use super::contact::ROUNDING;
-use super::groups::{Group, groups};
 use super::model::Model;
 use super::momentum::Momentum;
-use super::nodes::{NodalValues, Nodes};
-use super::patch::{Step, factorise, free_minimum, minimum};
+use super::nodes::NodalValues;
+use super::patches::Patches;
 use crate::problem::Problem;
 
 /// Rounding of a step of all patches at once, in that of one: jumps that stay closed grow by it, and would cut the step short. What
@@ -33,6 +30,12 @@ const WORTH_A_SWEEP: f64 = 3e-3;
 /// is off by a little everywhere, which sweeps take away slowly.
 const WORTH_WHERE_TURNING: f64 = 1e-3;
 
+/// Of the smallest gain that is worth a sweep this part, divided among all patches: a patch that gained less, and lies beside none
+/// that gained more, rests …
+const QUIET: f64 = 0.05;
+/// … where no more than this part of all have to move.
+const FEW: f64 = 0.5;
+
 /// Part of the energy below which a gain is rounding, however little is wanted.
 const NO_GAIN: f64 = 1e-13;
 
@@ -43,25 +46,6 @@ const GOOD: f64 = 1e-3;
 /// A field with more energy than this, relative to what bodies at rest have or to the lower bound, says nothing about the
 /// displacement. On slivers a good one may have very much.
 const WILD: f64 = 1e30;
-
-/// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
-const MOST_IN_PATCH: usize = 300;
-
-/// Flat triangles tie together no more vertices than this over the degree: patches grow with the square of both.
-const MOST_VERTICES_BY_DEGREE: usize = 24;
-
-/// Numbers of kept factors for each vertex at most, for quadratics: where patches are larger on average, some factors are
-/// computed anew in every sweep.
-const KEPT_BY_VERTEX: usize = 512;
-
-/// How many unknowns a patch has, relative to quadratics.
-fn size(nodes: &Nodes) -> f64 {
-    let of_quadratics = nodes.vertices() + nodes.edges();
-    nodes.count() as f64 / of_quadratics.max(1) as f64
-}
-
-/// The factor of the stiffness of a patch, from the first sweep on.
-type Kept = Option<Box<[f64]>>;
 
 /// When relaxing ends, after the sweeps that are always made; energies are per unit thickness.
 #[derive(Debug, Clone, Copy)]
@@ -89,239 +73,91 @@ impl Until {
         }
     }
 
-    /// Whether a sweep that gained `gained` and led to the values was the last one.
-    fn is_reached(self, problem: &Problem, model: &Model<'_>, values: &[[f64; 2]], gained: f64) -> bool {
+    /// What a patch must gain to be moved again with few others, where these are `count`: what is wanted is known then.
+    fn quiet(self, count: usize) -> Option<f64> {
         match self {
-            Until::Gains(least) => gained <= least || gained <= NO_GAIN * model.energy(values).abs(),
+            Until::Near(_) => None,
+            Until::Gains(least) => Some(QUIET * least / count as f64),
+        }
+    }
+
+    /// Whether a sweep that gained `gained` and led to this energy was the last one.
+    fn is_reached(self, problem: &Problem, energy: f64, gained: f64) -> bool {
+        match self {
+            Until::Gains(least) => gained <= least || gained <= NO_GAIN * energy.abs(),
             Until::Near(floor) => {
                 let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
-                let gap = (model.energy(values) - floor).max(0.0);
+                let gap = (energy - floor).max(0.0);
                 gap == 0.0 || gained <= least * (GOOD * floor.abs() / gap).min(1.0) * gap
             }
         }
     }
 }
 
-/// What relaxing needs of a mesh, whatever the loads.
-pub struct Patches {
-    groups: Vec<Group>,
-    kept: Vec<Kept>,
-    patch: Patch,
-}
-
-impl Patches {
-    /// Groups the vertices of a mesh; factors are computed when they are needed first.
-    pub fn new(problem: &Problem, nodes: &Nodes) -> Self {
-        let size = size(nodes);
-        let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
-        let patch = Patch {
-            local: vec![usize::MAX; nodes.count()],
-            room: (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices(),
-            most: (MOST_IN_PATCH as f64 * size) as usize,
-            ..Patch::default()
-        };
-        Patches { kept: vec![None; groups.len()], groups, patch }
-    }
-}
-
 /// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are
 /// wild.
+///
+/// # Errors
+/// That of `at_rest`.
 pub fn relax(
     problem: &Problem,
-    model: &Model<'_>,
+    model: &Model,
     patches: &mut Patches,
     until: Until,
     candidates: Vec<NodalValues>,
-    at_rest: NodalValues,
-) -> NodalValues {
-    let Patches { groups, kept, patch } = patches;
-    let fields = candidates.into_iter().map(|field| (model.energy(&field.values), field.values));
-    // A displacement that is not a number has no energy to compare.
-    let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
-    let least = fields.min_by(|(a, _), (b, _)| known(*a).total_cmp(&known(*b)));
-    let rest = at_rest.values;
-    let tame = WILD * model.energy(&rest).abs().max(until.size());
-    let mut values = least.filter(|(energy, _)| known(*energy) <= tame).map_or(rest, |(_, field)| field);
+    at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+) -> Result<NodalValues, NoUpperBound> {
+    let (mut energy, NodalValues { nodes, mut values }) = begin(model, until, candidates, at_rest)?;
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let quiet = until.quiet(patches.count());
     let mut momentum = Momentum::default();
+    let mut few: Option<Vec<usize>> = None;
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
-        if sweep >= until.least_sweeps() && until.is_reached(problem, model, &values, gained) {
-            break;
-        }
-        let before = (sweep >= until.least_sweeps()).then(|| values.clone());
-        gained = 0.0;
-        for k in 0..groups.len() {
-            // Back and forth: what one direction pushes ahead of it the other brings back.
-            let k = if sweep % 2 == 0 { k } else { groups.len() - 1 - k };
-            let (group, kept) = (&groups[k], &mut kept[k]);
-            gained += patch.relax(model, group, kept, slack, &mut values);
-        }
-        if let Some(before) = before {
-            gained += momentum.push(model, &before, AT_ONCE * slack, &mut values);
-        }
-    }
-    NodalValues { nodes: at_rest.nodes, values }
-}
-
-/// The patch at hand, in memory that serves one after the other.
-#[derive(Default)]
-struct Patch {
-    /// First unknown of each node, `usize::MAX` outside.
-    local: Vec<usize>,
-    /// Node and direction of each unknown.
-    unknowns: Vec<(usize, [f64; 2])>,
-    /// Rows of contact with an unknown in them.
-    rows: Vec<usize>,
-    /// Lower triangle of the stiffness, column by column.
-    matrix: Vec<f64>,
-    /// Residual forces.
-    load: Vec<f64>,
-    /// How many numbers of factors may still be kept.
-    room: usize,
-    /// Larger patches are left as they are.
-    most: usize,
-    /// Values on the boundary of a triangle, and the forces there.
-    of_triangle: [Vec<f64>; 2],
-}
-
-impl Patch {
-    /// Moves the patch of `group` to the minimum of the energy, and gives the energy gained.
-    fn relax(&mut self, model: &Model<'_>, group: &Group, kept: &mut Kept, slack: f64, values: &mut [[f64; 2]]) -> f64 {
-        self.number(model, group);
-        let mut gained = 0.0;
-        if let Some(step) = self.step(model, group, kept, slack, values) {
-            for ((node, direction), x) in self.unknowns.iter().zip(step.x.iter()) {
-                values[*node][0] += x * direction[0];
-                values[*node][1] += x * direction[1];
+        if sweep >= until.least_sweeps() {
+            if quiet.is_none() {
+                // What is left of a wild field is lost in the sum of what it gained.
+                energy = model.energy(&values);
             }
-            gained = step.gain;
+            if until.is_reached(problem, energy, gained) {
+                break;
+            }
         }
-        for (node, _) in &self.unknowns {
-            self.local[*node] = usize::MAX;
-        }
-        gained
-    }
-
-    /// The step to the minimum.
-    fn step(
-        &mut self,
-        model: &Model<'_>,
-        group: &Group,
-        kept: &mut Kept,
-        slack: f64,
-        values: &[[f64; 2]],
-    ) -> Option<Step> {
-        let n = self.unknowns.len();
-        if n == 0 || n > self.most {
-            return None;
-        }
-        self.forces(model, group, values);
-        let factor = match kept {
-            Some(factor) => &factor[..],
+        // Back and forth: what one direction pushes ahead of it the other brings back.
+        let back = sweep % 2 == 1;
+        gained = match &few {
+            Some(few) => patches.sweep(model, few.iter().copied(), back, slack, &mut values),
             None => {
-                self.assemble(model, group);
-                if !factorise(&mut self.matrix, n) {
-                    return None;
-                }
-                if self.room >= packed(n) {
-                    self.room -= packed(n);
-                    *kept = Some(self.matrix.as_slice().into());
-                }
-                &self.matrix
+                let before = (sweep >= SWEEPS).then(|| values.clone());
+                let gained = patches.sweep(model, 0..patches.count(), back, slack, &mut values);
+                let pushed = before.map(|before| momentum.push(model, &before, AT_ONCE * slack, &mut values));
+                gained + pushed.unwrap_or(0.0)
             }
         };
-        if self.rows.is_empty() {
-            return free_minimum(factor, &self.load);
-        }
-        let (b, room) = self.inequalities(model, values);
-        minimum(factor, &self.load, &b, &room, slack)
+        energy -= gained;
+        let moved = quiet.map(|quiet| patches.to_move(problem, quiet));
+        few = moved.filter(|few| (few.len() as f64) < FEW * patches.count() as f64);
     }
+    Ok(NodalValues { nodes, values })
+}
 
-    /// Numbers the unknowns. A patch with a triangle that has no unique minimum inside has none.
-    fn number(&mut self, model: &Model<'_>, group: &Group) {
-        self.unknowns.clear();
-        self.rows.clear();
-        if group.triangles.iter().any(|&t| model.elements[t].is_none()) {
-            return;
+/// The least energy of a field to begin with, and the field.
+fn begin(
+    model: &Model,
+    until: Until,
+    candidates: Vec<NodalValues>,
+    at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+) -> Result<(f64, NodalValues), NoUpperBound> {
+    // A displacement that is not a number has no energy to compare.
+    let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
+    let fields = candidates.into_iter().map(|field| (known(model.energy(&field.values)), field));
+    let least = fields.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    match least {
+        Some(least) if least.0 <= WILD * until.size() => Ok(least),
+        other => {
+            let rest = at_rest()?;
+            let own = model.energy(&rest.values);
+            Ok(other.filter(|(energy, _)| *energy <= WILD * own.abs()).unwrap_or((own, rest)))
         }
-        for &t in &group.triangles {
-            for &node in model.nodes(t) {
-                let free = model.free[node];
-                if self.local[node] == usize::MAX && free.count > 0 && model.moves(node, group) {
-                    self.local[node] = self.unknowns.len();
-                    self.unknowns.extend(free.unit[..free.count].iter().map(|unit| (node, *unit)));
-                }
-            }
-        }
-        for &v in &group.vertices {
-            self.rows.extend(&model.rows_at[v]);
-        }
-        self.rows.sort_unstable();
-        self.rows.dedup();
-    }
-
-    /// The unknowns of a node and their directions, with the first unknown of every node in `local`.
-    fn terms(local: &[usize], model: &Model<'_>, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> + use<> {
-        let (first, free) = (local[node], model.free[node]);
-        let count = if first == usize::MAX { 0 } else { free.count };
-        (0..count).map(move |i| (first + i, free.unit[i]))
-    }
-
-    /// Residual forces.
-    fn forces(&mut self, model: &Model<'_>, group: &Group, values: &[[f64; 2]]) {
-        self.load.clear();
-        self.load.resize(self.unknowns.len(), 0.0);
-        for &t in &group.triangles {
-            let Some(element) = &model.elements[t] else { continue };
-            let [u, residual] = &mut self.of_triangle;
-            model.about_corner(t, values, u);
-            element.residual(u, residual);
-            let residual = &self.of_triangle[1];
-            for (a, &node) in model.nodes(t).iter().enumerate() {
-                for (i, p) in Self::terms(&self.local, model, node) {
-                    self.load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
-                }
-            }
-        }
-    }
-
-    /// Stiffness.
-    fn assemble(&mut self, model: &Model<'_>, group: &Group) {
-        let n = self.unknowns.len();
-        self.matrix.clear();
-        self.matrix.resize(packed(n), 0.0);
-        for &t in &group.triangles {
-            let Some(element) = &model.elements[t] else { continue };
-            let nodes = model.nodes(t);
-            for (a, &node) in nodes.iter().enumerate() {
-                let (first, second) = (element.row(2 * a), element.row(2 * a + 1));
-                for (i, p) in Self::terms(&self.local, model, node) {
-                    let start = column(n, i);
-                    for (b, &other) in nodes.iter().enumerate() {
-                        let row = [0, 1].map(|d| p[0] * first[2 * b + d] + p[1] * second[2 * b + d]);
-                        for (j, q) in Self::terms(&self.local, model, other).filter(|(j, _)| *j >= i) {
-                            self.matrix[start + j - i] += row[0] * q[0] + row[1] * q[1];
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// What jumps may still grow by: B and s of Bx ≤ s.
-    fn inequalities(&self, model: &Model<'_>, values: &[[f64; 2]]) -> (DMatrix<f64>, DVector<f64>) {
-        let mut b = DMatrix::zeros(self.rows.len(), self.unknowns.len());
-        let mut room = DVector::zeros(self.rows.len());
-        for (i, &row) in self.rows.iter().enumerate() {
-            let row = &model.rows[row];
-            room[i] = (-row.excess(values)).max(0.0);
-            for &(node, factor) in row.terms() {
-                for (j, unit) in Self::terms(&self.local, model, node) {
-                    b[(i, j)] += factor[0] * unit[0] + factor[1] * unit[1];
-                }
-            }
-        }
-        (b, room)
     }
 }

@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::bounds::strain::{Samples, gradients, sub_area, sub_corners};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
-use crate::element::{Compliance, StressField, triangle};
+use crate::element::{Compliance, Shapes, StressField, triangle};
 
 /// ½ uᵀKu − fᵀu, per unit thickness, without the tractions on the boundary.
 #[derive(Debug, Clone)]
@@ -96,10 +96,11 @@ pub fn load(k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
 pub fn pull(k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize, out: &mut [f64]) {
     let area = sub_area(corners);
     let samples = Samples::of(k - 1, stress.degree(t));
+    let shapes = Shapes::of(stress.degree(t), stress.degree(t).max(k - 1));
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
         let g = gradients(sub_corners(corners, sub));
-        for (q, (l, weight)) in samples.points.iter().enumerate() {
-            let s = stress.at(t, sub, *l);
+        for (q, (_, weight)) in samples.points.iter().enumerate() {
+            let s = stress.sample(t, sub, shapes, q);
             let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);
             for (beta, b) in triangle::indices(k - 1).zip(samples.basis(q)) {
                 let by = k as f64 * area * weight * b;

@@ -1,0 +1,149 @@
+//! The energy of every triangle as a function of the nodes on its boundary.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use super::nodes::Nodes;
+use super::pull::Pull;
+use super::stiffness::Stiffness;
+use crate::dual::modes::materials;
+use crate::element::side::product;
+use crate::element::{congruent, parts, starts};
+use crate::problem::Problem;
+
+/// Of all triangles, per unit thickness.
+#[derive(Debug)]
+pub struct TriangleEnergies {
+    /// One for similar triangles, and which of them each triangle has; `None` where the inside has no unique minimum.
+    stiffness: Vec<Option<Stiffness>>,
+    class: Vec<u32>,
+    /// f of each triangle and L⁻¹ f_i behind it.
+    loads: Vec<f64>,
+    start: Vec<usize>,
+}
+
+/// ½ uᵀKu − fᵀu of one triangle, u being x and y of the nodes on its boundary ([`Nodes::of_triangle`]).
+#[derive(Debug, Clone, Copy)]
+pub struct TriangleEnergy<'a> {
+    stiffness: &'a Stiffness,
+    load: &'a [f64],
+    within: &'a [f64],
+}
+
+impl TriangleEnergies {
+    /// Those that `pull` pulls at.
+    pub fn new(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Self {
+        let mesh = &problem.mesh;
+        let materials = materials(problem);
+        let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
+        let mut seen = HashMap::new();
+        let mut first: Vec<usize> = Vec::new();
+        let class: Vec<u32> = (0..mesh.triangles.len())
+            .map(|t| {
+                let next = first.len() as u32;
+                let (shape, _) = congruent::shape(mesh.corners(t));
+                *seen.entry((shape, mesh.body[t], degrees(t))).or_insert_with(|| {
+                    first.push(t);
+                    next
+                })
+            })
+            .collect();
+        let of = |t: &usize| {
+            let k = nodes.triangle_degree(mesh, *t);
+            Stiffness::new(k, degrees(*t), mesh.corners(*t), &materials[mesh.body[*t]])
+        };
+        let stiffness: Vec<Option<Stiffness>> = first.par_iter().with_min_len(16).map(of).collect();
+        let count = |c: &u32| stiffness[*c as usize].as_ref().map_or(0, |s| s.size + s.inside);
+        let start = starts(class.iter().map(count));
+        let loads = vec![0.0; start[class.len()]];
+        let mut energies = TriangleEnergies { stiffness, class, loads, start };
+        energies.reload(problem, nodes, pull);
+        energies
+    }
+
+    /// Puts the load of `pull` in the place of the one before.
+    pub fn reload(&mut self, problem: &Problem, nodes: &Nodes, pull: Pull<'_>) {
+        let TriangleEnergies { stiffness, class, loads, start } = self;
+        let loads = parts(loads, start).into_par_iter().zip(&*class).enumerate().with_min_len(64);
+        loads.for_each(|(t, (out, class))| {
+            let Some(stiffness) = &stiffness[*class as usize] else { return };
+            let forces = pull.forces(problem, t, nodes.triangle_degree(&problem.mesh, t));
+            let (load, within) = out.split_at_mut(stiffness.size);
+            stiffness.condense(&forces, load, within);
+            add_tractions(problem, nodes, pull, t, load);
+        });
+    }
+
+    /// That of triangle `t`, where its inside has a unique minimum.
+    pub fn of(&self, t: usize) -> Option<TriangleEnergy<'_>> {
+        let stiffness = self.stiffness[self.class[t] as usize].as_ref()?;
+        let (load, within) = self.loads[self.start[t]..self.start[t + 1]].split_at(stiffness.size);
+        Some(TriangleEnergy { stiffness, load, within })
+    }
+
+    /// All of them with their triangles.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, TriangleEnergy<'_>)> {
+        (0..self.class.len()).filter_map(|t| Some((t, self.of(t)?)))
+    }
+}
+
+impl TriangleEnergy<'_> {
+    /// A row of K.
+    pub fn row(&self, i: usize) -> &[f64] {
+        self.stiffness.row(i)
+    }
+
+    /// f − Ku.
+    pub fn residual(&self, u: &[f64], out: &mut Vec<f64>) {
+        self.stiffness.residual(self.load, u, out);
+    }
+
+    /// uᵀKv.
+    pub fn form(&self, u: &[f64], v: &[f64]) -> f64 {
+        self.stiffness.form(u, v)
+    }
+
+    /// ½ uᵀKu − fᵀv, with the memory of another call for what is in between.
+    pub fn energy(&self, u: &[f64], v: impl Iterator<Item = f64>, room: &mut Vec<f64>) -> f64 {
+        self.residual(u, room);
+        // uᵀKu = uᵀ(f − r).
+        let strain: f64 = u.iter().zip(self.load).zip(room.iter()).map(|((u, f), r)| u * (f - r)).sum();
+        0.5 * strain - self.load.iter().zip(v).map(|(f, v)| f * v).sum::<f64>()
+    }
+
+    /// −½ f_iᵀ K_ii⁻¹ f_i: the energy where the boundary has zero values.
+    pub fn at_rest(&self) -> f64 {
+        -0.5 * self.within.iter().map(|f| f * f).sum::<f64>()
+    }
+
+    /// The coefficients inside, x and y of each, that minimise the energy where those on the boundary are `boundary`, all in the
+    /// degree of the triangle.
+    pub fn inside(&self, boundary: &[f64]) -> Vec<f64> {
+        self.stiffness.inside(self.within, boundary)
+    }
+}
+
+/// Adds the tractions on the boundary edges of triangle `t` to its load.
+fn add_tractions(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, t: usize, load: &mut [f64]) {
+    let mesh = &problem.mesh;
+    let degrees = mesh.triangle_edges[t].map(|e| nodes.degree(e));
+    for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
+        let Some(ends) = pull.traction(problem, e) else { continue };
+        // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
+        let (length, _) = mesh.edge_frame(e);
+        let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();
+        let k = degrees[i];
+        for j in 0..=k {
+            let node = match j {
+                0 => (i + 1) % 3,
+                j if j == k => (i + 2) % 3,
+                j => first + j - 1,
+            };
+            let weights = [0, 1].map(|end| length * product(1, end, k, j));
+            for c in 0..2 {
+                load[2 * node + c] += weights[0] * ends[0][c] + weights[1] * ends[1][c];
+            }
+        }
+    }
+}
