@@ -1,5 +1,7 @@
 //! The search for the best adjoint pair for one end of an interval.
 
+use std::borrow::Cow;
+
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
@@ -55,7 +57,7 @@ impl Search<'_, '_> {
     /// What the search for either end begins with: the response that is not bounded, and a displacement near to it.
     pub fn begin(&self, neutral: Response) -> Begun {
         let Known { problem, nearest, .. } = self.known;
-        let sigma = self.stress(&neutral.stress, 1.0);
+        let sigma = self.stress(&neutral.stress);
         let nodes = nearest.start(&sigma, &neutral.moments);
         let balanced = square(problem, &neutral.stress);
         let square = if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) };
@@ -127,19 +129,20 @@ impl Search<'_, '_> {
         }
     }
 
-    /// sign · (σ̂ + cχ), χ by its mean where a triangle is cut.
-    fn stress(&self, adjoint: &StressField, sign: f64) -> StressField {
+    /// σ̂ + cχ, χ by its mean where a triangle is cut.
+    fn stress<'f>(&self, adjoint: &'f StressField) -> Cow<'f, StressField> {
         let problem = self.known.problem;
+        let strains = &self.functional.load.strains;
+        if strains.is_empty() {
+            return Cow::Borrowed(adjoint);
+        }
         let materials = materials(problem);
         let mut sigma = adjoint.clone();
-        for (t, chi) in &self.functional.load.strains {
+        for (t, chi) in strains {
             let add = materials[problem.mesh.body[*t]].stress(*chi);
             sigma.block_mut(*t).iter_mut().for_each(|s| (0..3).for_each(|c| s[c] += add[c]));
         }
-        if sign < 0.0 {
-            sigma.values_mut().as_flattened_mut().iter_mut().for_each(|s| *s = -*s);
-        }
-        sigma
+        Cow::Owned(sigma)
     }
 
     /// The bound of `response` with the best z for `ratio`: the one that makes Q_h − ρH − D²/(4ρ) largest, which has the least
@@ -153,7 +156,7 @@ impl Search<'_, '_> {
         start: NodalValues,
     ) -> Result<End, String> {
         let known = self.known;
-        let stress = less(&self.stress(&response.stress, sign), 2.0 * weight, &known.middle);
+        let stress = less(sign, &self.stress(&response.stress), 2.0 * weight, &known.middle);
         let bounds: Vec<Vec<f64>> = known
             .openings
             .iter()
@@ -233,10 +236,10 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
     }
 }
 
-/// σ − factor · m, of the degree of m, which is no lower.
-fn less(sigma: &StressField, factor: f64, middle: &StressField) -> StressField {
+/// sign · σ − factor · m, of the degree of m, which is no lower.
+fn less(sign: f64, sigma: &StressField, factor: f64, middle: &StressField) -> StressField {
     let mut out = middle.clone();
-    let from = |value: &mut [f64; 3], sigma: [f64; 3]| *value = [0, 1, 2].map(|c| sigma[c] - factor * value[c]);
+    let from = |value: &mut [f64; 3], sigma: [f64; 3]| *value = [0, 1, 2].map(|c| sign * sigma[c] - factor * value[c]);
     for t in 0..out.len() {
         let degree = middle.degree(t);
         let own = out.block_mut(t).iter_mut();
