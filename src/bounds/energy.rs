@@ -9,11 +9,11 @@
 use rayon::prelude::*;
 
 use super::jump::{openings, side_coefficients};
-use super::strain::{Samples, Strains, sub_area};
+use super::strain::{Strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::{contact_traction, edge_traction};
 use crate::dual::modes::materials;
-use crate::element::{Displacement, Shapes, StressField, side, triangle};
+use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
 use crate::problem::{Condition, Problem};
 
 /// Complementary energy of a stress field.
@@ -38,6 +38,28 @@ impl Complementary {
     }
 }
 
+/// ‖σ‖²_a on triangle `t`, a third of which has the area `third`.
+fn square_on(stress: &StressField, t: usize, material: &Compliance, third: f64) -> f64 {
+    let shapes = Samples::of_stress(stress.degree(t), 0);
+    let mut sum = 0.0;
+    for sub in 0..3 {
+        for (q, (_, weight)) in shapes.points.iter().enumerate() {
+            let value = stress.sample(t, sub, shapes, q);
+            sum += weight * third * material.product(value, value);
+        }
+    }
+    sum
+}
+
+/// ‖σ‖²_a, per unit thickness.
+pub fn square(problem: &Problem, stress: &StressField) -> f64 {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let of = |t: usize| square_on(stress, t, &materials[mesh.body[t]], mesh.area(t) / 3.0);
+    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
+    terms.into_iter().collect::<Sum>().value()
+}
+
 /// Computes the complementary energy of `stress`, thickness included.
 pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     let mesh = &problem.mesh;
@@ -48,14 +70,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         .map(|t| {
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
-            let mut sum = 0.0;
-            let shapes = Shapes::of(stress.degree(t), stress.degree(t));
-            for sub in 0..3 {
-                for (q, (_, weight)) in shapes.points.iter().enumerate() {
-                    let value = stress.sample(t, sub, shapes, q);
-                    sum += 0.5 * weight * third * material.product(value, value);
-                }
-            }
+            let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
             let product = |value: &[f64; 3]| absolute(*value) * absolute(material.strain(*value));
             let sensitivity = 3.0 * third / nodes.len() as f64 * nodes.iter().map(product).sum::<f64>();
@@ -253,7 +268,7 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
             let (of_v, own) = (v.degree(t) - 1, stress.degree(t));
-            let (samples, shapes) = (Samples::of(of_v, own), Shapes::of(own, of_v.max(own)));
+            let (samples, shapes) = (Samples::of(of_v, own), Samples::of_stress(own, of_v));
             let mut sum = 0.0;
             let mut strains = Strains::default();
             for sub in 0..3 {

@@ -1,10 +1,6 @@
 //! Strains of a displacement that is polynomial on each subtriangle.
 
-use std::sync::OnceLock;
-
-use crate::element::displacement::MOST;
-use crate::element::quadrature::triangle_rule;
-use crate::element::{Displacement, triangle};
+use crate::element::{Displacement, Samples, triangle, weighed};
 
 /// Area of one of the three equal subtriangles.
 pub fn sub_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
@@ -85,14 +81,14 @@ impl Strains {
     pub fn at(&self, l: [f64; 3]) -> [f64; 3] {
         match self.degree {
             // The basis of degree 1 are the coordinates themselves.
-            1 => self.weighed(l.into_iter()),
-            degree => self.weighed(triangle::basis(degree, l)),
+            1 => weighed(&self.coefficients, l),
+            degree => weighed(&self.coefficients, triangle::basis(degree, l)),
         }
     }
 
     /// The strain at point `q` of `samples`, which are of the degree of these strains.
     pub fn sample(&self, samples: &Samples, q: usize) -> [f64; 3] {
-        self.weighed(samples.basis(q).iter().copied())
+        weighed(&self.coefficients, samples.basis(q).iter().copied())
     }
 
     /// The sum of the absolute values of all products that [`Self::sample`] adds up.
@@ -103,41 +99,6 @@ impl Strains {
     /// The largest sum of absolute values of products that make a coefficient.
     pub fn largest_spread(&self) -> f64 {
         self.spreads.iter().copied().fold(0.0, f64::max)
-    }
-
-    fn weighed(&self, weights: impl Iterator<Item = f64>) -> [f64; 3] {
-        let mut e = [0.0; 3];
-        for (weight, coefficient) in weights.zip(&self.coefficients) {
-            (0..3).for_each(|c| e[c] += weight * coefficient[c]);
-        }
-        e
-    }
-}
-
-/// A quadrature rule on a subtriangle with the Bernstein polynomials of one degree at its points.
-#[derive(Debug)]
-pub struct Samples {
-    /// Barycentric coordinates and weight of every point; the weights sum to one.
-    pub points: &'static [([f64; 3], f64)],
-    basis: Vec<f64>,
-}
-
-impl Samples {
-    /// For strains of degree `strain`, exact to twice the degree `field` or twice that of the strains, whichever is larger.
-    pub fn of(strain: usize, field: usize) -> &'static Samples {
-        const SIZE: usize = MOST + 1;
-        static KNOWN: [[OnceLock<Samples>; SIZE]; SIZE] = [const { [const { OnceLock::new() }; SIZE] }; SIZE];
-        let rule = strain.max(field);
-        KNOWN[strain][rule].get_or_init(|| {
-            let points = triangle_rule(2 * rule);
-            Samples { points, basis: points.iter().flat_map(|(l, _)| triangle::basis(strain, *l)).collect() }
-        })
-    }
-
-    /// The Bernstein polynomials at point `q`.
-    pub fn basis(&self, q: usize) -> &[f64] {
-        let count = self.basis.len() / self.points.len();
-        &self.basis[q * count..(q + 1) * count]
     }
 }
 

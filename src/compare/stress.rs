@@ -2,9 +2,10 @@
 
 use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
-use crate::bounds::strain::{Samples, Strains};
+use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
+use crate::element::Samples;
 use crate::problem::Problem;
 use crate::scene::Kinematics;
 
@@ -64,11 +65,12 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
     for t in 0..mesh.triangles.len() {
         let poisson = scene.bodies[mesh.body[t]].poisson;
         let field = &judged.field.displacement;
-        let samples = Samples::of(field.degree(t) - 1, dual.stress.degree(t));
+        let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
+        let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
         for sub in 0..3 {
             strains.on(mesh.corners(t), field, t, sub);
-            for (q, (bary, weight)) in samples.points.iter().enumerate() {
-                let l = dual.stress.at(t, sub, *bary);
+            for (q, (_, weight)) in samples.points.iter().enumerate() {
+                let l = dual.stress.sample(t, sub, shapes, q);
                 let s = materials[mesh.body[t]].stress(strains.sample(samples, q));
                 let w = weight * mesh.area(t) / 3.0;
                 for c in 0..3 {

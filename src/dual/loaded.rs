@@ -40,9 +40,8 @@ pub struct Loaded<'a> {
     problem: Cow<'a, Problem>,
     system: System,
     start: Start,
-    /// What all closed contact holds, as the factor gives it and refined, once it was asked for.
-    begun: OnceCell<Answered>,
-    refined: OnceCell<Answered>,
+    /// What all closed contact holds.
+    answers: Answers,
 }
 
 /// What all stresses that balance a load begin with.
@@ -63,6 +62,13 @@ type Fields = (Arc<StressField>, Arc<SideValues<[f64; 2]>>);
 struct Answered {
     now: Refined,
     fields: OnceCell<Fields>,
+}
+
+/// The stress of one state of the contact as the factor gives it and refined, once it was asked for.
+#[derive(Default)]
+struct Answers {
+    begun: OnceCell<Answered>,
+    refined: OnceCell<Answered>,
 }
 
 impl From<Refined> for Answered {
@@ -126,7 +132,7 @@ impl Left {
 
 impl<'a> Loaded<'a> {
     pub(super) fn new(responses: &'a Responses<'a>, problem: Cow<'a, Problem>, system: System, start: Start) -> Self {
-        Loaded { responses, problem, system, start, begun: OnceCell::new(), refined: OnceCell::new() }
+        Loaded { responses, problem, system, start, answers: Answers::default() }
     }
 
     /// The stress that balances the load where all of the `closed` coefficients hold, refined only where it would not balance it at
@@ -148,29 +154,28 @@ impl<'a> Loaded<'a> {
         let (released, jumps) = self.released(bounds)?;
         let closed = bounds.closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
         let held = Holding { released: &released, closed, bounds };
-        if !released.contains(&true) {
-            // The same for all floors.
-            let begun = self.begun.get_or_init(|| self.begin(&self.system, &jumps).into());
-            if let Some(response) = self.balanced(begun, &held, enough) {
-                return Ok(response);
+        let mut system = Cow::Borrowed(&self.system);
+        let own = Answers::default();
+        // Where nothing is let go the answer is the same for all floors.
+        let answers = if released.contains(&true) {
+            let first = system.unknowns.first_jump;
+            system.to_mut().external[first..].iter_mut().enumerate().for_each(|(i, f)| *f += held.set(i));
+            &own
+        } else {
+            &self.answers
+        };
+        let begun = answers.begun.get_or_init(|| self.begin(&system, &jumps).into());
+        if let Some(response) = self.balanced(begun, &held, enough) {
+            return Ok(response);
+        }
+        let refined = match answers.refined.get() {
+            Some(refined) => refined,
+            None => {
+                let refined = self.refine(&system, &held.closed, begun.now.clone())?;
+                answers.refined.get_or_init(|| refined.into())
             }
-            let now = match self.refined.get() {
-                Some(now) => now,
-                None => {
-                    let now = self.refine(&self.system, &held.closed, begun.now.clone())?;
-                    self.refined.get_or_init(|| now.into())
-                }
-            };
-            return self.response(now, &held);
-        }
-        let mut system = self.system.clone();
-        let first = system.unknowns.first_jump;
-        system.external[first..].iter_mut().enumerate().for_each(|(i, f)| *f += held.set(i));
-        let begun = self.begin(&system, &jumps).into();
-        match self.balanced(&begun, &held, enough) {
-            Some(response) => Ok(response),
-            None => self.response(&self.refine(&system, &held.closed, begun.now)?.into(), &held),
-        }
+        };
+        self.response(refined, &held)
     }
 
     /// The unknowns with these jumps and their stresses, as the factor gives them.

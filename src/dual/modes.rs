@@ -1,6 +1,5 @@
 //! Element matrices of all triangles, congruent ones computed once.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -41,19 +40,16 @@ impl ModeTable {
     pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = materials(problem);
         let mesh = &problem.mesh;
-        let mut seen = HashMap::new();
-        let mut classes: Vec<Class> = Vec::new();
+        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
+        let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;
-        let class: Vec<u32> = (0..mesh.triangles.len())
+        let classes: Vec<Class> = first
+            .into_iter()
             .map(|t| {
-                let next = classes.len() as u32;
-                let key = (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
-                *seen.entry(key).or_insert_with(|| {
-                    let layout = elements.of(t).layout();
-                    classes.push(Class { triangle: t, layout, start: end });
-                    end += layout.len();
-                    next
-                })
+                let layout = elements.of(t).layout();
+                let start = end;
+                end += layout.len();
+                Class { triangle: t, layout, start }
             })
             .collect();
         let mut data = vec![0.0; end];

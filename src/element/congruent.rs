@@ -1,5 +1,8 @@
 //! Which triangles have the same shape.
 
+use std::collections::HashMap;
+use std::hash::Hash;
+
 /// Edge vectors that agree to this fraction of the size of a triangle are the same: well above what rounding of the coordinates
 /// does, well below what equilibrium could notice.
 const SAME: f64 = 1.0 / (1_u64 << 42) as f64;
@@ -14,9 +17,29 @@ pub fn shape([a, b, c]: [[f64; 2]; 3]) -> ([i64; 4], i64) {
     (sides.map(|v| (v / unit).round() as i64), exponent as i64)
 }
 
+/// Numbers equal keys alike, in the order in which they come: the class of each, and the place of the first of each class.
+pub fn classes<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> (Vec<u32>, Vec<usize>) {
+    let mut seen = HashMap::new();
+    let mut first = Vec::new();
+    let class = keys.enumerate().map(|(place, key)| {
+        let next = first.len() as u32;
+        *seen.entry(key).or_insert_with(|| {
+            first.push(place);
+            next
+        })
+    });
+    (class.collect(), first)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_keys_have_one_class_from_the_first_of_them_on() {
+        let (class, first) = classes("abacbd".chars());
+        assert_eq!((class, first), (vec![0, 1, 0, 2, 1, 3], vec![0, 1, 3, 5]));
+    }
 
     #[test]
     fn shapes_are_those_of_similar_triangles_that_are_not_turned() {

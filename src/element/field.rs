@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
 
-use super::quadrature::triangle_rule;
+use super::samples::Samples;
 use super::side;
 use super::side_values::{parts, starts};
 
@@ -97,9 +97,9 @@ impl StressField {
         }
     }
 
-    /// Stress at point `q` of `shapes`, which are of the degree on triangle `t`, in subtriangle `sub`.
-    pub fn sample(&self, t: usize, sub: usize, shapes: &Shapes, q: usize) -> [f64; 3] {
-        let weights = shapes.at(q);
+    /// Stress at point `q` of `shapes`, those of the degree on triangle `t` ([`Samples::of_stress`]), in subtriangle `sub`.
+    pub fn sample(&self, t: usize, sub: usize, shapes: &Samples, q: usize) -> [f64; 3] {
+        let weights = shapes.basis(q);
         weighed(&self.block(t)[sub * weights.len()..], weights.iter().copied())
     }
 
@@ -137,33 +137,6 @@ impl StressField {
     }
 }
 
-/// The shape functions of a [`StressField`] of one degree at the points of a quadrature rule.
-#[derive(Debug)]
-pub struct Shapes {
-    /// Barycentric coordinates and weight of every point; the weights sum to one.
-    pub points: &'static [([f64; 3], f64)],
-    values: Vec<f64>,
-}
-
-impl Shapes {
-    /// Those of degree `degree` in the rule that is exact to twice the degree `half`.
-    pub fn of(degree: usize, half: usize) -> &'static Shapes {
-        const SIZE: usize = 16;
-        static KNOWN: [[OnceLock<Shapes>; SIZE]; SIZE] = [const { [const { OnceLock::new() }; SIZE] }; SIZE];
-        KNOWN[degree][half].get_or_init(|| {
-            let points = triangle_rule(2 * half);
-            let values = points.iter().flat_map(|(l, _)| lattice_shape(degree, *l)).collect();
-            Shapes { points, values }
-        })
-    }
-
-    /// The value of every node's function at point `q`.
-    fn at(&self, q: usize) -> &[f64] {
-        let count = self.values.len() / self.points.len();
-        &self.values[q * count..(q + 1) * count]
-    }
-}
-
 /// The matrix that gives Bernstein coefficients of degree p, row by row, from values at p + 1 equally spaced points.
 fn from_equispaced(p: usize) -> &'static [f64] {
     static MATRICES: [OnceLock<Vec<f64>>; 16] = [const { OnceLock::new() }; 16];
@@ -191,7 +164,7 @@ pub fn lattice(p: usize) -> impl Iterator<Item = [f64; 3]> {
 /// Lagrange shape functions of the principal lattice, node by node; for degree 1 node k is corner k.
 ///
 /// Nodes are ordered by corners first for degree 1, and lexicographically by (i, j) of p·bary = (i, j, k) otherwise.
-fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item = f64> {
+pub(super) fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item = f64> {
     let p = degree;
     let factor = move |n: usize, x: f64| (0..n).map(|m| (p as f64 * x - m as f64) / (n - m) as f64).product::<f64>();
     (0..=p)
@@ -201,7 +174,7 @@ fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item = f64> {
 }
 
 /// The sum of values times weights.
-fn weighed(values: &[[f64; 3]], weights: impl IntoIterator<Item = f64>) -> [f64; 3] {
+pub fn weighed(values: &[[f64; 3]], weights: impl IntoIterator<Item = f64>) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (value, weight) in values.iter().zip(weights) {
         (0..3).for_each(|c| sum[c] += weight * value[c]);

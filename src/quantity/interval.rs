@@ -11,9 +11,10 @@
 
 use super::end::End;
 use super::functional::Functional;
-use super::pass::{Pass, square, strained};
+use super::pass::{Pass, strained};
 use super::search::Search;
 use super::value::displaced;
+use crate::bounds::energy::square;
 use crate::bounds::{Bracket, Nearest, UpperBound, mid_field, openings};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
 use crate::element::{StressField, side};

@@ -6,10 +6,10 @@ use super::functional::Functional;
 use super::region::{Cut, Piece};
 use crate::bounds::Sum;
 use crate::bounds::energy::shape;
-use crate::bounds::strain::{Samples, Strains, sub_area};
+use crate::bounds::strain::{Strains, sub_area};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Compliance, Displacement, Shapes, StressField};
+use crate::element::{Compliance, Displacement, Samples, StressField};
 use crate::problem::Problem;
 
 /// The fields of the problem that was solved, and of an adjoint pair.
@@ -84,23 +84,6 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
     }
 }
 
-/// ‖σ‖²_a, per unit thickness.
-pub fn square(problem: &Problem, sigma: &StressField) -> f64 {
-    let mesh = &problem.mesh;
-    let materials = materials(problem);
-    let of = |t: usize| {
-        let material = &materials[mesh.body[t]];
-        let shapes = Shapes::of(sigma.degree(t), sigma.degree(t));
-        let at = |sub: usize, q: usize| sigma.sample(t, sub, shapes, q);
-        let points =
-            (0..3).flat_map(|sub| shapes.points.iter().enumerate().map(move |(q, (_, weight))| (sub, q, weight)));
-        let product = |(sub, q, weight): (usize, usize, &f64)| weight * material.product(at(sub, q), at(sub, q));
-        sub_area(mesh.corners(t)) * points.map(product).sum::<f64>()
-    };
-    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
-    terms.into_iter().collect::<Sum>().value()
-}
-
 /// Where the sums of a triangle stand: three of the pair, three without z, and one of each other kind.
 const PAIR: usize = 0;
 const ALONE: usize = 3;
@@ -136,7 +119,7 @@ fn triangle(
     let [p, r] = [stress, adjoint].map(|sigma| sigma.degree(t));
     let half = k.max(l).max(p).max(r);
     let (at_v, at_z) = (Samples::of(k, half), Samples::of(l, half));
-    let (at_stress, at_adjoint) = (Shapes::of(p, half), Shapes::of(r, half));
+    let (at_stress, at_adjoint) = (Samples::of_stress(p, half), Samples::of_stress(r, half));
     let (mut of_v, mut of_z) = (Strains::default(), Strains::default());
     let mut out = [0.0; TERMS];
     let modulus = material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);

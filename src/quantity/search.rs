@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
-use super::pass::square;
 use super::tried::Tried;
+use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
 use crate::dual::modes::materials;
 use crate::dual::{Loaded, Response};
@@ -28,8 +28,9 @@ const HEAVIEST: f64 = 100.0;
 /// Part of a sum below which its terms have cancelled: it is measured instead.
 const CANCELLED: f64 = 1e-8;
 
-/// Part of the width that a remainder of equilibrium may add.
-const UNSEEN: f64 = 1e-3;
+/// Part of the width that a remainder of equilibrium may add: it is weighed with the displacement of the solve, which is not the
+/// exact one.
+const UNSEEN: f64 = 1e-6;
 
 /// Part of the width that a sweep over z has to gain for another one to follow.
 const WORTH_A_SWEEP: f64 = 1e-3;

@@ -1,7 +1,5 @@
 //! The energy of every triangle as a function of the nodes on its boundary.
 
-use std::collections::HashMap;
-
 use rayon::prelude::*;
 
 use super::nodes::Nodes;
@@ -37,18 +35,8 @@ impl TriangleEnergies {
         let mesh = &problem.mesh;
         let materials = materials(problem);
         let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
-        let mut seen = HashMap::new();
-        let mut first: Vec<usize> = Vec::new();
-        let class: Vec<u32> = (0..mesh.triangles.len())
-            .map(|t| {
-                let next = first.len() as u32;
-                let (shape, _) = congruent::shape(mesh.corners(t));
-                *seen.entry((shape, mesh.body[t], degrees(t))).or_insert_with(|| {
-                    first.push(t);
-                    next
-                })
-            })
-            .collect();
+        let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t));
+        let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let of = |t: &usize| {
             let k = nodes.triangle_degree(mesh, *t);
             Stiffness::new(k, degrees(*t), mesh.corners(*t), &materials[mesh.body[*t]])

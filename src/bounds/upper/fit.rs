@@ -16,7 +16,7 @@ use crate::bounds::strain::gradients;
 use crate::dual::modes::materials;
 use crate::element::displacement::MOST;
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, Shapes, SideValues, StressField, triangle};
+use crate::element::{Compliance, Samples, SideValues, StressField, triangle, weighed};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
@@ -61,7 +61,7 @@ fn corner_values(
     let centre = [0, 1].map(|c| ((corners[1][c] - origin[c]) + (corners[2][c] - origin[c])) / 3.0);
     let p = corners.map(|q| [q[0] - origin[0] - centre[0], q[1] - origin[1] - centre[1]]);
     let reference = Reference::of(stress.degree(t));
-    let shapes = Shapes::of(stress.degree(t), stress.degree(t));
+    let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
     let strain = reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q)));
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
@@ -105,8 +105,8 @@ impl Local {
         let [x, y] = [0, 1].map(|c| (0..3).map(|i| path.end[i] * self.p[i][c]).sum::<f64>());
         let mut u = [0.0; 2];
         for point in &path.points {
-            let e = weighed(&point.value, &self.strain);
-            let slopes = point.slopes.each_ref().map(|slope| weighed(slope, &self.strain));
+            let e = weighed(&self.strain, point.value.iter().copied());
+            let slopes = point.slopes.each_ref().map(|slope| weighed(&self.strain, slope.iter().copied()));
             let slope = |c: usize, d: usize| (0..3).map(|i| slopes[i][c] * self.gradients[i][d]).sum::<f64>();
             // By how much the rotation grows along the line.
             let turn = (slope(0, 1) - slope(2, 0)) * x + (slope(2, 1) - slope(1, 0)) * y;
@@ -115,10 +115,6 @@ impl Local {
         }
         u
     }
-}
-
-fn weighed(weights: &[f64], values: &[[f64; 3]]) -> [f64; 3] {
-    weights.iter().zip(values).fold([0.0; 3], |sum, (w, v)| [0, 1, 2].map(|c| sum[c] + w * v[c]))
 }
 
 /// What the fit needs that is the same for all triangles.

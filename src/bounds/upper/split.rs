@@ -11,9 +11,9 @@
 use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
-use crate::bounds::strain::{Samples, gradients, sub_area, sub_corners};
+use crate::bounds::strain::{gradients, sub_area, sub_corners};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
-use crate::element::{Compliance, Shapes, StressField, triangle};
+use crate::element::{Compliance, Samples, StressField, triangle};
 
 /// ½ uᵀKu − fᵀu, per unit thickness, without the tractions on the boundary.
 #[derive(Debug, Clone)]
@@ -96,7 +96,7 @@ pub fn load(k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
 pub fn pull(k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize, out: &mut [f64]) {
     let area = sub_area(corners);
     let samples = Samples::of(k - 1, stress.degree(t));
-    let shapes = Shapes::of(stress.degree(t), stress.degree(t).max(k - 1));
+    let shapes = Samples::of_stress(stress.degree(t), k - 1);
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
         let g = gradients(sub_corners(corners, sub));
         for (q, (_, weight)) in samples.points.iter().enumerate() {
