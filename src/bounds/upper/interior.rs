@@ -51,9 +51,13 @@ fn completed(
         for i in 0..3 {
             let from = mesh.triangles[t][(i + 1) % 3];
             let nodes = field.nodes.along(mesh, mesh.triangle_edges[t][i], from);
-            let own: Vec<[f64; 2]> = nodes.into_iter().map(|n| field.values[n]).collect();
-            for (n, value) in side_nodes(k, i).zip(elevated(&own, k)) {
-                block[n] = value;
+            let raised = nodes.len() <= k;
+            let own = nodes.map(|n| field.values[n]);
+            if raised {
+                let own: Vec<[f64; 2]> = own.collect();
+                side_nodes(k, i).zip(elevated(&own, k)).for_each(|(n, value)| block[n] = value);
+            } else {
+                side_nodes(k, i).zip(own).for_each(|(n, value)| block[n] = value);
             }
         }
         inside(t, k, block);

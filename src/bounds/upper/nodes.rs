@@ -63,10 +63,14 @@ impl Nodes {
     }
 
     /// All k + 1 nodes of edge `e`, beginning with the vertex `from`.
-    pub fn along(&self, mesh: &Triangulation, e: usize, from: usize) -> Vec<usize> {
-        let [a, b] = mesh.edges[e].vertices;
-        let forward = std::iter::once(a).chain(self.inside(e)).chain(std::iter::once(b));
-        if a == from { forward.collect() } else { forward.rev().collect() }
+    pub fn along(&self, mesh: &Triangulation, e: usize, from: usize) -> impl ExactSizeIterator<Item = usize> + use<> {
+        let ([a, b], inside) = (mesh.edges[e].vertices, self.inside(e));
+        let last = inside.len() + 1;
+        (0..last + 1).map(move |i| match if a == from { i } else { last - i } {
+            0 => a,
+            i if i == last => b,
+            i => inside.start + i - 1,
+        })
     }
 
     /// The nodes on the boundary of triangle `t`: its corners, then those inside the sides opposite them,
@@ -131,7 +135,7 @@ impl NodalValues {
 
     /// The coefficients of edge `e` from its first vertex to its second.
     pub fn edge(&self, mesh: &Triangulation, e: usize) -> Vec<[f64; 2]> {
-        self.nodes.along(mesh, e, mesh.edges[e].vertices[0]).into_iter().map(|n| self.values[n]).collect()
+        self.nodes.along(mesh, e, mesh.edges[e].vertices[0]).map(|n| self.values[n]).collect()
     }
 
     /// The same displacement on the nodes `other`: elevated where an edge has a higher degree there, and the one through

@@ -47,8 +47,8 @@ impl Row {
 
 /// The nodes of both sides of `pair`, from its first end to its second; equally many on either.
 pub fn sides(pair: &ContactPair, mesh: &Triangulation, nodes: &Nodes) -> [Option<Vec<usize>>; 2] {
-    let first = pair.edges[0].map(|e| nodes.along(mesh, e, pair.first[0]));
-    let second = pair.edges[1].zip(pair.second).map(|(e, second)| nodes.along(mesh, e, second[0]));
+    let first = pair.edges[0].map(|e| nodes.along(mesh, e, pair.first[0]).collect());
+    let second = pair.edges[1].zip(pair.second).map(|(e, second)| nodes.along(mesh, e, second[0]).collect());
     [first, second]
 }
 
