@@ -39,7 +39,7 @@ impl Complementary {
 }
 
 /// ‖σ‖²_a on triangle `t`, a third of which has the area `third`.
-fn square_on(stress: &StressField, t: usize, material: &Compliance, third: f64) -> f64 {
+pub fn square_on(stress: &StressField, t: usize, material: &Compliance, third: f64) -> f64 {
     let shapes = Samples::of_stress(stress.degree(t), 0);
     let mut sum = 0.0;
     for sub in 0..3 {

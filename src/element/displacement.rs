@@ -127,14 +127,9 @@ impl Displacement {
         value
     }
 
-    /// The displacement the other way.
-    pub fn negated(&self) -> Self {
-        Displacement { values: self.values.iter().map(|u| u.map(|u| -u)).collect(), ..self.clone() }
-    }
-
     /// The largest coefficient of triangle `t`: no displacement there is larger.
     pub fn largest(&self, t: usize) -> f64 {
-        self.block(t).iter().fold(0.0_f64, |m, v| m.max(v[0].hypot(v[1])))
+        self.block(t).iter().fold(0.0_f64, |m, v| m.max(v[0] * v[0] + v[1] * v[1])).sqrt()
     }
 }
 

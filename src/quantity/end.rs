@@ -38,18 +38,10 @@ impl End {
 }
 
 impl Search<'_, '_> {
-    /// The bound of a pair; z is `lifted` times its sign.
-    pub fn measured(&self, response: &Response, (lifted, factor): (&Displacement, f64), sign: f64) -> End {
-        let Known { problem, dual, upper, .. } = self.known;
-        let turned;
-        let lifted = if factor < 0.0 {
-            turned = lifted.negated();
-            &turned
-        } else {
-            lifted
-        };
-        let fields =
-            Fields { stress: &dual.stress, displacement: &upper.displacement, adjoint: &response.stress, lifted };
+    /// The bound of a pair; z is `lifted` times a factor.
+    pub fn measured(&self, response: &Response, lifted: (&Displacement, f64), sign: f64) -> End {
+        let Known { problem, middle, .. } = self.known;
+        let fields = Fields { middle, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1 };
         let pass = pass(problem, self.functional, fields);
         let Bound { bound, centre, distance, ratio } = self.bounded(response, Some(lifted), &pass, sign);
         End { bound, centre, first_order: None, distance, ratio, pass, nodes: NodalValues::none() }
@@ -61,20 +53,20 @@ impl Search<'_, '_> {
         (bound, centre)
     }
 
-    /// The bound of a pair with z = `lifted`, or with z = 0.
-    fn bounded(&self, response: &Response, lifted: Option<&Displacement>, pass: &Pass, sign: f64) -> Bound {
+    /// The bound of a pair with z = `lifted` times a factor, or with z = 0.
+    fn bounded(&self, response: &Response, lifted: Option<(&Displacement, f64)>, pass: &Pass, sign: f64) -> Bound {
         let integrals: Integrals = if lifted.is_some() { pass.pair } else { pass.alone };
-        let Known { problem, dual, upper, square, pressure, .. } = self.known;
-        let slip = [integrals.uncancelled, pass.uncancelled].map(|square| ROUNDING_PER_TERM * square.sqrt());
+        let Known { problem, dual, upper, square, size, uncancelled, pressure, .. } = self.known;
+        let slip = [integrals.uncancelled, *uncancelled].map(|square| ROUNDING_PER_TERM * square.sqrt());
         let distance = integrals.square.max(0.0).sqrt() + slip[0];
-        let mut rounding = distance * slip[1] + slip[0] * pass.middle.max(0.0).sqrt() + response.remainder;
+        let mut rounding = distance * slip[1] + slip[0] * size + response.remainder;
 
         let mut sum = Sum::default();
         sum.add(self.functional.constant);
         sum.add(integrals.work);
-        if let Some(z) = lifted {
+        if let Some((z, factor)) = lifted {
             let work = work(problem, z);
-            sum.add(work.value());
+            sum.add(factor * work.value());
             rounding += ROUNDING_PER_TERM * work.magnitude();
         }
         for (pair, s) in problem.pairs().zip(response.contact.iter()) {
@@ -99,11 +91,14 @@ impl Search<'_, '_> {
             asked = asked.max(ratio(-sign * s, -t));
         }
         // Jumps beyond their bound by rounding do work on the exact pressure, of the size of that of λ.
-        let size = lifted.map_or(0.0, |z| (0..z.len()).map(|t| z.largest(t)).fold(0.0, f64::max));
+        let size = lifted.map_or(0.0, |(z, _)| (0..z.len()).map(|t| z.largest(t)).fold(0.0, f64::max));
         let mut excess = Vec::with_capacity(pressure.len());
         let pressures = dual.contact_traction.iter().flat_map(|of| of.iter());
         for ((pair, weights), t) in problem.pairs().zip(&self.functional.load.weights).zip(pressures) {
-            let jumps = lifted.map_or_else(|| vec![0.0], |z| jumps(problem, z, pair));
+            let jumps = lifted.map_or_else(
+                || vec![0.0],
+                |(z, factor)| jumps(problem, z, pair).into_iter().map(|j| factor * j).collect(),
+            );
             let open = openings(problem, &upper.displacement, pair);
             let degree = jumps.len().max(open.len()).max(weights.len()) - 1;
             let [jumps, open] = [jumps, open].map(|c| side::elevate(&c, degree));

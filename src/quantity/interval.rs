@@ -11,7 +11,7 @@
 
 use super::end::End;
 use super::functional::Functional;
-use super::pass::{Pass, strained};
+use super::pass::{Pass, strained, uncancelled};
 use super::search::Search;
 use super::value::displaced;
 use crate::bounds::energy::square;
@@ -96,9 +96,11 @@ pub struct Known<'a> {
     pub(super) nearest: Nearest<'a>,
     /// Coefficients of g − j(v) on every pair, not negative, in the degree of the bounds of z.
     pub(super) openings: Vec<Vec<f64>>,
-    /// m, of the degree of λ, and ‖m‖_a.
+    /// m, and ‖m‖_a.
     pub(super) middle: StressField,
     pub(super) size: f64,
+    /// The square of the norm that m would have if nothing cancelled in it.
+    pub(super) uncancelled: f64,
     /// Coefficients of t(λ) one after the other, zero where nothing presses.
     pub(super) pressure: Vec<f64>,
 }
@@ -134,6 +136,7 @@ impl<'a> Known<'a> {
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
             size: square(problem, &middle).sqrt(),
+            uncancelled: uncancelled(problem, &dual.stress, &upper.displacement),
             middle,
             pressure: pressing(dual),
         })

@@ -1,28 +1,27 @@
-//! Integrals over all triangles of σ_z − σ(z), of m = (λ + σ(v))/2, and of their product.
+//! Integrals over all triangles of σ_z − σ(z), and of its product with m = (λ + σ(v))/2.
 
 use rayon::prelude::*;
 
 use super::functional::Functional;
 use super::region::{Cut, Piece};
 use crate::bounds::Sum;
-use crate::bounds::energy::shape;
+use crate::bounds::energy::{shape, square_on};
 use crate::bounds::strain::{Strains, sub_area};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
 use crate::element::{Compliance, Displacement, Samples, StressField};
 use crate::problem::Problem;
 
-/// The fields of the problem that was solved, and of an adjoint pair.
+/// m, and the fields of an adjoint pair.
 #[derive(Clone, Copy)]
 pub struct Fields<'a> {
-    /// λ.
-    pub stress: &'a StressField,
-    /// v.
-    pub displacement: &'a Displacement,
+    /// m.
+    pub middle: &'a StressField,
     /// σ̂.
     pub adjoint: &'a StressField,
-    /// z.
+    /// z over `factor`.
     pub lifted: &'a Displacement,
+    pub factor: f64,
 }
 
 /// The integrals, per unit thickness.
@@ -36,10 +35,6 @@ pub struct Pass {
     pub alone: Integrals,
     /// ‖σ̂‖²_a.
     pub balanced: f64,
-    /// ‖m‖²_a.
-    pub middle: f64,
-    /// The square of the norm that m would have if nothing cancelled in it.
-    pub uncancelled: f64,
 }
 
 /// What an adjoint pair has over all triangles.
@@ -79,8 +74,6 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
         pair: integrals(PAIR),
         alone: integrals(ALONE),
         balanced: sum(BALANCED),
-        middle: sum(MIDDLE),
-        uncancelled: sum(UNCANCELLED),
     }
 }
 
@@ -88,9 +81,7 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
 const PAIR: usize = 0;
 const ALONE: usize = 3;
 const BALANCED: usize = 6;
-const MIDDLE: usize = 7;
-const UNCANCELLED: usize = 8;
-const TERMS: usize = 9;
+const TERMS: usize = 7;
 
 /// χ on a triangle.
 #[derive(Clone, Copy)]
@@ -108,66 +99,83 @@ fn triangle(
     strain: Strain<'_>,
     fields: Fields<'_>,
 ) -> [f64; TERMS] {
-    let Fields { stress, displacement, adjoint, lifted } = fields;
+    let Fields { middle, adjoint, lifted, factor } = fields;
     let corners = problem.mesh.corners(t);
     let area = sub_area(corners);
     let initial = match strain {
         Strain::Whole(chi) => material.stress(chi),
         _ => [0.0; 3],
     };
-    let [k, l] = [displacement, lifted].map(|v| v.degree(t) - 1);
-    let [p, r] = [stress, adjoint].map(|sigma| sigma.degree(t));
-    let half = k.max(l).max(p).max(r);
-    let (at_v, at_z) = (Samples::of(k, half), Samples::of(l, half));
-    let (at_stress, at_adjoint) = (Samples::of_stress(p, half), Samples::of_stress(r, half));
-    let (mut of_v, mut of_z) = (Strains::default(), Strains::default());
+    let (k, p, r) = (lifted.degree(t) - 1, middle.degree(t), adjoint.degree(t));
+    let half = k.max(p).max(r);
+    let at_z = Samples::of(k, half);
+    let (at_middle, at_adjoint) = (Samples::of_stress(p, half), Samples::of_stress(r, half));
+    let mut of_z = Strains::default();
     let mut out = [0.0; TERMS];
-    let modulus = material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    let modulus = largest_modulus(material);
     for sub in 0..3 {
-        of_v.on(corners, displacement, t, sub);
         of_z.on(corners, lifted, t, sub);
-        out[PAIR + 2] += area * modulus * of_z.largest_spread().powi(2);
-        out[UNCANCELLED] += area * modulus * of_v.largest_spread().powi(2);
-        for (q, (_, weight)) in at_v.points.iter().enumerate() {
-            let (balanced, lambda) = (adjoint.sample(t, sub, at_adjoint, q), stress.sample(t, sub, at_stress, q));
+        out[PAIR + 2] += area * modulus * (factor * of_z.largest_spread()).powi(2);
+        for (q, (_, weight)) in at_z.points.iter().enumerate() {
+            let (balanced, m) = (adjoint.sample(t, sub, at_adjoint, q), middle.sample(t, sub, at_middle, q));
             let sigma = plus(balanced, initial);
-            let (e_v, e_z) = (of_v.sample(at_v, q), of_z.sample(at_z, q));
-            // In strains: a σ_z − e(z), and a m.
+            // In strains: a σ_z − e(z).
             let a_sigma = material.strain(sigma);
-            let off = minus(a_sigma, e_z);
-            let middle = plus(material.strain(lambda), e_v).map(|e| 0.5 * e);
+            let off = minus(a_sigma, of_z.sample(at_z, q).map(|e| factor * e));
             let by = weight * area;
             for (first, strain) in [(PAIR, off), (ALONE, a_sigma)] {
                 out[first] += by * material.strain_product(strain, strain);
-                out[first + 1] += by * material.strain_product(strain, middle);
+                out[first + 1] += by * work(strain, m);
                 out[first + 2] += by * material.product(sigma, sigma);
             }
             out[BALANCED] += by * material.product(balanced, balanced);
-            out[MIDDLE] += by * material.strain_product(middle, middle);
-            out[UNCANCELLED] += by * material.product(lambda, lambda);
         }
     }
     if let Strain::Part(chi, cut) = strain {
         for piece in &cut.pieces {
-            of_v.on(corners, displacement, t, piece.sub);
             of_z.on(corners, lifted, t, piece.sub);
             for (l, by) in points(piece, 2 * half) {
-                let sigma = adjoint.at(t, piece.sub, l);
-                let e_z = of_z.at(l);
-                let a_sigma = material.strain(sigma);
-                let middle = plus(material.strain(stress.at(t, piece.sub, l)), of_v.at(l)).map(|e| 0.5 * e);
+                let a_sigma = material.strain(adjoint.at(t, piece.sub, l));
+                let off = minus(a_sigma, of_z.at(l).map(|e| factor * e));
+                let m = middle.at(t, piece.sub, l);
                 // ‖A + cχ‖² = ‖A‖² + 2 A:χ + χ:cχ inside the region.
                 let own = material.strain_product(chi, chi);
-                for (first, strain) in [(PAIR, minus(a_sigma, e_z)), (ALONE, a_sigma)] {
+                for (first, strain) in [(PAIR, off), (ALONE, a_sigma)] {
                     out[first] += by * (2.0 * material.strain_product(strain, chi) + own);
-                    out[first + 1] += by * material.strain_product(chi, middle);
+                    out[first + 1] += by * work(chi, m);
                     out[first + 2] += by.abs() * own;
                 }
             }
         }
     }
-    [PAIR + 2, ALONE + 2, UNCANCELLED].into_iter().for_each(|i| out[i] *= shape(corners));
+    [PAIR + 2, ALONE + 2].into_iter().for_each(|i| out[i] *= shape(corners));
     out
+}
+
+/// The square of the norm that m would have if nothing cancelled in it.
+pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displacement) -> f64 {
+    let mesh = &problem.mesh;
+    let materials = materials(problem);
+    let of = |t: usize| {
+        let (corners, material) = (mesh.corners(t), &materials[mesh.body[t]]);
+        let (area, modulus) = (sub_area(corners), largest_modulus(material));
+        let mut of_v = Strains::default();
+        let spread = |sub: usize| of_v.on(corners, displacement, t, sub).largest_spread().powi(2);
+        let strains = area * modulus * (0..3).map(spread).sum::<f64>();
+        shape(corners) * (strains + square_on(stress, t, material, area))
+    };
+    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(128).map(of).collect();
+    terms.into_iter().collect::<Sum>().value()
+}
+
+/// c χ : χ for a strain of one along x, of the size of the largest that there is.
+fn largest_modulus(material: &Compliance) -> f64 {
+    material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+}
+
+/// e : s.
+fn work(e: [f64; 3], s: [f64; 3]) -> f64 {
+    e[0] * s[0] + e[1] * s[1] + 2.0 * e[2] * s[2]
 }
 
 /// Points of a piece, in the barycentric coordinates of its subtriangle, with weights for polynomials up to `degree`.
@@ -197,7 +205,7 @@ pub fn strained(
     let mut sum = Sum::default();
     let mut add = |t: usize, sub: usize, l: [f64; 3], by: f64, chi: &[f64; 3]| {
         let s = at(t, sub, l);
-        sum.add(by * (chi[0] * s[0] + chi[1] * s[1] + 2.0 * chi[2] * s[2]));
+        sum.add(by * work(*chi, s));
     };
     let mut whole = |t: usize, chi: &[f64; 3]| {
         let area = problem.mesh.area(t) / 3.0;

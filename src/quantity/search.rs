@@ -28,9 +28,11 @@ const HEAVIEST: f64 = 100.0;
 /// Part of a sum below which its terms have cancelled: it is measured instead.
 const CANCELLED: f64 = 1e-8;
 
-/// Part of the width that a remainder of equilibrium may add: it is weighed with the displacement of the solve, which is not the
-/// exact one.
-const UNSEEN: f64 = 1e-6;
+/// Part of the width that a remainder of equilibrium may add …
+const UNSEEN: f64 = 1e-4;
+/// … where the stress is known to this part of its norm, and so the displacement that remainders are weighed with nearly the exact
+/// one. Elsewhere what rounding has cost is won back.
+const NEAR: f64 = 0.1;
 
 /// Part of the width that a sweep over z has to gain for another one to follow.
 const WORTH_A_SWEEP: f64 = 1e-3;
@@ -199,7 +201,8 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
     fn new(search: &'t Search<'s, 'a>, begun: &Begun, sign: f64, start: NodalValues) -> Self {
         let heaviest = HEAVIEST * begun.size / search.known.size;
         let heaviest = if heaviest > 0.0 { heaviest } else { f64::INFINITY };
-        let enough = UNSEEN * begun.distance * search.known.square.sqrt();
+        let radius = search.known.square.sqrt();
+        let enough = if radius <= NEAR * search.known.size { UNSEEN * begun.distance * radius } else { 0.0 };
         Tries { search, sign, heaviest, enough, start, tried: Tried::default(), best: None, reason: None }
     }
 
