@@ -9,24 +9,23 @@ use std::sync::OnceLock;
 use nalgebra::DMatrix;
 
 use crate::element::displacement::MOST;
-use crate::element::side::{lower_moments, product};
+use crate::element::side::{elevation, product};
 
 /// The p inner Bernstein coefficients of degree p + 1, from the p + 1 moments of degree p on an edge of the given length
 /// and the values at its ends.
-pub fn inside(moments: &[[f64; 2]], length: f64, ends: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+pub fn inside(moments: &[[f64; 2]], length: f64, ends: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
     let p = moments.len() - 1;
     let inverse = inverse(p);
-    let component = |c: usize| {
-        let lowered = lower_moments(&moments.iter().map(|m| m[c]).collect::<Vec<_>>(), p - 1);
-        let rest = |i: usize| {
-            let of_ends = product(p - 1, i, p + 1, 0) * ends[0][c] + product(p - 1, i, p + 1, p + 1) * ends[1][c];
-            lowered[i] / length - of_ends
-        };
-        let rest: Vec<f64> = (0..p).map(rest).collect();
-        (0..p).map(|j| (0..p).map(|i| inverse[(j, i)] * rest[i]).sum::<f64>()).collect::<Vec<_>>()
-    };
-    let [x, y] = [0, 1].map(component);
-    x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
+    let mut rest = [[0.0; 2]; MOST];
+    for (i, rest) in rest[..p].iter_mut().enumerate() {
+        let of_ends = [product(p - 1, i, p + 1, 0), product(p - 1, i, p + 1, p + 1)];
+        let lower = [elevation(p - 1, p, i, i), elevation(p - 1, p, i + 1, i)];
+        *rest = [0, 1].map(|c| {
+            let lowered = lower[0] * moments[i][c] + lower[1] * moments[i + 1][c];
+            lowered / length - (of_ends[0] * ends[0][c] + of_ends[1] * ends[1][c])
+        });
+    }
+    (0..p).map(move |j| [0, 1].map(|c| (0..p).map(|i| inverse[(j, i)] * rest[i][c]).sum::<f64>()))
 }
 
 /// The inverse of ∫ B_i B_{j + 1} ds of degrees p − 1 and p + 1.
@@ -51,7 +50,7 @@ mod tests {
             let moments: Vec<[f64; 2]> =
                 side::moments(&some, p).into_iter().map(|m| [length * m, -2.0 * length * m]).collect();
             let ends = [some[0], some[p + 1]].map(|u| [u, -2.0 * u]);
-            for (found, exact) in inside(&moments, length, ends).into_iter().zip(&some[1..]) {
+            for (found, exact) in inside(&moments, length, ends).zip(&some[1..]) {
                 assert!((found[0] - exact).abs() < 1e-10 && (found[1] + 2.0 * exact).abs() < 1e-10, "degree {p}");
             }
         }
