@@ -11,6 +11,8 @@
 //! Where no complementarity term takes part, ½‖c e(v) − λ‖²_a is the whole gap, τ lies on the hypercircle of Prager and
 //! Synge about m, and the bound is √(gap/2): half of the √(2·gap) that holds for λ and c e(v).
 
+use rayon::prelude::*;
+
 use super::UpperBound;
 use super::strain::Strains;
 use crate::dual::modes::materials;
@@ -23,41 +25,35 @@ pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> O
         return None;
     }
     let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
-    let mean = |at: (usize, usize), l, other: [f64; 3]| {
-        let own = stress.at(at.0, at.1, l);
-        [0, 1, 2].map(|c| 0.5 * (own[c] + other[c]))
-    };
-    Some(with_stresses(problem, v, degree, mean))
+    let mut mean = with_stresses(problem, v, degree);
+    for t in 0..stress.len() {
+        let own = stress.in_degree(t, degree(t));
+        mean.block_mut(t).iter_mut().zip(own.iter()).for_each(|(m, own)| *m = [0, 1, 2].map(|c| 0.5 * (own[c] + m[c])));
+    }
+    Some(mean)
 }
 
 /// The stress of a displacement, of its degree less one.
 pub fn stress_of(problem: &Problem, v: &Displacement) -> StressField {
-    with_stresses(problem, v, |t| v.degree(t) - 1, |_, _, stress| stress)
+    with_stresses(problem, v, |t| v.degree(t) - 1)
 }
 
-/// The field of the given degrees whose value at a node follows from triangle and subtriangle, barycentric coordinates, and the
-/// stress of `v` there.
-fn with_stresses(
-    problem: &Problem,
-    v: &Displacement,
-    degree: impl Fn(usize) -> usize,
-    value_of: impl Fn((usize, usize), [f64; 3], [f64; 3]) -> [f64; 3],
-) -> StressField {
+/// The stress of a displacement in the given degrees, which are no lower than its own.
+fn with_stresses(problem: &Problem, v: &Displacement, degree: impl Fn(usize) -> usize + Sync) -> StressField {
     let mesh = &problem.mesh;
     let materials = materials(problem);
     let mut field = StressField::of_degrees((0..v.len()).map(&degree));
-    let mut strains = Strains::default();
-    for t in 0..v.len() {
-        let corners = mesh.corners(t);
-        let (material, degree) = (&materials[mesh.body[t]], degree(t));
-        for (sub, values) in field.block_mut(t).chunks_exact_mut(triangle::len(degree)).enumerate() {
+    field.blocks_mut().into_par_iter().enumerate().with_min_len(128).for_each(|(t, block)| {
+        let (corners, material, degree) = (mesh.corners(t), &materials[mesh.body[t]], degree(t));
+        let mut strains = Strains::default();
+        for (sub, values) in block.chunks_exact_mut(triangle::len(degree)).enumerate() {
             strains.on(corners, v, t, sub);
             for (value, node) in values.iter_mut().zip(triangle::indices(degree)) {
                 let l = node.map(|i| if degree == 0 { 1.0 / 3.0 } else { i as f64 / degree as f64 });
-                *value = value_of((t, sub), l, material.stress(strains.at(l)));
+                *value = material.stress(strains.at(l));
             }
         }
-    }
+    });
     field
 }
 

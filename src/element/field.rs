@@ -3,6 +3,7 @@
 //! Every triangle a_0 a_1 a_2 is split at its centroid 0 into three subtriangles; subtriangle i is opposite vertex i
 //! and has the corners (a_{i+1}, a_{i+2}, 0). Barycentric coordinates on a subtriangle follow that order.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
@@ -10,6 +11,7 @@ use nalgebra::DMatrix;
 use super::samples::Samples;
 use super::side;
 use super::side_values::{parts, starts};
+use super::triangle;
 
 /// A stress, on each triangle of a degree of its own on every subtriangle.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +97,15 @@ impl StressField {
             1 => weighed(block, bary),
             _ => weighed(block, lattice_shape(degree, bary)),
         }
+    }
+
+    /// The values of [`Self::block`] for a degree that is no lower.
+    pub fn in_degree(&self, t: usize, degree: usize) -> Cow<'_, [[f64; 3]]> {
+        if degree == self.degree(t) {
+            return Cow::Borrowed(self.block(t));
+        }
+        let points = || triangle::indices(degree).map(|i| i.map(|i| i as f64 / degree as f64));
+        Cow::Owned((0..3).flat_map(|sub| points().map(move |l| self.at(t, sub, l))).collect())
     }
 
     /// Stress at point `q` of `shapes`, those of the degree on triangle `t` ([`Samples::of_stress`]), in subtriangle `sub`.

@@ -10,7 +10,7 @@ use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
 use crate::dual::modes::materials;
 use crate::dual::{Loaded, Response};
-use crate::element::{StressField, triangle};
+use crate::element::StressField;
 
 /// How often, and by what factor, the ratio is raised where it gives nothing.
 const MOST_RAISES: usize = 8;
@@ -80,7 +80,7 @@ impl Search<'_, '_> {
     pub fn best(&self, begun: &Begun, sign: f64, other: Option<&NodalValues>) -> Result<End, String> {
         let known = self.known;
         // But for what pressure and opening allow, z of one end is that of the other turned around.
-        let start = other.map_or_else(|| begun.nodes.scaled(sign), |z| z.scaled(-1.0));
+        let start = other.map_or_else(|| (begun.nodes.scaled(sign), false), |z| (z.scaled(-1.0), true));
         let mut tries = Tries::new(self, begun, sign, start);
         tries.add(self.first_ratio(begun));
         // A body that contact alone holds needs a pressure to take off from.
@@ -150,13 +150,13 @@ impl Search<'_, '_> {
 
     /// The bound of `response` with the best z for `ratio`: the one that makes Q_h − ρH − D²/(4ρ) largest, which has the least
     /// energy under the pull of σ_z − 2ρm and of the loads of the scene times 2ρ; with another `weight` in the place of ρ it
-    /// is nearly as good.
+    /// is nearly as good. `start` may be one that was `relaxed` for another ratio, or for the other end.
     fn end(
         &self,
         response: &Response,
         sign: f64,
         [ratio, weight]: [f64; 2],
-        start: NodalValues,
+        (start, relaxed): (NodalValues, bool),
     ) -> Result<End, String> {
         let known = self.known;
         let stress = less(sign, &self.stress(&response.stress), 2.0 * weight, &known.middle);
@@ -171,7 +171,7 @@ impl Search<'_, '_> {
             })
             .collect();
         let pull = Pull { scene: 2.0 * weight, stress: Some(&stress) };
-        let until = Until::Gains(WORTH_A_SWEEP * 4.0 * weight * weight * known.square);
+        let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
@@ -189,8 +189,8 @@ struct Tries<'t, 's, 'a> {
     heaviest: f64,
     /// Remainders of equilibrium that do not show in the width.
     enough: f64,
-    /// What relaxing begins with.
-    start: NodalValues,
+    /// What relaxing begins with, and whether that was relaxed.
+    start: (NodalValues, bool),
     tried: Tried,
     best: Option<(End, Response)>,
     /// Why the last of them gave nothing.
@@ -198,7 +198,7 @@ struct Tries<'t, 's, 'a> {
 }
 
 impl<'t, 's, 'a> Tries<'t, 's, 'a> {
-    fn new(search: &'t Search<'s, 'a>, begun: &Begun, sign: f64, start: NodalValues) -> Self {
+    fn new(search: &'t Search<'s, 'a>, begun: &Begun, sign: f64, start: (NodalValues, bool)) -> Self {
         let heaviest = HEAVIEST * begun.size / search.known.size;
         let heaviest = if heaviest > 0.0 { heaviest } else { f64::INFINITY };
         let radius = search.known.square.sqrt();
@@ -218,7 +218,7 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
                     self.tried.add([ratio, end.ratio], end.distance);
                 }
                 if self.best.as_ref().is_none_or(|(best, _)| end.bound > best.bound) {
-                    self.start.clone_from(&end.nodes);
+                    self.start = (end.nodes.clone(), true);
                     self.best = Some((end, response));
                 }
                 true
@@ -243,17 +243,10 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
 /// sign · σ − factor · m, of the degree of m, which is no lower.
 fn less(sign: f64, sigma: &StressField, factor: f64, middle: &StressField) -> StressField {
     let mut out = middle.clone();
-    let from = |value: &mut [f64; 3], sigma: [f64; 3]| *value = [0, 1, 2].map(|c| sign * sigma[c] - factor * value[c]);
     for t in 0..out.len() {
-        let degree = middle.degree(t);
-        let own = out.block_mut(t).iter_mut();
-        if degree == sigma.degree(t) {
-            own.zip(sigma.block(t)).for_each(|(value, sigma)| from(value, *sigma));
-        } else {
-            let points = || triangle::indices(degree).map(|i| i.map(|i| i as f64 / degree as f64));
-            let at = (0..3).flat_map(|sub| points().map(move |l| sigma.at(t, sub, l)));
-            own.zip(at).for_each(|(value, sigma)| from(value, sigma));
-        }
+        let sigma = sigma.in_degree(t, middle.degree(t));
+        let values = out.block_mut(t).iter_mut().zip(sigma.iter());
+        values.for_each(|(value, sigma)| *value = [0, 1, 2].map(|c| sign * sigma[c] - factor * value[c]));
     }
     out
 }

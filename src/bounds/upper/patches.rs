@@ -88,7 +88,16 @@ impl Patches {
 
     /// The patches that gained more than `quiet` when they were moved last, and those beside them, in order.
     pub fn to_move(&self, problem: &Problem, quiet: f64) -> Vec<usize> {
-        let mut moves = vec![false; self.count()];
+        self.and_gaining(problem, quiet, vec![false; self.count()])
+    }
+
+    /// The same with those that contact bounds.
+    pub fn to_move_or_bounded(&self, problem: &Problem, model: &Model, quiet: f64) -> Vec<usize> {
+        let bounded = |group: &Group| group.vertices.iter().any(|v| !model.rows_at[*v].is_empty());
+        self.and_gaining(problem, quiet, self.groups.iter().map(bounded).collect())
+    }
+
+    fn and_gaining(&self, problem: &Problem, quiet: f64, mut moves: Vec<bool>) -> Vec<usize> {
         for (group, _) in self.groups.iter().zip(&self.gained).filter(|(_, gained)| **gained > quiet) {
             for v in group.triangles.iter().flat_map(|t| problem.mesh.triangles[*t]) {
                 moves[self.of_vertex[v]] = true;

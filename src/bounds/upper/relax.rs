@@ -52,8 +52,9 @@ const WILD: f64 = 1e30;
 pub enum Until {
     /// A sweep gains a small part of what lies between the energy and this lower bound of it.
     Near(f64),
-    /// A sweep gains no more than this.
-    Gains(f64),
+    /// A sweep gains no more than `least`. A field that was `relaxed` under a pull that differs little but at the contact moves there
+    /// first, and where patches still gained.
+    Gains { least: f64, relaxed: bool },
 }
 
 impl Until {
@@ -62,14 +63,14 @@ impl Until {
     fn least_sweeps(self) -> usize {
         match self {
             Until::Near(_) => SWEEPS,
-            Until::Gains(_) => 1,
+            Until::Gains { .. } => 1,
         }
     }
 
     /// The size of the energy, as far as it is known.
     fn size(self) -> f64 {
         match self {
-            Until::Near(size) | Until::Gains(size) => size.abs(),
+            Until::Near(size) | Until::Gains { least: size, .. } => size.abs(),
         }
     }
 
@@ -77,14 +78,14 @@ impl Until {
     fn quiet(self, count: usize) -> Option<f64> {
         match self {
             Until::Near(_) => None,
-            Until::Gains(least) => Some(QUIET * least / count as f64),
+            Until::Gains { least, .. } => Some(QUIET * least / count as f64),
         }
     }
 
     /// Whether a sweep that gained `gained` and led to this energy was the last one.
     fn is_reached(self, problem: &Problem, energy: f64, gained: f64) -> bool {
         match self {
-            Until::Gains(least) => gained <= least || gained <= NO_GAIN * energy.abs(),
+            Until::Gains { least, .. } => gained <= least || gained <= NO_GAIN * energy.abs(),
             Until::Near(floor) => {
                 let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
                 let gap = (energy - floor).max(0.0);
@@ -111,7 +112,13 @@ pub fn relax(
     let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let quiet = until.quiet(patches.count());
     let mut momentum = Momentum::default();
-    let mut few: Option<Vec<usize>> = None;
+    let most = FEW * patches.count() as f64;
+    let mut few = match (until, quiet) {
+        (Until::Gains { relaxed: true, .. }, Some(quiet)) => {
+            Some(patches.to_move_or_bounded(problem, model, quiet)).filter(|few| (few.len() as f64) < most)
+        }
+        _ => None,
+    };
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
         if sweep >= until.least_sweeps() {
@@ -136,7 +143,7 @@ pub fn relax(
         };
         energy -= gained;
         let moved = quiet.map(|quiet| patches.to_move(problem, quiet));
-        few = moved.filter(|few| (few.len() as f64) < FEW * patches.count() as f64);
+        few = moved.filter(|few| (few.len() as f64) < most);
     }
     Ok(NodalValues { nodes, values })
 }
