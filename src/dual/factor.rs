@@ -353,7 +353,7 @@ mod tests {
     /// The lower triangle of the five-point stencil on a square, odd points before even ones, with a shift.
     fn stencil() -> SparseColMat<usize, f64> {
         let count = SIDE * SIDE;
-        let number = |i: usize, j: usize| (i * SIDE + j) / 2 + if (i + j) % 2 == 0 { count / 2 } else { 0 };
+        let number = |i: usize, j: usize| (i * SIDE + j) / 2 + if (i + j).is_multiple_of(2) { count / 2 } else { 0 };
         let mut entries: Vec<Triplet<usize, usize, f64>> = (0..count).map(|k| Triplet::new(k, k, 4.3)).collect();
         for i in 0..SIDE {
             for j in 0..SIDE {

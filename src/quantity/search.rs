@@ -28,11 +28,13 @@ const HEAVIEST: f64 = 100.0;
 /// Part of a sum below which its terms have cancelled: it is measured instead.
 const CANCELLED: f64 = 1e-8;
 
-/// Part of the width that a remainder of equilibrium may add …
+/// Part of the width that a remainder of equilibrium may add where the stress is known to this part of its norm, and so the
+/// displacement that remainders are weighed with nearly the exact one …
 const UNSEEN: f64 = 1e-4;
-/// … where the stress is known to this part of its norm, and so the displacement that remainders are weighed with nearly the exact
-/// one. Elsewhere what rounding has cost is won back.
 const NEAR: f64 = 0.1;
+
+/// … and elsewhere, where that displacement says little of the exact one.
+const UNSEEN_FAR: f64 = 1e-6;
 
 /// Part of the width that a sweep over z has to gain for another one to follow.
 const WORTH_A_SWEEP: f64 = 1e-3;
@@ -202,7 +204,8 @@ impl<'t, 's, 'a> Tries<'t, 's, 'a> {
         let heaviest = HEAVIEST * begun.size / search.known.size;
         let heaviest = if heaviest > 0.0 { heaviest } else { f64::INFINITY };
         let radius = search.known.square.sqrt();
-        let enough = if radius <= NEAR * search.known.size { UNSEEN * begun.distance * radius } else { 0.0 };
+        let unseen = if radius <= NEAR * search.known.size { UNSEEN } else { UNSEEN_FAR };
+        let enough = unseen * begun.distance * radius;
         Tries { search, sign, heaviest, enough, start, tried: Tried::default(), best: None, reason: None }
     }
 
