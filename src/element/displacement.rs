@@ -127,9 +127,10 @@ impl Displacement {
         value
     }
 
-    /// The largest coefficient of triangle `t`: no displacement there is larger.
+    /// No displacement on triangle `t` is larger: √2 times the largest component of its coefficients.
     pub fn largest(&self, t: usize) -> f64 {
-        self.block(t).iter().fold(0.0_f64, |m, v| m.max(v[0] * v[0] + v[1] * v[1])).sqrt()
+        let component = |v: &[f64; 2]| v[0].abs().max(v[1].abs());
+        std::f64::consts::SQRT_2 * self.block(t).iter().map(component).fold(0.0, f64::max)
     }
 }
 
