@@ -19,6 +19,7 @@ use super::pressure::Piece;
 use super::stress::primal_means;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
+use crate::element::contraction;
 use crate::problem::{Condition, Interface, Problem};
 
 /// Mean pressures at a vertex of Γ_K, weighted by its hat function.
@@ -203,7 +204,7 @@ fn works(
             let stress = 2.0 * judged.field.local.triangles[t] / problem.scene.thickness;
             let motion = area * materials[mesh.body[t]].strain_product(e, e);
             let sum = sums.entry(*v).or_default();
-            sum[0] += area * (d[0] * e[0] + d[1] * e[1] + 2.0 * d[2] * e[2]);
+            sum[0] += area * contraction(d, e);
             sum[1] += (stress * motion).sqrt();
         }
     }

@@ -5,7 +5,7 @@ use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
 use crate::dual::modes::materials;
-use crate::element::Samples;
+use crate::element::{Samples, contraction};
 use crate::problem::Problem;
 use crate::scene::Kinematics;
 
@@ -76,7 +76,7 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
                 for c in 0..3 {
                     difference[c] += w * (l[c] - s[c]).powi(2);
                 }
-                norm += w * (l[0] * l[0] + l[1] * l[1] + 2.0 * l[2] * l[2]);
+                norm += w * contraction(l, l);
                 let of = |s| von_mises(scene.kinematics, poisson, s);
                 mises += w * (of(l) - of(s)).powi(2);
             }

@@ -184,6 +184,11 @@ pub(super) fn lattice_shape(degree: usize, bary: [f64; 3]) -> impl Iterator<Item
         .map(move |(i, j)| factor(i, bary[0]) * factor(j, bary[1]) * factor(p - i - j, bary[2]))
 }
 
+/// a : b of symmetric tensors (xx, yy, xy).
+pub fn contraction(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + 2.0 * a[2] * b[2]
+}
+
 /// The sum of values times weights.
 pub fn weighed(values: &[[f64; 3]], weights: impl IntoIterator<Item = f64>) -> [f64; 3] {
     let mut sum = [0.0; 3];

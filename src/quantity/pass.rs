@@ -9,7 +9,7 @@ use crate::bounds::energy::{shape, square_on};
 use crate::bounds::strain::{Strains, sub_area};
 use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Compliance, Displacement, Samples, StressField};
+use crate::element::{Compliance, Displacement, Samples, StressField, contraction};
 use crate::problem::Problem;
 
 /// m, and the fields of an adjoint pair.
@@ -125,7 +125,7 @@ fn triangle(
             let by = weight * area;
             for (first, strain) in [(PAIR, off), (ALONE, a_sigma)] {
                 out[first] += by * material.strain_product(strain, strain);
-                out[first + 1] += by * work(strain, m);
+                out[first + 1] += by * contraction(strain, m);
                 out[first + 2] += by * material.product(sigma, sigma);
             }
             out[BALANCED] += by * material.product(balanced, balanced);
@@ -142,7 +142,7 @@ fn triangle(
                 let own = material.strain_product(chi, chi);
                 for (first, strain) in [(PAIR, off), (ALONE, a_sigma)] {
                     out[first] += by * (2.0 * material.strain_product(strain, chi) + own);
-                    out[first + 1] += by * work(chi, m);
+                    out[first + 1] += by * contraction(chi, m);
                     out[first + 2] += by.abs() * own;
                 }
             }
@@ -173,11 +173,6 @@ fn largest_modulus(material: &Compliance) -> f64 {
     material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
 }
 
-/// e : s.
-fn work(e: [f64; 3], s: [f64; 3]) -> f64 {
-    e[0] * s[0] + e[1] * s[1] + 2.0 * e[2] * s[2]
-}
-
 /// Points of a piece, in the barycentric coordinates of its subtriangle, with weights for polynomials up to `degree`.
 fn points(piece: &Piece, degree: usize) -> impl Iterator<Item = ([f64; 3], f64)> {
     triangle_rule(degree).iter().map(move |(m, weight)| {
@@ -205,7 +200,7 @@ pub fn strained(
     let mut sum = Sum::default();
     let mut add = |t: usize, sub: usize, l: [f64; 3], by: f64, chi: &[f64; 3]| {
         let s = at(t, sub, l);
-        sum.add(by * work(*chi, s));
+        sum.add(by * contraction(*chi, s));
     };
     let mut whole = |t: usize, chi: &[f64; 3]| {
         let area = problem.mesh.area(t) / 3.0;
