@@ -68,6 +68,7 @@ pub mod diff;
 pub mod dual;
 pub mod element;
 pub mod job;
+mod lanes;
 pub mod measure;
 pub mod mesh;
 pub mod plot;

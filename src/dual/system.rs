@@ -16,6 +16,7 @@ use super::modes::ModeTable;
 use super::rows::Sides;
 use super::unknowns::{Block, Component, Unknowns};
 use crate::element::side;
+use crate::lanes::wide;
 use crate::problem::{ContactPair, Problem};
 
 /// The assembled problem. Copies share what does not depend on the loads.
@@ -200,24 +201,32 @@ fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, sides: &Side
         }
         tractions = &turned;
     }
-    match m {
-        12 => gram::<12>(tractions, stiffness),
-        18 => gram::<18>(tractions, stiffness),
-        24 => gram::<24>(tractions, stiffness),
-        30 => gram::<30>(tractions, stiffness),
-        _ => {
-            stiffness.fill(0.0);
-            for mode in tractions.chunks_exact(m) {
-                for (row, a) in stiffness.chunks_exact_mut(m).zip(mode) {
-                    row.iter_mut().zip(mode).for_each(|(k, b)| *k += a * b);
+    gram(tractions, m, stiffness);
+}
+
+wide! {
+    /// Σ t tᵀ over rows t of length m.
+    fn gram(tractions: &[f64], m: usize, out: &mut [f64]) {
+        match m {
+            12 => gram_of::<12>(tractions, out),
+            18 => gram_of::<18>(tractions, out),
+            24 => gram_of::<24>(tractions, out),
+            30 => gram_of::<30>(tractions, out),
+            _ => {
+                out.fill(0.0);
+                for mode in tractions.chunks_exact(m) {
+                    for (row, a) in out.chunks_exact_mut(m).zip(mode) {
+                        row.iter_mut().zip(mode).for_each(|(k, b)| *k += a * b);
+                    }
                 }
             }
         }
     }
 }
 
-/// Σ t tᵀ over rows t of length M, a length that the compiler knows.
-fn gram<const M: usize>(tractions: &[f64], out: &mut [f64]) {
+/// The same for a length that the compiler knows.
+#[inline(always)]
+fn gram_of<const M: usize>(tractions: &[f64], out: &mut [f64]) {
     let (rows, _) = out.as_chunks_mut::<M>();
     rows.iter_mut().for_each(|row| *row = [0.0; M]);
     for mode in tractions.as_chunks::<M>().0 {

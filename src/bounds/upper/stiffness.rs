@@ -4,6 +4,7 @@ use super::cholesky;
 use super::split::Split;
 use crate::element::Compliance;
 use crate::element::side::elevation;
+use crate::lanes::wide;
 
 /// K of ½ uᵀKu − fᵀu, u being x and y of the nodes on the boundary ([`super::Nodes::of_triangle`]), and what eliminates the
 /// inside. In the plane it is the same for similar triangles.
@@ -37,11 +38,7 @@ impl Stiffness {
         let mut across: Vec<f64> = rows(boundary..boundary + inside);
         cholesky::forward(&factor, &mut across, inside);
         let mut matrix: Vec<f64> = rows(0..boundary);
-        for y in across.chunks_exact(boundary) {
-            for (by, row) in y.iter().zip(matrix.chunks_exact_mut(boundary)) {
-                row.iter_mut().zip(y).for_each(|(k, v)| *k -= by * v);
-            }
-        }
+        eliminate(&mut matrix, &across, boundary);
         let raising = if degrees == [k; 3] { Vec::new() } else { raising(k, degrees) };
         let size = 6 + 2 * degrees.iter().map(|k| k - 1).sum::<usize>();
         if !raising.is_empty() {
@@ -99,13 +96,29 @@ impl Stiffness {
     pub fn residual(&self, load: &[f64], u: &[f64], out: &mut Vec<f64>) {
         out.clear();
         out.extend_from_slice(load);
-        match self.size {
+        subtract(&self.matrix, u, out);
+    }
+}
+
+wide! {
+    /// K − YᵀY, both with `columns` columns.
+    fn eliminate(matrix: &mut [f64], across: &[f64], columns: usize) {
+        for y in across.chunks_exact(columns) {
+            for (by, row) in y.iter().zip(matrix.chunks_exact_mut(columns)) {
+                row.iter_mut().zip(y).for_each(|(k, v)| *k -= by * v);
+            }
+        }
+    }
+
+    /// Takes Ku from `out`.
+    fn subtract(matrix: &[f64], u: &[f64], out: &mut [f64]) {
+        match out.len() {
             // The sizes of quadratics and cubics, whose loops are then of known length.
-            12 => subtract::<12>(&self.matrix, u, out),
-            18 => subtract::<18>(&self.matrix, u, out),
+            12 => subtract_of::<12>(matrix, u, out),
+            18 => subtract_of::<18>(matrix, u, out),
             size => {
                 // K is symmetric: its rows are its columns.
-                for (row, u) in self.matrix.chunks_exact(size).zip(u) {
+                for (row, u) in matrix.chunks_exact(size).zip(u) {
                     out.iter_mut().zip(row).for_each(|(o, k)| *o -= u * k);
                 }
             }
@@ -113,8 +126,9 @@ impl Stiffness {
     }
 }
 
-/// Takes Ku from N numbers.
-fn subtract<const N: usize>(matrix: &[f64], u: &[f64], out: &mut [f64]) {
+/// The same for N numbers.
+#[inline(always)]
+fn subtract_of<const N: usize>(matrix: &[f64], u: &[f64], out: &mut [f64]) {
     let (rows, _) = matrix.as_chunks::<N>();
     let (Some(u), Some(out)) = (u.first_chunk::<N>(), out.first_chunk_mut::<N>()) else { return };
     let mut sum = *out;

@@ -8,6 +8,7 @@ use super::Triangle;
 use super::across::Across;
 use super::reference::Field;
 use crate::element::Compliance;
+use crate::lanes::wide;
 
 /// R of A = QR. The square of a column of A is three times the energy of a field on a triangle of area one with E = 1.
 pub struct Factor {
@@ -73,8 +74,20 @@ impl Factor {
 
     /// Solves R x = b in place, for as many columns as b is long.
     pub fn solve(&self, b: &mut [f64]) {
+        backward(&self.r, b);
+    }
+
+    /// What the last column has in those of Q.
+    pub fn overlaps(&self) -> &[f64] {
+        self.r.col_as_slice(self.r.ncols() - 1)
+    }
+}
+
+wide! {
+    /// b = R⁻¹ b, for as many columns as b is long.
+    fn backward(r: &Mat<f64>, b: &mut [f64]) {
         for k in (0..b.len()).rev() {
-            let column = &self.r.col_as_slice(k)[..=k];
+            let column = &r.col_as_slice(k)[..=k];
             let (before, own) = b.split_at_mut(k);
             own[0] /= column[k];
             let x = own[0];
@@ -82,11 +95,6 @@ impl Factor {
                 before.iter_mut().zip(column).for_each(|(b, r)| *b -= x * r);
             }
         }
-    }
-
-    /// What the last column has in those of Q.
-    pub fn overlaps(&self) -> &[f64] {
-        self.r.col_as_slice(self.r.ncols() - 1)
     }
 }
 

@@ -35,6 +35,7 @@ use self::factor::Factor;
 use self::reference::{Field, Reference};
 use self::shape::Shape;
 use super::{Compliance, EquilibriumElement, MAX_DEGREE, Modes, ModesMut};
+use crate::lanes::wide;
 
 /// The block of degree p.
 #[derive(Debug, Clone, Copy)]
@@ -168,10 +169,12 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Adds Σ c_i rows_i.
-fn add(out: &mut [f64], c: &[f64], rows: &[f64]) {
-    for (c, row) in c.iter().zip(rows.chunks_exact(out.len())) {
-        out.iter_mut().zip(row).for_each(|(o, r)| *o += c * r);
+wide! {
+    /// Adds Σ c_i rows_i.
+    fn add(out: &mut [f64], c: &[f64], rows: &[f64]) {
+        for (c, row) in c.iter().zip(rows.chunks_exact(out.len())) {
+            out.iter_mut().zip(row).for_each(|(o, r)| *o += c * r);
+        }
     }
 }
 
