@@ -96,7 +96,8 @@ impl ActiveSet {
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
             let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
-            let factor = Factor::of_semidefinite(structure, matrix.as_ref(), options.par()).map_err(broken)?;
+            let par = options.par(structure.numbers());
+            let factor = Factor::of_semidefinite(structure, matrix.as_ref(), par).map_err(broken)?;
             seconds.factor += start.elapsed().as_secs_f64();
 
             let start = Instant::now();

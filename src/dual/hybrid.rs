@@ -29,7 +29,7 @@ pub fn structure(problem: &Problem, system: &System, options: &Options) -> Resul
     let pattern = system.matrix.symbolic();
     let symbolic = SymbolicFactor::new(pattern, system.unknowns.first_jump, ordering(problem, system))
         .map_err(|breakdown| explain(problem, system, breakdown))?;
-    match options.budget.admit_more(symbolic.memory(options.par())) {
+    match options.budget.admit_more(symbolic.memory(options.par(symbolic.numbers()))) {
         Ok(()) => Ok(symbolic),
         Err(excess) => Err(explain(problem, system, Breakdown::TooLarge(excess.to_string()))),
     }

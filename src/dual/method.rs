@@ -77,7 +77,7 @@ pub struct Found {
 pub struct Options {
     /// The element of each triangle.
     pub elements: Elements,
-    /// Threads; one gives bit-identical results.
+    /// Threads. Results are bit-identical with any number of them up to factors of a hundred million numbers, and beyond with one.
     pub threads: usize,
     /// First guess of the closed coefficients, from a similar problem.
     pub closed: Option<SideValues<bool>>,
@@ -108,10 +108,13 @@ impl Default for Options {
     }
 }
 
+/// Numbers in a factor from which sharing its kernels among threads gains more than it costs.
+const SHARED_FROM: usize = 100_000_000;
+
 impl Options {
-    /// Parallelism of the dense and sparse kernels.
-    pub fn par(&self) -> Par {
-        if self.threads > 1 { Par::rayon(self.threads) } else { Par::Seq }
+    /// Parallelism of the kernels that work on a factor of so many numbers.
+    pub fn par(&self, numbers: usize) -> Par {
+        if self.threads > 1 && numbers >= SHARED_FROM { Par::rayon(self.threads) } else { Par::Seq }
     }
 
     /// Does `work` on as many threads as these options have: those that are there where they are as many, else its own.

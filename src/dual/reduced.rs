@@ -52,7 +52,8 @@ impl Reduced {
         let held = held_unknowns(problem, &system.unknowns, motions);
         let shift = make_definite(system, &held);
         let structure = structure(problem, system, options)?;
-        let factor = Factor::of_semidefinite(structure, (*system.matrix).as_ref(), options.par())
+        let par = options.par(structure.numbers());
+        let factor = Factor::of_semidefinite(structure, (*system.matrix).as_ref(), par)
             .map_err(|breakdown| explain(problem, system, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
     }

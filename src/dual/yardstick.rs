@@ -52,7 +52,7 @@ pub fn plain_factorisation(
     .map_err(|e| failed(e.to_string()))?;
     let after_symbolic = Instant::now();
     let mut values = vec![0.0; symbolic.len_val()];
-    let par = options.par();
+    let par = options.par(symbolic.len_val());
     let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default()));
     symbolic
         .factorize_numeric_llt(

@@ -3,8 +3,10 @@
 use crate::setup::blocks::{blocks, cornered, scaled, sliding, solved, tilting};
 use crate::setup::lift_off;
 use hypercircle::bounds::complementary;
-use hypercircle::dual::Condensed;
+use hypercircle::dual::{Condensed, Options};
+use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
+use hypercircle::study::{Certified, certify};
 
 #[test]
 fn powers_of_two_scale_every_bit() {
@@ -104,13 +106,21 @@ fn numbering_does_not_matter() {
 }
 
 #[test]
-fn one_thread_repeats_every_bit() {
-    let problem = lift_off(16);
-    let (a, b) = (solved(&problem, Condensed::default()), solved(&problem, Condensed::default()));
-    for t in 0..a.stress.len() {
-        for (x, y) in a.stress.block(t).as_flattened().iter().zip(b.stress.block(t).as_flattened()) {
-            assert_eq!(x.to_bits(), y.to_bits());
+fn runs_and_threads_repeat_every_bit() {
+    for degree in [1, 3] {
+        let options = |threads| Options { threads, elements: Elements::Uniform(block(degree)), ..Options::default() };
+        let run = |threads| certify(lift_off(12), &Condensed::default(), &options(threads)).expect("an answer");
+        let once = run(1);
+        for other in [run(1), run(2), run(3)] {
+            let ends = |run: &Certified| [run.bracket.lower(), run.bracket.free.as_ref().expect("a bound").upper()];
+            assert_eq!(ends(&once).map(f64::to_bits), ends(&other).map(f64::to_bits));
+            let (a, b) = (&once.dual, &other.dual);
+            for t in 0..a.stress.len() {
+                for (x, y) in a.stress.block(t).as_flattened().iter().zip(b.stress.block(t).as_flattened()) {
+                    assert_eq!(x.to_bits(), y.to_bits());
+                }
+            }
+            assert!(a.moments == b.moments);
         }
     }
-    assert!(a.moments == b.moments);
 }

@@ -68,6 +68,11 @@ impl SymbolicFactor {
         Ok(SymbolicFactor { inner: Some(inner), forward, leading })
     }
 
+    /// Numbers in the factor.
+    pub fn numbers(&self) -> usize {
+        self.inner.as_ref().map_or(0, SymbolicCholesky::len_val)
+    }
+
     /// Bytes that a numeric factorisation takes.
     pub fn memory(&self, par: Par) -> f64 {
         let Some(inner) = &self.inner else { return 0.0 };
