@@ -4,7 +4,7 @@ use super::Certified;
 use super::adaptive::Wanted;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
-use crate::element::Displacement;
+use crate::element::{Displacement, Elements, StressField};
 use crate::problem::{Problem, Scales};
 use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced, value_of};
 use crate::report::{QuantityOfModel, QuantitySummary};
@@ -68,7 +68,8 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let factorised: Result<&Factorised, String> = match &dual.factorised {
         Some(kept) => Ok(kept),
         None => {
-            own = Factorised::new(problem, &motions, options).map_err(|error| error.to_string());
+            let options = Options { elements: elements(options, &dual.stress), ..options.clone() };
+            own = Factorised::new(problem, &motions, &options).map_err(|error| error.to_string());
             own.as_ref().map_err(Clone::clone)
         }
     };
@@ -95,6 +96,15 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
         }
     };
     quantities.iter().map(answer).collect()
+}
+
+/// Those of the stresses: of the options, or blocks where refinement has chosen other degrees.
+fn elements(options: &Options, stress: &StressField) -> Elements {
+    let degrees = || (0..stress.len()).map(|t| stress.degree(t));
+    match &options.elements {
+        Elements::Uniform(element) if degrees().all(|degree| degree == element.degree()) => options.elements.clone(),
+        _ => Elements::Blocks(degrees().map(|degree| degree as u8).collect()),
+    }
 }
 
 /// Part of the largest displacement of a motion that is none.
