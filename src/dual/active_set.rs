@@ -88,11 +88,12 @@ impl ActiveSet {
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
         let (mut seen, mut careful, mut from_closed) = (HashSet::new(), false, true);
-        let mut left = f64::INFINITY;
+        let (mut left, mut steps) = (f64::INFINITY, 0);
         for step in 1..=most_steps {
             if step > 1 && options.deadline.is_some_and(|end| Instant::now() > end) {
                 break;
             }
+            steps = step;
             let start = Instant::now();
             let (matrix, fixed) = constrained(&system, &held, &closed);
             let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
@@ -129,13 +130,21 @@ impl ActiveSet {
             let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
             let mut next = next_state(&closed, &misses);
             left = misses.iter().fold(0.0, |m, by| by.max(m));
-            careful |= !seen.insert(closed.clone());
+            if !seen.insert(closed.clone()) {
+                if careful {
+                    // One end at a time leads from a state to always the same next one.
+                    break;
+                }
+                careful = true;
+                seen = HashSet::from([closed.clone()]);
+            }
             let at_rounding = careful && left <= self.accuracy();
             let anew = at_rounding && next != closed && from_closed;
             if anew {
                 // What misses is rounding of jumps that nothing holds: with open contact nothing presses them either.
                 from_closed = false;
                 next = vec![false; closed.len()];
+                seen.clear();
             } else if careful && next != closed {
                 // Back in a state it has been in: from here on one end at a time, which cannot cycle.
                 next.clone_from(&closed);
@@ -178,7 +187,7 @@ impl ActiveSet {
         }
         Err(DualError::NotConverged {
             method: self.name(),
-            iterations: most_steps,
+            iterations: steps,
             residual: left,
             wanted: GRAZING,
             advice:
