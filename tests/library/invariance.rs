@@ -109,7 +109,7 @@ fn numbering_does_not_matter() {
 fn runs_and_threads_repeat_every_bit() {
     for degree in [1, 3] {
         let options = |threads| Options { threads, elements: Elements::Uniform(block(degree)), ..Options::default() };
-        let run = |threads| certify(lift_off(12), &Condensed::default(), &options(threads)).expect("an answer");
+        let run = |threads| certify(lift_off(16), &Condensed::default(), &options(threads)).expect("an answer");
         let once = run(1);
         for other in [run(1), run(2), run(3)] {
             let ends = |run: &Certified| [run.bracket.lower(), run.bracket.free.as_ref().expect("a bound").upper()];
