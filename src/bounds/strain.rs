@@ -1,6 +1,6 @@
 //! Strains of a displacement that is polynomial on each subtriangle.
 
-use crate::element::{Displacement, Samples, triangle, weighed};
+use crate::element::{Displacement, Samples, from_centroid, triangle, weighed};
 
 /// Area of one of the three equal subtriangles.
 pub fn sub_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
@@ -12,6 +12,12 @@ pub fn sub_corners(corners: [[f64; 2]; 3], sub: usize) -> [[f64; 2]; 3] {
     let from = corners[0];
     let centre = [0, 1].map(|c| from[c] + ((corners[1][c] - from[c]) + (corners[2][c] - from[c])) / 3.0);
     [corners[(sub + 1) % 3], corners[(sub + 2) % 3], centre]
+}
+
+/// Gradients of the barycentric coordinates of subtriangle `sub`.
+pub fn sub_gradients(corners: [[f64; 2]; 3], sub: usize) -> [[f64; 2]; 3] {
+    let corners = from_centroid(corners);
+    gradients([corners[(sub + 1) % 3], corners[(sub + 2) % 3], [0.0; 2]])
 }
 
 /// Gradients of the barycentric coordinates of a triangle.
@@ -58,7 +64,7 @@ impl Strains {
         self.coefficients.clear();
         self.spreads.clear();
         self.degree = k - 1;
-        let g = gradients(sub_corners(corners, sub));
+        let g = sub_gradients(corners, sub);
         for beta in triangle::indices(k - 1) {
             let u = [0, 1, 2].map(|i| self.displacement[triangle::number(triangle::raised(beta, i))]);
             let (mut e, mut spread) = ([0.0; 3], 0.0);

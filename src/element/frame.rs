@@ -1,11 +1,18 @@
 //! The coordinates in which the stresses of an element are written.
 
+/// The corners as seen from the centroid, which is no point of its own: far from the origin, coordinates have too few digits for
+/// that of a small triangle.
+pub fn from_centroid(corners: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
+    let sides = corners.map(|p| [p[0] - corners[0][0], p[1] - corners[0][1]]);
+    let centre = [0, 1].map(|c| (sides[1][c] + sides[2][c]) / 3.0);
+    sides.map(|p| [p[0] - centre[0], p[1] - centre[1]])
+}
+
 /// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
 ///
 /// Along the longest side the modes of a stretched triangle keep apart by themselves (stress along it, across it, shear),
 /// which keeps their Gram matrix well conditioned.
 pub struct Frame {
-    centre: [f64; 2],
     axis: [f64; 2],
     /// The longest side, by the corner opposite.
     pub base: usize,
@@ -24,16 +31,13 @@ impl Frame {
         let base = (1..3).fold(0, |longest, i| if length(sides[i]) > length(sides[longest]) { i } else { longest });
         let longest = sides[base];
         let area = 0.5 * (sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]);
-        // Differences from a corner: no digits are lost far from the origin.
-        let from = corners[0];
-        let centre = [0, 1].map(|c| from[c] + ((corners[1][c] - from[c]) + (corners[2][c] - from[c])) / 3.0);
         let l = length(longest);
-        Frame { centre, axis: [longest[0] / l, longest[1] / l], base, scale: area.sqrt() }
+        Frame { axis: [longest[0] / l, longest[1] / l], base, scale: area.sqrt() }
     }
 
-    /// A point in it.
-    pub fn to_local(&self, p: [f64; 2]) -> [f64; 2] {
-        self.vector_to_local([0, 1].map(|c| (p[c] - self.centre[c]) / self.scale))
+    /// A point in it, from where it is as seen from the centroid.
+    pub fn to_local(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        self.vector_to_local([x / self.scale, y / self.scale])
     }
 
     /// A vector in its components.

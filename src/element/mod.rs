@@ -33,6 +33,7 @@ pub use compliance::Compliance;
 pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
+pub use frame::from_centroid;
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use plain::PlainDisplacement;
 pub use samples::Samples;

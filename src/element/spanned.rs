@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use nalgebra::{DMatrix, DVector};
 
 use super::quadrature::triangle_rule;
-use super::{Compliance, EquilibriumElement, Modes, ModesMut, StressField, lattice, lattice_len};
+use super::{Compliance, EquilibriumElement, Modes, ModesMut, StressField, from_centroid, lattice, lattice_len};
 
 /// Corners of a triangle, counter-clockwise.
 pub type Corners = [[f64; 2]; 3];
@@ -182,9 +182,9 @@ fn rank(r: &DMatrix<f64>) -> usize {
 
 /// −(F_x x, F_y y, 0) about the centroid.
 fn linear(corners: Corners, degree: usize, force: [f64; 2]) -> Nodal {
-    let from_centre = |p: [f64; 2]| [0, 1].map(|c| p[c] - (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0);
+    let corners = from_centroid(corners);
     let of_sub = |sub: usize| {
-        let ends = [corners[(sub + 1) % 3], corners[(sub + 2) % 3]].map(from_centre);
+        let ends = [corners[(sub + 1) % 3], corners[(sub + 2) % 3]];
         lattice(degree).map(move |l| {
             let [x, y] = [0, 1].map(|c| l[0] * ends[0][c] + l[1] * ends[1][c]);
             [-force[0] * x, -force[1] * y, 0.0]

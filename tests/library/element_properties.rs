@@ -280,6 +280,35 @@ fn stiffness_goes_with_the_triangle() {
     });
 }
 
+/// Refinement at a corner of a body comes to triangles that its coordinates resolve with few digits; what those say of their shape
+/// is all the same exact, and the fields are those of the same triangle at the origin.
+#[test]
+fn a_small_triangle_far_from_the_origin_loses_no_digits() {
+    for (size, place) in [(1e-13, [1e-3, -2e-3]), (1e-9, [0.3, 7.0]), (3e-10, [-40.0, 0.01])] {
+        let far = [[0.0, 0.0], [1.0, 0.3], [0.2, 0.9]].map(|[x, y]| [place[0] + size * x, place[1] + size * y]);
+        // Differences of neighbours are exact.
+        let near = far.map(|p| [p[0] - far[0][0], p[1] - far[0][1]]);
+        for degree in 1..=4 {
+            let force = [0.6 / size, -1.0 / size];
+            let material = Material { kinematics: Kinematics::PlaneStress, young: 7.0, poisson: 0.3 };
+            let fields = [far, near].map(|corners| {
+                let case = Case::new(block(degree), Setting { corners, material, force });
+                let all = case.fields.all().map(|(field, ..)| {
+                    (0..3).flat_map(|sub| [[1.0, 0.0, 0.0], [0.0, 0.3, 0.7]].map(|l| field.at(sub, l))).collect()
+                });
+                (figures::forces(&case), all.collect::<Vec<Vec<[f64; 3]>>>())
+            });
+            let [(own, stresses), (other, others)] = fields;
+            assert!((&own - &other).amax() < 1e-11 * other.amax(), "p = {degree}: tractions at {place:?}");
+            let largest =
+                |all: &[Vec<[f64; 3]>]| all.concat().as_flattened().iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+            let apart = stresses.concat().into_iter().zip(others.concat());
+            let apart: Vec<Vec<[f64; 3]>> = vec![apart.map(|(a, b)| [0, 1, 2].map(|c| a[c] - b[c])).collect()];
+            assert!(largest(&apart) < 1e-11 * largest(&others), "p = {degree}: stresses at {place:?}");
+        }
+    }
+}
+
 /// What flat triangles, nearly incompressible materials and high degrees cost: rounding grows with the aspect ratio, for a corner moved by rounding
 /// changes a flat triangle by as much. That the field of given tractions is worse by the aspect ratio once more is (2.10): c(α) ~ 1/sin²α.
 #[test]

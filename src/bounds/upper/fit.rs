@@ -16,7 +16,7 @@ use crate::bounds::strain::gradients;
 use crate::dual::modes::materials;
 use crate::element::displacement::MOST;
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, Samples, SideValues, StressField, triangle, weighed};
+use crate::element::{Compliance, Samples, SideValues, StressField, from_centroid, triangle, weighed};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
@@ -57,9 +57,7 @@ fn corner_values(
 ) -> [[f64; 2]; 3] {
     let mesh = &problem.mesh;
     let corners = mesh.corners(t);
-    let origin = corners[0];
-    let centre = [0, 1].map(|c| ((corners[1][c] - origin[c]) + (corners[2][c] - origin[c])) / 3.0);
-    let p = corners.map(|q| [q[0] - origin[0] - centre[0], q[1] - origin[1] - centre[1]]);
+    let p = from_centroid(corners);
     let reference = Reference::of(stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
     let strain = reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q)));

@@ -11,7 +11,7 @@
 use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
-use crate::bounds::strain::{gradients, sub_area, sub_corners};
+use crate::bounds::strain::{sub_area, sub_gradients};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::{Compliance, Samples, StressField, triangle};
 
@@ -36,7 +36,7 @@ impl Split {
         let area = sub_area(corners);
         let reference = Reference::of(k);
         for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
-            let pairs = pairs(gradients(sub_corners(corners, sub)), area, material);
+            let pairs = pairs(sub_gradients(corners, sub), area, material);
             for entry in &reference.entries {
                 let mut sum = [0.0; 4];
                 for (weight, i, j) in &reference.terms[entry.terms.clone()] {
@@ -98,7 +98,7 @@ pub fn pull(k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize, ou
     let samples = Samples::of(k - 1, stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), k - 1);
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
-        let g = gradients(sub_corners(corners, sub));
+        let g = sub_gradients(corners, sub);
         for (q, (_, weight)) in samples.points.iter().enumerate() {
             let s = stress.sample(t, sub, shapes, q);
             let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);

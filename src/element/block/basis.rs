@@ -2,7 +2,7 @@
 
 use super::{COMMON, N};
 use crate::element::Compliance;
-use crate::element::frame::Frame;
+use crate::element::frame::{Frame, from_centroid};
 use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
 
 /// A basis of N(K), in the parameters (3.1) about the centroid of the block.
@@ -21,7 +21,7 @@ impl Basis {
     /// The basis on a counter-clockwise triangle.
     pub fn new(corners: [[f64; 2]; 3]) -> Self {
         let frame = Frame::new(corners);
-        let local = corners.map(|p| frame.to_local(p));
+        let local = from_centroid(corners).map(|p| frame.to_local(p));
         Basis { piecewise: piecewise_parameters(local), frame, local }
     }
 

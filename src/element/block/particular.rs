@@ -2,7 +2,7 @@
 
 use super::N;
 use super::basis::Basis;
-use crate::element::Compliance;
+use crate::element::{Compliance, from_centroid};
 
 /// The particular field (−F1 x, −F2 y, 0) about the centroid.
 pub struct Particular {
@@ -25,13 +25,11 @@ impl Particular {
         if self.force == [0.0; 2] {
             return out;
         }
-        let [b, c] = self.sides();
-        let from = self.corners[0];
-        let centre = [from[0] + (b[0] + c[0]) / 3.0, from[1] + (b[1] + c[1]) / 3.0];
+        let corners = from_centroid(self.corners);
         for sub in 0..3 {
             for end in 0..2 {
-                let p = self.corners[(sub + 1 + end) % 3];
-                out[3 * sub + end] = [-self.force[0] * (p[0] - centre[0]), -self.force[1] * (p[1] - centre[1]), 0.0];
+                let [x, y] = corners[(sub + 1 + end) % 3];
+                out[3 * sub + end] = [-self.force[0] * x, -self.force[1] * y, 0.0];
             }
         }
         out
