@@ -6,11 +6,11 @@
 //!    energy by at most u times its sensitivity Σ |∂E/∂x| |x|, which is added up along with it: not the size of the
 //!    terms alone, because near ν = ½, in bodies that turn and in slivers the numbers behind a term are much larger
 //!    than the term. The sums themselves are compensated (Neumaier) and add one unit of the result.
-//! 2. *Equilibrium between elements.* λ_h misses equilibrium by what [`Equilibrium`] measures on every edge. An exactly
+//! 2. *Equilibrium.* λ_h misses it by what [`Equilibrium`] measures on every edge and of every triangle by itself. An exactly
 //!    equilibrated field λ_h + δ is near; aλ_h being the strain of the edge displacement, Π changes by the traction
 //!    jumps of δ times the moments of that displacement, up to ½‖δ‖²_a, the square of a rounding error. The absolute
 //!    values are added up, so that no cancellation is relied upon.
-//! 3. *Equilibrium inside the elements*, where it is a property of the basis and not measured: a rounding error of λ_h
+//! 3. *Equilibrium within triangles in balance*, where it is a property of the basis and not measured: a rounding error of λ_h
 //!    times the displacement along the boundary of the triangle.
 //! 4. *Admissibility* of the displacement: supports and gaps are met to a rounding error of the displacement, and what
 //!    that is worth is the traction times that error; the same expression. Where triangles are tiny, rounding of their corners

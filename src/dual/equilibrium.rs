@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::contact_moments::columns;
+use super::resultants::work_within;
 use crate::element::{SideValues, StressField, side};
 use crate::problem::{Condition, ContactPair, Problem, Scales};
 
@@ -24,7 +25,7 @@ pub struct Equilibrium {
     pub tension: f64,
     /// The size of the applied load, as a traction.
     pub scale: f64,
-    /// ∫ |what is left of equilibrium · displacement|: by how much the lower bound can be off, per unit thickness.
+    /// ∫ |what is left of equilibrium · displacement|, on edges and of triangles by themselves: by how much the lower bound can be off, per unit thickness.
     pub work: f64,
 }
 
@@ -58,7 +59,7 @@ impl Equilibrium {
         let mut force = vec![[0.0; 2]; bodies];
         let mut gross = vec![0.0; bodies];
         let mut rounding = vec![0.0; bodies];
-        let (mut tension, mut work) = (0.0_f64, 0.0);
+        let (mut tension, mut work) = (0.0_f64, work_within(problem, stress, moments));
         for (e, edge) in mesh.edges.iter().enumerate() {
             let degree = moments.of(e).len() - 1;
             let own = edge_traction(problem, stress, e, 0, degree);

@@ -23,6 +23,7 @@ pub mod qp;
 mod reduced;
 mod refinement;
 mod response;
+mod resultants;
 mod rigid;
 mod rows;
 mod settling;
