@@ -15,7 +15,7 @@ use super::dossier::in_numbers;
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::outlook::outlook;
-use super::rounds::Rounds;
+use super::rounds::{Rounds, across};
 use super::stage::{Solved, Stage};
 use super::trend::{Seen, learnt};
 use crate::compare::{Allowances, Basis, Check, Comparison};
@@ -130,6 +130,7 @@ pub fn adapt(
         let began = Instant::now();
         // The first mesh has no result before it to end with.
         let options = &Options { deadline: by_then.filter(|_| last.is_some()), ..options.clone() };
+        let smallest = across(&stage.problem);
         let outcome = stage.solved(method, options, last.as_ref().map(|last| &last.solved.certified));
         let (solved, fault) = match (outcome, last.take()) {
             (Ok(solved), before) => {
@@ -145,9 +146,10 @@ pub fn adapt(
                 }
                 (now, None)
             }
-            // What was reached is worth more than the reason why there is no more. Triangles that are less small may do.
+            // What was reached is worth more than the reason why there is no more. Triangles that are less small may do, where
+            // there are small ones.
             (Err(StudyError::Dual(reason)), Some(solved)) => {
-                shortest *= COARSER;
+                shortest = COARSER * shortest.max(smallest);
                 (solved, Some(format!("the next mesh could not be solved ({reason})")))
             }
             (Err(error), _) => return Err(error),

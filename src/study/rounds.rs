@@ -222,6 +222,15 @@ fn unknowns(stage: &Stage) -> f64 {
 
 /// The area of triangles that are `shortest` across, relative to the farthest corner.
 fn smallest_area(problem: &Problem, shortest: f64) -> f64 {
-    let farthest = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    (shortest * farthest).powi(2)
+    (shortest * farthest(problem)).powi(2)
+}
+
+/// How far the smallest triangle is across, relative to the farthest corner.
+pub fn across(problem: &Problem) -> f64 {
+    let areas = (0..problem.mesh.triangles.len()).map(|t| problem.mesh.area(t));
+    areas.fold(f64::INFINITY, f64::min).sqrt() / farthest(problem)
+}
+
+fn farthest(problem: &Problem) -> f64 {
+    problem.mesh.points.iter().flatten().fold(0.0, |m, x| m.max(x.abs()))
 }

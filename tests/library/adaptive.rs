@@ -1,7 +1,9 @@
 //! Adaptive refinement to a guaranteed tolerance, on the two blocks of which the energy is known to nine digits.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::support::toml::Toml;
-use hypercircle::dual::{Condensed, Options, contact_coefficients};
+use hypercircle::dual::{Condensed, DualError, DualMethod, Found, Motion, Options, Size, contact_coefficients};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
@@ -230,6 +232,71 @@ fn a_beam_over_a_gap_is_refined_to_one_per_cent() {
     let free = certified.bracket.free.as_ref().expect("an upper bound");
     let gap = free.potential.total() - certified.bracket.complementary.lower();
     assert!((gap - free.local.total).abs() < 1e-9 * certified.bracket.complementary.strain);
+}
+
+/// A method that does not arrive on some meshes.
+struct Fails {
+    on: fn(&Problem) -> bool,
+    solved: AtomicUsize,
+    failed: AtomicUsize,
+}
+
+impl Fails {
+    fn on(on: fn(&Problem) -> bool) -> Self {
+        Fails { on, solved: AtomicUsize::new(0), failed: AtomicUsize::new(0) }
+    }
+}
+
+impl DualMethod for Fails {
+    fn name(&self) -> &'static str {
+        "test"
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        Condensed::default().memory(size)
+    }
+
+    fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        if !(self.on)(problem) {
+            self.solved.fetch_add(1, Ordering::Relaxed);
+            return Condensed::default().solve(problem, motions, options);
+        }
+        self.failed.fetch_add(1, Ordering::Relaxed);
+        let advice = "no more".to_string();
+        Err(DualError::NotConverged { method: "test", iterations: 1, residual: 1.0, wanted: 0.0, advice })
+    }
+}
+
+/// A mesh that cannot be solved may have too small triangles, and is tried again with larger ones; one that has none would be the
+/// same again.
+#[test]
+fn a_mesh_that_cannot_be_solved_is_tried_again_where_that_can_help() {
+    let run = |method: &Fails| {
+        let goal = Goal { max_triangles: Some(1500), ..Goal::new(1e-4) };
+        adapt(problem(&blocks(0.3, LIFT_OFF)), method, &Options::default(), &goal, |_| ()).expect("an answer")
+    };
+    let large = Fails::on(|problem| problem.mesh.triangles.len() > 200);
+    let said = run(&large).stopped.expect("stopped");
+    assert!(said.contains("the next mesh could not be solved"), "{said}");
+    assert_eq!(large.failed.into_inner(), 1);
+    assert!(large.solved.into_inner() > 2);
+
+    let small = Fails::on(|problem| {
+        let mesh = &problem.mesh;
+        (0..mesh.triangles.len()).any(|t| mesh.area(t).sqrt() < 1e-6)
+    });
+    // The floor turns by a little, and holds the corner like a point.
+    let kink = Toml::default()
+        .polygon("a", &[[0.0, 0.0], [1.0, 0.02], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["foot", "foot", "", "top", ""])
+        .roller("foot")
+        .traction("top", [0.1, -1.0]);
+    let goal = Goal { max_triangles: Some(2000), ..Goal::new(0.01) };
+    let adapted = adapt(problem(&kink), &small, &Options::default(), &goal, |_| ()).expect("an answer");
+    let last = adapted.certified.problem.mesh;
+    let smallest = (0..last.triangles.len()).map(|t| last.area(t).sqrt()).fold(1.0, f64::min);
+    assert!((1e-6..1e-4).contains(&smallest), "{smallest:e}");
+    assert!((1..=2).contains(&small.failed.into_inner()));
+    assert!(adapted.stopped.expect("out of reach").contains("as small as numbers can resolve"));
 }
 
 /// Rollers that turn by a degree in a corner hold it as a point is held: what is missing there lies on scales that no
