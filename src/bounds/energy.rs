@@ -12,7 +12,6 @@ use super::jump::{openings, side_coefficients};
 use super::strain::{Strains, sub_area};
 use super::sum::Sum;
 use crate::dual::equilibrium::{contact_traction, edge_traction};
-use crate::dual::modes::materials;
 use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
 use crate::problem::{Condition, Problem};
 
@@ -54,7 +53,7 @@ pub fn square_on(stress: &StressField, t: usize, material: &Compliance, third: f
 /// ‖σ‖²_a, per unit thickness.
 pub fn square(problem: &Problem, stress: &StressField) -> f64 {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let of = |t: usize| square_on(stress, t, &materials[mesh.body[t]], mesh.area(t) / 3.0);
     let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
     terms.into_iter().collect::<Sum>().value()
@@ -63,7 +62,7 @@ pub fn square(problem: &Problem, stress: &StressField) -> f64 {
 /// Computes the complementary energy of `stress`, thickness included.
 pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
@@ -135,7 +134,7 @@ impl Potential {
 /// Computes the potential energy of `v`, thickness included.
 pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let terms: Vec<[f64; 2]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
@@ -259,7 +258,7 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
 /// ½‖c e(v) − λ‖²_a on each triangle, thickness included.
 pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacement) -> Vec<f64> {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let thickness = problem.scene.thickness;
     (0..mesh.triangles.len())
         .into_par_iter()

@@ -15,7 +15,6 @@ use rayon::prelude::*;
 
 use super::UpperBound;
 use super::strain::Strains;
-use crate::dual::modes::materials;
 use crate::element::{Displacement, StressField, triangle};
 use crate::problem::Problem;
 
@@ -41,7 +40,7 @@ pub fn stress_of(problem: &Problem, v: &Displacement) -> StressField {
 /// The stress of a displacement in the given degrees, which are no lower than its own.
 fn with_stresses(problem: &Problem, v: &Displacement, degree: impl Fn(usize) -> usize + Sync) -> StressField {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let mut field = StressField::of_degrees((0..v.len()).map(&degree));
     field.blocks_mut().into_par_iter().enumerate().with_min_len(128).for_each(|(t, block)| {
         let (corners, material, degree) = (mesh.corners(t), &materials[mesh.body[t]], degree(t));

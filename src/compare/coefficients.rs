@@ -2,7 +2,6 @@
 
 use super::forces::NodalForces;
 use crate::bounds::strain::gradients;
-use crate::dual::modes::materials;
 use crate::element::{PlainDisplacement, plain, triangle};
 use crate::problem::{Condition, Problem};
 
@@ -35,7 +34,7 @@ impl NodalForces {
         let betas: Vec<triangle::Index> = triangle::indices(k - 1).collect();
         let products: Vec<Vec<f64>> =
             terms.iter().map(|term| betas.iter().map(|b| triangle::product(*b, term.lowered)).collect()).collect();
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mut stiffest = vec![0.0; count];
         for t in 0..mesh.triangles.len() {
             let material = &materials[mesh.body[t]];

@@ -2,7 +2,6 @@
 
 use crate::bounds::strain::{gradients, shape_gradients};
 use crate::bounds::{Hold, Holds, Nodes};
-use crate::dual::modes::materials;
 use crate::problem::{Condition, Problem};
 
 /// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.
@@ -37,7 +36,7 @@ impl NodalForces {
             triangle: vec![0; count],
         };
         let mut stiffest = vec![0.0; count];
-        let materials = materials(problem);
+        let materials = problem.materials();
         let t = problem.scene.thickness;
         for (k, corners) in mesh.triangles.iter().enumerate() {
             let material = &materials[mesh.body[k]];

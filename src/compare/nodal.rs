@@ -18,7 +18,6 @@ use super::candidate::{Judged, Reactions};
 use super::pressure::Piece;
 use super::stress::primal_means;
 use crate::dual::DualSolution;
-use crate::dual::modes::materials;
 use crate::element::contraction;
 use crate::problem::{Condition, Interface, Problem};
 
@@ -186,7 +185,7 @@ fn works(
     normals: &HashMap<usize, [f64; 2]>,
 ) -> HashMap<usize, [f64; 2]> {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let means = primal_means(problem, judged);
     let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
     for (t, vertices) in mesh.triangles.iter().enumerate() {

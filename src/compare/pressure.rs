@@ -4,7 +4,6 @@ use super::candidate::{Judged, Reactions};
 pub use super::piece::Piece;
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
-use crate::dual::modes::materials;
 use crate::element::displacement::through;
 use crate::problem::{ContactPair, Interface, Problem};
 
@@ -50,7 +49,7 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
 /// −σ_n(u_h) on the first side.
 pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged) -> Vec<Piece> {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let trace = |pair: &ContactPair| {
         let Some(e) = pair.edges[0] else { return Piece::polynomial(vec![0.0]) };
         let t = mesh.edges[e].triangles[0].unwrap_or(0);

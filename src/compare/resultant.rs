@@ -6,7 +6,6 @@ use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::bounds::Sum;
 use crate::bounds::strain::Strains;
-use crate::dual::modes::materials;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
 use crate::statics::Components;
@@ -106,7 +105,7 @@ fn translation_norm(
         return None;
     }
     let field = Displacement::from_p1(mesh, &w);
-    let materials = materials(problem);
+    let materials = problem.materials();
     let mut strains = Strains::default();
     let sum: Sum = (0..mesh.triangles.len())
         .map(|t| {

@@ -4,7 +4,6 @@ use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
-use crate::dual::modes::materials;
 use crate::element::{Samples, contraction};
 use crate::problem::Problem;
 use crate::scene::Kinematics;
@@ -22,7 +21,7 @@ pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
 /// Mean stress of the displacement solution on each triangle.
 pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let mut strains = Strains::default();
     (0..mesh.triangles.len())
         .map(|t| {
@@ -55,7 +54,7 @@ pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
 pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judged: &Judged) -> StressSummary {
     let mesh = &problem.mesh;
     let scene = &problem.scene;
-    let materials = materials(problem);
+    let materials = problem.materials();
     // ½‖λ_h − σ(u_h)‖² on each triangle.
     let terms = &judged.field.local.triangles;
     let total: f64 = terms.iter().sum();

@@ -38,7 +38,7 @@ impl std::fmt::Debug for ModeTable {
 impl ModeTable {
     /// Computes the modes of `elements` on every triangle of `problem`.
     pub fn new(problem: &Problem, elements: Elements) -> Self {
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mesh = &problem.mesh;
         let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
@@ -122,10 +122,4 @@ impl ModeTable {
     pub fn materials(&self) -> &[Compliance] {
         &self.materials
     }
-}
-
-/// Compliance of each body of the scene.
-pub fn materials(problem: &Problem) -> Vec<Compliance> {
-    let scene = &problem.scene;
-    scene.bodies.iter().map(|b| Compliance::new(scene.kinematics, b.young, b.poisson)).collect()
 }

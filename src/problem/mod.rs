@@ -15,9 +15,10 @@ pub use direction::Direction;
 pub use error::ProblemError;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
+use crate::element::Compliance;
 use crate::mesh::Triangulation;
 pub use crate::scene::Note;
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 
 /// A scene and a mesh that fit together.
 #[derive(Debug, Clone)]
@@ -37,6 +38,12 @@ pub struct Problem {
 }
 
 impl Problem {
+    /// Compliance of each body of the scene.
+    pub fn materials(&self) -> Vec<Compliance> {
+        let of = |body: &Body| Compliance::new(self.scene.kinematics, body.young, body.poisson);
+        self.scene.bodies.iter().map(of).collect()
+    }
+
     /// The pairs of all contacts, one interface after the other.
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)

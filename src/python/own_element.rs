@@ -3,7 +3,6 @@
 use pyo3::prelude::*;
 
 use super::errors::fault;
-use crate::dual::modes::materials;
 use crate::element::spanned::{Balances, Corners, Nodal};
 use crate::element::{EquilibriumElement, MAX_DEGREE, Spanned};
 use crate::problem::Problem;
@@ -85,7 +84,7 @@ fn fields(array: &Py<PyAny>) -> Result<Vec<Nodal>, String> {
 /// # Errors
 /// What a method raised, or the first triangle on which they do not balance.
 pub fn balanced(element: &'static Spanned, problem: &Problem) -> Result<(), String> {
-    let (mesh, materials) = (&problem.mesh, materials(problem));
+    let (mesh, materials) = (&problem.mesh, problem.materials());
     for (t, &body) in mesh.body.iter().enumerate() {
         let force = problem.scene.bodies[body].body_force;
         let fields = Fields::of(element, mesh.corners(t), &materials[body], force);

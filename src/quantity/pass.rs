@@ -7,7 +7,6 @@ use super::region::{Cut, Piece};
 use crate::bounds::Sum;
 use crate::bounds::energy::{shape, square_on};
 use crate::bounds::strain::{Strains, sub_area};
-use crate::dual::modes::materials;
 use crate::element::quadrature::triangle_rule;
 use crate::element::{Compliance, Displacement, Samples, StressField, contraction};
 use crate::problem::Problem;
@@ -51,7 +50,7 @@ pub struct Integrals {
 /// Computes them.
 pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> Pass {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let count = mesh.triangles.len();
     let mut strain: Vec<Strain<'_>> = vec![Strain::None; count];
     for (t, chi) in &functional.load.strains {
@@ -155,7 +154,7 @@ fn triangle(
 /// The square of the norm that m would have if nothing cancelled in it.
 pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displacement) -> f64 {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let of = |t: usize| {
         let (corners, material) = (mesh.corners(t), &materials[mesh.body[t]]);
         let (area, modulus) = (sub_area(corners), largest_modulus(material));

@@ -8,7 +8,6 @@ use super::interval::{Known, in_degree};
 use super::tried::Tried;
 use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
-use crate::dual::modes::materials;
 use crate::dual::{Loaded, Response};
 use crate::element::StressField;
 
@@ -141,7 +140,7 @@ impl Search<'_, '_> {
         if strains.is_empty() {
             return Cow::Borrowed(adjoint);
         }
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mut sigma = adjoint.clone();
         for (t, chi) in strains {
             let add = materials[problem.mesh.body[*t]].stress(*chi);

@@ -4,7 +4,6 @@ use super::functional::Functional;
 use super::pass::strained;
 use crate::bounds::strain::{Strains, sub_area};
 use crate::bounds::{Sum, work, work_of};
-use crate::dual::modes::materials;
 use crate::element::Displacement;
 use crate::element::quadrature::triangle_rule;
 use crate::problem::Problem;
@@ -18,7 +17,7 @@ pub fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -
 /// The quantity of an admissible displacement alone: means of it and of its stress, and forces by the work that they do on
 /// the motion which lifts them; `None` where no such motion meets the supports.
 pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) -> Option<f64> {
-    let materials = materials(problem);
+    let materials = problem.materials();
     let (mut strains, mut on) = (Strains::default(), None);
     let at = |t: usize, sub: usize, l: [f64; 3]| {
         if on.replace((t, sub)) != Some((t, sub)) {
@@ -38,7 +37,7 @@ pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) ->
 
 /// ∫ σ(v) : e(w).
 fn product(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 {
-    let materials = materials(problem);
+    let materials = problem.materials();
     let (mut of_v, mut of_w) = (Strains::default(), Strains::default());
     let mut sum = Sum::default();
     for t in 0..problem.mesh.triangles.len() {

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use super::nodes::Nodes;
 use super::pull::Pull;
 use super::stiffness::Stiffness;
-use crate::dual::modes::materials;
 use crate::element::side::product;
 use crate::element::{congruent, parts, starts};
 use crate::problem::Problem;
@@ -33,7 +32,7 @@ impl TriangleEnergies {
     /// Those that `pull` pulls at.
     pub fn new(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Self {
         let mesh = &problem.mesh;
-        let materials = materials(problem);
+        let materials = problem.materials();
         let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
         let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));

@@ -13,7 +13,6 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::bounds::strain::gradients;
-use crate::dual::modes::materials;
 use crate::element::displacement::MOST;
 use crate::element::quadrature::{segment_rule, triangle_rule};
 use crate::element::{Compliance, Samples, SideValues, StressField, from_centroid, triangle, weighed};
@@ -24,7 +23,7 @@ use crate::problem::Problem;
 /// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place.
 pub fn vertex_values(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
-    let materials = materials(problem);
+    let materials = problem.materials();
     let local: Vec<[[f64; 2]; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)

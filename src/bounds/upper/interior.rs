@@ -7,7 +7,6 @@ use super::model::Model;
 use super::nodes::{NodalValues, elevated};
 use super::pull::Pull;
 use super::split::Split;
-use crate::dual::modes::materials;
 use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
 use crate::element::{Displacement, side, triangle};
 use crate::problem::Problem;
@@ -18,7 +17,7 @@ const STEPS: usize = 2;
 
 /// Completes values at the nodes to a displacement on the split triangles, those inside to the last digit.
 pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacement {
-    let materials = materials(problem);
+    let materials = problem.materials();
     let split = |t: usize, k: usize| pull.split(problem, t, k, &materials[problem.mesh.body[t]]);
     completed(problem, field, |t, k, block| inside(k, &split(t, k), block))
 }

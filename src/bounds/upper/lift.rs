@@ -13,7 +13,6 @@ use super::holds::{Hold, Holds};
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, bernstein, rows};
 use crate::bounds::strain::{gradients, shape_gradients};
-use crate::dual::modes::materials;
 use crate::problem::Problem;
 
 /// The penalty beside the largest diagonal entry of the stiffness.
@@ -107,7 +106,7 @@ impl Model {
 
     fn assemble(&mut self, problem: &Problem) {
         let mesh = &problem.mesh;
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mut diagonal = vec![0.0; self.count];
         for (t, corners) in mesh.triangles.iter().enumerate() {
             let material = &materials[mesh.body[t]];

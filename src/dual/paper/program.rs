@@ -7,7 +7,6 @@ use super::dependence::{Dependence, dependences};
 use super::rows::SparseRows;
 use crate::dual::DualError;
 use crate::dual::equilibrium::edge_traction;
-use crate::dual::modes::materials;
 use crate::element::subtriangle::Matrix;
 use crate::element::{StressField, quadrature::triangle_rule};
 use crate::problem::{Condition, Problem, Scales};
@@ -57,7 +56,7 @@ impl Program {
     /// [`DualError`] where λ̄ cannot be found.
     pub fn new(problem: &Problem) -> Result<Self, DualError> {
         let mesh = &problem.mesh;
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mut blocks = Vec::with_capacity(mesh.triangles.len());
         let mut external = Vec::with_capacity(mesh.triangles.len());
         for t in 0..mesh.triangles.len() {
@@ -89,7 +88,7 @@ impl Program {
     /// b: ∫ a τ:λ̄ − ∫_{Γu} T(τ)·u0 − ∫_{ΓK} T_n(τ) g.
     fn linear_term(&self, problem: &Problem, external: &[Matrix<12, 9>]) -> Vec<f64> {
         let mesh = &problem.mesh;
-        let materials = materials(problem);
+        let materials = problem.materials();
         let mut b = self.multiply_a(&self.auxiliary.parameters);
         for (t, block) in self.blocks.iter().enumerate() {
             let body = mesh.body[t];
