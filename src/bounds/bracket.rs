@@ -20,7 +20,6 @@
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::jump::side_coefficients;
 use super::upper::{NoUpperBound, NodalValues, Prepared, admissible_and_prepared};
-use crate::dual::equilibrium::edge_traction;
 use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, StressField, side};
 use crate::problem::{Condition, Problem, Scales};
@@ -163,7 +162,7 @@ fn across_rollers(problem: &Problem, stress: &StressField, v: &Displacement) -> 
         let (length, [x, y]) = problem.mesh.edge_frame(e);
         let across = |values: &[[f64; 2]]| values.iter().map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
         let degree = problem.mesh.edges[e].triangles[0].map_or(0, |t| stress.degree(t));
-        let traction = edge_traction(problem, stress, e, 0, degree);
+        let traction = stress.edge_traction(&problem.mesh, e, 0, degree);
         length * across(&traction) * across(&side_coefficients(problem, v, e))
     };
     let rollers = (0..problem.mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller);

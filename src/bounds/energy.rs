@@ -9,9 +9,10 @@
 use rayon::prelude::*;
 
 use super::jump::{openings, side_coefficients};
-use super::strain::{Strains, sub_area};
 use super::sum::Sum;
-use crate::dual::equilibrium::{contact_traction, edge_traction};
+use crate::dual::equilibrium::contact_traction;
+use crate::element::Strains;
+use crate::element::geometry::sub_area;
 use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
 use crate::problem::{Condition, Problem};
 
@@ -102,7 +103,7 @@ pub fn support_work(problem: &Problem, stress: &StressField) -> Sum {
         if let Condition::Clamped(u0) = condition {
             let (length, _) = mesh.edge_frame(e);
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
-            let tractions = edge_traction(problem, stress, e, 0, degree);
+            let tractions = stress.edge_traction(&problem.mesh, e, 0, degree);
             for t in &tractions {
                 work.extend([0, 1].map(|c| length / tractions.len() as f64 * (t[c] * u0[c])));
             }

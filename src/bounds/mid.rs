@@ -14,7 +14,7 @@
 use rayon::prelude::*;
 
 use super::UpperBound;
-use super::strain::Strains;
+use crate::element::Strains;
 use crate::element::{Displacement, StressField, triangle};
 use crate::problem::Problem;
 

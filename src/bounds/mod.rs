@@ -5,7 +5,6 @@ mod bracket;
 pub mod energy;
 mod jump;
 mod mid;
-pub mod strain;
 mod sum;
 pub mod upper;
 

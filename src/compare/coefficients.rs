@@ -1,7 +1,7 @@
 //! Forces on the Bernstein polynomials of a displacement of any degree: [`NodalForces`] by coefficients in place of nodes.
 
 use super::forces::NodalForces;
-use crate::bounds::strain::gradients;
+use crate::element::geometry::gradients;
 use crate::element::{PlainDisplacement, plain, triangle};
 use crate::problem::{Condition, Problem};
 

@@ -1,7 +1,7 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
-use crate::bounds::strain::{gradients, shape_gradients};
 use crate::bounds::{Hold, Holds, Nodes};
+use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::{Condition, Problem};
 
 /// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.

@@ -2,8 +2,8 @@
 
 use super::candidate::{Judged, Reactions};
 pub use super::piece::Piece;
-use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
+use crate::element::Strains;
 use crate::element::displacement::through;
 use crate::problem::{ContactPair, Interface, Problem};
 

@@ -5,8 +5,8 @@ use super::contact::Sides;
 use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::bounds::Sum;
-use crate::bounds::strain::Strains;
 use crate::element::Displacement;
+use crate::element::Strains;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
 use crate::statics::Components;
 

@@ -2,8 +2,8 @@
 
 use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
-use crate::bounds::strain::Strains;
 use crate::dual::DualSolution;
+use crate::element::Strains;
 use crate::element::{Samples, contraction};
 use crate::problem::Problem;
 use crate::scene::Kinematics;

@@ -1,7 +1,7 @@
 //! Nodal forces of parts of a model, as columns that can be held against the residual.
 
-use crate::bounds::strain::{gradients, shape_gradients};
 use crate::compare::Solution;
+use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
 

@@ -62,7 +62,7 @@ impl Equilibrium {
         let (mut tension, mut work) = (0.0_f64, work_within(problem, stress, moments));
         for (e, edge) in mesh.edges.iter().enumerate() {
             let degree = moments.of(e).len() - 1;
-            let own = edge_traction(problem, stress, e, 0, degree);
+            let own = stress.edge_traction(&problem.mesh, e, 0, degree);
             let (length, normal) = mesh.edge_frame(e);
             let along = |t: [f64; 2]| {
                 let shear = t[1] * normal[0] - t[0] * normal[1];
@@ -70,7 +70,7 @@ impl Equilibrium {
             };
             let left: Vec<[f64; 2]> = match problem.conditions[e] {
                 Condition::Interior => {
-                    let other = edge_traction(problem, stress, e, 1, degree);
+                    let other = stress.edge_traction(&problem.mesh, e, 1, degree);
                     own.iter().zip(other).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
                 }
                 Condition::Traction([a, b]) => {
@@ -98,7 +98,7 @@ impl Equilibrium {
                     edge.triangles[1].is_some_and(|o| mesh.body[o] != mesh.body[edge.triangles[0].unwrap_or(o)]);
                 if edge.is_boundary() || between {
                     let share = length / (degree + 1) as f64;
-                    for t in edge_traction(problem, stress, e, side, degree) {
+                    for t in stress.edge_traction(&problem.mesh, e, side, degree) {
                         for c in 0..2 {
                             force[body][c] += share * t[c];
                         }
@@ -112,12 +112,12 @@ impl Equilibrium {
             let Some(a) = pair.edges[0] else { continue };
             let degree = moments.of(a).len() - 1;
             let along = Along::new(pair, degree);
-            let t = along.multiplier(&along.of_pair(problem, 0, &edge_traction(problem, stress, a, 0, degree)));
+            let t = along.multiplier(&along.of_pair(problem, 0, &stress.edge_traction(&problem.mesh, a, 0, degree)));
             let own = along.of_pair(problem, 0, moments.of(a));
             let opposite = pair.edges[1].map(|b| along.of_pair(problem, 1, moments.of(b)));
             for (side, e) in pair.edges.into_iter().enumerate().filter_map(|(side, e)| Some((side, e?))) {
                 // What is left of the traction of each side where t n̂ of the first is taken away.
-                let carried = along.of_pair(problem, side, &edge_traction(problem, stress, e, 0, degree));
+                let carried = along.of_pair(problem, side, &stress.edge_traction(&problem.mesh, e, 0, degree));
                 let held = along.traction(&t, side);
                 let moments = if side == 0 { Some(&own) } else { opposite.as_ref() };
                 for (k, (carried, held)) in carried.iter().zip(held).enumerate() {
@@ -221,34 +221,13 @@ pub fn contact_traction(problem: &Problem, stress: &StressField, pair: &ContactP
     let Some(e) = pair.edges[0] else { return Vec::new() };
     let degree = pair_degree(problem, stress, pair);
     let along = Along::new(pair, degree);
-    along.multiplier(&along.of_pair(problem, 0, &edge_traction(problem, stress, e, 0, degree)))
+    along.multiplier(&along.of_pair(problem, 0, &stress.edge_traction(&problem.mesh, e, 0, degree)))
 }
 
 /// The degree of the traction on a pair: the larger one of its sides.
 pub fn pair_degree(problem: &Problem, stress: &StressField, pair: &ContactPair) -> usize {
     let of = |e: usize| problem.mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
     pair.edges.iter().flatten().map(|&e| of(e)).max().unwrap_or(1)
-}
-
-/// Bernstein coefficients of degree `degree` of the traction of the stress on edge `e` from its first vertex to its second,
-/// as seen from its first or second triangle (outward normal of that triangle); no less than the degree of the stress there.
-pub fn edge_traction(problem: &Problem, stress: &StressField, e: usize, side: usize, degree: usize) -> Vec<[f64; 2]> {
-    let mesh = &problem.mesh;
-    let edge = &mesh.edges[e];
-    let Some(t) = edge.triangles[side] else { return vec![[0.0; 2]; degree + 1] };
-    let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
-    let (_, n) = mesh.edge_frame(e);
-    let sign = if side == 0 { 1.0 } else { -1.0 };
-    let traction = |tau: [f64; 3]| [sign * (tau[0] * n[0] + tau[2] * n[1]), sign * (tau[2] * n[0] + tau[1] * n[1])];
-    let mut values: Vec<[f64; 2]> = stress.on_side(t, sub).map(traction).collect();
-    if mesh.triangles[t][(sub + 1) % 3] != edge.vertices[0] {
-        values.reverse();
-    }
-    if values.len() == degree + 1 {
-        return values;
-    }
-    let rows = side::elevation_matrix(values.len() - 1, degree).chunks_exact(values.len());
-    rows.map(|row| [0, 1].map(|c| row.iter().zip(&values).map(|(e, t)| e * t[c]).sum())).collect()
 }
 
 /// Stresses, relative to what prescribed displacements and gaps could cause, that are as good as none.

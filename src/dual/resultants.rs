@@ -6,7 +6,8 @@
 
 use rayon::prelude::*;
 
-use crate::element::{SideValues, StressField, from_centroid};
+use crate::element::geometry::from_centroid;
+use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 
 /// Σ |resultant| · |displacement| + |moment| · |rotation| over all triangles, per unit thickness; `moments` are those of

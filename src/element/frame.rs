@@ -1,13 +1,5 @@
 //! The coordinates in which the stresses of an element are written.
 
-/// The corners as seen from the centroid, which is no point of its own: far from the origin, coordinates have too few digits for
-/// that of a small triangle.
-pub fn from_centroid(corners: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
-    let sides = corners.map(|p| [p[0] - corners[0][0], p[1] - corners[0][1]]);
-    let centre = [0, 1].map(|c| (sides[1][c] + sides[2][c]) / 3.0);
-    sides.map(|p| [p[0] - centre[0], p[1] - centre[1]])
-}
-
 /// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
 ///
 /// Along the longest side the modes of a stretched triangle keep apart by themselves (stress along it, across it, shear),

@@ -16,6 +16,7 @@ pub mod displacement;
 mod elements;
 mod field;
 mod frame;
+pub mod geometry;
 mod interpolate;
 pub mod plain;
 pub mod quadrature;
@@ -24,8 +25,10 @@ pub mod side;
 mod side_values;
 pub mod spanned;
 mod split;
+pub mod strain;
 pub mod subdivision;
 pub mod subtriangle;
+mod traction;
 pub mod triangle;
 
 pub use block::Block;
@@ -33,12 +36,12 @@ pub use compliance::Compliance;
 pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
-pub use frame::from_centroid;
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use plain::PlainDisplacement;
 pub use samples::Samples;
 pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;
+pub use strain::Strains;
 
 use std::borrow::Cow;
 

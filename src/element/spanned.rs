@@ -8,8 +8,9 @@ use std::sync::{Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
+use super::geometry::from_centroid;
 use super::quadrature::triangle_rule;
-use super::{Compliance, EquilibriumElement, Modes, ModesMut, StressField, from_centroid, lattice, lattice_len};
+use super::{Compliance, EquilibriumElement, Modes, ModesMut, StressField, lattice, lattice_len};
 
 /// Corners of a triangle, counter-clockwise.
 pub type Corners = [[f64; 2]; 3];

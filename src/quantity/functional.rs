@@ -300,7 +300,7 @@ fn on_support(
         if u == [[0.0; 2]; 3] {
             continue;
         }
-        let g = crate::bounds::strain::gradients(mesh.corners(t));
+        let g = crate::element::geometry::gradients(mesh.corners(t));
         let d = |c: usize, x: usize| (0..3).map(|i| (u[i][c] - u[0][c]) * g[i][x]).sum::<f64>();
         let e = [d(0, 0), d(1, 1), 0.5 * (d(0, 1) + d(1, 0))];
         functional.load.strains.push((t, e.map(|e| -e)));

@@ -4,7 +4,7 @@
 //! it is not convex, clipping leaves edges that are run through in both directions and fans that turn back: their signed
 //! areas cancel, and the integral of a polynomial is exact all the same.
 
-use crate::bounds::strain::sub_corners;
+use crate::element::geometry::sub_corners;
 use crate::problem::Problem;
 
 /// A triangle of the fan on a subtriangle.

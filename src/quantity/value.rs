@@ -2,9 +2,10 @@
 
 use super::functional::Functional;
 use super::pass::strained;
-use crate::bounds::strain::{Strains, sub_area};
 use crate::bounds::{Sum, work, work_of};
 use crate::element::Displacement;
+use crate::element::Strains;
+use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
 use crate::problem::Problem;
 

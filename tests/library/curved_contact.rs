@@ -101,7 +101,7 @@ fn the_traction_on_a_contact_is_along_its_direction() {
     for pair in &problem.interfaces[0].pairs {
         let traction = |side: usize| {
             let e = pair.edges[side].expect("a body on either side");
-            let t = dual::equilibrium::edge_traction(&problem, &dual.stress, e, 0, 1);
+            let t = dual.stress.edge_traction(&problem.mesh, e, 0, 1);
             let vertices = if side == 0 { pair.first } else { pair.second.expect("a body") };
             vertices.map(|v| t[usize::from(problem.mesh.edges[e].vertices[0] != v)])
         };

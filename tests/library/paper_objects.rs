@@ -2,7 +2,6 @@
 
 use crate::setup::{Role, Setup, lift_off, two_blocks};
 use hypercircle::bounds::energy::complementary;
-use hypercircle::dual::equilibrium::edge_traction;
 use hypercircle::dual::paper::{
     Auxiliary, Basis, BlockMatrices, Constraints, Iteration, Meaning, Program, Reaction, dependences, multipliers,
 };
@@ -95,7 +94,8 @@ fn rows_read_tractions_off_any_field() {
     let (with, bar) = (program.stress(&problem, &s), program.stress(&problem, &vec![0.0; s.len()]));
     let rows = &program.constraints;
     let (d, e) = rows.evaluate(|edge, side| {
-        let (a, b) = (edge_traction(&problem, &with, edge, side, 1), edge_traction(&problem, &bar, edge, side, 1));
+        let (a, b) =
+            (with.edge_traction(&problem.mesh, edge, side, 1), bar.edge_traction(&problem.mesh, edge, side, 1));
         [0, 1].map(|k| [0, 1].map(|c| a[k][c] - b[k][c]))
     });
     let difference = d.iter().zip(rows.d.multiply(&s)).chain(e.iter().zip(rows.e.multiply(&s))).map(|(a, b)| a - b);
@@ -108,7 +108,8 @@ fn rows_read_tractions_off_any_field() {
     for (edge, m) in moments.iter().enumerate() {
         let sides = if problem.mesh.edges[edge].is_boundary() { 1 } else { 2 };
         for side in 0..sides {
-            let (a, b) = (edge_traction(&problem, &with, edge, side, 1), edge_traction(&problem, &bar, edge, side, 1));
+            let (a, b) =
+                (with.edge_traction(&problem.mesh, edge, side, 1), bar.edge_traction(&problem.mesh, edge, side, 1));
             work += (0..2)
                 .flat_map(|i| (0..2).map(move |c| (i, c)))
                 .map(|(i, c)| m[i][c] * (a[i][c] - b[i][c]))
@@ -240,14 +241,14 @@ fn auxiliary_field_balances_everything() {
     // (3.16)–(3.19), and continuity.
     let (mut on_contact, mut on_roller) = ([0.0; 2], 0.0);
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let own = edge_traction(&problem, &bar, e, 0, 1);
+        let own = bar.edge_traction(&problem.mesh, e, 0, 1);
         let (length, n) = problem.mesh.edge_frame(e);
         let left = problem.mesh.body[problem.mesh.edges[e].triangles[0].unwrap()] == 0;
         for end in 0..2 {
             let (tn, tt) = (own[end][0] * n[0] + own[end][1] * n[1], own[end][1] * n[0] - own[end][0] * n[1]);
             match condition {
                 Condition::Interior => {
-                    let other = edge_traction(&problem, &bar, e, 1, 1);
+                    let other = bar.edge_traction(&problem.mesh, e, 1, 1);
                     assert!(largest([own[end][0] + other[end][0], own[end][1] + other[end][1]]) < 1e-11);
                 }
                 Condition::Traction(p) => assert!(largest([own[end][0] - p[end][0], own[end][1] - p[end][1]]) < 1e-11),

@@ -12,10 +12,10 @@ use std::sync::OnceLock;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::bounds::strain::gradients;
 use crate::element::displacement::MOST;
+use crate::element::geometry::{from_centroid, gradients};
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, Samples, SideValues, StressField, from_centroid, triangle, weighed};
+use crate::element::{Compliance, Samples, SideValues, StressField, triangle, weighed};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.

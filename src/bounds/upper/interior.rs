@@ -112,9 +112,9 @@ fn begin(k: usize, block: &mut [[f64; 2]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::strain::sub_corners;
     use crate::element::Compliance;
     use crate::element::displacement::MOST;
+    use crate::element::geometry::sub_corners;
     use crate::scene::Kinematics;
 
     const CORNERS: [[f64; 2]; 3] = [[0.3, -0.2], [1.1, 0.1], [0.4, 0.7]];

@@ -12,7 +12,7 @@ use faer::{Col, Side};
 use super::holds::{Hold, Holds};
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, bernstein, rows};
-use crate::bounds::strain::{gradients, shape_gradients};
+use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 
 /// The penalty beside the largest diagonal entry of the stiffness.

@@ -11,8 +11,8 @@
 use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
-use crate::bounds::strain::{sub_area, sub_gradients};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
+use crate::element::geometry::{sub_area, sub_gradients};
 use crate::element::{Compliance, Samples, StressField, triangle};
 
 /// ½ uᵀKu − fᵀu, per unit thickness, without the tractions on the boundary.
@@ -171,8 +171,8 @@ fn pairs(g: [[f64; 2]; 3], area: f64, material: &Compliance) -> [[Pair; 3]; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::strain::Strains;
     use crate::element::Displacement;
+    use crate::element::Strains;
     use crate::scene::Kinematics;
 
     const CORNERS: [[f64; 2]; 3] = [[0.3, -0.2], [1.9, 0.1], [0.7, 1.4]];

@@ -6,7 +6,6 @@ use super::constraints::Constraints;
 use super::dependence::{Dependence, dependences};
 use super::rows::SparseRows;
 use crate::dual::DualError;
-use crate::dual::equilibrium::edge_traction;
 use crate::element::subtriangle::Matrix;
 use crate::element::{StressField, quadrature::triangle_rule};
 use crate::problem::{Condition, Problem, Scales};
@@ -184,7 +183,7 @@ impl Program {
         let bar = self.stress(problem, &vec![0.0; self.parameters()]);
         let mut scale = 0.0_f64;
         for e in 0..problem.mesh.edges.len() {
-            for value in edge_traction(problem, &bar, e, 0, 1).as_flattened() {
+            for value in bar.edge_traction(&problem.mesh, e, 0, 1).as_flattened() {
                 scale = scale.max(value.abs());
             }
         }

@@ -2,7 +2,8 @@
 
 use super::{COMMON, N};
 use crate::element::Compliance;
-use crate::element::frame::{Frame, from_centroid};
+use crate::element::frame::Frame;
+use crate::element::geometry::from_centroid;
 use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
 
 /// A basis of N(K), in the parameters (3.1) about the centroid of the block.

@@ -2,7 +2,8 @@
 
 use super::N;
 use super::basis::Basis;
-use crate::element::{Compliance, from_centroid};
+use crate::element::Compliance;
+use crate::element::geometry::from_centroid;
 
 /// The particular field (−F1 x, −F2 y, 0) about the centroid.
 pub struct Particular {

@@ -9,8 +9,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::StressElement;
 use super::divergence::at_points;
-use super::fields::{Fields, Nodal, side, sub_corners, traction};
+use super::fields::{Fields, Nodal, side, traction};
 use crate::element::Compliance;
+use crate::element::geometry::sub_corners;
 
 /// A space of linear stresses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::element::geometry::sub_corners;
 use crate::element::quadrature::triangle_rule;
 use crate::element::{Compliance, EquilibriumElement, lattice_len};
 
@@ -193,9 +194,4 @@ pub fn traction(tau: [f64; 3], n: [f64; 2]) -> [f64; 2] {
 /// Area of a counter-clockwise triangle.
 pub fn area([a, b, c]: [[f64; 2]; 3]) -> f64 {
     0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
-}
-
-/// Corners (a_{i+1}, a_{i+2}, centroid) of a subtriangle.
-pub fn sub_corners(p: [[f64; 2]; 3], sub: usize) -> [[f64; 2]; 3] {
-    crate::bounds::strain::sub_corners(p, sub)
 }

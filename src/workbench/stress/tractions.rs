@@ -1,7 +1,8 @@
 //! Traction coefficients: those of the stresses, and in balance.
 
-use super::fields::{Fields, area, side, sub_corners, traction};
+use super::fields::{Fields, area, side, traction};
 use super::{StressElement, worst};
+use crate::element::geometry::sub_corners;
 use crate::element::side as polynomial;
 use crate::workbench::finding::{Measured, Property};
 
