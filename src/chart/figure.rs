@@ -8,7 +8,7 @@ use crate::report::number::significant;
 
 /// What an error costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
+pub enum Cost {
     /// Seconds of the whole process.
     Whole,
     /// Seconds without start-up and reading.
@@ -17,16 +17,16 @@ pub enum Axis {
     Unknowns,
 }
 
-impl Axis {
+impl Cost {
     /// All of them, in the order of a page.
-    pub const ALL: [Axis; 3] = [Axis::Whole, Axis::Solve, Axis::Unknowns];
+    pub const ALL: [Cost; 3] = [Cost::Whole, Cost::Solve, Cost::Unknowns];
 
     /// Name of the file of the figure; quantities go by their number.
     pub(super) fn file(self, scene: &SceneChart, of: Of<'_>) -> String {
         let axis = match self {
-            Axis::Whole => "whole",
-            Axis::Solve => "solve",
-            Axis::Unknowns => "unknowns",
+            Cost::Whole => "whole",
+            Cost::Solve => "solve",
+            Cost::Unknowns => "unknowns",
         };
         let number = |name| scene.quantities().iter().position(|own| *own == name).map_or(0, |i| i + 1);
         match of {
@@ -38,35 +38,35 @@ impl Axis {
     /// Heading, and what the axis is.
     pub(super) fn words(self) -> (&'static str, &'static str) {
         match self {
-            Axis::Whole => ("Error against seconds, whole process", "seconds from start of the process to the answer"),
-            Axis::Solve => {
+            Cost::Whole => ("Error against seconds, whole process", "seconds from start of the process to the answer"),
+            Cost::Solve => {
                 ("Error against seconds, solving only", "seconds without start-up, imports, compilation, reading")
             }
-            Axis::Unknowns => ("Error against unknowns", "unknowns"),
+            Cost::Unknowns => ("Error against unknowns", "unknowns"),
         }
     }
 
     fn cost(self, plot: &Plot) -> f64 {
         match self {
-            Axis::Whole => plot.whole.median,
-            Axis::Solve => plot.solve.median,
-            Axis::Unknowns => plot.unknowns as f64,
+            Cost::Whole => plot.whole.median,
+            Cost::Solve => plot.solve.median,
+            Cost::Unknowns => plot.unknowns as f64,
         }
     }
 
     fn spread(self, plot: &Plot) -> [f64; 2] {
         match self {
-            Axis::Whole => [plot.whole.least, plot.whole.most],
-            Axis::Solve => [plot.solve.least, plot.solve.most],
-            Axis::Unknowns => [self.cost(plot); 2],
+            Cost::Whole => [plot.whole.least, plot.whole.most],
+            Cost::Solve => [plot.solve.least, plot.solve.most],
+            Cost::Unknowns => [self.cost(plot); 2],
         }
     }
 }
 
 /// The figures of errors of a scene: the solution on every axis, every quantity against seconds.
-pub(super) fn error_figures(scene: &SceneChart) -> Vec<(Axis, Of<'_>)> {
-    let of_energy = Axis::ALL.map(|axis| (axis, Of::Energy));
-    let of_quantities = scene.quantities().into_iter().map(|name| (Axis::Whole, Of::Quantity(name)));
+pub(super) fn error_figures(scene: &SceneChart) -> Vec<(Cost, Of<'_>)> {
+    let of_energy = Cost::ALL.map(|axis| (axis, Of::Energy));
+    let of_quantities = scene.quantities().into_iter().map(|name| (Cost::Whole, Of::Quantity(name)));
     of_energy.into_iter().chain(of_quantities).collect()
 }
 
@@ -88,7 +88,7 @@ fn resolution(scene: &SceneChart, of: Of<'_>) -> (f64, Option<(f64, String)>) {
 ///
 /// # Errors
 /// What the drawing library reported.
-pub fn error_figure(scene: &SceneChart, axis: Axis, of: Of<'_>) -> Result<String, PlotError> {
+pub fn error_figure(scene: &SceneChart, axis: Cost, of: Of<'_>) -> Result<String, PlotError> {
     let mut series = Vec::new();
     let mut notes = Vec::new();
     let (least, level) = resolution(scene, of);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::choice::{Choice, Of, WANTED, asked, fastest};
 use super::data::{Chart, Cold, Plot, Run, SceneChart, Spread, Status};
-use super::figure::{Axis, error_figures};
+use super::figure::{Cost, error_figures};
 use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
 
 /// One section a scene, the command under each figure; figures are those that [`super::write()`] puts beside the text.
@@ -71,7 +71,7 @@ fn one(text: &mut String, scene: &SceneChart, command: &str) {
 
 /// Names of the files of a scene's figures, and what each shows.
 pub(super) fn figures(scene: &SceneChart) -> Vec<(String, String)> {
-    let words = |axis: Axis, of| match of {
+    let words = |axis: Cost, of| match of {
         Of::Energy => format!("{}: {}", axis.words().0, scene.name),
         Of::Quantity(name) => format!("{}: {}, {name}", axis.words().0, scene.name),
     };

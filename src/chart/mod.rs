@@ -20,7 +20,7 @@ pub use campaign::{Campaign, CampaignError, Plan};
 pub use choice::{Choice, Of, fastest, pareto, slope};
 pub use csv::csv;
 pub use data::{Chart, Cold, Plot, Reference, Run, SceneChart, Spread, Status};
-pub use figure::{Axis, error_figure};
+pub use figure::{Cost, error_figure};
 pub use judge::judge;
 pub use markdown::markdown;
 pub use page::page;

@@ -13,7 +13,7 @@ use std::time::Instant;
 use super::ends::Ends;
 use super::hybrid::Motion;
 use super::qp::ContactState;
-use super::reduced::{Contact, Reduced};
+use super::reduced::{Reduced, Schur};
 use super::refinement::Refined;
 use super::rigid::unsupported;
 use super::settling::Settling;
@@ -102,7 +102,7 @@ impl Condensed {
         seconds.factor = start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let contact = Contact::new(&reduced, self.longest_dense, options.budget, |most| {
+        let contact = Schur::new(&reduced, self.longest_dense, options.budget, |most| {
             unsupported(problem, &system.unknowns, most)
         });
         let (y, c) = reduced.condense(&system.rhs);

@@ -6,7 +6,7 @@ use super::equilibrium::load_scale;
 use super::modes::ModeTable;
 use super::refinement::Refined;
 use super::system::System;
-use super::unknowns::{Block, Unknowns};
+use super::unknowns::{UnknownBlock, Unknowns};
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Tension relative to the load, or to the largest pressure of its pair, and penetration relative to the largest jump,
@@ -29,7 +29,7 @@ impl<'a> Ends<'a> {
         let scales = Scales::new(problem);
         let round_off = round_off(problem, &system.unknowns, &system.modes, &scales);
         let first = system.unknowns.first_jump;
-        let own = |b: &Block| b.start - first..b.start + b.len - first;
+        let own = |b: &UnknownBlock| b.start - first..b.start + b.len - first;
         let pair = system.unknowns.jump_blocks().flat_map(|b| std::iter::repeat_n(own(b), b.len)).collect();
         Ends { problem, system, scales, round_off, pair }
     }
@@ -55,7 +55,7 @@ impl<'a> Ends<'a> {
 
 /// Tension at each jump that is rounding of prescribed displacements and gaps.
 pub fn round_off(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, scales: &Scales) -> Vec<f64> {
-    let of_pair = |(pair, block): (&ContactPair, &Block)| {
+    let of_pair = |(pair, block): (&ContactPair, &UnknownBlock)| {
         let triangles = pair.edges.iter().flatten().filter_map(|&e| problem.mesh.edges[e].triangles[0]);
         let rounding = |t: usize| scales.stress_round_off(problem, t, modes.degree(t));
         std::iter::repeat_n(triangles.map(rounding).fold(0.0, f64::max), block.len)

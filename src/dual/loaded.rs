@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::DualError;
 use super::hybrid::{parameters, residual};
-use super::reduced::{Contact, Dense};
+use super::reduced::{Dense, Schur};
 use super::refinement::{Refined, Refinement};
 use super::response::{Response, Responses};
 use super::system::System;
@@ -296,7 +296,7 @@ impl<'a> Loaded<'a> {
         }
         let bounded = closed.iter().zip(floor).all(|(closed, floor)| !closed || floor.is_finite());
         match contact {
-            Contact::Dense(dense) if bounded => self.released_one_by_one(dense, Bounds { closed, floor, sign }),
+            Schur::Dense(dense) if bounded => self.released_one_by_one(dense, Bounds { closed, floor, sign }),
             _ => latest.ok_or(DualError::ContactUndetermined),
         }
     }

@@ -121,7 +121,7 @@ impl Reduced {
 }
 
 /// The problem on Γ_K, by the length of the contact.
-pub enum Contact<'a> {
+pub enum Schur<'a> {
     /// S as a dense matrix.
     Dense(Dense),
     /// S as an operator, and the number of jumps.
@@ -159,7 +159,7 @@ impl Dense {
     }
 }
 
-impl<'a> Contact<'a> {
+impl<'a> Schur<'a> {
     /// `unresisted` gives jumps, of motions that no support resists, to which S gives no traction: none where they are
     /// more than it is asked for. S is dense up to `longest_dense` jumps, and where `budget` has room for it.
     pub fn new(
@@ -170,7 +170,7 @@ impl<'a> Contact<'a> {
     ) -> Self {
         let m = reduced.factor.trailing_len();
         if m > longest_dense || budget.admit_more(DENSE * (m * m) as f64).is_err() {
-            return Contact::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
+            return Schur::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
         }
         let mut matrix = reduced.factor.trailing_product();
         for i in 0..m {
@@ -188,51 +188,51 @@ impl<'a> Contact<'a> {
         if let Some(s) = &mut cleared {
             basis.iter().for_each(|q| give_no_traction(s, q));
         }
-        Contact::Dense(Dense { matrix, cleared, unit })
+        Schur::Dense(Dense { matrix, cleared, unit })
     }
 
     pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
         match self {
-            Contact::Dense(dense) => dense.solve(c, bound, warm),
-            Contact::Long(s, _) => s.solve(c, bound, warm),
+            Schur::Dense(dense) => dense.solve(c, bound, warm),
+            Schur::Long(s, _) => s.solve(c, bound, warm),
         }
     }
 
     /// S j − c.
     pub fn gradient(&self, c: &[f64], jumps: &[f64]) -> Vec<f64> {
         match self {
-            Contact::Dense(Dense { matrix: s, unit, .. }) => {
+            Schur::Dense(Dense { matrix: s, unit, .. }) => {
                 over(&qp::gradient(s, &times(c, unit), &over(jumps, unit)), unit)
             }
-            Contact::Long(s, _) => s.apply(jumps).iter().zip(c).map(|(s, c)| s - c).collect(),
+            Schur::Long(s, _) => s.apply(jumps).iter().zip(c).map(|(s, c)| s - c).collect(),
         }
     }
 
     pub fn with_closed(&self, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
         match self {
-            Contact::Dense(Dense { matrix: s, unit, .. }) => {
+            Schur::Dense(Dense { matrix: s, unit, .. }) => {
                 let jumps = qp::with_closed_or_springs(s, &times(c, unit), &over(bound, unit), closed)?;
                 Some(times(&jumps, unit))
             }
-            Contact::Long(s, _) => Some(s.with_closed(c, bound, closed)),
+            Schur::Long(s, _) => Some(s.with_closed(c, bound, closed)),
         }
     }
 
     /// Penetration that is `part` of the largest jump or gap, end by end.
     pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
         match self {
-            Contact::Dense(Dense { unit, .. }) => {
+            Schur::Dense(Dense { unit, .. }) => {
                 let depth = part * largest(&over(jumps, unit)).max(largest(&over(bound, unit)));
                 unit.iter().map(|u| u * depth).collect()
             }
-            Contact::Long(..) => vec![part * largest(jumps).max(largest(bound)); jumps.len()],
+            Schur::Long(..) => vec![part * largest(jumps).max(largest(bound)); jumps.len()],
         }
     }
 
     pub fn notes(&self, steps: usize) -> Vec<String> {
         match self {
-            Contact::Dense(..) => Vec::new(),
-            Contact::Long(_, m) => vec![format!(
+            Schur::Dense(..) => Vec::new(),
+            Schur::Long(_, m) => vec![format!(
                 "the contact has {m} ends, more than are solved with a dense matrix: its state was found iteratively \
                  (MPRGP, {steps} steps)"
             )],

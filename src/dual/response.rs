@@ -10,7 +10,7 @@ use std::sync::Arc;
 use super::hybrid::{Motion, residual};
 use super::loaded::{Loaded, Start};
 use super::modes::ModeTable;
-use super::reduced::{Contact, Reduced};
+use super::reduced::{Reduced, Schur};
 use super::rigid::unsupported;
 use super::system::{System, jump_moments, load_of_tractions};
 use super::{DualError, Options};
@@ -49,7 +49,7 @@ impl Factorised {
         longest_dense: usize,
         options: &Options,
     ) -> Responses<'a> {
-        let contact = Contact::new(&self.reduced, longest_dense, options.budget, |most| {
+        let contact = Schur::new(&self.reduced, longest_dense, options.budget, |most| {
             unsupported(problem, &self.system.unknowns, most)
         });
         let displaced = self.system.unknowns.project(problem, |e, k| moments.of(e)[k]);
@@ -76,7 +76,7 @@ pub struct Load {
 pub struct Responses<'a> {
     problem: &'a Problem,
     factorised: &'a Factorised,
-    pub(super) contact: Contact<'a>,
+    pub(super) contact: Schur<'a>,
     /// The displacement that remainders are weighed with.
     pub(super) displaced: Vec<f64>,
 }

@@ -10,7 +10,7 @@ use super::ends::{Ends, next_state};
 use super::equilibrium::{Equilibrium, load_scale};
 use super::hybrid::parameters;
 use super::qp::ContactState;
-use super::reduced::{Contact, Reduced};
+use super::reduced::{Reduced, Schur};
 use super::refinement::{ROUND_OFF, Refined, Refinement};
 use super::system::System;
 use crate::element::{SideValues, StressField};
@@ -33,7 +33,7 @@ pub struct Settling<'a> {
     /// Its factor.
     pub reduced: &'a Reduced,
     /// The problem on Γ_K.
-    pub contact: &'a Contact<'a>,
+    pub contact: &'a Schur<'a>,
     /// What contact states are held against.
     pub ends: Ends<'a>,
     /// Limit of refinements for one state.

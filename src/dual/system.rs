@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::Options;
 use super::modes::ModeTable;
 use super::rows::Sides;
-use super::unknowns::{Block, Component, Unknowns};
+use super::unknowns::{Component, UnknownBlock, Unknowns};
 use crate::element::side;
 use crate::lanes::wide;
 use crate::problem::{ContactPair, Problem};
@@ -102,7 +102,7 @@ pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
 
 /// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.
 pub fn jump_moments<'a>(problem: &Problem, unknowns: &Unknowns, f: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
-    let of_pair = |((pair, jumps), f): ((&ContactPair, &Block), &[f64])| {
+    let of_pair = |((pair, jumps), f): ((&ContactPair, &UnknownBlock), &[f64])| {
         let length = pair.length;
         let moments = side::moments(if f.is_empty() { &[0.0] } else { f }, jumps.len - 1);
         moments.into_iter().map(move |moment| length * moment)
@@ -251,7 +251,7 @@ struct Pattern {
     columns: Vec<usize>,
     rows: Vec<usize>,
     block_of: Vec<u32>,
-    blocks: Vec<Block>,
+    blocks: Vec<UnknownBlock>,
     /// For each block, its later neighbours with the offset of their rows behind the block's own.
     neighbours: Vec<(u32, u32)>,
     neighbour_start: Vec<u32>,

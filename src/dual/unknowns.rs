@@ -12,7 +12,7 @@ use crate::problem::{Condition, ContactPair, Problem};
 
 /// Unknowns that belong together: consecutive numbers that share one sparsity pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Block {
+pub struct UnknownBlock {
     /// First unknown.
     pub start: usize,
     /// Number of unknowns.
@@ -88,7 +88,7 @@ impl Component {
 #[derive(Debug, Clone)]
 pub struct Unknowns {
     /// Blocks in the order of their numbers; those of the jumps come last.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<UnknownBlock>,
     /// Moments of each edge of the mesh.
     pub edges: Vec<EdgeMoments>,
     /// Degree of each edge.
@@ -107,7 +107,7 @@ impl Unknowns {
         let mut blocks = Vec::with_capacity(problem.mesh.edges.len());
         let mut next = 0;
         let mut push = |len: usize| {
-            blocks.push(Block { start: next, len });
+            blocks.push(UnknownBlock { start: next, len });
             next += len;
             blocks.len() - 1
         };
@@ -270,7 +270,7 @@ impl Unknowns {
     }
 
     /// The blocks of jumps, one for each pair.
-    pub fn jump_blocks(&self) -> impl Iterator<Item = &Block> {
+    pub fn jump_blocks(&self) -> impl Iterator<Item = &UnknownBlock> {
         self.blocks.iter().filter(|b| b.start >= self.first_jump)
     }
 

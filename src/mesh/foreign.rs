@@ -15,11 +15,11 @@ const INSTEAD: &str = "convert it to Gmsh's format (.msh)";
 #[derive(Deserialize)]
 struct Converted {
     points: Vec<Vec<f64>>,
-    blocks: Vec<Block>,
+    blocks: Vec<CellBlock>,
 }
 
 #[derive(Deserialize)]
-struct Block {
+struct CellBlock {
     shape: String,
     nodes: Vec<Vec<u64>>,
     groups: Vec<Vec<String>>,

@@ -19,7 +19,7 @@ pub enum Scale {
 
 /// An axis that fits its values.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct Ticks {
     /// Positions of the two ends.
     pub range: [f64; 2],
     /// Positions of tick marks, with labels.
@@ -37,10 +37,10 @@ impl Scale {
     }
 
     /// An axis for values at these positions.
-    pub(super) fn axis(&self, positions: impl Iterator<Item = f64>) -> Axis {
+    pub(super) fn axis(&self, positions: impl Iterator<Item = f64>) -> Ticks {
         if let Scale::Ordinal(labels) = self {
             let ticks = labels.iter().enumerate().map(|(i, label)| (i as f64, label.clone())).collect();
-            return Axis { range: [-0.5, labels.len().max(1) as f64 - 0.5], ticks };
+            return Ticks { range: [-0.5, labels.len().max(1) as f64 - 0.5], ticks };
         }
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in positions {
@@ -70,12 +70,12 @@ impl Scale {
             }
             ticks.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
-        Axis { range, ticks }
+        Ticks { range, ticks }
     }
 }
 
 /// From zero to `high`, with ticks of one digit that stand apart.
-fn cube_roots(high: f64) -> Axis {
+fn cube_roots(high: f64) -> Ticks {
     let range = [0.0, 1.04 * high];
     let mut ticks = vec![(0.0, "0".to_string())];
     let decades = -6..=(3.0 * high.log10()).ceil() as i32;
@@ -85,14 +85,14 @@ fn cube_roots(high: f64) -> Axis {
             ticks.push((at, significant(value, 1)));
         }
     }
-    Axis { range, ticks }
+    Ticks { range, ticks }
 }
 
 fn power_of_ten(k: i32) -> String {
     if (-2..=3).contains(&k) { significant(10.0_f64.powi(k), 1) } else { format!("10{}", superscript(k)) }
 }
 
-impl Ranged for Axis {
+impl Ranged for Ticks {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
 
@@ -110,7 +110,7 @@ impl Ranged for Axis {
     }
 }
 
-impl ValueFormatter<f64> for Axis {
+impl ValueFormatter<f64> for Ticks {
     fn format(position: &f64) -> String {
         significant(*position, 3)
     }

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::errors::fault;
 use super::kinematics::kinematics_named;
 use super::own_element::{is_element, spanned};
-use crate::workbench::stress::Equilibrium;
+use crate::workbench::stress::SolverElement;
 use crate::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
 /// Rows of numbers as a matrix.
@@ -92,7 +92,7 @@ pub fn workbench<'py>(
             ));
         }
         let own = spanned(element)?;
-        let report = py.detach(move || Report::of_stress(&Equilibrium(own), &options));
+        let report = py.detach(move || Report::of_stress(&SolverElement(own), &options));
         if let Some(reason) = own.fault() {
             return Err(fault(reason));
         }

@@ -9,19 +9,19 @@ use crate::scene::{
 
 /// A scene with its mesh, before it is checked.
 #[derive(Debug, Clone)]
-pub struct Model {
+pub struct Sketch {
     /// Bodies and conditions.
     pub scene: Draft,
     /// Triangles and named segments.
     pub raw: RawMesh,
 }
 
-impl Model {
+impl Sketch {
     /// Nothing yet, in plane strain.
     pub fn new() -> Self {
         let mesh = MeshSource::File("regime.msh".into());
         let scene = Draft::new("regime", Kinematics::PlaneStrain, mesh);
-        Model { scene, raw: RawMesh::default() }
+        Sketch { scene, raw: RawMesh::default() }
     }
 
     /// A rectangle of cells between the lines `xs` and `ys`, each cut along one diagonal, alternating; its sides are
@@ -171,13 +171,13 @@ impl Model {
     /// Meshes polygons instead of the grids, with edges of length `size`.
     ///
     /// # Errors
-    /// As [`Model::problem`].
+    /// As [`Sketch::problem`].
     pub fn polygons(mut self, polygons: Vec<Polygon>, size: f64) -> Result<Problem, String> {
         self.scene.mesh = MeshSource::Geometry { size: Some(size), polygons };
         Problem::load(Scene::new(self.scene).map_err(|e| e.to_string())?).map_err(|e| e.to_string())
     }
 
-    /// A body without triangles of its own, for [`Model::polygons`].
+    /// A body without triangles of its own, for [`Sketch::polygons`].
     pub fn body(mut self, name: &str, young: f64, poisson: f64) -> Self {
         self.scene.bodies.push(Body { name: name.to_string(), young, poisson, body_force: [0.0; 2] });
         self
@@ -222,9 +222,9 @@ impl Lift {
     }
 
     /// On given lines x of the left block (mirrored for the right one) and y of both.
-    pub fn on(&self, left: &[f64], ys: [&[f64]; 2]) -> Model {
+    pub fn on(&self, left: &[f64], ys: [&[f64]; 2]) -> Sketch {
         let right: Vec<f64> = left.iter().rev().map(|x| 2.0 - x).collect();
-        Model::new()
+        Sketch::new()
             .block("left", self.materials[0], left, ys[0])
             .block("right", self.materials[1], &right, ys[1])
             .clamp("right_right")
@@ -234,7 +234,7 @@ impl Lift {
     }
 
     /// On squares.
-    pub fn model(&self) -> Model {
+    pub fn model(&self) -> Sketch {
         let lines = steps(0.0, 1.0, self.n);
         self.on(&lines, [&lines, &lines])
     }

@@ -7,7 +7,7 @@
 //! and quadratic displacements contain it: nothing but round-off keeps them from being exact.
 
 use super::known::Known;
-use super::scenes::{Model, steps};
+use super::scenes::{Sketch, steps};
 use crate::scene::Gap;
 
 /// A row of blocks.
@@ -32,8 +32,8 @@ impl Strips {
     }
 
     /// The row, with the lines x of a block given for a block from 0 to 1.
-    pub fn on(&self, unit: &[f64]) -> Model {
-        let mut model = Model::new();
+    pub fn on(&self, unit: &[f64]) -> Sketch {
+        let mut model = Sketch::new();
         let last = self.materials.len() - 1;
         for (i, material) in self.materials.iter().enumerate() {
             // Mirrored from block to block, so that fine lines meet.
@@ -52,7 +52,7 @@ impl Strips {
     }
 
     /// The row on equal cells.
-    pub fn model(&self) -> Model {
+    pub fn model(&self) -> Sketch {
         self.on(&steps(0.0, 1.0, self.cells.0))
     }
 

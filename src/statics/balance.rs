@@ -25,9 +25,9 @@ pub(super) struct Verdict {
     pub held: Vec<DVector<f64>>,
     /// A motion r in which the loads do work |r|² and that nothing stops; none where the loads are balanced.
     pub driven: Option<Driven>,
-    /// The borderline motion, see [`super::Equilibrium::Possible`].
+    /// The borderline motion, see [`super::Solvability::Possible`].
     pub one_way: Option<DVector<f64>>,
-    /// The motion that the pressures of the mesh cannot stop, see [`super::Equilibrium::Possible`].
+    /// The motion that the pressures of the mesh cannot stop, see [`super::Solvability::Possible`].
     pub beyond_mesh: Option<DVector<f64>>,
 }
 

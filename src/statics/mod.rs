@@ -52,7 +52,7 @@ pub struct Statics {
     /// One edge pin per motion of `held`.
     pub edge_pins: Vec<EdgePin>,
     /// The answer.
-    pub equilibrium: Equilibrium,
+    pub equilibrium: Solvability,
     /// What a report should say: motions that stay free, borderline loads, pressure too concentrated for the mesh.
     pub notes: Vec<String>,
 }
@@ -66,7 +66,7 @@ impl Statics {
 
 /// Whether (1.16) holds.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Equilibrium {
+pub enum Solvability {
     /// L(y) ≤ 0 for every allowed motion.
     Possible {
         /// A motion allowed one way only on which the loads do no work (to within 1e-7 of the loads): the borderline.
@@ -174,14 +174,14 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
         }
         notes.extend(one_way.iter().chain(&beyond_mesh).map(|(note, _)| note.clone()));
         let sum = |all: Vec<(String, RigidMotion)>| together(all.into_iter().map(|(_, motion)| motion));
-        (Equilibrium::Possible { one_way: sum(one_way), beyond_mesh: sum(beyond_mesh) }, notes)
+        (Solvability::Possible { one_way: sum(one_way), beyond_mesh: sum(beyond_mesh) }, notes)
     } else {
         let work = impossible.iter().map(|(_, work, _, _)| work).sum();
         let sentence = impossible.iter().map(|(_, _, _, sentence)| sentence.as_str()).collect::<Vec<_>>().join(" ");
         let bodies = impossible.iter().flat_map(|(_, _, moving, _)| moving.clone()).collect();
         let motion = together(impossible.into_iter().map(|(motion, ..)| motion))
             .unwrap_or(RigidMotion { component: vec![[0.0; 3]; components.count()] });
-        (Equilibrium::Impossible { motion, work, bodies, sentence }, Vec::new())
+        (Solvability::Impossible { motion, work, bodies, sentence }, Vec::new())
     };
     Ok(Statics { components, loads, held, vertex_pins, edge_pins, equilibrium, notes })
 }

@@ -7,7 +7,7 @@ use crate::bounds::{Bracket, NoUpperBound, NodalValues, supports_agree, without_
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
 use crate::problem::{Problem, ProblemError};
-use crate::statics::{self, Equilibrium, Statics, StaticsError};
+use crate::statics::{self, Solvability, Statics, StaticsError};
 
 /// A problem with its dual solution and bracket.
 #[derive(Debug, Clone)]
@@ -84,13 +84,13 @@ pub(super) fn balance(problem: &Problem, elements: &Elements) -> Result<Statics,
     supports_agree(problem)?;
     let statics = statics::check_with_degrees(problem, &|t| elements.degree(t))?;
     match &statics.equilibrium {
-        Equilibrium::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
+        Solvability::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
             sentence: sentence.clone(),
             motion: motion.at_vertices(problem, &statics.components),
             work: *work,
             problem: Box::new(problem.clone()),
         }),
-        Equilibrium::Possible { .. } => Ok(statics),
+        Solvability::Possible { .. } => Ok(statics),
     }
 }
 
@@ -106,7 +106,7 @@ pub(super) fn solve_balanced(
     start: Option<NodalValues>,
 ) -> Result<Certified, StudyError> {
     let began = Instant::now();
-    if let Equilibrium::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
+    if let Solvability::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
         let part = match options.elements.largest_degree() {
             1 => "third".to_string(),
             2 => "quarter".to_string(),

@@ -8,7 +8,7 @@ use crate::dual::{DualMethod, Options, Size, contact_coefficients};
 use crate::element::{Elements, MAX_DEGREE};
 use crate::mesh::bisect::RefinementEdges;
 use crate::problem::{Note, Problem, Refinement};
-use crate::statics::{Equilibrium, Statics};
+use crate::statics::{Solvability, Statics};
 
 /// Solves and brackets `problem`, on a mesh that is divided at the ends of contact where the loads press on less than its
 /// own edges there can express. Edges and gaps that stand for a curve stay as they are.
@@ -118,7 +118,7 @@ impl Stage {
         for round in 0..MOST_AT_ENDS {
             let statics = balance(&self.problem, &self.elements)?;
             divide_evenly_what_slides(&mut self.problem, &statics);
-            if !matches!(statics.equilibrium, Equilibrium::Possible { beyond_mesh: Some(_), .. }) {
+            if !matches!(statics.equilibrium, Solvability::Possible { beyond_mesh: Some(_), .. }) {
                 return Ok((self, statics));
             }
             self = self.bisect(&contact_ends(&self.problem, round < MOST_WHERE_IT_TURNS))?.0;

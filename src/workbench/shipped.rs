@@ -4,7 +4,7 @@ use super::displacement::{self, DisplacementElement};
 use super::formulas::{Family, Variant};
 use super::material::Material;
 use super::report::{Options, Report};
-use super::stress::{self, Composite, Equilibrium, StressElement};
+use super::stress::{self, Composite, SolverElement, StressElement};
 use crate::element::block;
 
 /// What is under test.
@@ -76,25 +76,25 @@ pub const SHIPPED: &[Shipped] = &[
         name: "block-1",
         about: "equilibrium block of Watwood and Hartz, linear stresses on three subtriangles",
         lacks: &[],
-        make: || stresses(Equilibrium(block(1))),
+        make: || stresses(SolverElement(block(1))),
     },
     Shipped {
         name: "block-2",
         about: "equilibrium block of degree 2",
         lacks: &[],
-        make: || stresses(Equilibrium(block(2))),
+        make: || stresses(SolverElement(block(2))),
     },
     Shipped {
         name: "block-3",
         about: "equilibrium block of degree 3",
         lacks: &[],
-        make: || stresses(Equilibrium(block(3))),
+        make: || stresses(SolverElement(block(3))),
     },
     Shipped {
         name: "block-4",
         about: "equilibrium block of degree 4",
         lacks: &[],
-        make: || stresses(Equilibrium(block(4))),
+        make: || stresses(SolverElement(block(4))),
     },
     Shipped {
         name: "single-triangle",

@@ -5,7 +5,7 @@ use hypercircle::bounds::{Bracket, complementary, local_gap, potential};
 use hypercircle::dual::{self, ActiveSet, Clarabel, Condensed, DualError, DualMethod, DualSolution, Options, Uzawa};
 use hypercircle::problem::{Problem, Refinement};
 use hypercircle::scene::Scene;
-use hypercircle::statics::{self, Equilibrium, MotionKind};
+use hypercircle::statics::{self, MotionKind, Solvability};
 
 fn problem(text: &str) -> Problem {
     let scene = Scene::parse(text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -122,12 +122,12 @@ fn the_traction_on_a_contact_is_along_its_direction() {
 fn a_disc_in_its_bore_turns_freely_unless_its_facets_hold_it() {
     let turned = problem(&disc(24, "couple", "smooth"));
     let statics = statics::check(&turned).expect("decided");
-    let Equilibrium::Impossible { bodies, sentence, .. } = &statics.equilibrium else { panic!("{statics:?}") };
+    let Solvability::Impossible { bodies, sentence, .. } = &statics.equilibrium else { panic!("{statics:?}") };
     let MotionKind::Turns { centre } = bodies[0].kind else { panic!("{sentence}") };
     assert!(centre[0].abs() < 1e-9 && centre[1].abs() < 1e-9, "{centre:?}");
     assert!(sentence.contains("turns counter-clockwise about (0, 0)"), "{sentence}");
     let held = statics::check(&problem(&disc(24, "couple", "facets"))).expect("decided");
-    assert!(matches!(held.equilibrium, Equilibrium::Possible { .. }), "{held:?}");
+    assert!(matches!(held.equilibrium, Solvability::Possible { .. }), "{held:?}");
 }
 
 #[test]

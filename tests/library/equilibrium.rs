@@ -5,7 +5,7 @@ use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, DualError, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::statics::{Equilibrium, check};
+use hypercircle::statics::{Solvability, check};
 use hypercircle::study::{Goal, StudyError, adapt, certify};
 
 struct Case {
@@ -275,7 +275,7 @@ fn inside_the_border_an_equilibrium_is_found() {
     for case in cases() {
         for excess in [-1e-6, -1e-3, -0.1] {
             let verdict = check(&problem(&(case.scene)(excess))).expect("decided").equilibrium;
-            assert!(matches!(verdict, Equilibrium::Possible { .. }), "{} by {excess}: {verdict:?}", case.name);
+            assert!(matches!(verdict, Solvability::Possible { .. }), "{} by {excess}: {verdict:?}", case.name);
         }
     }
 }

@@ -3,7 +3,8 @@
 use crate::setup::{Role, Setup, lift_off, two_blocks};
 use hypercircle::bounds::energy::complementary;
 use hypercircle::dual::paper::{
-    Auxiliary, Basis, BlockMatrices, Constraints, Iteration, Meaning, Program, Reaction, dependences, multipliers,
+    Auxiliary, BlockMatrices, Constraints, Iteration, Meaning, Program, Reaction, TractionShape, dependences,
+    multipliers,
 };
 use hypercircle::element::Compliance;
 use hypercircle::element::subtriangle::Matrix;
@@ -71,13 +72,13 @@ fn constant_stress_satisfies_the_continuity_rows() {
     let (d, e) = (rows.d.multiply(&parameters), rows.e.multiply(&parameters));
     for (value, meaning) in d.iter().zip(&rows.d_meaning) {
         let expected = match *meaning {
-            Meaning::Applied { edge, component, basis: Basis::Mean } => {
+            Meaning::Applied { edge, component, basis: TractionShape::Mean } => {
                 let (_, n) = problem.mesh.edge_frame(edge);
                 [tau[0] * n[0] + tau[2] * n[1], tau[2] * n[0] + tau[1] * n[1]][component]
             }
             // n = (0, −1), t = (1, 0); n = (±1, 0), t = (0, ±1).
-            Meaning::RollerShear { basis: Basis::Mean, .. } => -tau[2],
-            Meaning::ContactShear { basis: Basis::Mean, .. } => tau[2],
+            Meaning::RollerShear { basis: TractionShape::Mean, .. } => -tau[2],
+            Meaning::ContactShear { basis: TractionShape::Mean, .. } => tau[2],
             _ => 0.0,
         };
         assert!((value - expected).abs() < 1e-12, "{meaning}: {value} for {expected}");
@@ -304,7 +305,7 @@ fn the_three_examples_are_recognised() {
     // Outward normal of the upper body is (0, −1), its tangent (1, 0).
     assert!((field.reaction.shear() + 0.5).abs() < 1e-14);
     for (excess, meaning) in field.excess.iter().zip(&rows.d_meaning) {
-        let mean = matches!(meaning, Meaning::ContactShear { basis: Basis::Mean, .. });
+        let mean = matches!(meaning, Meaning::ContactShear { basis: TractionShape::Mean, .. });
         assert!((excess - if mean { -0.5 } else { 0.0 }).abs() < 1e-10, "{meaning}: {excess}");
     }
     assert_eq!(Reaction::of(&two_blocks(2, |_| [1.0, 0.0]).build()), Reaction::Normal { value: -1.0 });

@@ -48,7 +48,7 @@ pub fn lifted(
         true => problem.pairs().flat_map(|pair| bernstein(pair, vertices)).collect(),
         false => rows(problem, &linear).concat(),
     };
-    let model = Model::new(problem, holds, quadratic);
+    let model = Elastic::new(problem, holds, quadratic);
     let size = values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let enough = 16.0 * f64::EPSILON * size;
     let mut active: Vec<usize> = Vec::new();
@@ -72,7 +72,7 @@ pub fn lifted(
 }
 
 /// The stiffness of linear or quadratic displacements in the directions that supports leave free.
-struct Model {
+struct Elastic {
     quadratic: bool,
     /// First unknown of every node, and the directions of its unknowns.
     free: Vec<(usize, Vec<[f64; 2]>)>,
@@ -81,7 +81,7 @@ struct Model {
     largest: f64,
 }
 
-impl Model {
+impl Elastic {
     fn new(problem: &Problem, holds: &Holds, quadratic: bool) -> Self {
         let mut count = 0;
         let directions = |hold: &Hold| match *hold {
@@ -99,7 +99,7 @@ impl Model {
                 (count - own.len(), own)
             })
             .collect();
-        let mut model = Model { quadratic, free, count, entries: Vec::new(), largest: 0.0 };
+        let mut model = Elastic { quadratic, free, count, entries: Vec::new(), largest: 0.0 };
         model.assemble(problem);
         model
     }

@@ -9,7 +9,7 @@ use faer::Side;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 
-use super::constraints::{Basis, Constraints, Meaning};
+use super::constraints::{Constraints, Meaning, TractionShape};
 use super::dependence::Dependence;
 use super::reaction::Reaction;
 use super::rows::SparseRows;
@@ -61,7 +61,7 @@ impl Auxiliary {
         if let Some(normal) = reaction.normal() {
             let mut d = d_rest.clone();
             for (value, meaning) in d.iter_mut().zip(&constraints.d_meaning) {
-                if matches!(meaning, Meaning::ContactShear { basis: Basis::Mean, .. }) {
+                if matches!(meaning, Meaning::ContactShear { basis: TractionShape::Mean, .. }) {
                     *value += reaction.shear();
                 }
             }

@@ -13,7 +13,7 @@ use crate::problem::{Condition, Problem};
 
 /// The two basis functions of a traction component on an edge: T(p) = mean + slope · p.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
+pub enum TractionShape {
     /// S_j*.
     Mean,
     /// S_{j+1}*, with p from −1 at the first end of the edge to 1 at the second.
@@ -30,7 +30,7 @@ pub enum Meaning {
         /// 0 for T1, 1 for T2.
         component: usize,
         /// Mean or slope.
-        basis: Basis,
+        basis: TractionShape,
     },
     /// (3.6): T = P on Γ_τ.
     Applied {
@@ -39,21 +39,21 @@ pub enum Meaning {
         /// 0 for T1, 1 for T2.
         component: usize,
         /// Mean or slope.
-        basis: Basis,
+        basis: TractionShape,
     },
     /// (3.7) on Γ_0.
     RollerShear {
         /// Edge of the mesh.
         edge: usize,
         /// Mean or slope.
-        basis: Basis,
+        basis: TractionShape,
     },
     /// (3.7) on one side of Γ_K.
     ContactShear {
         /// Edge of the mesh.
         edge: usize,
         /// Mean or slope.
-        basis: Basis,
+        basis: TractionShape,
     },
     /// T_n' = T_n'' on Γ_K.
     ContactEquality {
@@ -62,7 +62,7 @@ pub enum Meaning {
         /// Pair of edges.
         pair: usize,
         /// Mean or slope along the first side's edge.
-        basis: Basis,
+        basis: TractionShape,
     },
     /// (3.8): the normal traction at an end of a contact pair.
     Reaction {
@@ -77,7 +77,7 @@ pub enum Meaning {
 
 impl fmt::Display for Meaning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = |b: &Basis| if *b == Basis::Mean { "mean" } else { "slope" };
+        let name = |b: &TractionShape| if *b == TractionShape::Mean { "mean" } else { "slope" };
         match self {
             Meaning::Continuity { edge, component, basis } => {
                 write!(f, "{} of T{} continuous across edge {edge}", name(basis), component + 1)
@@ -126,7 +126,7 @@ pub struct Constraints {
 }
 
 const AXES: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
-const BASES: [(Basis, [f64; 2]); 2] = [(Basis::Mean, [1.0, 0.0]), (Basis::Slope, [0.0, 1.0])];
+const BASES: [(TractionShape, [f64; 2]); 2] = [(TractionShape::Mean, [1.0, 0.0]), (TractionShape::Slope, [0.0, 1.0])];
 
 impl Constraints {
     /// Collects the constraints of `problem`; `external` are the 12 × 9 side parameters of every block.
@@ -156,7 +156,7 @@ impl Constraints {
                     Condition::Traction(p) => {
                         for (component, axis) in AXES.into_iter().enumerate() {
                             let [a, b] = [p[0][component], p[1][component]];
-                            let target = if basis == Basis::Mean { 0.5 * (a + b) } else { 0.5 * (b - a) };
+                            let target = if basis == TractionShape::Mean { 0.5 * (a + b) } else { 0.5 * (b - a) };
                             all.equality(Meaning::Applied { edge, component, basis }, target, vec![term(0, axis)]);
                         }
                     }

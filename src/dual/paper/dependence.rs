@@ -11,7 +11,7 @@
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::constraints::{Basis, Constraints, Meaning};
+use super::constraints::{Constraints, Meaning, TractionShape};
 use crate::problem::{Condition, Problem};
 
 /// One vector z with Bᵀz = 0.
@@ -171,9 +171,9 @@ fn parts(problem: &Problem) -> (Vec<usize>, usize) {
 pub fn multipliers(problem: &Problem, constraints: &Constraints, motion: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
     let mesh = &problem.mesh;
     // ∫ u ds and ∫ p u ds of a component.
-    let integral = |length: f64, [a, b]: [f64; 2], basis: Basis| match basis {
-        Basis::Mean => 0.5 * length * (a + b),
-        Basis::Slope => length * (b - a) / 6.0,
+    let integral = |length: f64, [a, b]: [f64; 2], basis: TractionShape| match basis {
+        TractionShape::Mean => 0.5 * length * (a + b),
+        TractionShape::Slope => length * (b - a) / 6.0,
     };
     let ends = |edge: usize| mesh.edges[edge].vertices.map(|v| motion[v]);
     let along = |u: [f64; 2], n: [f64; 2]| u[0] * n[0] + u[1] * n[1];

@@ -24,7 +24,7 @@ mod uzawa;
 
 pub use auxiliary::Auxiliary;
 pub use block::BlockMatrices;
-pub use constraints::{Basis, Constraints, Meaning};
+pub use constraints::{Constraints, Meaning, TractionShape};
 pub use dependence::{Dependence, dependences, multipliers};
 pub use program::{CompensatedBlock, Program};
 pub use reaction::{Reaction, applied};

@@ -10,7 +10,7 @@ use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
 ///
 /// Uniform pressure, the two pure shears along and across the axes of the frame, the four linear fields, and two that are
 /// piecewise linear. Nearly incompressible material makes the first soft, and nothing else.
-pub struct Basis {
+pub struct BlockBasis {
     /// The frame of the triangle.
     pub frame: Frame,
     local: [[f64; 2]; 3],
@@ -18,12 +18,12 @@ pub struct Basis {
     piecewise: [[[f64; 4]; 3]; 2],
 }
 
-impl Basis {
+impl BlockBasis {
     /// The basis on a counter-clockwise triangle.
     pub fn new(corners: [[f64; 2]; 3]) -> Self {
         let frame = Frame::new(corners);
         let local = from_centroid(corners).map(|p| frame.to_local(p));
-        Basis { piecewise: piecewise_parameters(local), frame, local }
+        BlockBasis { piecewise: piecewise_parameters(local), frame, local }
     }
 
     /// Corners of subtriangle `sub`, the centroid last.

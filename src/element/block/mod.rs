@@ -9,7 +9,7 @@
 mod basis;
 mod particular;
 
-use self::basis::Basis;
+use self::basis::BlockBasis;
 use self::particular::Particular;
 use super::{Compliance, EquilibriumElement, Modes, ModesMut};
 
@@ -43,7 +43,7 @@ impl EquilibriumElement for Block {
     }
 
     fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
-        let basis = Basis::new(corners);
+        let basis = BlockBasis::new(corners);
         let scale = basis.frame.scale;
         let flexibility = basis.flexibility(material).map(|row| row.map(|f| f * (scale * scale / material.young)));
         let inverse = inverse_factor(&flexibility);
@@ -83,7 +83,7 @@ impl EquilibriumElement for Block {
         particular: f64,
         out: &mut [[f64; 3]],
     ) {
-        let field = Basis::new(corners).field(&coefficients(modes.kept(), s, particular));
+        let field = BlockBasis::new(corners).field(&coefficients(modes.kept(), s, particular));
         let balance = Particular { corners, force: body_force.map(|f| particular * f) };
         out.copy_from_slice(&sum(field, balance.stress()));
     }

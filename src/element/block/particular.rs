@@ -1,7 +1,7 @@
 //! What balances a constant body force.
 
 use super::N;
-use super::basis::Basis;
+use super::basis::BlockBasis;
 use crate::element::Compliance;
 use crate::element::geometry::from_centroid;
 
@@ -70,7 +70,7 @@ impl Particular {
     }
 
     /// Its products with the modes.
-    pub fn overlaps(&self, basis: &Basis, inverse: &[[f64; N]; N], material: &Compliance) -> [f64; N] {
+    pub fn overlaps(&self, basis: &BlockBasis, inverse: &[[f64; N]; N], material: &Compliance) -> [f64; N] {
         let stress = self.stress();
         inverse.map(|column| self.energy(&stress, &basis.field(&column), material))
     }

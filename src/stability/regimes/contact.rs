@@ -1,7 +1,7 @@
 //! Contact: almost lost, at one point, at its limits, with and without other supports.
 
 use super::super::known::Known;
-use super::super::scenes::{Lift, Model, steps};
+use super::super::scenes::{Lift, Sketch, steps};
 use super::super::strips::Strips;
 use super::material::lift_known;
 use super::{CLOSED, PLAIN, Regime};
@@ -32,7 +32,7 @@ fn free_block(offset: f64) -> Result<Problem, String> {
     let lines = steps(0.0, 1.0, 8);
     let b = 12.0 * offset;
     let right: Vec<f64> = lines.iter().map(|x| 1.0 + x).collect();
-    Model::new()
+    Sketch::new()
         .block("left", [1.0, 0.3], &lines, &lines)
         .block("right", [1.0, 0.3], &right, &lines)
         .clamp("right_right")
@@ -67,7 +67,7 @@ fn waves(height: f64) -> Result<Problem, String> {
 /// its right end would move by ½; the obstacle stands `closing` short of that.
 fn hair(closing: f64) -> Result<Problem, String> {
     let lines = steps(0.0, 1.0, 4);
-    let mut model = Model::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
+    let mut model = Sketch::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
     model.scene.bodies[0].body_force = [1.0, 0.0];
     let sides = ContactSides::Rigid("bar_right".into());
     model.scene.contacts.push(Contact::new(sides, Gap::Constant(0.5 - closing)));

@@ -6,7 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::super::known::Known;
-use super::super::scenes::{Lift, Model, steps};
+use super::super::scenes::{Lift, Sketch, steps};
 use super::{PLAIN, Regime};
 use crate::problem::Problem;
 use crate::scene::{Gap, Load, Normals, Traction};
@@ -28,7 +28,7 @@ fn wave_known(_: f64) -> Known {
 fn along(rise: f64) -> Result<Problem, String> {
     let lines = steps(0.0, 1.0, 8);
     let to = |[x, y]: [f64; 2]| [x - rise * x * (1.0 - (PI * y).sin()), y];
-    let mut model = Model::new()
+    let mut model = Sketch::new()
         .block("left", [1.0, 0.3], &lines, &lines)
         .moved(to)
         .block("right", [1.0, 0.3], &steps(1.0, 2.0, 5), &steps(0.0, 1.0, 5))
@@ -48,7 +48,7 @@ const WEIGHT: f64 = 1.0;
 /// A disc (radii ½ and 1) in the bore of a plate that is clamped at radius 2, pressed down by its weight and turned by
 /// tractions of size `couple` on its inner boundary.
 fn bore(couple: f64, normals: Normals) -> Result<Problem, String> {
-    let mut model = Model::new().body("disc", 1.0, 0.3).body("plate", 1.0, 0.3);
+    let mut model = Sketch::new().body("disc", 1.0, 0.3).body("plate", 1.0, 0.3);
     ring(&mut model, "disc", [0.5, 1.0], ["hub", "rim"]);
     ring(&mut model, "plate", [1.0, 2.0], ["bore", "wall"]);
     let area = 0.375 * FACETS as f64 * (TAU / FACETS as f64).sin();
@@ -61,7 +61,7 @@ fn bore(couple: f64, normals: Normals) -> Result<Problem, String> {
 }
 
 /// A ring of [`FACETS`] by four cells.
-fn ring(model: &mut Model, body: &str, [inner, outer]: [f64; 2], names: [&str; 2]) {
+fn ring(model: &mut Sketch, body: &str, [inner, outer]: [f64; 2], names: [&str; 2]) {
     const LAYERS: usize = 4;
     let base = model.raw.points.len();
     for layer in 0..=LAYERS {

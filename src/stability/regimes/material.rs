@@ -1,7 +1,7 @@
 //! Materials: incompressibility, stiffness ratios.
 
 use super::super::known::Known;
-use super::super::scenes::{Lift, Model, polygon};
+use super::super::scenes::{Lift, Sketch, polygon};
 use super::super::strips::Strips;
 use super::{CLOSED, PLAIN, Regime};
 use crate::problem::Problem;
@@ -15,7 +15,7 @@ pub(super) fn lift_known() -> Known {
     Known::forces(vec![[-0.5, 0.0]], 4.0)
 }
 
-fn lift(nu: f64, ratio: f64) -> Model {
+fn lift(nu: f64, ratio: f64) -> Sketch {
     Lift { materials: [[1.0, nu], [ratio, nu]], ..Lift::new(8) }.model()
 }
 
@@ -27,7 +27,7 @@ fn row(nu: f64, ratio: f64) -> Strips {
 }
 
 fn punch(ratio: f64) -> Result<Problem, String> {
-    Model::new()
+    Sketch::new()
         .body("base", 1.0, 0.3)
         .body("punch", ratio, 0.3)
         .clamp("bottom")

@@ -1,7 +1,7 @@
 //! Meshes: slivers, fans, distortion, numbering, sides that do not match, coarse and fine.
 
 use super::super::known::Known;
-use super::super::scenes::{Lift, Model, Random, polygon, steps};
+use super::super::scenes::{Lift, Random, Sketch, polygon, steps};
 use super::super::strips::Strips;
 use super::material::lift_known;
 use super::{CLOSED, PLAIN, Regime};
@@ -68,7 +68,7 @@ fn beam(length: f64) -> Strips {
 }
 
 fn corner(size: f64) -> Result<Problem, String> {
-    Model::new().body("angle", 1.0, 0.3).roller("side").pressure("top", 1.0).rigid("foot").polygons(
+    Sketch::new().body("angle", 1.0, 0.3).roller("side").pressure("top", 1.0).rigid("foot").polygons(
         vec![polygon(
             "angle",
             &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]],
@@ -81,7 +81,7 @@ fn corner(size: f64) -> Result<Problem, String> {
 /// A square, cut from its left side to the middle.
 fn slit(shear: f64) -> Result<Problem, String> {
     let (xs, left) = (steps(0.0, 1.0, 8), |m: [f64; 2]| m[0] < 0.5);
-    let mut model = Model::new()
+    let mut model = Sketch::new()
         .block("lower", [1.0, 0.3], &xs, &steps(0.0, 0.5, 4))
         .block("upper", [1.0, 0.3], &xs, &steps(0.5, 1.0, 4))
         .bonded(|p| p[1] == 0.5 && p[0] >= 0.5)

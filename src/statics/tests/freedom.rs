@@ -3,7 +3,7 @@
 use super::build::{Build, transformed};
 use super::scenes::{cases, tower};
 use crate::problem::{Condition, Problem};
-use crate::statics::{Equilibrium, MotionKind, Statics, check, check_with_degrees};
+use crate::statics::{MotionKind, Solvability, Statics, check, check_with_degrees};
 
 /// ∫ F·u + ∫ P·u for u given at vertices and linear between, by the quadrature of products of linear functions.
 pub fn work_of_vertices(problem: &Problem, u: &[[f64; 2]]) -> f64 {
@@ -27,13 +27,13 @@ pub fn work_of_vertices(problem: &Problem, u: &[[f64; 2]]) -> f64 {
 
 fn impossible(statics: &Statics) -> (&str, MotionKind, &str) {
     match &statics.equilibrium {
-        Equilibrium::Impossible { bodies, sentence, .. } => (&bodies[0].bodies[0], bodies[0].kind, sentence),
-        Equilibrium::Possible { .. } => panic!("taken for possible"),
+        Solvability::Impossible { bodies, sentence, .. } => (&bodies[0].bodies[0], bodies[0].kind, sentence),
+        Solvability::Possible { .. } => panic!("taken for possible"),
     }
 }
 
 fn possible(statics: &Statics) -> bool {
-    matches!(statics.equilibrium, Equilibrium::Possible { .. })
+    matches!(statics.equilibrium, Solvability::Possible { .. })
 }
 
 fn stack(push: [f64; 2]) -> Problem {
@@ -66,14 +66,14 @@ fn block_on_a_plane_slides_under_any_sideways_load() {
         impossible(&statics).2,
         "Body `top` slides along its contact `top|base` in direction (1, 0): nothing holds it against the load 0.3."
     );
-    let Equilibrium::Possible { one_way, beyond_mesh } = at_rest.equilibrium else { unreachable!() };
+    let Solvability::Possible { one_way, beyond_mesh } = at_rest.equilibrium else { unreachable!() };
     assert!(one_way.is_none() && beyond_mesh.is_none());
 }
 
 #[test]
 fn unloaded_block_may_lift_off() {
     let statics = check(&stack([0.0, 0.0])).unwrap();
-    assert!(matches!(statics.equilibrium, Equilibrium::Possible { one_way: Some(_), beyond_mesh: None }));
+    assert!(matches!(statics.equilibrium, Solvability::Possible { one_way: Some(_), beyond_mesh: None }));
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn pressure_close_to_an_end_is_beyond_a_coarse_mesh() {
     let reach = 2.0 * (1.0 - 1.0 / 12.0) - 1.0;
     for (lean, beyond) in [(reach - 1e-6, false), (reach + 1e-6, true), (1.0 - 1e-6, true)] {
         let statics = check(&tower(lean)).unwrap();
-        let Equilibrium::Possible { beyond_mesh, .. } = &statics.equilibrium else { panic!("{lean}") };
+        let Solvability::Possible { beyond_mesh, .. } = &statics.equilibrium else { panic!("{lean}") };
         assert_eq!(beyond_mesh.is_some(), beyond, "{lean}");
         let told =
             statics.notes.iter().any(|note| note.contains("about (0.9167, 1)") && note.contains("refine the ends"));
@@ -190,7 +190,7 @@ fn pressure_of_a_higher_degree_acts_closer_to_an_end() {
             let problem = tower(lean);
             let is_beyond = |degree: &dyn Fn(usize) -> usize| {
                 let statics = check_with_degrees(&problem, degree).unwrap();
-                let Equilibrium::Possible { beyond_mesh, .. } = statics.equilibrium else { panic!("{lean}") };
+                let Solvability::Possible { beyond_mesh, .. } = statics.equilibrium else { panic!("{lean}") };
                 assert_eq!(beyond_mesh.is_some(), statics.notes.iter().any(|note| note.contains("refine the ends")));
                 beyond_mesh.is_some()
             };
@@ -206,8 +206,8 @@ fn pressure_of_a_higher_degree_acts_closer_to_an_end() {
 fn borderline_is_told() {
     for case in cases() {
         let one_way = |excess: f64| match check(&(case.scene)(excess)).unwrap().equilibrium {
-            Equilibrium::Possible { one_way, .. } => one_way.is_some(),
-            Equilibrium::Impossible { .. } => panic!("{}", case.name),
+            Solvability::Possible { one_way, .. } => one_way.is_some(),
+            Solvability::Impossible { .. } => panic!("{}", case.name),
         };
         assert!(one_way(0.0), "{}", case.name);
         assert!(!one_way(-1e-2), "{}", case.name);

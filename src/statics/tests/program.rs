@@ -4,7 +4,7 @@ use super::build::transformed;
 use super::freedom::work_of_vertices;
 use super::scenes::cases;
 use crate::problem::{Condition, Problem};
-use crate::statics::{Components, Equilibrium, RigidMotion, check};
+use crate::statics::{Components, RigidMotion, Solvability, check};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
 use proptest::prelude::*;
@@ -75,7 +75,7 @@ proptest! {
         let problem = transformed(problem, angle, 1.0, 1.0, [0.3, -0.2]);
         let work = largest_work(&problem);
         prop_assume!(!(1e-7..1e-4).contains(&work));
-        let impossible = matches!(check(&problem).unwrap().equilibrium, Equilibrium::Impossible { .. });
+        let impossible = matches!(check(&problem).unwrap().equilibrium, Solvability::Impossible { .. });
         prop_assert_eq!(impossible, work > 1e-5, "{}: the program finds work {}", cases()[which].name, work);
     }
 }

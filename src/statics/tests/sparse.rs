@@ -7,7 +7,7 @@ use crate::statics::balance::{Cone, Verdict};
 use crate::statics::few::DenseCone;
 use crate::statics::many::SparseCone;
 use crate::statics::sparse::{Row, Triangular, dense, least_squares};
-use crate::statics::{Components, Equilibrium, LoadResultants, MotionKind, check, restraint};
+use crate::statics::{Components, LoadResultants, MotionKind, Solvability, check, restraint};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
@@ -72,12 +72,12 @@ fn rows_of_blocks_stand_until_one_is_pushed_off() {
     let n = 120;
     for back in [0.0, 0.5, 1.0 - 1e-7] {
         let statics = check(&row_of_blocks(n, back)).unwrap();
-        assert!(matches!(statics.equilibrium, Equilibrium::Possible { .. }), "{back}");
+        assert!(matches!(statics.equilibrium, Solvability::Possible { .. }), "{back}");
         assert!(statics.held.is_empty());
     }
     for back in [1.0 + 1e-6, 3.0] {
         let statics = check(&row_of_blocks(n, back)).unwrap();
-        let Equilibrium::Impossible { bodies, sentence, work, .. } = &statics.equilibrium else { panic!("{back}") };
+        let Solvability::Impossible { bodies, sentence, work, .. } = &statics.equilibrium else { panic!("{back}") };
         assert_eq!(bodies[0].bodies, ["b60"]);
         assert_eq!(bodies.len(), n / 2 + 1);
         assert!(matches!(bodies[0].kind, MotionKind::LiftsOff { centre: None }), "{sentence}");

@@ -3,13 +3,13 @@
 use super::build::{renumbered, transformed};
 use super::scenes::{Case, Gives, cases};
 use crate::problem::Problem;
-use crate::statics::{Equilibrium, MotionKind, Moving, check};
+use crate::statics::{MotionKind, Moving, Solvability, check};
 
 /// The motion a scene is found to give way in, and the sentence; `None` where it stands.
 fn gives(problem: &Problem) -> Option<(Vec<Moving>, f64, String)> {
     match check(problem).unwrap().equilibrium {
-        Equilibrium::Possible { .. } => None,
-        Equilibrium::Impossible { work, bodies, sentence, .. } => Some((bodies, work, sentence)),
+        Solvability::Possible { .. } => None,
+        Solvability::Impossible { work, bodies, sentence, .. } => Some((bodies, work, sentence)),
     }
 }
 
@@ -74,7 +74,7 @@ fn motion_is_allowed_and_its_work_is_positive() {
     for case in cases() {
         let problem = (case.scene)(1e-3);
         let statics = check(&problem).unwrap();
-        let Equilibrium::Impossible { motion, work, .. } = &statics.equilibrium else { panic!("{}", case.name) };
+        let Solvability::Impossible { motion, work, .. } = &statics.equilibrium else { panic!("{}", case.name) };
         let u = motion.at_vertices(&problem, &statics.components);
         for pair in problem.pairs() {
             for end in 0..2 {

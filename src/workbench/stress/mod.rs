@@ -52,9 +52,9 @@ pub trait StressElement {
 }
 
 /// An equilibrium element of the library, or one of somebody's own.
-pub struct Equilibrium(pub &'static dyn EquilibriumElement);
+pub struct SolverElement(pub &'static dyn EquilibriumElement);
 
-impl StressElement for Equilibrium {
+impl StressElement for SolverElement {
     fn name(&self) -> &str {
         self.0.name()
     }

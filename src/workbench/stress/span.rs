@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::divergence::at_points;
 use super::interpolation::orthonormal;
-use super::{Equilibrium, FORCE, StressElement, usual};
+use super::{FORCE, SolverElement, StressElement, usual};
 use crate::element::{MAX_DEGREE, block, lattice_len};
 use crate::report::number::significant;
 use crate::workbench::finding::{Fault, Measured, Property};
@@ -26,7 +26,7 @@ fn measure(e: &dyn StressElement) -> Result<Measured, Fault> {
     if !(1..=MAX_DEGREE).contains(&p) {
         return Err(Fault::NotMade(format!("there is no block of degree {p}")));
     }
-    let theirs = Equilibrium(block(p)).fields(fields.corners, &Material::USUAL.compliance(), FORCE);
+    let theirs = SolverElement(block(p)).fields(fields.corners, &Material::USUAL.compliance(), FORCE);
     // Evaluated at the same points: a field of one part is taken on the three.
     let columns: Vec<Vec<f64>> = fields
         .fields

@@ -1,7 +1,7 @@
 //! Equilibrium elements that are broken on purpose.
 
 use hypercircle::element::{Block, Compliance, EquilibriumElement, Modes, ModesMut};
-use hypercircle::workbench::stress::Equilibrium;
+use hypercircle::workbench::stress::SolverElement;
 use hypercircle::workbench::{Options, Report};
 
 /// What is done to the block of degree 1.
@@ -92,7 +92,7 @@ impl EquilibriumElement for Broken {
 
 /// The properties that fail.
 fn failing(broken: &'static Broken) -> Vec<String> {
-    let report = Report::of_stress(&Equilibrium(broken), &Options::default());
+    let report = Report::of_stress(&SolverElement(broken), &Options::default());
     assert_eq!(report.passed, broken.0 == Defect::None, "{:?}: {}", broken.0, report.verdict);
     report.findings.into_iter().filter(|f| f.is_missing()).map(|f| f.name).collect()
 }
