@@ -300,15 +300,3 @@ fn hash(path: &Path) -> Result<String, CampaignError> {
     let bytes = std::fs::read(path).map_err(|source| CampaignError::Scene { path: path.to_path_buf(), source })?;
     Ok(crate::study::hash(&bytes))
 }
-
-/// The reason in an end.
-pub(super) fn words(end: &End) -> &str {
-    match end {
-        End::Solved => "solved",
-        End::NoEquilibrium(text)
-        | End::Refused(text)
-        | End::NotConverged(text)
-        | End::NotApplicable(text)
-        | End::Crashed(text) => text,
-    }
-}

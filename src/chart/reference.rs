@@ -21,7 +21,7 @@ pub fn from_runs(runs: &[(String, Ended)]) -> Result<Reference, String> {
             Ended::Told(results) => {
                 for Measured { method, end, answer, .. } in results {
                     let Some(answer) = answer else {
-                        reasons.push(format!("{what} ({method}): {}", super::campaign::words(end)));
+                        reasons.push(format!("{what} ({method}): {}", end.words()));
                         continue;
                     };
                     let name = format!("{method}, {what}, {} triangles", answer.triangles);

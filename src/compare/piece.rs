@@ -104,6 +104,12 @@ fn product(f: &[f64], g: &[f64]) -> f64 {
     side::moments(f, g.len() - 1).iter().zip(g).map(|(m, g)| m * g).sum()
 }
 
+/// ∫ |dp| along a contact, jumps between edges included.
+pub fn variation(pieces: &[Piece]) -> f64 {
+    let jumps = pieces.windows(2).map(|w| (w[1].ends()[0] - w[0].ends()[1]).abs());
+    pieces.iter().map(Piece::variation).chain(jumps).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,5 +172,14 @@ mod tests {
     fn variation_goes_through_the_middle() {
         assert_eq!(Piece::broken(vec![1.0, 2.0, 0.0]).variation(), 3.0);
         assert!((Piece::polynomial(vec![0.0, 0.0, 1.0, 0.0]).variation() - 8.0 / 9.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn variation_counts_every_way_up_and_down() {
+        let up_and_down = [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]].map(|p| Piece::broken(p.to_vec()));
+        assert_eq!(variation(&up_and_down), 4.0);
+        let with_a_jump = [Piece::polynomial(vec![0.0, 1.0]), Piece::polynomial(vec![3.0])];
+        assert_eq!(variation(&with_a_jump), 3.0);
+        assert_eq!(variation(&[]), 0.0);
     }
 }

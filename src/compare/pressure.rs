@@ -1,7 +1,7 @@
 //! Contact pressure from both sides, along each interface.
 
 use super::candidate::{Judged, Reactions};
-pub use super::piece::Piece;
+pub use super::piece::{Piece, variation};
 use crate::dual::DualSolution;
 use crate::element::Strains;
 use crate::element::displacement::through;

@@ -10,6 +10,7 @@ mod memory;
 mod method;
 mod primal;
 mod record;
+mod settings;
 mod solve;
 
 pub use child::{Ended, Limits, run};
@@ -17,7 +18,8 @@ pub use clock::Clock;
 pub use machine::Machine;
 pub use method::{Family, Method};
 pub use record::{Answer, Asked, End, Measured, Seconds, finite_or_null};
-pub use solve::{Settings, measure};
+pub use settings::Settings;
+pub use solve::measure;
 
 /// What is being measured, for whoever waits.
 #[derive(Debug, Clone, PartialEq, Eq)]

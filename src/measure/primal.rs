@@ -2,10 +2,9 @@
 
 use super::memory::Watch;
 use super::record::{Answer, Asked, End, Measured, Seconds};
-use super::solve::variation;
 use super::{Clock, Method, Settings};
 use crate::bounds::potential;
-use crate::compare::pressure::{maximum, reaction_pressure};
+use crate::compare::pressure::{maximum, reaction_pressure, variation};
 use crate::compare::{Candidate, Reactions};
 use crate::element::Displacement;
 use crate::primal::{self, PrimalError, PrimalSeconds};

@@ -35,6 +35,20 @@ pub enum End {
     Crashed(String),
 }
 
+impl End {
+    /// The reason in it.
+    pub fn words(&self) -> &str {
+        match self {
+            End::Solved => "solved",
+            End::NoEquilibrium(text)
+            | End::Refused(text)
+            | End::NotConverged(text)
+            | End::NotApplicable(text)
+            | End::Crashed(text) => text,
+        }
+    }
+}
+
 /// Wall-clock seconds of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Seconds {

@@ -1,50 +1,16 @@
 //! What happens inside the process: make the problem, solve it, evaluate the answer.
 
-use super::Clock;
 use super::memory;
 use super::method::{Family, Method};
 use super::primal;
 use super::record::{Answer, Asked, End, Measured, Seconds};
-
-use crate::budget::Budget;
-use crate::compare::pressure::{Piece, dual_pressure, maximum, resultant};
+use super::{Clock, Settings};
+use crate::compare::pressure::{dual_pressure, maximum, resultant, variation};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
 use crate::element::{Elements, block};
-use crate::primal::SolverCommand;
 use crate::problem::Problem;
-use crate::study::{self, Certified, Goal, StudyError, Wanted};
-
-/// Choices of a run that are not the problem's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Threads.
-    pub threads: usize,
-    /// Largest guaranteed relative error of an adaptive run.
-    pub tolerance: Option<f64>,
-    /// Triangles beyond which an adaptive run stops.
-    pub max_triangles: Option<usize>,
-    /// Seconds that a process started from here may take.
-    pub seconds: f64,
-    /// Memory that the process may hold.
-    pub budget: Budget,
-    /// Names of the quantities of the scene that are asked for; an adaptive run has its tolerance for these then.
-    pub quantities: Vec<String>,
-    /// Step length of the paper's plain iteration, relative to the largest that converges.
-    pub step_length: Option<f64>,
-    /// A displacement solver to run in the place of FEniCSx.
-    pub program: Option<SolverCommand>,
-}
-
-impl Settings {
-    /// What an adaptive run is to reach.
-    fn goal(&self) -> Goal {
-        let tolerance = self.tolerance.unwrap_or(f64::MIN_POSITIVE);
-        let wanted = self.quantities.iter().map(|name| Wanted { name: name.clone(), tolerance });
-        let of_energy = if self.quantities.is_empty() { tolerance } else { f64::INFINITY };
-        Goal { max_triangles: self.max_triangles, wanted: wanted.collect(), ..Goal::new(of_energy) }
-    }
-}
+use crate::study::{self, Certified, Goal, StudyError};
 
 /// Solves what `make` makes with each of `methods`.
 ///
@@ -210,24 +176,4 @@ fn answer(certified: &Certified) -> Answer {
         answer.variation.push(variation(&pieces));
     }
     answer
-}
-
-/// ∫ |dp| along a contact, jumps between edges included.
-pub(super) fn variation(pieces: &[Piece]) -> f64 {
-    let jumps = pieces.windows(2).map(|w| (w[1].ends()[0] - w[0].ends()[1]).abs());
-    pieces.iter().map(Piece::variation).chain(jumps).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn variation_counts_every_way_up_and_down() {
-        let up_and_down = [[0.0, 1.0, 2.0], [2.0, 1.0, 0.0]].map(|p| Piece::broken(p.to_vec()));
-        assert_eq!(variation(&up_and_down), 4.0);
-        let with_a_jump = [Piece::polynomial(vec![0.0, 1.0]), Piece::polynomial(vec![3.0])];
-        assert_eq!(variation(&with_a_jump), 3.0);
-        assert_eq!(variation(&[]), 0.0);
-    }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::raw::{At, RawContact, RawCurve, RawGap, RawScene, RawSupport, RawTraction, Table};
-use super::validate::{Source, counted};
+use super::source::{Source, counted};
 use super::{Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction};
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";

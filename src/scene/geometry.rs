@@ -4,7 +4,7 @@ use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::polygon::{Defect, defect};
 use super::raw::{At, RawArc, RawGeometry, RawPolygon, RawScene, Table};
-use super::validate::{Source, counted};
+use super::source::{Source, counted};
 use super::{Arc, Body, Circle, MeshSource, Polygon};
 
 pub(super) fn geometry(

@@ -18,6 +18,7 @@ mod polygon;
 mod quantity;
 mod raw;
 mod read;
+mod source;
 pub(crate) mod text;
 mod validate;
 

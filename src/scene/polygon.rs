@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use robust::{Coord, orient2d};
 
-use super::validate::counted;
+use super::source::counted;
 
 /// Largest extent, and reciprocal of the smallest, that double precision and the mesher handle without loss.
 pub(super) const EXTENT: f64 = 1e30;

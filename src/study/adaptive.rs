@@ -15,7 +15,7 @@ use super::dossier::in_numbers;
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::outlook::outlook;
-use super::rounds::{Rounds, across};
+use super::rounds::{Next, Rounds, across};
 use super::stage::{Solved, Stage};
 use super::trend::{Seen, learnt};
 use crate::compare::{Allowances, Basis, Check, Comparison};
@@ -163,17 +163,17 @@ pub fn adapt(
         let seconds = goal.max_seconds.map(|most| [most - spent, row.step_seconds]);
         let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest, seconds);
         let finer = match (goal.max_seconds, fault, terms) {
-            (_, Some(fault), _) if shortest > LONGEST => Err(fault),
-            (Some(most), ..) if spent >= most => Err(format!("{most} seconds have passed")),
-            _ if stalls(&history, goal) => Err("it no longer makes the error smaller".to_string()),
-            (.., Err(reason)) => Err(format!("no upper bound could be built ({reason})")),
+            (_, Some(fault), _) if shortest > LONGEST => Next::Nothing(fault),
+            (Some(most), ..) if spent >= most => Next::Nothing(format!("{most} seconds have passed")),
+            _ if stalls(&history, goal) => Next::Nothing("it no longer makes the error smaller".to_string()),
+            (.., Err(reason)) => Next::Nothing(format!("no upper bound could be built ({reason})")),
             (.., Ok(terms)) => {
                 rounds.next(&solved.solved, terms, *left, row.rate.is_some_and(|rate| rate < STALLED))?
             }
         };
         stage = match finer {
-            Ok(finer) => finer,
-            Err(reason) => {
+            Next::Mesh(finer) => *finer,
+            Next::Nothing(reason) => {
                 let pace = outlook(&history, goal, &admission, Size::of_degrees(mesh.0, mesh.1));
                 let stopped = Some(stopped(&reason, row, goal, pace));
                 return Ok(Adapted { certified: solved.solved.certified, history, stopped });

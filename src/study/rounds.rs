@@ -72,6 +72,14 @@ struct Aim {
     most: f64,
 }
 
+/// What comes after a mesh.
+pub enum Next {
+    /// Another mesh.
+    Mesh(Box<Stage>),
+    /// None, and why.
+    Nothing(String),
+}
+
 /// What a round came to.
 enum Round {
     /// A finer mesh, and the terms of the gap to expect on it.
@@ -95,27 +103,21 @@ impl<'a> Rounds<'a> {
         Rounds { goal, admission, forecast, problem, kept, smallest: smallest_area(problem, shortest), seconds }
     }
 
-    /// The next mesh, or the reason why there is none; `terms` are those of what is larger by the factor `left` than it may
+    /// What comes next; `terms` are those of what is larger by the factor `left` than it may
     /// be, which the last mesh hardly made smaller where it `stalls`.
     ///
     /// # Errors
     /// [`StudyError::Mesh`].
-    pub fn next(
-        &self,
-        solved: &Solved,
-        terms: &Indicators,
-        left: f64,
-        stalls: bool,
-    ) -> Result<Result<Stage, String>, StudyError> {
+    pub fn next(&self, solved: &Solved, terms: &Indicators, left: f64, stalls: bool) -> Result<Next, StudyError> {
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
         stage.ways.clone_from(&solved.ways);
         if let Some(reason) = self.beyond_numbers(&stage, terms, left, stalls) {
-            return Ok(Err(reason));
+            return Ok(Next::Nothing(reason));
         }
         let solved = unknowns(&stage);
         let in_time = self.seconds.map_or(GROWTH, |[left, last]| (left / last).powf(1.0 / TIME));
         if in_time < WORTH_A_SOLVE {
-            return Ok(Err("the time that is left is too short for the next mesh".to_string()));
+            return Ok(Next::Nothing("the time that is left is too short for the next mesh".to_string()));
         }
         let growth = GROWTH.min(in_time).min(MORE * (left / (AIM * AIM)).powf(SLOWEST));
         let aim = Aim { enough: terms.total() * AIM * AIM / left, solved, most: growth * solved };
@@ -125,12 +127,12 @@ impl<'a> Rounds<'a> {
                 Round::Finer(next, predicted) => (stage, terms) = (*next, predicted),
                 Round::Last(reason, worth) => {
                     let useful = unknowns(&stage) >= worth * solved && unknowns(&stage) > solved;
-                    return Ok(if useful { Ok(stage) } else { Err(reason) });
+                    return Ok(if useful { Next::Mesh(Box::new(stage)) } else { Next::Nothing(reason) });
                 }
             }
             let count = unknowns(&stage);
             if count >= (1.0 - SLACK) * aim.most || (count >= WORTH_A_SOLVE * solved && terms.total() <= aim.enough) {
-                return Ok(Ok(stage));
+                return Ok(Next::Mesh(Box::new(stage)));
             }
         }
     }

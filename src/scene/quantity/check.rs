@@ -9,8 +9,8 @@ use crate::scene::conditions::{Conditions, edge_names};
 use crate::scene::error::{Fault, SceneError};
 use crate::scene::fault::names;
 use crate::scene::raw::{At, RawScene};
+use crate::scene::source::Source;
 use crate::scene::text::acts;
-use crate::scene::validate::Source;
 use crate::scene::{Body, BoundaryUse, MeshSource};
 
 /// What quantities may name.

@@ -6,7 +6,7 @@ use crate::scene::conditions::Conditions;
 use crate::scene::error::{Fault, SceneError};
 use crate::scene::polygon::{Defect, area, defect};
 use crate::scene::raw::{At, Pair};
-use crate::scene::validate::counted;
+use crate::scene::source::counted;
 use crate::scene::{BoundaryUse, ContactSides};
 
 /// Part of its arc length below which the slope of a window is a jump.
