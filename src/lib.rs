@@ -83,4 +83,5 @@ pub mod scene;
 pub mod stability;
 pub mod statics;
 pub mod study;
+mod vector;
 pub mod workbench;

@@ -23,6 +23,7 @@ use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
 use crate::statics::cone::unbalanced;
+use crate::vector::dot;
 
 /// A coefficient this close below its bound, relative to the largest displacement, is closed.
 const CLOSED: f64 = 1e-9;
@@ -304,8 +305,4 @@ impl End {
             gap: pair.gap[k],
         })
     }
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }

@@ -20,6 +20,7 @@ use super::stress::primal_means;
 use crate::dual::DualSolution;
 use crate::element::contraction;
 use crate::problem::{Condition, Interface, Problem};
+use crate::vector::dot;
 
 /// Mean pressures at a vertex of Γ_K, weighted by its hat function.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -208,8 +209,4 @@ fn works(
         }
     }
     sums
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }

@@ -6,6 +6,8 @@ use super::contact_moments::columns;
 use super::resultants::work_within;
 use crate::element::{SideValues, StressField, side};
 use crate::problem::{Condition, ContactPair, Problem, Scales};
+use crate::vector::long::largest;
+use crate::vector::norm;
 
 /// How well a stress field balances the loads.
 ///
@@ -243,12 +245,4 @@ pub fn load_scale(scales: &Scales, stress: impl FnOnce() -> StressField) -> f64 
     let stress = stress();
     let least = LEAST_STRESS * scales.data.stress;
     (0..stress.len()).fold(least, |m, t| m.max(largest(stress.block(t).as_flattened())))
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, v| m.max(v.abs()))
-}
-
-fn norm(v: [f64; 2]) -> f64 {
-    v[0].hypot(v[1])
 }

@@ -8,6 +8,7 @@
 use super::DualError;
 use super::factor::Factor;
 use super::qp::{ContactState, GRAZING, next_state};
+use crate::vector::long::{dot, largest};
 
 /// S as an operator, scaled to a diagonal of ones.
 pub struct LongContact<'a> {
@@ -222,14 +223,6 @@ fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn largest(a: &[f64]) -> f64 {
-    a.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 fn norm(a: &[f64]) -> f64 {

@@ -15,6 +15,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
 use super::DualError;
+use crate::vector::long::largest;
 
 /// The contact state.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,10 +78,6 @@ fn slack(s: &Mat<f64>, c: &[f64], jumps: &[f64], closed: &[bool]) -> Vec<f64> {
     }
     let open = terms.iter().zip(closed).filter(|(_, closed)| !**closed).fold(0.0_f64, |m, (t, _)| m.max(*t));
     terms.into_iter().map(|own| GRAZING * own.max(open)).collect()
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// The largest of the bounds that there are.

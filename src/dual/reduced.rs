@@ -12,6 +12,7 @@ use super::system::{System, isolate};
 use super::{DualError, Options};
 use crate::budget::Budget;
 use crate::problem::Problem;
+use crate::vector::long::largest;
 
 /// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
 const BROKEN: f64 = 1e-9;
@@ -25,10 +26,6 @@ const DENSE: f64 = 32.0;
 /// Entries of S, times motions that it does not resist, up to which it is cleared of their rounding errors: many bodies in
 /// contact would make that cost more than everything else.
 const MOST_CLEARING: usize = 1_000_000_000;
-
-fn largest(r: &[f64]) -> f64 {
-    r.iter().fold(0.0, |m, v| m.max(v.abs()))
-}
 
 /// The factorised system with its jumps last.
 #[derive(Debug)]

@@ -10,6 +10,7 @@ use super::DualError;
 use super::hybrid::{parameters, residual};
 use super::system::System;
 use crate::problem::Problem;
+use crate::vector::long::{axpy, dot, largest};
 
 /// Traction jumps and their resultants that are no more than round-off against the loads.
 pub const ROUND_OFF: f64 = 2e-14;
@@ -146,16 +147,4 @@ impl Refinement<'_> {
         let over = |a: f64, b: f64| if a > 0.0 { a / b.max(f64::MIN_POSITIVE) } else { 0.0 };
         over(largest, load).max(if gross > 0.0 { over(resultant, gross) } else { 0.0 })
     }
-}
-
-fn largest(r: &[f64]) -> f64 {
-    r.iter().fold(0.0, |m, v| m.max(v.abs()))
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn axpy(y: &mut [f64], a: f64, x: &[f64]) {
-    y.iter_mut().zip(x).for_each(|(y, x)| *y += a * x);
 }

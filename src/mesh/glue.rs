@@ -12,6 +12,7 @@ use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation};
 use crate::scene::Note;
 use crate::scene::{Contact, ContactSides, Scene};
+use crate::vector::distance;
 
 /// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
 /// lies on it.
@@ -209,10 +210,6 @@ fn insert_breaks(
         }
     }
     Ok(mesh)
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// Distance of `p` from a segment.

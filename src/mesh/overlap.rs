@@ -10,6 +10,7 @@ use super::boxes::{BoxTree, around};
 use super::error::{MeshError, at};
 use super::labels::contact_names;
 use crate::scene::Scene;
+use crate::vector::{cross, minus};
 
 /// Part of the shorter edge by which the ends of one edge must lie on either side of another to cross it. What touches
 /// within this distance is left to the gluing of contact sides.
@@ -101,12 +102,4 @@ fn inclusion(mesh: &Triangulation, boundary: &[usize]) -> Option<[f64; 2]> {
             .sum();
         layers > 1
     })
-}
-
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }

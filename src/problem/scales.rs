@@ -9,6 +9,7 @@
 
 use super::{Condition, Problem};
 use crate::scene::{Body, Kinematics};
+use crate::vector::norm;
 
 /// Rounding errors that a computed number carries, relative to the largest that it was computed from.
 pub const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
@@ -102,10 +103,6 @@ impl Scales {
         }
         ROUND_OFF * amplified(degree) * self.imposed * per_length(problem, &self.modulus, t)
     }
-}
-
-fn norm(v: [f64; 2]) -> f64 {
-    v[0].hypot(v[1])
 }
 
 fn modulus(kinematics: Kinematics, body: &Body) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::components::{Components, RigidMotion};
 use crate::problem::{Condition, Problem};
+use crate::vector::cross;
 
 /// Resultants of body forces and tractions on each piece of the mesh, times the thickness. Exact but for round-off:
 /// body forces are constant, tractions are linear along an edge, and the sums are compensated.
@@ -74,10 +75,6 @@ impl LoadResultants {
 
 fn arm(point: [f64; 2], centre: [f64; 2]) -> [f64; 2] {
     [point[0] - centre[0], point[1] - centre[1]]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 /// A sum that carries its own round-off along (Neumaier).

@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::element::quadrature::segment_rule;
+use crate::vector::cross;
 
 /// Of the size of the element, how far a node may lie from the side that it is on.
 const ON_SIDE: f64 = 1e-6;
@@ -95,10 +96,6 @@ pub fn side_weights(nodes: &[[f64; 2]], side: &[usize], f: impl Fn(f64) -> f64) 
     };
     let rule = segment_rule(2 * side.len());
     (0..side.len()).map(|i| rule.iter().map(|&(s, w)| w * f(s) * lagrange(i, s)).sum()).collect()
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 /// Twice the area of a triangle, with its sign.

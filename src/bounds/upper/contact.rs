@@ -8,6 +8,7 @@ use super::rows::{Row, of_pair, sides};
 use crate::dual::DualSolution;
 use crate::element::side::lower_moments;
 use crate::problem::{ContactPair, Problem};
+use crate::vector::dot;
 
 /// Jumps beyond a bound by less than this, relative to the size of the displacement, are at the bound: the widening of
 /// the upper bound covers rounding of this size.
@@ -182,11 +183,6 @@ pub fn restrict_inside(problem: &Problem, groups: &[Vec<Row>], field: &mut Nodal
             jump.shift(&mut field.values, node, jump.direction(node), -off / part);
         }
     }
-}
-
-/// a·b.
-pub fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// Adds `step` times `direction` to `u`.

@@ -6,12 +6,13 @@
 //! at most zero: the jump is admissible everywhere and no volume is lost.
 
 use super::NoUpperBound;
-use super::contact::{ROUNDING, dot, give, mean_excess, shift};
+use super::contact::{ROUNDING, give, mean_excess, shift};
 use super::holds::{Hold, jump_rounding};
 use super::nodes::Nodes;
 use super::rows::Row;
 use crate::dual::DualSolution;
 use crate::problem::{ContactPair, Problem};
+use crate::vector::dot;
 
 /// Bounds on the jump at one end of one pair.
 pub struct End<'a> {

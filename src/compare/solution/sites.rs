@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::bounds::{Hold, Holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
+use crate::vector::{cross, dot};
 
 /// Directions whose cross product is smaller are one.
 const PARALLEL: f64 = 1e-9;
@@ -217,12 +218,4 @@ fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
         Group { nodes, sites, rows, basis }
     };
     members.into_values().map(group).collect()
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }

@@ -1,6 +1,7 @@
 //! The simplest distribution of reaction forces on Γ_K: Examples 1, 2 and 3 of Section 2.
 
 use crate::problem::{Condition, Problem};
+use crate::vector::cross;
 
 /// What λ̄ is chosen to be on Γ_K.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,8 +134,4 @@ fn has(problem: &Problem, body: usize, is: impl Fn(&Condition) -> bool) -> bool 
 fn bonded(problem: &Problem) -> bool {
     let mesh = &problem.mesh;
     mesh.edges.iter().any(|edge| matches!(edge.triangles, [Some(a), Some(b)] if mesh.body[a] != mesh.body[b]))
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }

@@ -14,6 +14,7 @@ use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::problem::Problem;
 use crate::scene::Scene;
+use crate::vector::distance;
 
 /// Distance, in parts of the longest edge of a triangle, within which two points are one.
 const CLOSE: f64 = 1e-6;
@@ -276,10 +277,6 @@ fn longest(corners: &[[f64; 2]; 3]) -> f64 {
 
 fn centroid(corners: &[[f64; 2]; 3]) -> [f64; 2] {
     [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0)
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 fn describe(scene: &Scene, number: usize, corners: [[f64; 2]; 3]) -> String {
