@@ -144,7 +144,8 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
 mod tests {
     use clap::{CommandFactory, Parser};
 
-    use super::{Cli, Command, options::Method};
+    use super::{Cli, Command};
+    use crate::dual::Solver;
 
     fn parse(line: &str) -> Result<Command, clap::Error> {
         Cli::try_parse_from(line.split_whitespace()).map(|cli| cli.command)
@@ -162,7 +163,7 @@ mod tests {
                     --max-memory 2G";
         let Ok(Command::Verify(args)) = parse(line) else { panic!("{:?}", parse(line)) };
         assert_eq!(args.scenes, [std::path::PathBuf::from("a.toml")]);
-        assert_eq!((args.solve.method, args.solve.refine, args.solve.threads), (Method::ActiveSet, 2, 2));
+        assert_eq!((args.solve.method, args.solve.refine, args.solve.threads), (Solver::ActiveSet, 2, 2));
         assert_eq!(args.solve.memory.max_memory, Some(2_000_000_000));
         assert_eq!((args.limits.max_triangles, args.limits.max_seconds), (Some(9), Some(1.5)));
         let allowed: Vec<_> = args.judge.allow.iter().map(|a| (a.name.as_str(), a.value)).collect();

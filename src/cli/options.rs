@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum, value_parser};
 
 use super::{CliError, Exit};
 use crate::budget::{self, Budget};
-use crate::dual::LinearSolver;
+use crate::dual::{LinearSolver, Solver};
 use crate::element::Elements;
 use crate::report;
 use crate::scene::Scene;
@@ -15,30 +15,6 @@ use crate::study::{Adapt, GivenValue, Wanted};
 
 /// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
 const MOST_REFINEMENTS: i64 = 12;
-
-/// How the dual problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// One sparse factorisation, contact solved on its Schur complement
-    Condensed,
-    /// Interior point
-    Clarabel,
-    /// Uzawa's iteration on the multipliers
-    Uzawa,
-    /// Primal–dual active set, refactorising at each step
-    ActiveSet,
-}
-
-impl std::fmt::Display for Method {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Method::Condensed => "condensed",
-            Method::Clarabel => "clarabel",
-            Method::Uzawa => "uzawa",
-            Method::ActiveSet => "active-set",
-        })
-    }
-}
 
 /// What runs on other processors, or other machines.
 #[derive(Debug, Clone, Copy, Args)]
@@ -68,8 +44,8 @@ pub enum Engine {
 #[derive(Debug, Clone, Args)]
 pub struct SolveOptions {
     /// Solver of the dual problem
-    #[arg(long, value_enum, default_value_t = Method::Condensed)]
-    pub method: Method,
+    #[arg(long, value_enum, default_value_t = Solver::Condensed)]
+    pub method: Solver,
     /// What runs over MPI.
     #[command(flatten)]
     pub engine: EngineOptions,
@@ -132,7 +108,7 @@ impl SolveOptions {
 
     /// What is refined towards the tolerance.
     pub fn adapt(&self) -> Adapt {
-        let linear = self.method == Method::Uzawa && self.engine.engine.is_none();
+        let linear = self.method == Solver::Uzawa && self.engine.engine.is_none();
         self.adapt.unwrap_or(if linear { Adapt::H } else { Adapt::Hp })
     }
 }

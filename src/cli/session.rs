@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
-use super::options::{Engine, EngineOptions, Limits, Method, SolveOptions};
+use super::options::{Engine, EngineOptions, Limits, SolveOptions};
 use super::progress::Progress;
 use super::{CliError, Exit, ci, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
-use crate::dual::{ActiveSet, Clarabel, Condensed, DualError, DualMethod, Options, Petsc, Size, Uzawa};
+use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
 use crate::element::{Elements, block};
 use crate::mesh;
 use crate::problem::Problem;
@@ -311,22 +311,12 @@ pub fn refuse_unknown<'a>(scene: &Scene, names: impl Iterator<Item = &'a str>) -
 fn dual_method(solve: &SolveOptions) -> Box<dyn DualMethod> {
     let EngineOptions { engine, ranks, linear_solver, engine_seconds } = solve.engine;
     match engine {
-        None => method(solve.method),
+        None => solve.method.method(),
         Some(Engine::Petsc) => Box::new(Petsc {
             ranks: ranks.unwrap_or(1) as usize,
             linear_solver,
             limit: limit(engine_seconds),
             interpreter: None,
         }),
-    }
-}
-
-/// The solver of that name.
-pub fn method(name: Method) -> Box<dyn DualMethod> {
-    match name {
-        Method::Condensed => Box::new(Condensed::default()),
-        Method::ActiveSet => Box::new(ActiveSet::default()),
-        Method::Clarabel => Box::new(Clarabel::default()),
-        Method::Uzawa => Box::new(Uzawa::default()),
     }
 }

@@ -27,6 +27,7 @@ mod resultants;
 mod rigid;
 mod rows;
 mod settling;
+mod solver;
 mod system;
 mod unknowns;
 pub mod yardstick;
@@ -45,6 +46,7 @@ pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
 pub use petsc::{LinearSolver, Petsc};
 pub use response::{Factorised, Load, Response, Responses};
+pub use solver::Solver;
 pub use unknowns::contact_coefficients;
 
 use crate::element::{SideValues, StressField};
