@@ -39,123 +39,164 @@ impl Equilibrium {
 
     /// Measures `stress` on `problem`; `moments` are those of the displacement that the remainders are weighed with.
     pub fn measure(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Self {
-        let mesh = &problem.mesh;
-        let bodies = problem.scene.bodies.len();
         let scales = Scales::new(problem);
         let scale = load_scale(&scales, || stress.clone());
-        let stressed: Vec<f64> = (0..stress.len()).map(|t| largest(stress.block(t).as_flattened())).collect();
-        let relative = |left: f64, e: usize| {
-            let at = mesh.edges[e].triangles.iter().flatten();
-            let near = at.clone().fold(scale, |m, &t| m.max(stressed[t]));
-            let rounding = at.fold(0.0_f64, |m, &t| m.max(scales.stress_round_off(problem, t, stress.degree(t))));
-            let left = left - rounding;
-            if left <= 0.0 {
-                0.0
-            } else if near > 0.0 {
-                left / near
-            } else {
-                left
-            }
+        let measured = Measured { problem, stress, moments, relative: Relative::new(problem, stress, &scales, scale) };
+        let mut found = Equilibrium {
+            jump: 0.0,
+            applied: 0.0,
+            resultant: largest_resultant(problem, stress, moments, &scales),
+            tension: 0.0,
+            scale,
+            work: work_within(problem, stress, moments),
         };
-        let (mut jump, mut applied) = (0.0_f64, 0.0_f64);
-        let mut force = vec![[0.0; 2]; bodies];
-        let mut gross = vec![0.0; bodies];
-        let mut rounding = vec![0.0; bodies];
-        let (mut tension, mut work) = (0.0_f64, work_within(problem, stress, moments));
-        for (e, edge) in mesh.edges.iter().enumerate() {
-            let degree = moments.of(e).len() - 1;
-            let own = stress.edge_traction(&problem.mesh, e, 0, degree);
-            let (length, normal) = mesh.edge_frame(e);
-            let along = |t: [f64; 2]| {
-                let shear = t[1] * normal[0] - t[0] * normal[1];
-                [-shear * normal[1], shear * normal[0]]
-            };
-            let left: Vec<[f64; 2]> = match problem.conditions[e] {
-                Condition::Interior => {
-                    let other = stress.edge_traction(&problem.mesh, e, 1, degree);
-                    own.iter().zip(other).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
-                }
-                Condition::Traction([a, b]) => {
-                    let applied = side::linear([a[0], b[0]], degree).zip(side::linear([a[1], b[1]], degree));
-                    own.iter().zip(applied).map(|(t, p)| [t[0] - p.0, t[1] - p.1]).collect()
-                }
-                Condition::Clamped(_) => Vec::new(),
-                Condition::Roller => own.iter().map(|t| along(*t)).collect(),
-                // Pairs are next.
-                Condition::Contact { .. } => Vec::new(),
-            };
-            for (left, moment) in left.iter().zip(moments.of(e)) {
-                match problem.conditions[e] {
-                    Condition::Traction(_) => applied = applied.max(relative(norm(*left), e)),
-                    _ => jump = jump.max(relative(norm(*left), e)),
-                }
-                work += norm(*left) * norm(*moment);
-            }
-            let sides = usize::from(!edge.is_boundary()) + 1;
-            for (side, triangle) in edge.triangles.iter().take(sides).enumerate() {
-                // Interior edges between two bonded bodies count for both.
-                let Some(at) = *triangle else { continue };
-                let body = mesh.body[at];
-                let between =
-                    edge.triangles[1].is_some_and(|o| mesh.body[o] != mesh.body[edge.triangles[0].unwrap_or(o)]);
-                if edge.is_boundary() || between {
-                    let share = length / (degree + 1) as f64;
-                    for t in stress.edge_traction(&problem.mesh, e, side, degree) {
-                        for c in 0..2 {
-                            force[body][c] += share * t[c];
-                        }
-                        gross[body] += share * norm(t);
-                    }
-                    rounding[body] += length * scales.stress_round_off(problem, at, stress.degree(at));
-                }
-            }
-        }
-        for pair in problem.pairs() {
-            let Some(a) = pair.edges[0] else { continue };
-            let degree = moments.of(a).len() - 1;
-            let along = Along::new(pair, degree);
-            let t = along.multiplier(&along.of_pair(problem, 0, &stress.edge_traction(&problem.mesh, a, 0, degree)));
-            let own = along.of_pair(problem, 0, moments.of(a));
-            let opposite = pair.edges[1].map(|b| along.of_pair(problem, 1, moments.of(b)));
-            for (side, e) in pair.edges.into_iter().enumerate().filter_map(|(side, e)| Some((side, e?))) {
-                // What is left of the traction of each side where t n̂ of the first is taken away.
-                let carried = along.of_pair(problem, side, &stress.edge_traction(&problem.mesh, e, 0, degree));
-                let held = along.traction(&t, side);
-                let moments = if side == 0 { Some(&own) } else { opposite.as_ref() };
-                for (k, (carried, held)) in carried.iter().zip(held).enumerate() {
-                    let left = norm([carried[0] - held[0], carried[1] - held[1]]);
-                    let near = pair.edges.iter().flatten().map(|&e| relative(left, e)).fold(f64::INFINITY, f64::min);
-                    jump = jump.max(near);
-                    work += left * moments.map_or(0.0, |m| norm(m[k]));
-                }
-            }
-            let [c, d] = pair.direction.shares;
-            let openings = along.along(&own, opposite.as_deref(), [c, d]);
-            let gaps = side::moments(&pair.gap, t.len() - 1);
-            for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
-                tension = tension.max(relative(*t, a));
-                work += t.max(0.0) * (opening + pair.length * gap);
-            }
-        }
-        for t in 0..mesh.triangles.len() {
-            let body = mesh.body[t];
-            let f = problem.scene.bodies[body].body_force;
-            let area = mesh.area(t);
-            for c in 0..2 {
-                force[body][c] += f[c] * area;
-            }
-            gross[body] += norm(f) * area;
-        }
-        // A body without load carries nothing but rounding errors, which are not to be compared with each other.
-        let least = 1e-3 * gross.iter().copied().fold(0.0, f64::max);
-        let resultant = (0..bodies)
-            .map(|b| match norm(force[b]) - rounding[b] {
-                left if left > 0.0 => left / f64::max(gross[b], least),
-                _ => 0.0,
-            })
-            .fold(0.0, f64::max);
-        Equilibrium { jump, applied, resultant, tension, scale, work }
+        (0..problem.mesh.edges.len()).for_each(|e| measured.edge(e, &mut found));
+        problem.pairs().for_each(|pair| measured.pair(pair, &mut found));
+        found
     }
+}
+
+/// Remainders of traction relative to what is there.
+struct Relative<'a> {
+    problem: &'a Problem,
+    scale: f64,
+    /// The largest stress on each triangle.
+    stressed: Vec<f64>,
+    /// What rounding of prescribed displacements leaves on each.
+    rounding: Vec<f64>,
+}
+
+impl<'a> Relative<'a> {
+    fn new(problem: &'a Problem, stress: &StressField, scales: &Scales, scale: f64) -> Self {
+        let all = 0..stress.len();
+        Relative {
+            problem,
+            scale,
+            stressed: all.clone().map(|t| largest(stress.block(t).as_flattened())).collect(),
+            rounding: all.map(|t| scales.stress_round_off(problem, t, stress.degree(t))).collect(),
+        }
+    }
+
+    /// `left` on edge `e`.
+    fn of(&self, left: f64, e: usize) -> f64 {
+        let at = self.problem.mesh.edges[e].triangles.iter().flatten();
+        let near = at.clone().fold(self.scale, |m, &t| m.max(self.stressed[t]));
+        let left = left - at.fold(0.0_f64, |m, &t| m.max(self.rounding[t]));
+        if left <= 0.0 {
+            0.0
+        } else if near > 0.0 {
+            left / near
+        } else {
+            left
+        }
+    }
+}
+
+/// A stress that is measured.
+struct Measured<'a> {
+    problem: &'a Problem,
+    stress: &'a StressField,
+    moments: &'a SideValues<[f64; 2]>,
+    relative: Relative<'a>,
+}
+
+impl Measured<'_> {
+    fn traction(&self, e: usize, side: usize, degree: usize) -> Vec<[f64; 2]> {
+        self.stress.edge_traction(&self.problem.mesh, e, side, degree)
+    }
+
+    /// What is left of equilibrium on an edge that is in no contact.
+    fn edge(&self, e: usize, found: &mut Equilibrium) {
+        let degree = self.moments.of(e).len() - 1;
+        let own = self.traction(e, 0, degree);
+        let (_, normal) = self.problem.mesh.edge_frame(e);
+        let along = |t: [f64; 2]| {
+            let shear = t[1] * normal[0] - t[0] * normal[1];
+            [-shear * normal[1], shear * normal[0]]
+        };
+        let condition = &self.problem.conditions[e];
+        let left: Vec<[f64; 2]> = match condition {
+            Condition::Interior => {
+                own.iter().zip(self.traction(e, 1, degree)).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
+            }
+            Condition::Traction([a, b]) => {
+                let applied = side::linear([a[0], b[0]], degree).zip(side::linear([a[1], b[1]], degree));
+                own.iter().zip(applied).map(|(t, p)| [t[0] - p.0, t[1] - p.1]).collect()
+            }
+            Condition::Roller => own.iter().map(|t| along(*t)).collect(),
+            Condition::Clamped(_) | Condition::Contact { .. } => Vec::new(),
+        };
+        let worst = if matches!(condition, Condition::Traction(_)) { &mut found.applied } else { &mut found.jump };
+        for (left, moment) in left.iter().zip(self.moments.of(e)) {
+            *worst = worst.max(self.relative.of(norm(*left), e));
+            found.work += norm(*left) * norm(*moment);
+        }
+    }
+
+    /// What is left of t n̂ on both sides of a contact pair, and what of t pulls.
+    fn pair(&self, pair: &ContactPair, found: &mut Equilibrium) {
+        let Some(a) = pair.edges[0] else { return };
+        let degree = self.moments.of(a).len() - 1;
+        let along = Along::new(pair, degree);
+        let t = along.multiplier(&along.of_pair(self.problem, 0, &self.traction(a, 0, degree)));
+        let own = along.of_pair(self.problem, 0, self.moments.of(a));
+        let opposite = pair.edges[1].map(|b| along.of_pair(self.problem, 1, self.moments.of(b)));
+        for (side, e) in pair.edges.into_iter().enumerate().filter_map(|(side, e)| Some((side, e?))) {
+            // What is left of the traction of each side where t n̂ of the first is taken away.
+            let carried = along.of_pair(self.problem, side, &self.traction(e, 0, degree));
+            let held = along.traction(&t, side);
+            let moments = if side == 0 { Some(&own) } else { opposite.as_ref() };
+            for (k, (carried, held)) in carried.iter().zip(held).enumerate() {
+                let left = norm([carried[0] - held[0], carried[1] - held[1]]);
+                let near = pair.edges.iter().flatten().map(|&e| self.relative.of(left, e));
+                found.jump = found.jump.max(near.fold(f64::INFINITY, f64::min));
+                found.work += left * moments.map_or(0.0, |m| norm(m[k]));
+            }
+        }
+        let openings = along.along(&own, opposite.as_deref(), pair.direction.shares);
+        let gaps = side::moments(&pair.gap, t.len() - 1);
+        for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
+            found.tension = found.tension.max(self.relative.of(*t, a));
+            found.work += t.max(0.0) * (opening + pair.length * gap);
+        }
+    }
+}
+
+/// The largest resultant of boundary tractions and body force on any body, relative to the sum of their sizes.
+fn largest_resultant(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>, scales: &Scales) -> f64 {
+    let mesh = &problem.mesh;
+    let bodies = problem.scene.bodies.len();
+    let (mut force, mut gross, mut rounding) = (vec![[0.0; 2]; bodies], vec![0.0; bodies], vec![0.0; bodies]);
+    for (e, edge) in mesh.edges.iter().enumerate() {
+        // Interior edges between two bonded bodies count for both.
+        let [Some(first), second] = edge.triangles else { continue };
+        if second.is_some_and(|second| mesh.body[second] == mesh.body[first]) {
+            continue;
+        }
+        let (length, _) = mesh.edge_frame(e);
+        for (side, at) in edge.triangles.into_iter().enumerate().filter_map(|(side, at)| Some((side, at?))) {
+            let (body, coefficients) = (mesh.body[at], moments.of(e).len());
+            let share = length / coefficients as f64;
+            for t in stress.edge_traction(mesh, e, side, coefficients - 1) {
+                (0..2).for_each(|c| force[body][c] += share * t[c]);
+                gross[body] += share * norm(t);
+            }
+            rounding[body] += length * scales.stress_round_off(problem, at, stress.degree(at));
+        }
+    }
+    for t in 0..mesh.triangles.len() {
+        let body = mesh.body[t];
+        let (f, area) = (problem.scene.bodies[body].body_force, mesh.area(t));
+        (0..2).for_each(|c| force[body][c] += f[c] * area);
+        gross[body] += norm(f) * area;
+    }
+    // A body without load carries nothing but rounding errors, which are not to be compared with each other.
+    let least = 1e-3 * gross.iter().copied().fold(0.0, f64::max);
+    let of = |b: usize| match norm(force[b]) - rounding[b] {
+        left if left > 0.0 => left / f64::max(gross[b], least),
+        _ => 0.0,
+    };
+    (0..bodies).map(of).fold(0.0, f64::max)
 }
 
 /// t n̂ along a contact pair.
