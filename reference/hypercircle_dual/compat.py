@@ -202,8 +202,15 @@ def set_up(solver: PETSc.KSP) -> PETSc.KSP:
     return solver
 
 
+def collect(comm: MPI.Comm) -> None:
+    """Free what Python no longer refers to, which since release 3.18 is kept until all ranks ask for this together."""
+    if hasattr(PETSc, "garbage_cleanup"):
+        PETSc.garbage_cleanup(comm)
+
+
 def solve(solver: PETSc.KSP, load: PETSc.Vec, out: PETSc.Vec) -> int:
     """Solve, and return the number of iterations; what their limit leaves is for the caller to see."""
+    collect(solver.comm)
     solver.solve(load, out)
     reason = solver.getConvergedReason()
     if reason < 0 and reason != PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT:

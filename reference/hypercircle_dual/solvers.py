@@ -126,6 +126,9 @@ class Iterated:
     def _prepare(self, closed: np.ndarray) -> None:
         if self.closed is not None and np.array_equal(closed, self.closed):
             return
+        if self.solver is not None:
+            self.solver.destroy()
+            compat.collect(self.model.comm)
         matrix, self.closed = self.matrix.copy(), closed.copy()
         # Open contact may leave a body without hold; refinement takes what the springs do away.
         diagonal, springs = matrix.getDiagonal(), self.model.zero.duplicate()
@@ -137,8 +140,6 @@ class Iterated:
         compat.finish(matrix)
         nodal = self.nodal.copy()
         nodal.diagonalScale(self.model.free(closed), None)
-        if self.solver is not None:
-            self.solver.destroy()
         self.solver = compat.multigrid(matrix, nodal, self.motions, INNER, MOST_ITERATIONS)
 
     def state(self, r, room: np.ndarray, start: np.ndarray | None) -> None:
