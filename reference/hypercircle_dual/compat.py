@@ -22,14 +22,19 @@ if not np.issubdtype(PETSc.ScalarType, np.floating):
     raise NotInstalled("PETSc is built for complex numbers, and this model needs the build for real ones")
 
 OPTIONS = {
+    "ksp_fcg_mmax": 10,
+    "ksp_fcg_nprealloc": 2,
+    "ksp_fcg_truncation_type": "standard",
     "mg_levels_ksp_type": "chebyshev",
     "mg_levels_ksp_max_it": 2,
     "mg_levels_pc_type": "pbjacobi",
-    "mg_coarse_ksp_type": "richardson",
-    "mg_coarse_ksp_max_it": 4,
-    "mg_coarse_ksp_norm_type": "none",
+    "mg_coarse_ksp_type": "cg",
+    "mg_coarse_ksp_max_it": 8,
+    # Fewer where nothing is left to solve, as on meshes of a few triangles.
+    "mg_coarse_ksp_norm_type": "natural",
+    "mg_coarse_ksp_rtol": 1e-3,
     "mg_coarse_pc_type": "gamg",
-    "mg_coarse_pc_mg_cycle_type": "w",
+    "mg_coarse_pc_mg_cycle_type": "v",
     "mg_coarse_pc_gamg_agg_nsmooths": 1,
     "mg_coarse_pc_gamg_threshold": 0.0,
     # The name before release 3.18, and the one since.
@@ -38,7 +43,7 @@ OPTIONS = {
     "mg_coarse_mg_levels_ksp_type": "chebyshev",
     "mg_coarse_mg_levels_pc_type": "jacobi",
 }
-"""Two levels, the lower of which is solved with by four cycles of smoothed aggregation."""
+"""Two levels, the lower of which is solved with by eight conjugate gradients, each with a cycle of smoothed aggregation."""
 WORKSPACE = {"mat_mumps_icntl_14": 60}
 """Percent of memory that MUMPS takes beyond its own estimate, which falls short over several ranks."""
 
@@ -183,7 +188,8 @@ def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tol
         kernel.append(vector)
     coarse.setNearNullSpace(PETSc.NullSpace().create(vectors=kernel, comm=target.comm))
     solver = with_options(target, OPTIONS)
-    solver.setType("cg")
+    # The conjugate gradients below make the preconditioner another one in each iteration.
+    solver.setType("fcg")
     solver.pc.setType("mg")
     solver.pc.setMGLevels(2)
     solver.pc.setMGInterpolation(1, nodal)
