@@ -89,6 +89,7 @@ impl ActiveSet {
         let ends = Ends::new(problem, &system);
         let (mut seen, mut careful, mut from_closed) = (HashSet::new(), false, true);
         let (mut left, mut steps) = (f64::INFINITY, 0);
+        let (mut nearest, mut is_back) = ((f64::INFINITY, Vec::new()), false);
         for step in 1..=most_steps {
             if step > 1 && options.deadline.is_some_and(|end| Instant::now() > end) {
                 break;
@@ -130,16 +131,28 @@ impl ActiveSet {
             let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
             let mut next = next_state(&closed, &misses);
             left = misses.iter().fold(0.0, |m, by| by.max(m));
+            if left < nearest.0 {
+                nearest = (left, closed.clone());
+            }
+            let mut round = false;
             if !seen.insert(closed.clone()) {
-                if careful {
-                    // One end at a time leads from a state to always the same next one.
-                    break;
-                }
+                // One end at a time leads from a state to always the same next one.
+                round = careful;
                 careful = true;
                 seen = HashSet::from([closed.clone()]);
             }
             let at_rounding = careful && left <= self.accuracy();
-            let anew = at_rounding && next != closed && from_closed;
+            if round && !from_closed && !at_rounding {
+                // No state is without misses. One whose misses are rounding is as good as any.
+                if is_back || nearest.0 > self.accuracy() {
+                    break;
+                }
+                is_back = true;
+                closed.clone_from(&nearest.1);
+                symbolic = Some(factor.into_symbolic());
+                continue;
+            }
+            let anew = from_closed && (round || at_rounding && next != closed);
             if anew {
                 // What misses is rounding of jumps that nothing holds: with open contact nothing presses them either.
                 from_closed = false;
