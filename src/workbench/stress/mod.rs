@@ -29,10 +29,10 @@ use crate::element::{Compliance, EquilibriumElement};
 ///
 /// ```
 /// use hypercircle::element::block;
-/// use hypercircle::workbench::stress::Equilibrium;
+/// use hypercircle::workbench::stress::SolverElement;
 /// use hypercircle::workbench::{Options, Report};
 ///
-/// let report = Report::of_stress(&Equilibrium(block(1)), &Options::default());
+/// let report = Report::of_stress(&SolverElement(block(1)), &Options::default());
 /// assert!(report.passed, "{}", report.verdict);
 /// ```
 pub trait StressElement {
