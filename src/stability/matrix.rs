@@ -147,6 +147,13 @@ fn fingerprint(regime: &Regime, step: usize) -> String {
     }
 }
 
+/// Whether a finer mesh is another problem, so that what is true of this one says nothing of it: contact that turns does so
+/// along another field there.
+fn changes_with_its_mesh(regime: &Regime, step: usize) -> bool {
+    let made = std::panic::catch_unwind(|| regime.problem(regime.values[step]));
+    matches!(made, Ok(Ok(problem)) if problem.contact_turns() || problem.follows_curves())
+}
+
 fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Task> {
     let known = (regime.known)(regime.values[step]);
     let mut tasks = Vec::new();
@@ -260,6 +267,7 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
                         Some([energy, _]) => truths[0].map(|t| t.scaled(energy)),
                         None => truths[i],
                     };
+                    let truth = truth.filter(|_| method != Method::Adaptive || !changes_with_its_mesh(regime, step));
                     let claim = Claim { known: &known, truth, first: first.as_ref(), first_error, flat: regime.flat };
                     let judged = judge(method, of(step, task).as_ref().unwrap_or(&missing), &claim);
                     if i == 0 {
