@@ -28,7 +28,7 @@ pub(crate) struct Link {
 
 /// Orders edges into pieces, each from the end that comes first in (x, y) order; the pieces follow one another by
 /// these ends, and the arc length goes on from one to the next. A closed piece starts at its first point in (x, y)
-/// order, towards the neighbour that comes first.
+/// order and runs anticlockwise, however its edges are divided.
 ///
 /// # Errors
 /// A point at which more than two edges meet.
@@ -55,12 +55,14 @@ pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
         let mut piece = Vec::new();
         let mut here = start;
         let other = |i: usize, from: Key| key(if key(edges[i][0]) == from { edges[i][1] } else { edges[i][0] });
-        while let Some(next) =
-            at[&here].iter().copied().filter(|&i| !done[i]).min_by(|&i, &j| order(&other(i, here), &other(j, here)))
-        {
+        while let Some(next) = at[&here].iter().copied().find(|&i| !done[i]) {
             done[next] = true;
             piece.push((next, key(edges[next][0]) != here));
             here = other(next, here);
+        }
+        if here == start && is_clockwise(edges, &piece) {
+            piece.reverse();
+            piece.iter_mut().for_each(|(_, reversed)| *reversed = !*reversed);
         }
         if !piece.is_empty() {
             pieces.push((start, piece));
@@ -75,6 +77,17 @@ pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
         Link { edge, reversed, arc: [from, arc] }
     });
     Ok(links.collect())
+}
+
+/// Whether a closed piece, given by its edges and whether each is passed from its second end to its first, runs clockwise.
+fn is_clockwise(edges: &[[[f64; 2]; 2]], piece: &[(usize, bool)]) -> bool {
+    let from = piece.first().map_or([0.0; 2], |&(edge, _)| edges[edge][0]);
+    let twice_the_area = |&(edge, reversed): &(usize, bool)| {
+        let [a, b] = edges[edge].map(|[x, y]| [x - from[0], y - from[1]]);
+        let area = a[0] * b[1] - a[1] * b[0];
+        if reversed { -area } else { area }
+    };
+    piece.iter().map(twice_the_area).sum::<f64>() < 0.0
 }
 
 /// Part of the length of a side within which two positions count as the same.
@@ -131,10 +144,34 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_is_passed_once() {
-        let edges = [[[0.0, 0.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 0.0]]];
-        let links = chain(&edges).expect("no branches");
-        assert_eq!(links.iter().map(|l| l.edge).collect::<Vec<_>>(), [2, 1, 0]);
+    fn a_loop_is_passed_once_and_anticlockwise_however_it_is_divided() {
+        let corners = [[0.0, 0.0], [1.0, -0.4], [1.5, 0.3], [1.0, 0.4]];
+        // Which neighbour of the first corner is nearer depends on the edge that is divided.
+        for divided in [None, Some(0), Some(3)] {
+            let mut points = Vec::new();
+            for (i, a) in corners.into_iter().enumerate() {
+                let b = corners[(i + 1) % 4];
+                points.push(a);
+                if divided == Some(i) {
+                    points.push([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+                }
+            }
+            let n = points.len();
+            for clockwise in [false, true] {
+                let edge = |i: usize| {
+                    if clockwise { [points[(i + 1) % n], points[i]] } else { [points[i], points[(i + 1) % n]] }
+                };
+                let edges: Vec<_> = (0..n).map(edge).collect();
+                for links in [chain(&edges), chain(&edges.iter().rev().copied().collect::<Vec<_>>())] {
+                    let links = links.expect("no branches");
+                    let ends = links[0].arc[1] - links[0].arc[0];
+                    let first = (points[1][0] - points[0][0]).hypot(points[1][1] - points[0][1]);
+                    assert!((ends - first).abs() < 1e-15, "{divided:?} {clockwise}: {ends} is not {first}");
+                    assert!(links.iter().all(|link| link.reversed == clockwise));
+                    assert_eq!(links.iter().map(|l| l.edge).collect::<std::collections::BTreeSet<_>>().len(), n);
+                }
+            }
+        }
     }
 
     #[test]

@@ -1,7 +1,11 @@
 //! How far adaptive refinement gets where contact turns: triangles for a guaranteed one per cent, and bounds that are bounds.
 
-use crate::arcs::{Arcs, between_arcs};
+use std::collections::HashMap;
+
+use crate::arcs::{Arcs, between_arcs, disc};
+use crate::support::random::Random;
 use hypercircle::dual::{Condensed, Options};
+use hypercircle::mesh::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Adapted, Goal, adapt, certify, certify_divided};
@@ -103,5 +107,42 @@ fn refinement_begins_on_a_mesh_that_has_the_directions_of_the_scene() {
             assert!(off.abs() < 1e-9, "{rise}: ({x}, {y}) is {off:e} from the arc");
         }
         assert!(problem.pairs().count() > 6, "{rise}: {}", problem.pairs().count());
+    }
+}
+
+/// A contact around a whole disc with a gap along its arc length keeps its edges. Whichever of them are divided, the disc is
+/// the same one: it begins where it began and is passed the same way round, so gap and direction stay at every vertex.
+#[test]
+fn a_contact_all_around_keeps_gap_and_direction_whichever_edges_are_divided() {
+    let gap = "normals = \"smooth\"\ngap = [[0.0, 0.0], [1.0, 0.1], [6.0, 0.3]]";
+    let text = disc(24, "force", "smooth").replace("normals = \"smooth\"", gap);
+    let given = Problem::load(Scene::parse(&text, "disc.toml".as_ref()).expect("a scene")).expect("a problem");
+    let at_vertices = |problem: &Problem| -> HashMap<usize, ([f64; 2], f64)> {
+        problem.pairs().map(|pair| (pair.first[0], (pair.direction.ends[0], pair.gap[0]))).collect()
+    };
+    let coarse = at_vertices(&given);
+    let mut random = Random::new(7);
+    for _ in 0..12 {
+        let (mut problem, mut edges) = (given.clone(), RefinementEdges::longest(&given.mesh));
+        for _ in 0..4 {
+            let marked: Vec<usize> = (0..problem.mesh.triangles.len()).filter(|_| random.chance(0.1)).collect();
+            (problem, edges, _) = problem.bisect(&edges, &marked).expect("refines");
+        }
+        let fine = at_vertices(&problem);
+        assert!(fine.len() > coarse.len());
+        for (v, (direction, gap)) in &coarse {
+            let (now, gap_now) = fine[v];
+            let [x, y] = problem.mesh.points[*v];
+            assert!((gap - gap_now).abs() < 1e-12, "gap at ({x}, {y}): {gap_now} was {gap}");
+            assert!(
+                (now[0] - direction[0]).hypot(now[1] - direction[1]) < 1e-12,
+                "at ({x}, {y}): {now:?} was {direction:?}"
+            );
+        }
+        for pair in problem.pairs() {
+            let ([nx, ny], (next, _)) = (pair.direction.ends[1], fine[&pair.first[1]]);
+            let [x, y] = problem.mesh.points[pair.first[1]];
+            assert!((nx - next[0]).hypot(ny - next[1]) < 1e-12, "at ({x}, {y}): ({nx}, {ny}) and {next:?}");
+        }
     }
 }
