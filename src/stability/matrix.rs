@@ -147,11 +147,11 @@ fn fingerprint(regime: &Regime, step: usize) -> String {
     }
 }
 
-/// Whether a finer mesh is another problem, so that what is true of this one says nothing of it: contact that turns does so
-/// along another field there.
+/// Whether a finer mesh is another problem, so that what is true of this one says nothing of it: new vertices lie on the
+/// curves that edges stand for.
 fn changes_with_its_mesh(regime: &Regime, step: usize) -> bool {
     let made = std::panic::catch_unwind(|| regime.problem(regime.values[step]));
-    matches!(made, Ok(Ok(problem)) if problem.contact_turns() || problem.follows_curves())
+    matches!(made, Ok(Ok(problem)) if problem.follows_curves())
 }
 
 fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Task> {
