@@ -53,8 +53,16 @@ pub fn run(program: &Path, arguments: &[OsString], limits: Limits<'_>) -> std::i
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let started = Instant::now();
     let mut child = command.spawn()?;
-    let out = drain(child.stdout.take());
-    let err = drain(child.stderr.take());
+    let streams = drain(child.stdout.take()).and_then(|out| Ok((out, drain(child.stderr.take())?)));
+    let (out, err) = match streams {
+        Ok(streams) => streams,
+        // The system has no thread left to read with.
+        Err(error) => {
+            child.kill()?;
+            child.wait()?;
+            return Err(error);
+        }
+    };
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -92,9 +100,9 @@ struct Printed {
 
 type Drained = std::sync::mpsc::Receiver<Printed>;
 
-fn drain(stream: Option<impl Read + Send + 'static>) -> Drained {
+fn drain(stream: Option<impl Read + Send + 'static>) -> std::io::Result<Drained> {
     let (send, receive) = std::sync::mpsc::channel();
-    thread::spawn(move || {
+    let read = move || {
         let mut printed = Printed::default();
         let mut buffer = vec![0; 1 << 16];
         let mut stream = stream;
@@ -105,8 +113,8 @@ fn drain(stream: Option<impl Read + Send + 'static>) -> Drained {
             printed.end.push(&buffer[..read]);
         }
         let _ = send.send(printed);
-    });
-    receive
+    };
+    thread::Builder::new().spawn(read).map(|_| receive)
 }
 
 fn received(from: &Drained) -> Printed {

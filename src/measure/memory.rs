@@ -33,7 +33,7 @@ impl Watch {
     pub fn start() -> Self {
         let (ended, largest) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         let (stop, peak) = (Arc::clone(&ended), Arc::clone(&largest));
-        let thread = thread::spawn(move || {
+        let watch = move || {
             while !stop.load(Ordering::Relaxed) {
                 for process in descendants() {
                     if let Some(bytes) = peak_of(&process.to_string()) {
@@ -42,8 +42,9 @@ impl Watch {
                 }
                 thread::sleep(EVERY);
             }
-        });
-        Watch { ended, largest, thread: Some(thread) }
+        };
+        // Where the system has no more threads, nothing is seen.
+        Watch { ended, largest, thread: thread::Builder::new().spawn(watch).ok() }
     }
 
     /// The largest process seen.

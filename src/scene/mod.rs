@@ -227,7 +227,8 @@ pub enum Gap {
     /// The same everywhere.
     Constant(f64),
     /// Piecewise linear: (s, g) with s ascending, s being the arc length from the end of the first side that comes
-    /// first in (x, y) order. Constant beyond the first and the last entry.
+    /// first in (x, y) order; all around a body anticlockwise, from its first vertex in that order. Constant beyond the
+    /// first and the last entry.
     Table(Vec<[f64; 2]>),
     /// The distance of a circle that touches at an arc length, taken at the vertices of each mesh and linear between.
     Circle(Touching),

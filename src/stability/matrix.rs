@@ -85,22 +85,25 @@ pub fn sweep(what: &Sweep<'_>) -> Result<Matrix, SweepError> {
     let todo: Vec<&Job> = jobs.iter().filter(|j| what.journal.get(&j.name).is_none() && seen.insert(&j.name)).collect();
     let (next, ended) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let failed: Mutex<Option<std::io::Error>> = Mutex::new(None);
-    std::thread::scope(|scope| {
-        for _ in 0..what.workers.max(1) {
-            scope.spawn(|| {
-                while let Some(job) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let (regime, done) = (what.regimes[job.regime], ended.load(Ordering::Relaxed));
-                    let name = format!("{}: {}", regime.id, regime.label(job.step));
-                    (what.progress)(Step { what: name, done, left: todo.len() - done });
-                    let kept = once(what, job).and_then(|ended| what.journal.put(job.name.clone(), ended));
-                    if let Err(error) = kept {
-                        *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
-                        next.store(todo.len(), Ordering::Relaxed);
-                    }
-                    ended.fetch_add(1, Ordering::Relaxed);
-                }
-            });
+    let work = || {
+        while let Some(job) = todo.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let (regime, done) = (what.regimes[job.regime], ended.load(Ordering::Relaxed));
+            let name = format!("{}: {}", regime.id, regime.label(job.step));
+            (what.progress)(Step { what: name, done, left: todo.len() - done });
+            let kept = once(what, job).and_then(|ended| what.journal.put(job.name.clone(), ended));
+            if let Err(error) = kept {
+                *failed.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
+                next.store(todo.len(), Ordering::Relaxed);
+            }
+            ended.fetch_add(1, Ordering::Relaxed);
         }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..what.workers {
+            // Where the system has no more threads, fewer processes run at a time.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
     });
     if let Some(error) = failed.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
         return Err(error.into());
