@@ -121,13 +121,18 @@ fn sweep(root: &Path) {
         let named = entry.file_name().to_string_lossy().starts_with(PREFIX);
         // The entry itself: a link that somebody left here is not followed.
         let own = |e: &fs::DirEntry| e.metadata().is_ok_and(|m| m.is_dir() && m.uid() == user);
-        if named && own(&entry) && is_dead(&entry) {
+        if named
+            && own(&entry)
+            && let Some(_lock) = dead(&entry)
+        {
             remove_busy(&entry.path());
         }
     }
 }
 
-fn is_dead(folder: &fs::DirEntry) -> bool {
+/// The lock of a folder that belongs to no living process, if it has one. It is held until the folder is gone, so that a
+/// process that was about to take it sees that it is taken.
+fn dead(folder: &fs::DirEntry) -> Option<Option<File>> {
     let gone = || is_gone(&folder.file_name().to_string_lossy());
     match File::open(folder.path().join(LOCK)) {
         Ok(alive) => {
@@ -137,12 +142,12 @@ fn is_dead(folder: &fs::DirEntry) -> bool {
                 std::thread::sleep(LETTING_GO / 20);
                 free()
             };
-            free() || gone() && (0..20).any(|_| let_go())
+            (free() || gone() && (0..20).any(|_| let_go())).then_some(Some(alive))
         }
-        Err(_) if gone() => true,
+        Err(_) if gone() => Some(None),
         Err(_) => {
             let age = folder.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
-            age.is_some_and(|age| age > YOUNG)
+            age.is_some_and(|age| age > YOUNG).then_some(None)
         }
     }
 }
@@ -233,6 +238,32 @@ mod tests {
         assert!(!dead.exists() && living.path().exists() && aside.path().join(LOCK).exists());
         assert!(!root.path().join("hypercircle-4294967295-x").exists());
         assert!(["hypercircle-young", "other-dead", &own].iter().all(|name| root.path().join(name).exists()));
+    }
+
+    #[test]
+    fn a_folder_stays_whoever_sweeps_while_it_is_made() {
+        let root = tempfile::tempdir().expect("a folder");
+        let making = std::sync::atomic::AtomicUsize::new(4);
+        let relaxed = std::sync::atomic::Ordering::Relaxed;
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    let lost = (0..500).filter(|_| {
+                        let scratch = Scratch::within(root.path()).expect("writable");
+                        std::thread::sleep(Duration::from_micros(200));
+                        !scratch.path().join(LOCK).exists()
+                    });
+                    let lost = lost.count();
+                    making.fetch_sub(1, relaxed);
+                    assert_eq!(lost, 0, "folders of 500 were taken away");
+                });
+            }
+            scope.spawn(|| {
+                while making.load(relaxed) > 0 {
+                    sweep(root.path());
+                }
+            });
+        });
     }
 
     #[test]
