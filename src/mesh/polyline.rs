@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::scene::polygon::area;
+
 /// A point as a key: equal bits, and 0 equal to −0.
 pub(crate) type Key = [u64; 2];
 
@@ -60,7 +62,8 @@ pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
             piece.push((next, key(edges[next][0]) != here));
             here = other(next, here);
         }
-        if here == start && is_clockwise(edges, &piece) {
+        let corners: Vec<[f64; 2]> = piece.iter().map(|&(i, reversed)| edges[i][usize::from(reversed)]).collect();
+        if here == start && !corners.is_empty() && area(&corners) < 0.0 {
             piece.reverse();
             piece.iter_mut().for_each(|(_, reversed)| *reversed = !*reversed);
         }
@@ -77,17 +80,6 @@ pub(crate) fn chain(edges: &[[[f64; 2]; 2]]) -> Result<Vec<Link>, [f64; 2]> {
         Link { edge, reversed, arc: [from, arc] }
     });
     Ok(links.collect())
-}
-
-/// Whether a closed piece, given by its edges and whether each is passed from its second end to its first, runs clockwise.
-fn is_clockwise(edges: &[[[f64; 2]; 2]], piece: &[(usize, bool)]) -> bool {
-    let from = piece.first().map_or([0.0; 2], |&(edge, _)| edges[edge][0]);
-    let twice_the_area = |&(edge, reversed): &(usize, bool)| {
-        let [a, b] = edges[edge].map(|[x, y]| [x - from[0], y - from[1]]);
-        let area = a[0] * b[1] - a[1] * b[0];
-        if reversed { -area } else { area }
-    };
-    piece.iter().map(twice_the_area).sum::<f64>() < 0.0
 }
 
 /// Part of the length of a side within which two positions count as the same.

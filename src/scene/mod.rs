@@ -14,7 +14,7 @@ mod fault;
 mod geometry;
 mod nearest;
 mod parse;
-mod polygon;
+pub(crate) mod polygon;
 mod quantity;
 mod raw;
 mod read;

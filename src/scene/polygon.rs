@@ -162,7 +162,7 @@ fn sliver(points: &[[f64; 2]]) -> Option<Defect> {
 }
 
 /// The area of a simple polygon, positive where its corners go round it counter-clockwise; it has at least one corner.
-pub(super) fn area(points: &[[f64; 2]]) -> f64 {
+pub(crate) fn area(points: &[[f64; 2]]) -> f64 {
     let [x0, y0] = points[0];
     let twice = |w: &[[f64; 2]]| (w[0][0] - x0) * (w[1][1] - y0) - (w[1][0] - x0) * (w[0][1] - y0);
     0.5 * points.windows(2).map(twice).sum::<f64>()

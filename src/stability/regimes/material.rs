@@ -94,7 +94,7 @@ pub(super) const REGIMES: &[Regime] = &[
         reported: "MOOSE #17279",
         truth: CLOSED,
         values: RATIO,
-        reduced: &[0, 6],
+        reduced: &[0, 5, 6],
         promised: 6,
         build: |ratio| row(0.3, ratio).model().problem(),
         known: |ratio| row(0.3, ratio).known(),
