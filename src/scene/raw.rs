@@ -247,7 +247,7 @@ pub(super) struct RawContact {
 }
 
 /// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
-/// (x, y) order; or a circle or parabola of a radius that touches at an s.
+/// (x, y) order, all around a body anticlockwise from its first vertex in that order; or a circle or parabola of a radius that touches at an s.
 #[derive(Debug, JsonSchema)]
 #[serde(untagged)]
 #[schemars(rename = "Gap")]

@@ -1,12 +1,14 @@
 //! The patches of triangles that relaxing moves one after the other, and what is kept of them.
 
-use nalgebra::{DMatrix, DVector};
+use std::sync::{Mutex, PoisonError};
 
-use super::cholesky::{column, packed};
+use rayon::prelude::*;
+
+use super::fronts::Fronts;
 use super::groups::{Group, groups};
-use super::minimum::{Step, factorise, free_minimum, minimum};
 use super::model::Model;
 use super::nodes::Nodes;
+use super::patch::{Factors, Move, Patch, add};
 use crate::problem::Problem;
 
 /// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
@@ -19,24 +21,27 @@ const MOST_VERTICES_BY_DEGREE: usize = 24;
 /// computed anew in every sweep.
 const KEPT_BY_VERTEX: usize = 512;
 
+/// Threads share the patches of a front from this many on: fewer are moved before another thread has begun.
+const SHARED_FROM: usize = 8;
+
 /// How many unknowns a patch has, relative to quadratics.
 fn size(nodes: &Nodes) -> f64 {
     let of_quadratics = nodes.vertices() + nodes.edges();
     nodes.count() as f64 / of_quadratics.max(1) as f64
 }
 
-/// The factor of the stiffness of a patch, from the first sweep on.
-type Kept = Option<Box<[f64]>>;
-
 /// What relaxing needs of a mesh, whatever the loads.
 pub struct Patches {
     groups: Vec<Group>,
     /// The group of each vertex.
     of_vertex: Vec<usize>,
-    kept: Vec<Kept>,
+    factors: Factors,
     /// What each patch gained when it was moved last.
     gained: Vec<f64>,
-    patch: Patch,
+    /// Memory for the patch at hand, for each thread.
+    patches: Vec<Mutex<Patch>>,
+    /// Patches that threads move at the same time, where there is more than one thread.
+    fronts: Option<Fronts>,
 }
 
 impl Patches {
@@ -48,14 +53,16 @@ impl Patches {
         for (number, group) in groups.iter().enumerate() {
             group.vertices.iter().for_each(|v| of_vertex[*v] = number);
         }
-        let patch = Patch {
-            local: vec![usize::MAX; nodes.count()],
-            room: (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices(),
-            most: (MOST_IN_PATCH as f64 * size) as usize,
-            ..Patch::default()
-        };
-        let count = groups.len();
-        Patches { groups, of_vertex, kept: vec![None; count], gained: vec![0.0; count], patch }
+        let patch = || Mutex::new(Patch::new(nodes.count(), (MOST_IN_PATCH as f64 * size) as usize));
+        let threads = rayon::current_num_threads();
+        Patches {
+            factors: Factors::new(groups.len(), (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices()),
+            gained: vec![0.0; groups.len()],
+            patches: (0..threads).map(|_| patch()).collect(),
+            fronts: (threads > 1).then(|| Fronts::new(problem, &groups, &of_vertex)),
+            groups,
+            of_vertex,
+        }
     }
 
     /// How many they are.
@@ -72,10 +79,14 @@ impl Patches {
         slack: f64,
         values: &mut [[f64; 2]],
     ) -> f64 {
-        let Patches { groups, kept, gained, patch, .. } = self;
+        let Patches { groups, factors, gained, patches, .. } = self;
+        let Some(patch) = patches.first_mut() else { return 0.0 };
+        let patch = patch.get_mut().unwrap_or_else(PoisonError::into_inner);
         let mut sum = 0.0;
         let mut relax = |k: usize| {
-            gained[k] = patch.relax(model, &groups[k], &mut kept[k], slack, values);
+            let step = patch.step(model, &groups[k], k, factors, slack, values);
+            gained[k] = step.as_ref().map_or(0.0, |step| step.gain);
+            step.iter().flat_map(|step| patch.moves(step)).for_each(|(node, by)| add(&mut values[node], by));
             sum += gained[k];
         };
         if back {
@@ -84,6 +95,45 @@ impl Patches {
             which.for_each(&mut relax)
         }
         sum
+    }
+
+    /// The same with all patches, which threads share: not a digit is another.
+    pub fn sweep_all(&mut self, model: &Model, back: bool, slack: f64, values: &mut [[f64; 2]]) -> f64 {
+        let Some(fronts) = self.fronts.take() else {
+            return self.sweep(model, 0..self.count(), back, slack, values);
+        };
+        let mut along = |front: &[usize]| self.move_front(model, front, slack, values);
+        if back {
+            fronts.iter().rev().for_each(&mut along)
+        } else {
+            fronts.iter().for_each(&mut along)
+        }
+        self.fronts = Some(fronts);
+        // In the order of one patch after the other.
+        if back { self.gained.iter().rev().sum() } else { self.gained.iter().sum() }
+    }
+
+    /// Moves patches that do not touch each other.
+    fn move_front(&mut self, model: &Model, front: &[usize], slack: f64, values: &mut [[f64; 2]]) {
+        if front.len() < 2 * SHARED_FROM {
+            self.sweep(model, front.iter().copied(), false, slack, values);
+            return;
+        }
+        let Patches { groups, factors, patches, .. } = &*self;
+        let found: Vec<(f64, Vec<Move>)> = {
+            let values = &*values;
+            let of = |&k: &usize| {
+                let own = rayon::current_thread_index().unwrap_or(0) % patches.len();
+                let mut patch = patches[own].lock().unwrap_or_else(PoisonError::into_inner);
+                let step = patch.step(model, &groups[k], k, factors, slack, values);
+                step.map_or((0.0, Vec::new()), |step| (step.gain, patch.moves(&step).collect()))
+            };
+            front.par_iter().with_min_len(SHARED_FROM).map(of).collect()
+        };
+        for (k, (gain, moves)) in front.iter().zip(found) {
+            self.gained[*k] = gain;
+            moves.into_iter().for_each(|(node, by)| add(&mut values[node], by));
+        }
     }
 
     /// The patches that gained more than `quiet` when they were moved last, and those beside them, in order.
@@ -107,157 +157,109 @@ impl Patches {
     }
 }
 
-/// The patch at hand, in memory that serves one after the other.
-#[derive(Default)]
-struct Patch {
-    /// First unknown of each node, `usize::MAX` outside.
-    local: Vec<usize>,
-    /// Node and direction of each unknown.
-    unknowns: Vec<(usize, [f64; 2])>,
-    /// Rows of contact with an unknown in them.
-    rows: Vec<usize>,
-    /// Lower triangle of the stiffness, column by column.
-    matrix: Vec<f64>,
-    /// Residual forces.
-    load: Vec<f64>,
-    /// How many numbers of factors may still be kept.
-    room: usize,
-    /// Larger patches are left as they are.
-    most: usize,
-    /// Values on the boundary of a triangle, and the forces there.
-    of_triangle: [Vec<f64>; 2],
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::upper::holds::holds;
+    use crate::bounds::upper::nodes::NodalValues;
+    use crate::bounds::upper::pull::Pull;
+    use crate::bounds::upper::rows::rows;
+    use crate::scene::Scene;
 
-impl Patch {
-    /// Moves the patch of `group` to the minimum of the energy, and gives the energy gained.
-    fn relax(&mut self, model: &Model, group: &Group, kept: &mut Kept, slack: f64, values: &mut [[f64; 2]]) -> f64 {
-        self.number(model, group);
-        let mut gained = 0.0;
-        if let Some(step) = self.step(model, group, kept, slack, values) {
-            for ((node, direction), x) in self.unknowns.iter().zip(step.x.iter()) {
-                values[*node][0] += x * direction[0];
-                values[*node][1] += x * direction[1];
-            }
-            gained = step.gain;
-        }
-        for (node, _) in &self.unknowns {
-            self.local[*node] = usize::MAX;
-        }
-        gained
+    /// Two blocks, pressed together where a gap lets them.
+    const SCENE: &str = r#"
+        [model]
+        kinematics = "plane-strain"
+        [geometry]
+        size = 0.03
+        [[geometry.polygons]]
+        body = "a"
+        points = [[0, 0], [1.3, 0], [1, 1], [0, 1]]
+        edges = ["foot", "", "over", ""]
+        [[geometry.polygons]]
+        body = "b"
+        points = [[0, 1], [1, 1], [1, 1.5], [0, 1.5]]
+        edges = ["under", "", "top", "axis"]
+        [bodies.a]
+        young = 1.0
+        poisson = 0.3
+        [bodies.b]
+        young = 2.0
+        poisson = 0.45
+        body_force = [0.2, -1.0]
+        [[supports]]
+        on = "foot"
+        type = "clamped"
+        [[supports]]
+        on = "axis"
+        type = "roller"
+        [[contacts]]
+        between = ["over", "under"]
+        gap = [[0, 0], [1, 0.1]]
+    "#;
+
+    fn problem() -> Problem {
+        Problem::load(Scene::parse(SCENE, "blocks.toml".as_ref()).expect("a scene")).expect("a problem")
     }
 
-    /// The step to the minimum.
-    fn step(&mut self, model: &Model, group: &Group, kept: &mut Kept, slack: f64, values: &[[f64; 2]]) -> Option<Step> {
-        let n = self.unknowns.len();
-        if n == 0 || n > self.most {
-            return None;
-        }
-        self.forces(model, group, values);
-        let factor = match kept {
-            Some(factor) => &factor[..],
-            None => {
-                self.assemble(model, group);
-                if !factorise(&mut self.matrix, n) {
-                    return None;
-                }
-                if self.room >= packed(n) {
-                    self.room -= packed(n);
-                    *kept = Some(self.matrix.as_slice().into());
-                }
-                &self.matrix
-            }
-        };
-        if self.rows.is_empty() {
-            return free_minimum(factor, &self.load);
-        }
-        let (b, room) = self.inequalities(model, values);
-        minimum(factor, &self.load, &b, &room, slack)
+    fn in_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+        rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads").install(work)
     }
 
-    /// Numbers the unknowns. A patch with a triangle that has no unique minimum inside has none.
-    fn number(&mut self, model: &Model, group: &Group) {
-        self.unknowns.clear();
-        self.rows.clear();
-        if group.triangles.iter().any(|&t| model.energies.of(t).is_none()) {
-            return;
-        }
-        for &t in &group.triangles {
-            for &node in model.nodes(t) {
-                let free = model.free[node];
-                if self.local[node] == usize::MAX && free.count > 0 && model.moves(node, group) {
-                    self.local[node] = self.unknowns.len();
-                    self.unknowns.extend(free.unit[..free.count].iter().map(|unit| (node, *unit)));
-                }
+    #[test]
+    fn threads_move_patches_to_the_last_digit_as_one_after_the_other() {
+        let problem = problem();
+        for degree in [2, 3] {
+            let nodes = Nodes::new(problem.mesh.points.len(), problem.mesh.edges.iter().map(|_| degree));
+            let rows = rows(&problem, &nodes);
+            let held = holds(&problem).expect("supports agree");
+            let model = Model::new(&problem, &held, &nodes, &rows, Pull::SCENE);
+            let mut start = NodalValues::zeros(nodes.clone());
+            for (n, (value, hold)) in start.values.iter_mut().zip(held.of_nodes(&nodes)).enumerate() {
+                *value = hold.impose([1e-2 * (n as f64).sin(), 1e-2 * (3.0 * n as f64).cos()]);
             }
-        }
-        for &v in &group.vertices {
-            self.rows.extend(&model.rows_at[v]);
-        }
-        self.rows.sort_unstable();
-        self.rows.dedup();
-    }
-
-    /// The unknowns of a node and their directions, with the first unknown of every node in `local`.
-    fn terms(local: &[usize], model: &Model, node: usize) -> impl Iterator<Item = (usize, [f64; 2])> + use<> {
-        let (first, free) = (local[node], model.free[node]);
-        let count = if first == usize::MAX { 0 } else { free.count };
-        (0..count).map(move |i| (first + i, free.unit[i]))
-    }
-
-    /// Residual forces.
-    fn forces(&mut self, model: &Model, group: &Group, values: &[[f64; 2]]) {
-        self.load.clear();
-        self.load.resize(self.unknowns.len(), 0.0);
-        for &t in &group.triangles {
-            let Some(element) = model.energies.of(t) else { continue };
-            let [u, residual] = &mut self.of_triangle;
-            model.about_corner(t, values, u);
-            element.residual(u, residual);
-            let residual = &self.of_triangle[1];
-            for (a, &node) in model.nodes(t).iter().enumerate() {
-                for (i, p) in Self::terms(&self.local, model, node) {
-                    self.load[i] += p[0] * residual[2 * a] + p[1] * residual[2 * a + 1];
-                }
-            }
+            let relaxed = |alone: bool| {
+                let mut patches = Patches::new(&problem, &nodes);
+                assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * SHARED_FROM));
+                patches.fronts = patches.fronts.take().filter(|_| !alone);
+                let mut values = start.values.clone();
+                let gains: Vec<f64> =
+                    [false, true, false].map(|back| patches.sweep_all(&model, back, 1e-12, &mut values)).into();
+                (gains, values)
+            };
+            let (alone, shared) = in_threads(|| (relaxed(true), relaxed(false)));
+            assert!(alone.0[0] > 0.0);
+            assert_eq!(alone, shared);
         }
     }
 
-    /// Stiffness.
-    fn assemble(&mut self, model: &Model, group: &Group) {
-        let n = self.unknowns.len();
-        self.matrix.clear();
-        self.matrix.resize(packed(n), 0.0);
-        for &t in &group.triangles {
-            let Some(element) = model.energies.of(t) else { continue };
-            let nodes = model.nodes(t);
-            for (a, &node) in nodes.iter().enumerate() {
-                let (first, second) = (element.row(2 * a), element.row(2 * a + 1));
-                for (i, p) in Self::terms(&self.local, model, node) {
-                    let start = column(n, i);
-                    for (b, &other) in nodes.iter().enumerate() {
-                        let row = [0, 1].map(|d| p[0] * first[2 * b + d] + p[1] * second[2 * b + d]);
-                        for (j, q) in Self::terms(&self.local, model, other).filter(|(j, _)| *j >= i) {
-                            self.matrix[start + j - i] += row[0] * q[0] + row[1] * q[1];
-                        }
-                    }
-                }
+    /// By what patches read and move, node by node.
+    #[test]
+    fn patches_of_a_front_do_not_touch_and_neighbours_keep_their_order() {
+        let problem = problem();
+        let nodes = Nodes::new(problem.mesh.points.len(), problem.mesh.edges.iter().map(|_| 3));
+        let rows = rows(&problem, &nodes);
+        let model = Model::new(&problem, &holds(&problem).expect("supports agree"), &nodes, &rows, Pull::SCENE);
+        let patches = in_threads(|| Patches::new(&problem, &nodes));
+        let mut front = vec![usize::MAX; patches.count()];
+        for (number, of) in patches.fronts.as_ref().expect("threads").iter().enumerate() {
+            of.iter().for_each(|k| front[*k] = number);
+        }
+        let mut movers = vec![Vec::new(); nodes.count()];
+        for (k, group) in patches.groups.iter().enumerate() {
+            let on_triangles = group.triangles.iter().flat_map(|t| model.nodes(*t));
+            let mut moved: Vec<usize> = on_triangles.copied().filter(|node| model.moves(*node, group)).collect();
+            moved.sort_unstable();
+            moved.dedup();
+            moved.into_iter().for_each(|node| movers[node].push(k));
+        }
+        for (k, group) in patches.groups.iter().enumerate() {
+            let of_contact = group.vertices.iter().flat_map(|v| &model.rows_at[*v]);
+            let of_contact = of_contact.flat_map(|row| model.rows[*row].terms()).map(|(node, _)| *node);
+            let read = group.triangles.iter().flat_map(|t| model.nodes(*t)).copied().chain(of_contact);
+            for &j in read.flat_map(|node| &movers[node]).filter(|j| **j != k) {
+                assert_eq!(front[k].cmp(&front[j]), k.cmp(&j), "patches {k} and {j}");
             }
         }
-    }
-
-    /// What jumps may still grow by: B and s of Bx ≤ s.
-    fn inequalities(&self, model: &Model, values: &[[f64; 2]]) -> (DMatrix<f64>, DVector<f64>) {
-        let mut b = DMatrix::zeros(self.rows.len(), self.unknowns.len());
-        let mut room = DVector::zeros(self.rows.len());
-        for (i, &row) in self.rows.iter().enumerate() {
-            let row = &model.rows[row];
-            room[i] = (-row.excess(values)).max(0.0);
-            for &(node, factor) in row.terms() {
-                for (j, unit) in Self::terms(&self.local, model, node) {
-                    b[(i, j)] += factor[0] * unit[0] + factor[1] * unit[1];
-                }
-            }
-        }
-        (b, room)
     }
 }

@@ -136,7 +136,7 @@ pub fn relax(
             Some(few) => patches.sweep(model, few.iter().copied(), back, slack, &mut values),
             None => {
                 let before = (sweep >= SWEEPS).then(|| values.clone());
-                let gained = patches.sweep(model, 0..patches.count(), back, slack, &mut values);
+                let gained = patches.sweep_all(model, back, slack, &mut values);
                 let pushed = before.map(|before| momentum.push(model, &before, AT_ONCE * slack, &mut values));
                 gained + pushed.unwrap_or(0.0)
             }
