@@ -78,28 +78,6 @@ impl Patch {
         values: &[[f64; 2]],
     ) -> Option<Step> {
         self.number(model, group);
-        let step = self.minimum(model, group, k, factors, slack, values);
-        for (node, _) in &self.unknowns {
-            self.local[*node] = usize::MAX;
-        }
-        step
-    }
-
-    /// What the step found last moves.
-    pub fn moves(&self, step: &Step) -> impl Iterator<Item = Move> {
-        self.unknowns.iter().zip(step.x.iter()).map(|((node, direction), x)| (*node, direction.map(|d| x * d)))
-    }
-
-    /// The step of the unknowns.
-    fn minimum(
-        &mut self,
-        model: &Model,
-        group: &Group,
-        k: usize,
-        factors: &Factors,
-        slack: f64,
-        values: &[[f64; 2]],
-    ) -> Option<Step> {
         let n = self.unknowns.len();
         if n == 0 || n > self.most {
             return None;
@@ -123,9 +101,16 @@ impl Patch {
         minimum(factor, &self.load, &b, &room, slack)
     }
 
+    /// What the step found last moves.
+    pub fn moves(&self, step: &Step) -> impl Iterator<Item = Move> {
+        self.unknowns.iter().zip(step.x.iter()).map(|((node, direction), x)| (*node, direction.map(|d| x * d)))
+    }
+
     /// Numbers the unknowns. A patch with a triangle that has no unique minimum inside has none.
     fn number(&mut self, model: &Model, group: &Group) {
-        self.unknowns.clear();
+        for (node, _) in self.unknowns.drain(..) {
+            self.local[node] = usize::MAX;
+        }
         self.rows.clear();
         if group.triangles.iter().any(|&t| model.energies.of(t).is_none()) {
             return;

@@ -24,6 +24,9 @@ const KEPT_BY_VERTEX: usize = 512;
 /// Threads share the patches of a front from this many on: fewer are moved before another thread has begun.
 const SHARED_FROM: usize = 8;
 
+/// No more than so many threads share them: a front has scores of patches, and each thread's memory grows with the mesh.
+const MOST_SHARING: usize = 8;
+
 /// How many unknowns a patch has, relative to quadratics.
 fn size(nodes: &Nodes) -> f64 {
     let of_quadratics = nodes.vertices() + nodes.edges();
@@ -38,7 +41,7 @@ pub struct Patches {
     factors: Factors,
     /// What each patch gained when it was moved last.
     gained: Vec<f64>,
-    /// Memory for the patch at hand, for each thread.
+    /// Memory for the patch at hand, for each thread that shares them.
     patches: Vec<Mutex<Patch>>,
     /// Patches that threads move at the same time, where there is more than one thread.
     fronts: Option<Fronts>,
@@ -58,7 +61,7 @@ impl Patches {
         Patches {
             factors: Factors::new(groups.len(), (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices()),
             gained: vec![0.0; groups.len()],
-            patches: (0..threads).map(|_| patch()).collect(),
+            patches: (0..threads.min(MOST_SHARING)).map(|_| patch()).collect(),
             fronts: (threads > 1).then(|| Fronts::new(problem, &groups, &of_vertex)),
             groups,
             of_vertex,
