@@ -1,6 +1,6 @@
 """The contact problem on its jumps alone: min ½ jᵀSj − cᵀj over j ≤ g, with the dense Schur complement S.
 
-Primal–dual active sets, started from closed contact; where they come back to a state they have been in, TAO's
+Primal–dual active sets, started from a first guess; where they come back to a state they have been in, TAO's
 bound-constrained Newton method gives another start. The problem is solved in units in which the diagonal of S is one; where
 that fails, in units that are kept from rounding, which is all that is left of S where nothing but contact holds a body.
 """
@@ -45,9 +45,8 @@ class ContactProblem:
         """S j."""
         return self.schur @ jumps
 
-    def solve(self, load: np.ndarray, bound: np.ndarray, start: np.ndarray | None) -> State | None:
-        """The contact state, or nothing where S does not tell it; ``start`` (m,) is a first guess of the closed jumps."""
-        closed = np.ones(len(load), bool) if start is None else start
+    def solve(self, load: np.ndarray, bound: np.ndarray, closed: np.ndarray) -> State | None:
+        """The contact state, or nothing where S does not tell it; ``closed`` (m,) is a first guess of the closed jumps."""
         for scaled in self.scaled:
             found = scaled.pivot(load, bound, closed) or scaled.pivot(load, bound, scaled.newton(load, bound))
             if found is not None:

@@ -66,7 +66,7 @@ class Settled:
         self.now = Refined.of(model, zero)
         model.load_size = _largest(model.external) or _largest(self.now.r)
         self.seen: set[bytes] = set()
-        self._change(None)
+        self._change(np.array(model.files.array("guess.u8"), bool))
         for _ in range(MOST_CHANGES + 4 * len(self.bound)):
             self._refine(COARSE if isinstance(solver, Iterated) else ROUND_OFF)
             following = self._following()
@@ -80,7 +80,7 @@ class Settled:
         if self._misses().max(initial=0.0) > UNSETTLED:
             raise Failure("the contact state could not be determined: ends keep opening and closing")
 
-    def _change(self, start: np.ndarray | None) -> None:
+    def _change(self, start: np.ndarray) -> None:
         """Take another contact state, and the unknowns that the solver has for it.
 
         Where it has none, or leads back, closed jumps move to their bounds and refinement does the rest. States that have
@@ -90,8 +90,8 @@ class Settled:
         room = self.bound - self.model.jumps(self.now.x)
         found = self.solver.state(self.now.r, room, start) if self.steps <= MOST_CHANGES else None
         if found is None:
-            closed = np.ones(len(room), bool) if start is None else start
-            if closed.tobytes() in self.seen and start is not None:
+            closed = start
+            if closed.tobytes() in self.seen:
                 last = np.flatnonzero(closed != self.closed)[-1:]
                 closed = self.closed.copy()
                 closed[last] = ~closed[last]

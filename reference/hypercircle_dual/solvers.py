@@ -88,7 +88,7 @@ class Factorised:
         array[self.model.held - self.model.numbering.first] = 0.0
         r.array = array
 
-    def state(self, r, room: np.ndarray, start: np.ndarray | None):
+    def state(self, r, room: np.ndarray, start: np.ndarray):
         """The contact state under the load ``r`` with jumps up to ``room``, and the unknowns that go with it, if S tells."""
         z, c = self._condense(r)
         state = self._on_first(lambda: self.contact.solve(c, room, start))
@@ -142,7 +142,7 @@ class Iterated:
         nodal.diagonalScale(self.model.free(closed), None)
         self.solver = compat.multigrid(matrix, nodal, self.motions, INNER, MOST_ITERATIONS)
 
-    def state(self, r, room: np.ndarray, start: np.ndarray | None) -> None:
+    def state(self, r, room: np.ndarray, start: np.ndarray) -> None:
         """Nothing: the state is found by changing what stresses and jumps contradict."""
 
     def correct(self, r, closed: np.ndarray):

@@ -37,7 +37,8 @@ def test_contact_state_has_least_energy(seed):
     scale = 10.0 ** random.uniform(-4, 4, size)
     schur = (root @ root.T + 0.01 * np.eye(size)) * np.outer(scale, scale)
     load, bound = random.normal(size=size) * scale, np.abs(random.normal(size=size)) / scale
-    state = ContactProblem(schur, np.diag(schur)).solve(load, bound, None)
+    guess = random.random(size) < (0.5 if seed % 2 else 1.0)
+    state = ContactProblem(schur, np.diag(schur)).solve(load, bound, guess)
     assert np.all(state.jumps <= bound * (1.0 + 1e-12))
     assert np.all(state.jumps[state.closed] == pytest.approx(bound[state.closed]))
     energy = 0.5 * state.jumps @ schur @ state.jumps - load @ state.jumps
@@ -51,7 +52,7 @@ def test_newton_agrees_with_pivoting():
     root = random.normal(size=(12, 12))
     problem = ContactProblem(root @ root.T + np.eye(12), np.ones(12))
     load, bound = random.normal(size=12) * 3.0, np.full(12, 0.1)
-    state = problem.solve(load, bound, None)
+    state = problem.solve(load, bound, np.ones(12, bool))
     assert np.array_equal(problem.scaled[0].newton(load, bound), state.closed)
 
 

@@ -13,7 +13,7 @@ use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
 use crate::element::{Elements, block};
 use crate::mesh;
-use crate::problem::Problem;
+use crate::problem::{Problem, ProblemError};
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
@@ -103,11 +103,16 @@ impl Session {
         self.progress.phase("reading the mesh");
         let method = dual_method(solve);
         let admission = Admission::new(method.as_ref(), self.budget);
-        let problem = self.problem(solve, &admission)?;
+        let given = self.problem(solve, &admission)?;
+        let problem = self.refined(&given, solve)?;
         let read = self.start.elapsed().as_secs_f64();
         let phase = |triangles: usize| self.progress.phase(format!("solving in stresses on {triangles} triangles"));
         phase(problem.mesh.triangles.len());
-        let options = self.options(solve);
+        let mut options = self.options(solve);
+        if method.wants_guess() && solve.elements.is_none() {
+            options.closed = study::guess_refined(&given, solve.refine as usize, &problem, &options);
+        }
+        drop(given);
         let run = match solve.is_adaptive() {
             false => {
                 // A displacement that is handed in belongs to the mesh as given.
@@ -164,12 +169,6 @@ impl Session {
     }
 
     fn problem(&self, solve: &SolveOptions, admission: &Admission<'_>) -> Result<Problem, CliError> {
-        let refused = |e: crate::problem::ProblemError| {
-            // Where a mesh is made of the scene, its error names the scene already.
-            let (path, text) = (self.scene.path.display().to_string(), e.to_string());
-            let text = if text.starts_with(&path) { text } else { format!("{path}: {text}") };
-            CliError::stopped(Exit::BadInput, text, "")
-        };
         let load = |scene: Scene| {
             if let Some(triangles) = mesh::expected_triangles(&scene) {
                 let size = Size { triangles, distinct: triangles, contact_ends: 0.0 };
@@ -179,7 +178,7 @@ impl Session {
                 };
                 admission.admit(size, None).map_err(|excess| too_fine(&scene, &cause, triangles, excess))?;
             }
-            Problem::load_within(scene, limit(solve.reading_seconds)).map_err(refused)
+            Problem::load_within(scene, limit(solve.reading_seconds)).map_err(|e| self.unreadable(&e))
         };
         let problem =
             if solve.is_adaptive() { Problem::to_refine(&self.scene, load) } else { load(self.scene.clone()) }?;
@@ -190,7 +189,12 @@ impl Session {
             let cause = format!("--refine {}", solve.refine);
             admission.admit(size, None).map_err(|excess| too_fine(&self.scene, &cause, size.triangles, excess))?;
         }
-        let problem = problem.refine_uniform(solve.refine as usize).map_err(refused)?;
+        Ok(problem)
+    }
+
+    /// What is solved on.
+    fn refined(&self, given: &Problem, solve: &SolveOptions) -> Result<Problem, CliError> {
+        let problem = given.refine_uniform(solve.refine as usize).map_err(|e| self.unreadable(&e))?;
         let triangles = problem.mesh.triangles.len();
         if let Some(Elements::Blocks(degrees)) = &solve.elements
             && degrees.len() != triangles
@@ -203,6 +207,13 @@ impl Session {
             ));
         }
         Ok(problem)
+    }
+
+    fn unreadable(&self, error: &ProblemError) -> CliError {
+        // Where a mesh is made of the scene, its error names the scene already.
+        let (path, text) = (self.scene.path.display().to_string(), error.to_string());
+        let text = if text.starts_with(&path) { text } else { format!("{path}: {text}") };
+        CliError::stopped(Exit::BadInput, text, "")
     }
 
     fn refuse(&self, error: StudyError, folder: Option<&Path>) -> CliError {

@@ -40,6 +40,11 @@ pub trait DualMethod: Sync {
         1e-9
     }
 
+    /// Whether each contact state on the way costs a linear solve, so that a first guess from a coarser mesh pays.
+    fn wants_guess(&self) -> bool {
+        false
+    }
+
     /// Bytes that this process holds at the peak of a run on a mesh of that size, its bracket included.
     fn memory(&self, size: Size) -> f64;
 

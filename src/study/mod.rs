@@ -48,4 +48,4 @@ pub use provenance::provenance;
 pub(crate) use provenance::{hash, hex, identifier, locked_version};
 pub use sharpen::{Sharpened, sharpen};
 pub use stage::certify_divided;
-pub use warm_start::closed_coefficients;
+pub use warm_start::{closed_coefficients, guess_refined};

@@ -1,9 +1,14 @@
 //! Contact state and displacement of one mesh as a first guess on the next.
 
+use super::certified::balance;
 use crate::bounds::{NodalValues, Nodes};
+use crate::dual::{self, Condensed, Options, contact_coefficients};
 use crate::element::displacement::through;
 use crate::element::{Displacement, SideValues};
 use crate::problem::Problem;
+
+/// Triangles of the largest mesh that is solved on for nothing but a guess.
+const QUICKLY_SOLVED: usize = 20_000;
 
 /// First guess of the closed coefficients of `fine`, `counts` of them on its pairs, from the state `closed` of `coarse` at the
 /// same arc length.
@@ -44,6 +49,20 @@ pub fn closed_coefficients(
         first += old.pairs.len();
     }
     SideValues::new(counts.iter().copied(), guess)
+}
+
+/// The closed coefficients on `given` refined uniformly `levels` times, which is `fine`: those of the largest mesh on the way
+/// there that is quickly solved on, where there is one and it can be solved on.
+pub fn guess_refined(given: &Problem, levels: usize, fine: &Problem, options: &Options) -> Option<SideValues<bool>> {
+    let size = |level: u32| given.mesh.triangles.len().saturating_mul(4_usize.saturating_pow(level));
+    let level = (0..levels as u32).rev().find(|&level| size(level) <= QUICKLY_SOLVED)?;
+    let coarse = given.refine_uniform(level as usize).ok()?;
+    let statics = balance(&coarse, &options.elements).ok()?;
+    let options = Options { keep_factor: false, ..options.clone() };
+    let motions = statics.held_at_vertices(&coarse);
+    let found = options.on_threads(|| dual::solve(&Condensed::default(), &coarse, &motions, &options)).ok()?;
+    let counts = contact_coefficients(fine, &options.elements);
+    Some(closed_coefficients(&coarse, &found.closed, fine, &counts))
 }
 
 /// The displacement `v` of `coarse` on the edges of `fine`, whose triangle t lies in triangle `parent[t]` and gets the degree

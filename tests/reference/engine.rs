@@ -25,9 +25,9 @@ fn number(report: &Value, key: &str) -> f64 {
     report.pointer(key).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {key}"))
 }
 
-/// The same bounds, and equilibrium below 1e-9.
+/// The same bounds, and equilibrium below 1e-9. Gives how many contact states were tried.
 #[track_caller]
-fn same(name: &str, options: &[&str], engine: &[&str]) {
+fn same(name: &str, options: &[&str], engine: &[&str]) -> usize {
     let folder = tempfile::tempdir().expect("a folder");
     let expected = report(folder.path(), name, options);
     let arguments: Vec<&str> = options.iter().chain(&["--engine", "petsc"]).chain(engine).copied().collect();
@@ -47,6 +47,8 @@ fn same(name: &str, options: &[&str], engine: &[&str]) {
     let notes = found["notes"].to_string();
     let ranks = if engine.contains(&"2") { "on 2 ranks" } else { "on 1 rank" };
     assert!(notes.contains("PETSc") && notes.contains(ranks), "{notes}");
+    let states = notes.split_once("contact states tried: ").and_then(|(_, rest)| rest.split(';').next()?.parse().ok());
+    states.unwrap_or_else(|| panic!("no states: {notes}"))
 }
 
 #[test]
@@ -65,6 +67,9 @@ fn ranks_find_the_stresses_of_the_condensed_method() {
 fn an_iteration_finds_the_same() {
     if with_reference() {
         same("two_blocks", &[], &["--ranks", "2", "--linear-solver", "gamg"]);
+        // From closed contact there are nine states.
+        let states = same("two_blocks", &["--refine", "2"], &["--ranks", "1", "--linear-solver", "gamg"]);
+        assert!(states < 5, "{states} contact states from that of a coarser mesh");
     }
 }
 

@@ -89,7 +89,7 @@ pub struct Solution {
     pub closed: Vec<bool>,
 }
 
-/// Writes the problem into `folder`.
+/// Writes the problem into `folder`; `guess` holds the jumps that may be closed, and is left out where it belongs to others.
 ///
 /// # Errors
 /// The folder cannot be written to.
@@ -99,6 +99,7 @@ pub fn write(
     unknowns: &Unknowns,
     modes: &ModeTable,
     motions: &[Motion],
+    guess: Option<&[bool]>,
     (ranks, linear_solver): (usize, LinearSolver),
 ) -> io::Result<()> {
     let blocks = with_file(folder, "matrices.f64", |out| Blocks::new(problem, unknowns, modes, out))?;
@@ -121,7 +122,11 @@ pub fn write(
     let begins = unknowns.blocks.iter().map(|block| block.start as i64).chain([unknowns.count as i64]);
     indices("blocks.i64", &begins.collect::<Vec<_>>())?;
     numbers("external.f64", &load_of_tractions(problem, unknowns, problem.tractions()))?;
-    numbers("bound.f64", &jump_bounds(problem, unknowns))?;
+    let bounds = jump_bounds(problem, unknowns);
+    numbers("bound.f64", &bounds)?;
+    let guess = guess.filter(|guess| guess.len() == bounds.len());
+    let closed: Vec<u8> = guess.map_or(vec![1; bounds.len()], |guess| guess.iter().map(|&c| c.into()).collect());
+    fs::write(folder.join("guess.u8"), closed)?;
     let scales = Scales::new(problem);
     numbers("round_off.f64", &ends::round_off(problem, unknowns, modes, &scales))?;
     let pairs = unknowns.jump_blocks().enumerate();

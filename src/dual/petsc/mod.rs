@@ -18,6 +18,7 @@ use super::equilibrium::Equilibrium;
 use super::modes::ModeTable;
 use super::unknowns::Unknowns;
 use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
+use crate::element::SideValues;
 use crate::problem::Problem;
 use crate::process::Scratch;
 use crate::process::package::{Call, Failure, Package};
@@ -74,6 +75,10 @@ impl DualMethod for Petsc {
         }
     }
 
+    fn wants_guess(&self) -> bool {
+        self.linear_solver == LinearSolver::Gamg
+    }
+
     fn memory(&self, size: Size) -> f64 {
         size.linear(EACH)
     }
@@ -85,7 +90,8 @@ impl DualMethod for Petsc {
         let scratch = Scratch::new().map_err(|source| DualError::Exchange { path: env::temp_dir(), source })?;
         let failed = |source: io::Error| DualError::Exchange { path: scratch.path().to_owned(), source };
         let folder = scratch.folder("dual").map_err(failed)?;
-        exchange::write(&folder, problem, &unknowns, &modes, motions, (self.ranks, self.linear_solver))
+        let guess = options.closed.as_ref().map(SideValues::values);
+        exchange::write(&folder, problem, &unknowns, &modes, motions, guess, (self.ranks, self.linear_solver))
             .map_err(failed)?;
         let written = start.elapsed().as_secs_f64();
 
