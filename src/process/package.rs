@@ -68,6 +68,9 @@ const SHARED: Package = Package {
 /// What a package returns when something that it imports is missing.
 const NOT_INSTALLED: i32 = 4;
 
+/// What Open MPI may do without where one process is all there is; what the user says of it goes first.
+const ALONE: [(&str, &str); 2] = [("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_ess_singleton_isolated", "1")];
+
 impl Package {
     /// Runs the package as `python3 -m` does, in an empty folder, and waits for its end. Of a package `a_b` a line that
     /// begins with `a-b: not installed:` names what is missing.
@@ -135,6 +138,14 @@ impl Package {
         command.args(&call.arguments).env("OMP_NUM_THREADS", "1");
         // Ranks that wait leave the processor to others.
         command.env("OMPI_MCA_mpi_yield_when_idle", "1");
+        if call.ranks.is_none() {
+            // Open MPI takes 0.3 s to look for networks and to start a daemon, and one process talks to nobody.
+            for (name, value) in ALONE {
+                if env::var_os(name).is_none() {
+                    command.env(name, value);
+                }
+            }
+        }
         Ok(command)
     }
 
@@ -169,5 +180,27 @@ pub fn words(status: ExitStatus) -> String {
         (Some(code), _) => format!("exit code {code}"),
         (None, Some(signal)) => format!("ended by signal {signal}"),
         (None, None) => "ended abnormally".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn one_process_looks_for_no_network_and_ranks_may() {
+        let package = Package { name: "none", files: &[] };
+        let named = |ranks| {
+            let limit = Duration::from_secs(1);
+            let call = Call { interpreter: Some(Path::new("/bin/sh")), ranks, arguments: Vec::new(), limit };
+            let command = package.command(Path::new("/"), Path::new("/"), &call).ok()?;
+            Some(ALONE.map(|(name, _)| command.get_envs().any(|(key, value)| key == name && value.is_some())))
+        };
+        assert_eq!(named(None), Some(ALONE.map(|(name, _)| env::var_os(name).is_none())));
+        if let Some(ranks) = named(Some(2)) {
+            assert_eq!(ranks, [false; 2]);
+        }
     }
 }
