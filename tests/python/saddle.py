@@ -7,6 +7,7 @@ contact state is found on the few inequalities and then held against the optimal
 """
 
 import numpy as np
+from scipy.linalg import qr, solve_triangular
 
 from block import Block, compliance, outward, traction_of
 
@@ -125,11 +126,13 @@ class Program:
         matrix, right = np.array(self.rows), np.array(self.right)
         scale = np.linalg.norm(matrix, axis=1)
         matrix, right = matrix / scale[:, None], right / scale
-        left, values, kernel = np.linalg.svd(matrix)
-        rank = int((values > 1e-10 * values[0]).sum())
-        start = kernel[:rank].T @ ((left.T @ right)[:rank] / values[:rank])
+        # matrix = (kernel triangle)^T with its rows in another order; what depends on others comes last.
+        kernel, triangle, order = qr(matrix.T, pivoting=True)
+        sizes = np.abs(np.diag(triangle))
+        rank = int((sizes > 1e-10 * sizes[0]).sum())
+        start = kernel[:, :rank] @ solve_triangular(triangle[:rank, :rank], right[order[:rank]], trans="T")
         assert np.abs(matrix @ start - right).max() < 1e-9 * max(1, np.abs(right).max()), "no equilibrated stress"
-        free = kernel[rank:].T
+        free = kernel[:, rank:]
         hessian = free.T @ self.flexibility @ free
         slope = free.T @ (self.linear - self.flexibility @ start)
         pressing = np.array(self.pressing).reshape(-1, self.count)

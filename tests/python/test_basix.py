@@ -1,5 +1,7 @@
 """The element workbench, held against the elements of Basix."""
 
+import functools
+
 import basix
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ FROM_ONE_MATRIX = ["symmetry", "rigid-motions", "self-equilibrium", "rank", "def
 YOUNG, POISSON = 3.0, 0.25
 
 
+@functools.cache
 def lagrange(shape, degree):
     """A scalar element with nodes at equal distances."""
     shape = getattr(basix.CellType, shape)
