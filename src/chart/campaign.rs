@@ -133,7 +133,7 @@ impl Campaign<'_> {
                 None => SceneChart {
                     name: scene.name.clone(),
                     title: scene.title.clone(),
-                    reference: self.reference(scene, &step)?,
+                    reference: from_runs(&self.reference_runs(scene, &step)?),
                     sha256,
                     cold: Vec::new(),
                     runs: Vec::new(),
@@ -254,7 +254,8 @@ impl Campaign<'_> {
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
 
-    fn reference(&self, scene: &Scene, step: &Step) -> Result<Result<super::Reference, String>, CampaignError> {
+    /// How the runs ended that say what errors are measured against, and what each of them was.
+    fn reference_runs(&self, scene: &Scene, step: &Step) -> Result<Vec<(String, Ended)>, CampaignError> {
         self.tell(format!("{}: the bracket to measure errors against", scene.name), step);
         let budget = REFERENCE_BUDGETS * self.plan.budget;
         let mut runs = Vec::new();
@@ -266,7 +267,7 @@ impl Campaign<'_> {
             let one = One { method, refine, tolerance, quantities: &[] };
             runs.push((what, self.once(scene, one, budget, None)?));
         }
-        Ok(from_runs(&runs))
+        Ok(runs)
     }
 
     /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.

@@ -123,16 +123,21 @@ fn sweep(root: &Path) {
         let own = |e: &fs::DirEntry| e.metadata().is_ok_and(|m| m.is_dir() && m.uid() == user);
         if named
             && own(&entry)
-            && let Some(_lock) = dead(&entry)
+            && let Some(_remains) = dead(&entry)
         {
             remove_busy(&entry.path());
         }
     }
 }
 
-/// The lock of a folder that belongs to no living process, if it has one. It is held until the folder is gone, so that a
+/// A folder that belongs to no living process, with its lock if it has one. That is held until the folder is gone, so that a
 /// process that was about to take it sees that it is taken.
-fn dead(folder: &fs::DirEntry) -> Option<Option<File>> {
+struct Remains {
+    _lock: Option<File>,
+}
+
+/// What `folder` is, if no living process has it.
+fn dead(folder: &fs::DirEntry) -> Option<Remains> {
     let gone = || is_gone(&folder.file_name().to_string_lossy());
     match File::open(folder.path().join(LOCK)) {
         Ok(alive) => {
@@ -142,12 +147,12 @@ fn dead(folder: &fs::DirEntry) -> Option<Option<File>> {
                 std::thread::sleep(LETTING_GO / 20);
                 free()
             };
-            (free() || gone() && (0..20).any(|_| let_go())).then_some(Some(alive))
+            (free() || gone() && (0..20).any(|_| let_go())).then_some(Remains { _lock: Some(alive) })
         }
-        Err(_) if gone() => Some(None),
+        Err(_) if gone() => Some(Remains { _lock: None }),
         Err(_) => {
             let age = folder.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
-            age.is_some_and(|age| age > YOUNG).then_some(None)
+            age.is_some_and(|age| age > YOUNG).then_some(Remains { _lock: None })
         }
     }
 }
