@@ -32,6 +32,10 @@ const SHORTEST: f64 = 1e-11;
 const COARSER: f64 = 30.0;
 const LONGEST: f64 = 1e-5;
 
+/// How many times the limit in seconds a method may take for the first mesh before it begins no further factorisation: a
+/// late result is better than none, a contact state that never settles is not worth waiting for.
+const PATIENCE_WITH_THE_FIRST: f64 = 3.0;
+
 /// A mesh that makes the error smaller by less than this power of its unknowns is hardly worth them.
 const STALLED: f64 = 0.1;
 
@@ -125,11 +129,14 @@ pub fn adapt(
     let mut forecast = Forecast::default();
     let mut last: Option<Measured> = None;
     let mut shortest = SHORTEST;
-    let by_then = goal.max_seconds.and_then(|most| start.checked_add(Duration::try_from_secs_f64(most).ok()?));
+    let after = |seconds: f64| start.checked_add(Duration::try_from_secs_f64(seconds).ok()?);
+    let by_then = goal.max_seconds.and_then(after);
+    let by_first = goal.max_seconds.and_then(|most| after(PATIENCE_WITH_THE_FIRST * most));
     loop {
         let began = Instant::now();
-        // The first mesh has no result before it to end with.
-        let options = &Options { deadline: by_then.filter(|_| last.is_some()), ..options.clone() };
+        // The first mesh has no result before it to end with, and is given longer.
+        let deadline = if last.is_some() { by_then } else { by_first };
+        let options = &Options { deadline, ..options.clone() };
         let smallest = across(&stage.problem);
         let outcome = stage.solved(method, options, last.as_ref().map(|last| &last.solved.certified));
         let (solved, fault) = match (outcome, last.take()) {

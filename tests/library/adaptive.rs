@@ -1,6 +1,8 @@
 //! Adaptive refinement to a guaranteed tolerance, on the two blocks of which the energy is known to nine digits.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, DualError, DualMethod, Found, Motion, Options, Size, contact_coefficients};
@@ -316,4 +318,43 @@ fn what_numbers_cannot_resolve_ends_a_run_with_its_place() {
     let rates: Vec<f64> = adapted.history.iter().filter_map(|row| row.rate).collect();
     let idle = rates.iter().skip_while(|rate| **rate < 0.03).filter(|rate| **rate < 0.01).count();
     assert!(idle == 1 && rates.last().is_some_and(|rate| *rate < 0.01), "{rates:?}");
+}
+
+/// Condensed, and which deadline it was given on each mesh.
+struct Watched(Mutex<Vec<Option<Instant>>>);
+
+impl DualMethod for Watched {
+    fn name(&self) -> &'static str {
+        "watched"
+    }
+
+    fn memory(&self, size: Size) -> f64 {
+        Condensed::default().memory(size)
+    }
+
+    fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        self.0.lock().expect("one thread").push(options.deadline);
+        Condensed::default().solve(problem, motions, options)
+    }
+}
+
+#[test]
+fn a_limit_in_seconds_holds_for_the_first_mesh_too_with_more_patience() {
+    let began = Instant::now();
+    for limit in [None, Some(1000.0)] {
+        let method = Watched(Mutex::default());
+        let goal = Goal { max_seconds: limit, ..Goal::new(0.05) };
+        adapt(problem(&blocks(0.3, LIFT_OFF)), &method, &Options::default(), &goal, |_| ()).expect("an answer");
+        let given = method.0.into_inner().expect("one thread");
+        assert!(given.len() > 1, "{} meshes", given.len());
+        for (mesh, deadline) in given.iter().enumerate() {
+            let after = deadline.map(|end| end.duration_since(began).as_secs_f64());
+            let factor = if mesh == 0 { 3.0 } else { 1.0 };
+            match (limit, after) {
+                (None, None) => (),
+                (Some(most), Some(after)) => assert!((after - factor * most).abs() < 500.0, "mesh {mesh}: {after} s"),
+                mixed => panic!("mesh {mesh}: {mixed:?}"),
+            }
+        }
+    }
 }
