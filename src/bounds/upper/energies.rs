@@ -66,7 +66,7 @@ impl TriangleEnergies {
     pub fn of(&self, t: usize) -> Option<TriangleEnergy<'_>> {
         let stiffness = self.stiffness[self.class[t] as usize].as_ref()?;
         let (load, within) = self.loads[self.start[t]..self.start[t + 1]].split_at(stiffness.size);
-        Some(TriangleEnergy { stiffness, load, within })
+        Some(TriangleEnergy::new(stiffness, load, within))
     }
 
     /// All of them with their triangles.
@@ -75,7 +75,12 @@ impl TriangleEnergies {
     }
 }
 
-impl TriangleEnergy<'_> {
+impl<'a> TriangleEnergy<'a> {
+    /// With f and L⁻¹ f_i, as [`Stiffness::condense`] makes them.
+    pub fn new(stiffness: &'a Stiffness, load: &'a [f64], within: &'a [f64]) -> Self {
+        TriangleEnergy { stiffness, load, within }
+    }
+
     /// A row of K.
     pub fn row(&self, i: usize) -> &[f64] {
         self.stiffness.row(i)
@@ -106,8 +111,9 @@ impl TriangleEnergy<'_> {
 
     /// The coefficients inside, x and y of each, that minimise the energy where those on the boundary are `boundary`, all in the
     /// degree of the triangle.
-    pub fn inside(&self, boundary: &[f64]) -> Vec<f64> {
-        self.stiffness.inside(self.within, boundary)
+    pub fn inside(&self, boundary: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(self.within);
+        self.stiffness.inside(boundary, out);
     }
 }
 

@@ -2,38 +2,17 @@
 
 use rayon::prelude::*;
 
-use super::cholesky;
+use super::energies::TriangleEnergy;
 use super::model::Model;
 use super::nodes::{NodalValues, elevated};
-use super::pull::Pull;
-use super::split::Split;
 use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
 use crate::element::{Displacement, side, triangle};
 use crate::problem::Problem;
 
-/// Newton's steps. The energy is quadratic and the first one arrives; the second takes away what rounding left, which near
-/// ν = ½ is not little.
-const STEPS: usize = 2;
-
-/// Completes values at the nodes to a displacement on the split triangles, those inside to the last digit.
-pub fn fill(problem: &Problem, field: &NodalValues, pull: Pull<'_>) -> Displacement {
-    let materials = problem.materials();
-    let split = |t: usize, k: usize| pull.split(problem, t, k, &materials[problem.mesh.body[t]]);
-    completed(problem, field, |t, k, block| inside(k, &split(t, k), block))
-}
-
-/// Does the same with what `model` has kept, to the digits that one elimination leaves.
-pub fn fill_with(problem: &Problem, field: &NodalValues, model: &Model) -> Displacement {
-    completed(problem, field, |t, k, block| {
-        let (boundary, within) = block.as_flattened_mut().split_at_mut(6 * k);
-        let base = [boundary[0], boundary[1]];
-        let about = |c: usize| boundary[c] - base[c % 2];
-        let about: Vec<f64> = (0..boundary.len()).map(about).collect();
-        let found = model.energies.of(t).map(|element| element.inside(&about));
-        // Where nothing could be eliminated there is no unique minimum, and any values are admissible.
-        let found = found.unwrap_or_else(|| vec![0.0; within.len()]);
-        within.iter_mut().zip(found).enumerate().for_each(|(c, (own, found))| *own = found + base[c % 2]);
-    })
+/// Completes values at the nodes to a displacement on the split triangles, with what `model` has eliminated. It is the same for
+/// triangles of nearly the same shape; energies at their minimum are no different to the last digit.
+pub fn fill(problem: &Problem, field: &NodalValues, model: &Model) -> Displacement {
+    completed(problem, field, |t, k, block| inside(k, model.energies.of(t), block))
 }
 
 /// The displacement with the sides of `field`, its inside set by `inside`, which is given triangle, degree and coefficients.
@@ -64,31 +43,24 @@ fn completed(
     displacement
 }
 
-/// Sets the inner coefficients, those on the boundary being given.
-fn inside(k: usize, split: &Split, block: &mut [[f64; 2]]) {
+/// Sets the inner coefficients, those on the boundary being given. Where nothing could be eliminated there is no unique minimum,
+/// and the quadratic is as good as any.
+fn inside(k: usize, energy: Option<TriangleEnergy<'_>>, block: &mut [[f64; 2]]) {
     // About the value at the first corner: rigid translations cost no digits.
     let base = block[0];
-    block.iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
-    begin(k, block);
-    let mut stiffness = split.inside();
-    if cholesky::factorise(&mut stiffness, split.inside, 0.0) {
-        let mut load = vec![0.0; split.inside];
-        for _ in 0..STEPS {
-            for (i, value) in load.iter_mut().enumerate() {
-                let row = split.boundary + i;
-                let forces = split.row(row).iter().zip(block.as_flattened()).map(|(k, u)| k * u);
-                *value = split.load[row] - forces.sum::<f64>();
-            }
-            cholesky::solve(&stiffness, &mut load);
-            let inner = &mut block.as_flattened_mut()[split.boundary..];
-            inner.iter_mut().zip(&load).for_each(|(value, step)| *value += step);
+    block[..3 * k].iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
+    match energy {
+        Some(energy) => {
+            let (boundary, inside) = block.as_flattened_mut().split_at_mut(6 * k);
+            energy.inside(boundary, inside);
         }
+        None => quadratic(k, block),
     }
     block.iter_mut().for_each(|v| *v = [v[0] + base[0], v[1] + base[1]]);
 }
 
 /// Sets the inner coefficients to those of the quadratic with the values of the boundary at corners and midpoints.
-fn begin(k: usize, block: &mut [[f64; 2]]) {
+fn quadratic(k: usize, block: &mut [[f64; 2]]) {
     let inner = [0, 1, 2].map(|i| {
         let weights = (0..=k).map(|j| side::bernstein(k, j, 0.5));
         let side = side_nodes(k, i).map(|n| block[n]);
@@ -112,6 +84,7 @@ fn begin(k: usize, block: &mut [[f64; 2]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::upper::stiffness::Stiffness;
     use crate::element::Compliance;
     use crate::element::displacement::MOST;
     use crate::element::geometry::sub_corners;
@@ -143,10 +116,43 @@ mod tests {
                 }
                 let mut found = exact.block(0).to_vec();
                 found[3 * k..].fill([7.0, -5.0]);
-                inside(k, &Split::new(k, CORNERS, &material), &mut found);
+                let stiffness = Stiffness::new(k, [k; 3], CORNERS, &material).expect("a unique minimum");
+                let (load, within) = (vec![0.0; stiffness.size], vec![0.0; stiffness.inside]);
+                inside(k, Some(TriangleEnergy::new(&stiffness, &load, &within)), &mut found);
                 for (a, b) in found.iter().zip(exact.block(0)) {
                     assert!((a[0] - b[0]).hypot(a[1] - b[1]) < allowed, "degree {k}: {a:?} is not {b:?}");
                 }
+            }
+        }
+    }
+    #[test]
+    fn without_a_unique_minimum_the_inside_follows_a_quadratic_on_the_boundary() {
+        let along = |[x, y]: [f64; 2]| [0.3 + x * y - 2.0 * x, y * y - 0.5 * x * x + y];
+        for k in 2..=MOST {
+            let mut exact = Displacement::zeros([k]);
+            for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+                let q = sub_corners(CORNERS, sub);
+                let middle = |i: usize, j: usize| [0, 1].map(|c| 0.5 * (q[i][c] + q[j][c]));
+                let quadratic: Vec<[f64; 2]> = triangle::indices(2)
+                    .map(|beta| match (0..3).filter(|i| beta[*i] > 0).collect::<Vec<_>>()[..] {
+                        [i, j] => {
+                            let (ends, between) = ([along(q[i]), along(q[j])], along(middle(i, j)));
+                            [0, 1].map(|c| 2.0 * between[c] - 0.5 * (ends[0][c] + ends[1][c]))
+                        }
+                        ref one => along(q[one[0]]),
+                    })
+                    .collect();
+                for (&node, alpha) in nodes.iter().zip(triangle::indices(k)) {
+                    let weights = triangle::indices(2).map(|beta| triangle::elevation(beta, alpha));
+                    exact.block_mut(0)[node] =
+                        weights.zip(&quadratic).fold([0.0; 2], |sum, (w, u)| [sum[0] + w * u[0], sum[1] + w * u[1]]);
+                }
+            }
+            let mut found = exact.block(0).to_vec();
+            found[3 * k..].fill([7.0, -5.0]);
+            inside(k, None, &mut found);
+            for (a, b) in found.iter().zip(exact.block(0)) {
+                assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-13, "degree {k}: {a:?} is not {b:?}");
             }
         }
     }

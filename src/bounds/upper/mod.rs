@@ -131,7 +131,7 @@ pub fn admissible_and_prepared(
     let mut patches = Patches::new(problem, &nodes);
     let relaxed =
         relax::relax(problem, &model, &mut patches, Until::Near(floor / problem.scene.thickness), candidates, at_rest)?;
-    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, Pull::SCENE);
+    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, &model);
     let prepared = if keep { Prepared::holding(Made { model, patches }) } else { Prepared::default() };
     Ok((displacement, prepared))
 }

@@ -193,10 +193,14 @@ mod tests {
         Nodes::new(problem.mesh.points.len(), (0..problem.mesh.edges.len()).map(degree))
     }
 
-    fn energy(problem: &Problem, field: &NodalValues) -> f64 {
-        let rows = rows(problem, &field.nodes);
+    fn model(problem: &Problem, nodes: &Nodes) -> Model {
+        let rows = rows(problem, nodes);
         let holds = holds(problem).expect("supports agree");
-        Model::new(problem, &holds, &field.nodes, &rows, Pull::SCENE).energy(&field.values)
+        Model::new(problem, &holds, nodes, &rows, Pull::SCENE)
+    }
+
+    fn energy(problem: &Problem, field: &NodalValues) -> f64 {
+        model(problem, &field.nodes).energy(&field.values)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.
@@ -207,10 +211,11 @@ mod tests {
         for degree in degrees {
             let mut field = NodalValues::zeros(nodes(&problem, degree));
             field.values.iter_mut().enumerate().for_each(|(n, v)| *v = [(n as f64).sin(), (3.0 * n as f64).cos()]);
-            let found = potential(&problem, &fill(&problem, &field, Pull::SCENE));
-            let at_rest = potential(&problem, &fill(&problem, &NodalValues::zeros(field.nodes.clone()), Pull::SCENE));
+            let model = model(&problem, &field.nodes);
+            let filled = |field: &NodalValues| potential(&problem, &fill(&problem, field, &model));
+            let (found, at_rest) = (filled(&field), filled(&NodalValues::zeros(field.nodes.clone())));
             let expected = (found.total() - at_rest.total()) / problem.scene.thickness;
-            let of_model = energy(&problem, &field);
+            let of_model = model.energy(&field.values);
             assert!((of_model - expected).abs() < 1e-11 * found.magnitude, "{of_model} is not {expected}");
         }
     }

@@ -83,13 +83,13 @@ impl<'a> Nearest<'a> {
         self.pulled(pull, &rows, |model, patches| {
             let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest)?;
             let relaxed = admissible(relaxed)?;
-            Ok((interior::fill_with(self.problem, &relaxed, model), relaxed))
+            Ok((interior::fill(self.problem, &relaxed, model), relaxed))
         })
     }
 
     /// Values at nodes as a displacement, the inside of triangles of least energy under `pull`.
     pub fn filled(&self, values: &NodalValues, pull: Pull<'_>) -> Displacement {
-        self.pulled(pull, &self.rows, |model, _| interior::fill_with(self.problem, values, model))
+        self.pulled(pull, &self.rows, |model, _| interior::fill(self.problem, values, model))
     }
 
     /// The energy under `pull` of the displacement with these values at nodes, the inside of triangles of least energy.

@@ -1,7 +1,7 @@
 //! What pulls at a displacement.
 
-use super::split::{self, Split, load};
-use crate::element::{Compliance, StressField};
+use super::split::{self, load};
+use crate::element::StressField;
 use crate::problem::{Condition, Problem};
 
 /// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
@@ -16,13 +16,6 @@ pub struct Pull<'a> {
 impl Pull<'_> {
     /// The scene alone: the energy is 𝓛.
     pub const SCENE: Pull<'static> = Pull { scene: 1.0, stress: None };
-
-    /// The energy of triangle `t` for displacements of degree `k`, but for tractions.
-    pub fn split(&self, problem: &Problem, t: usize, k: usize, material: &Compliance) -> Split {
-        let mut split = Split::new(k, problem.mesh.corners(t), material);
-        split.load = self.forces(problem, t, k);
-        split
-    }
 
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {

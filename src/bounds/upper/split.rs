@@ -15,7 +15,7 @@ use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_gradients};
 use crate::element::{Compliance, Samples, StressField, triangle};
 
-/// ½ uᵀKu − fᵀu, per unit thickness, without the tractions on the boundary.
+/// K of the strain energy ½ uᵀKu, per unit thickness.
 #[derive(Debug, Clone)]
 pub struct Split {
     /// Unknowns on the boundary, 6k.
@@ -23,16 +23,13 @@ pub struct Split {
     /// Unknowns inside.
     pub inside: usize,
     matrix: Vec<f64>,
-    /// f: forces on every coefficient.
-    pub load: Vec<f64>,
 }
 
 impl Split {
-    /// The energy on a counter-clockwise triangle for displacements of degree `k`, without forces.
+    /// That of a counter-clockwise triangle for displacements of degree `k`.
     pub fn new(k: usize, corners: [[f64; 2]; 3], material: &Compliance) -> Self {
         let all = 2 * split_len(k);
-        let mut split =
-            Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all], load: vec![0.0; all] };
+        let mut split = Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all] };
         let area = sub_area(corners);
         let reference = Reference::of(k);
         for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
@@ -51,7 +48,7 @@ impl Split {
 
     /// A row of K.
     pub fn row(&self, i: usize) -> &[f64] {
-        let all = self.load.len();
+        let all = self.boundary + self.inside;
         &self.matrix[i * all..(i + 1) * all]
     }
 
@@ -67,7 +64,7 @@ impl Split {
 
     /// Adds the stiffness between two nodes, which are given in one of the two orders.
     fn put(&mut self, a: usize, b: usize, [xx, xy, yx, yy]: Pair) {
-        let all = self.load.len();
+        let all = self.boundary + self.inside;
         let mut add = |i: usize, j: usize, value: f64| self.matrix[i * all + j] += value;
         for (i, j, value) in [(0, 0, xx), (0, 1, xy), (1, 0, yx), (1, 1, yy)] {
             add(2 * a + i, 2 * b + j, value);

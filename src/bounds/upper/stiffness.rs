@@ -76,14 +76,13 @@ impl Stiffness {
         }
     }
 
-    /// The coefficients inside, x and y of each, that minimise the energy where those on the boundary are `boundary`, in the degree
-    /// of the triangle, and L⁻¹ f_i is `within`.
-    pub fn inside(&self, within: &[f64], boundary: &[f64]) -> Vec<f64> {
-        let rows = self.across.chunks_exact(boundary.len());
-        let left = |(f, row): (&f64, &[f64])| f - row.iter().zip(boundary).map(|(k, u)| k * u).sum::<f64>();
-        let mut x: Vec<f64> = within.iter().zip(rows).map(left).collect();
-        cholesky::backward(&self.factor, &mut x);
-        x
+    /// Turns L⁻¹ f_i into the coefficients inside, x and y of each, that minimise the energy where those on the boundary are
+    /// `boundary`, in the degree of the triangle.
+    pub fn inside(&self, boundary: &[f64], within: &mut [f64]) {
+        for (f, row) in within.iter_mut().zip(self.across.chunks_exact(boundary.len())) {
+            *f -= row.iter().zip(boundary).map(|(k, u)| k * u).sum::<f64>();
+        }
+        cholesky::backward(&self.factor, within);
     }
 
     /// uᵀKv.
