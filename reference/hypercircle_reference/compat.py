@@ -6,6 +6,10 @@ plain arrays, ``functionspace`` in place of ``VectorFunctionSpace``).
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 
 from hypercircle_process import NotInstalled
@@ -14,6 +18,7 @@ try:
     import dolfinx
     import dolfinx.fem
     import dolfinx.fem.petsc
+    import dolfinx.jit
     import dolfinx.mesh
     import petsc4py
     import ufl
@@ -37,6 +42,44 @@ if not np.issubdtype(PETSc.ScalarType, np.floating):
     raise NotInstalled("PETSc is built for complex numbers, and this model needs the build for real ones")
 
 
+ABANDONED = 60.0
+"""Seconds after which a module that is still not compiled belongs to a process that was killed."""
+WAITS = 8
+"""How often FFCx may wait, ten seconds each time, for a module that another process compiles."""
+
+
+def remove_abandoned(cache: Path) -> None:
+    """Remove what killed processes left of modules in the folder of FFCx, which would wait for each of them in vain."""
+    for source in cache.glob("libffcx_*.c"):
+        ready = source.with_name(f"{source.name}.cached")
+        try:
+            if not ready.exists() and time.time() - source.stat().st_mtime > ABANDONED:
+                source.unlink()
+        except FileNotFoundError:
+            pass  # another process was faster
+
+
+def cache_folder() -> Path:
+    """Where FFCx keeps what it has compiled."""
+    return Path((dolfinx.jit.get_options if MODERN else dolfinx.jit.get_parameters)()["cache_dir"])
+
+
+def jit(comm: MPI.Comm, make: Callable):
+    """What ``make`` compiles, on all ranks together."""
+    for _ in range(WAITS):
+        if comm.rank == 0:
+            remove_abandoned(cache_folder())
+        try:
+            return make()
+        except (RuntimeError, TimeoutError) as error:
+            # The ranks after the first are told of a failure and not of its reason.
+            if "just-in-time" not in str(error) and "JIT" not in str(error):
+                raise
+            if not comm.bcast("timed out" in str(error)):
+                raise
+    return make()
+
+
 def create_mesh(comm: MPI.Comm, triangles: np.ndarray, points: np.ndarray):
     """Distribute the triangles (m, 3) with coordinates (n, 2); rank 0 hands in everything, the others nothing."""
     if comm.rank != 0:
@@ -44,9 +87,9 @@ def create_mesh(comm: MPI.Comm, triangles: np.ndarray, points: np.ndarray):
     if MODERN:
         element = basix.ufl.element("Lagrange", "triangle", 1, shape=(2,))
         # Keywords, because 0.10 exchanged the order of the last two.
-        return dolfinx.mesh.create_mesh(comm, cells=triangles, x=points, e=ufl.Mesh(element))
+        return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, cells=triangles, x=points, e=ufl.Mesh(element)))
     domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell("triangle", geometric_dimension=2), 1))
-    return dolfinx.mesh.create_mesh(comm, triangles, points, domain)
+    return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, triangles, points, domain))
 
 
 def owned_cells(mesh) -> int:
@@ -67,15 +110,15 @@ def vector_space(mesh, degree: int):
     """Continuous Lagrange displacements of the given degree, their nodes at equal steps."""
     if MODERN:
         element = basix.ufl.element("Lagrange", "triangle", degree, EQUAL_STEPS, shape=(2,))
-        return dolfinx.fem.functionspace(mesh, element)
+        return jit(mesh.comm, lambda: dolfinx.fem.functionspace(mesh, element))
     element = basix.ufl_wrapper.create_vector_element("Lagrange", "triangle", degree, EQUAL_STEPS)
-    return dolfinx.fem.FunctionSpace(mesh, element)
+    return jit(mesh.comm, lambda: dolfinx.fem.FunctionSpace(mesh, element))
 
 
 def constant_per_cell(mesh, values: np.ndarray):
     """Coefficient with the given value (m,) on each owned cell."""
     make = dolfinx.fem.functionspace if MODERN else dolfinx.fem.FunctionSpace
-    space = make(mesh, ("DG", 0))
+    space = jit(mesh.comm, lambda: make(mesh, ("DG", 0)))
     coefficient = dolfinx.fem.Function(space)
     coefficient.x.array[_table(space.dofmap.list, 1)[: owned_cells(mesh), 0]] = values
     return coefficient
@@ -93,9 +136,9 @@ def owned_nodes(space) -> tuple[int, int]:
     return tuple(space.dofmap.index_map.local_range)
 
 
-def form(expression):
+def form(comm: MPI.Comm, expression):
     """Compile a UFL form."""
-    return dolfinx.fem.form(expression)
+    return jit(comm, lambda: dolfinx.fem.form(expression))
 
 
 def assemble_matrix(compiled) -> PETSc.Mat:

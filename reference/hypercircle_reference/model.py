@@ -113,7 +113,7 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     ``flip_sign`` plants a bug on purpose, 1 + 2ν for 1 − 2ν in Lamé's λ (1 + ν² for 1 − ν² in plane stress), so that
     a comparison can show that it would notice.
     """
-    problem = mesh.problem
+    problem, comm = mesh.problem, mesh.comm
     start = perf_counter()
     space = compat.vector_space(mesh.mesh, degree)
     materials = np.array([_lame(body, problem.kinematics, flip_sign) for body in problem.bodies]) * problem.thickness
@@ -127,9 +127,9 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
         return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * ufl.dx
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
-    bilinear = compat.form(work(u, v))
-    energy = compat.form(0.5 * work(displacement, displacement))
-    linear = compat.form(ufl.inner(force, v) * ufl.dx)
+    bilinear = compat.form(comm, work(u, v))
+    energy = compat.form(comm, 0.5 * work(displacement, displacement))
+    linear = compat.form(comm, ufl.inner(force, v) * ufl.dx)
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)

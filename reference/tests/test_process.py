@@ -3,8 +3,10 @@
 import copy
 import json
 import os
+import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -211,3 +213,52 @@ def test_missing_file_and_folder(tmp_path):
     assert call(tmp_path).returncode == 2
     (tmp_path / "problem.json").mkdir()
     assert call(tmp_path).returncode == 2
+
+
+def test_what_a_killed_run_left_half_compiled_is_compiled_anew(tmp_path):
+    from hypercircle_reference import compat
+
+    data, cache = two_blocks(2), tmp_path / "cache"
+    home = {"XDG_CACHE_HOME": str(cache)}
+    assert call(tmp_path, "--degree", "1", data=data).returncode == 0
+    # As a run leaves them that is killed in the compiler: begun, and never finished.
+    begun = time.time() - 2 * compat.ABANDONED
+    (cache / "fenics").mkdir(parents=True)
+    for source in compat.cache_folder().glob("*.c"):
+        copy = Path(shutil.copy(source, cache / "fenics"))
+        os.utime(copy, (begun, begun))
+    start = time.monotonic()
+    done = call(tmp_path, "--degree", "1", data=data, **home)
+    assert done.returncode == 0, done.stderr
+    assert time.monotonic() - start < 60.0
+
+
+def test_a_module_that_another_process_compiles_is_waited_for(tmp_path):
+    from mpi4py import MPI
+
+    from hypercircle_reference import compat
+
+    young, old, done = (tmp_path / f"libffcx_forms_{name}.c" for name in ("young", "old", "done"))
+    for source in (young, old, done):
+        source.touch()
+    for source in (old, done):
+        os.utime(source, (0.0, 0.0))
+    done.with_name(f"{done.name}.cached").touch()
+    compat.remove_abandoned(tmp_path)
+    assert young.exists() and done.exists() and not old.exists()
+
+    tries = []
+
+    def compiles(failure, times):
+        tries.append(failure)
+        if len(tries) <= times:
+            raise failure
+        return "compiled"
+
+    late = TimeoutError("JIT compilation timed out, probably due to a failed previous compile.")
+    assert compat.jit(MPI.COMM_WORLD, lambda: compiles(late, 2)) == "compiled"
+    assert len(tries) == 3
+    tries.clear()
+    with pytest.raises(RuntimeError):
+        compat.jit(MPI.COMM_WORLD, lambda: compiles(RuntimeError("of another kind"), 1))
+    assert len(tries) == 1
