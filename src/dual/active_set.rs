@@ -8,9 +8,9 @@ use faer::sparse::SparseColMat;
 use super::ends::{Ends, GRAZING, next_state};
 use super::equilibrium::Equilibrium;
 use super::factor::Factor;
-use super::hybrid::{Motion, explain, held_unknowns, structure};
+use super::hybrid::{Motion, explain, held_unknowns};
 use super::refinement::{ROUND_OFF, Refined, Refinement};
-use super::system::{System, isolate};
+use super::system::{Structured, System, isolate};
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
 
@@ -73,15 +73,15 @@ impl ActiveSet {
     ) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
-        let system = System::new(problem, options);
-        seconds.assemble = start.elapsed().as_secs_f64();
+        let Structured { system, structure, seconds_of_structure } = System::structured(problem, options);
+        seconds.assemble = (start.elapsed().as_secs_f64() - seconds_of_structure).max(0.0);
 
         let start = Instant::now();
         let held = held_unknowns(problem, &system.unknowns, motions);
         let first_jump = system.unknowns.first_jump;
-        let broken = |breakdown| explain(problem, &system, breakdown);
-        let symbolic = structure(problem, &system, options)?;
-        seconds.factor = start.elapsed().as_secs_f64();
+        let broken = |breakdown| explain(problem, &system.unknowns, breakdown);
+        let symbolic = structure?;
+        seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
         let mut closed = from.unwrap_or_else(|| vec![true; system.jump_bound.len()]);
         let most_steps = most_steps.min(self.most_steps + 4 * closed.len());

@@ -17,7 +17,7 @@ use super::reduced::{Reduced, Schur};
 use super::refinement::Refined;
 use super::rigid::unsupported;
 use super::settling::Settling;
-use super::system::System;
+use super::system::{Structured, System};
 use super::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::problem::Problem;
@@ -94,12 +94,12 @@ impl Condensed {
     fn condense(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, Unsettled> {
         let mut seconds = Phases::default();
         let start = Instant::now();
-        let mut system = System::new(problem, options);
-        seconds.assemble = start.elapsed().as_secs_f64();
+        let Structured { mut system, structure, seconds_of_structure } = System::structured(problem, options);
+        seconds.assemble = (start.elapsed().as_secs_f64() - seconds_of_structure).max(0.0);
 
         let start = Instant::now();
-        let reduced = Reduced::new(problem, &mut system, motions, options)?;
-        seconds.factor = start.elapsed().as_secs_f64();
+        let reduced = Reduced::new(problem, &mut system, structure?, motions, options)?;
+        seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
         let start = Instant::now();
         let contact = Schur::new(&reduced, self.longest_dense, options.budget, |most| {

@@ -75,6 +75,11 @@ impl Size {
         KEPT * self.triangles
     }
 
+    /// Bytes that the bracket takes while its displacement is relaxed.
+    pub fn bracket(self) -> f64 {
+        BRACKET * self.triangles
+    }
+
     /// Bytes at the peak of a run with one sparse factorisation, its bracket included, where contacts of at most
     /// `longest_dense` ends are solved with dense matrices.
     pub fn factorised(self, longest_dense: usize) -> f64 {
@@ -84,7 +89,7 @@ impl Size {
         let factor = unknowns * levels * (2.4 + 0.16 * levels) + 6.0 * jumps;
         let dense = if self.contact_ends <= longest_dense as f64 { 4.0 * NUMBER * jumps } else { 0.0 };
         let system = ASSEMBLED * self.triangles + DISTINCT * self.distinct;
-        PROGRAM + (system + NUMBER * factor + dense.max(SCRATCH * unknowns)).max(BRACKET * self.triangles)
+        PROGRAM + (system + NUMBER * factor + dense.max(SCRATCH * unknowns)).max(self.bracket())
     }
 
     /// Bytes at the peak of a run that takes `each` for each triangle.

@@ -1,5 +1,6 @@
 //! What every method on the hybrid form shares: ordering, held motions, stresses from moments, residuals on stresses.
 
+use faer::sparse::SymbolicSparseColMatRef;
 use rayon::prelude::*;
 
 use super::dissection::nested_dissection;
@@ -15,8 +16,7 @@ use crate::problem::Problem;
 pub type Motion = Vec<[f64; 2]>;
 
 /// Fill-reducing ordering of the unknowns that are not jumps.
-pub fn ordering(problem: &Problem, system: &System) -> Vec<usize> {
-    let unknowns = &system.unknowns;
+pub fn ordering(problem: &Problem, unknowns: &Unknowns) -> Vec<usize> {
     let blocks = nested_dissection(problem, unknowns).into_iter().map(|b| unknowns.blocks[b]);
     blocks.flat_map(|block| block.start..block.start + block.len).collect()
 }
@@ -25,29 +25,33 @@ pub fn ordering(problem: &Problem, system: &System) -> Vec<usize> {
 ///
 /// # Errors
 /// [`DualError::TooLarge`].
-pub fn structure(problem: &Problem, system: &System, options: &Options) -> Result<SymbolicFactor, DualError> {
-    let pattern = system.matrix.symbolic();
-    let symbolic = SymbolicFactor::new(pattern, system.unknowns.first_jump, ordering(problem, system))
-        .map_err(|breakdown| explain(problem, system, breakdown))?;
+pub fn structure(
+    problem: &Problem,
+    unknowns: &Unknowns,
+    pattern: SymbolicSparseColMatRef<'_, usize>,
+    options: &Options,
+) -> Result<SymbolicFactor, DualError> {
+    let symbolic = SymbolicFactor::new(pattern, unknowns.first_jump, ordering(problem, unknowns))
+        .map_err(|breakdown| explain(problem, unknowns, breakdown))?;
     match options.budget.admit_more(symbolic.memory(options.par(symbolic.numbers()))) {
         Ok(()) => Ok(symbolic),
-        Err(excess) => Err(explain(problem, system, Breakdown::TooLarge(excess.to_string()))),
+        Err(excess) => Err(explain(problem, unknowns, Breakdown::TooLarge(excess.to_string()))),
     }
 }
 
 /// What a breakdown of the factorisation means on the mesh.
-pub fn explain(problem: &Problem, system: &System, breakdown: Breakdown) -> DualError {
+pub fn explain(problem: &Problem, unknowns: &Unknowns, breakdown: Breakdown) -> DualError {
     let reason = match breakdown {
         Breakdown::TooLarge(reason) => {
-            let (unknowns, jumps) = (system.unknowns.count, system.jump_bound.len());
+            let (count, jumps) = (unknowns.count, unknowns.count - unknowns.first_jump);
             let contact = if jumps > 0 { format!(", {jumps} of them at contact,") } else { String::new() };
-            let reason = format!("the factorisation for {unknowns} unknowns{contact} does not fit: {reason}");
+            let reason = format!("the factorisation for {count} unknowns{contact} does not fit: {reason}");
             return DualError::TooLarge { reason };
         }
         Breakdown::NotPositive(unknown) => {
-            let block_of = system.unknowns.block_of();
+            let block_of = unknowns.block_of();
             let has = |e: &usize| {
-                let (blocks, len) = system.unknowns.blocks_of_edge(*e, &block_of);
+                let (blocks, len) = unknowns.blocks_of_edge(*e, &block_of);
                 blocks[..len].contains(&(block_of[unknown] as usize))
             };
             let mesh = &problem.mesh;

@@ -18,6 +18,7 @@ mod long_contact;
 mod method;
 pub mod modes;
 pub mod paper;
+mod pattern;
 mod petsc;
 pub mod qp;
 mod reduced;
@@ -47,7 +48,7 @@ pub use paper::Uzawa;
 pub use petsc::{LinearSolver, Petsc};
 pub use response::{Factorised, Load, Response, Responses};
 pub use solver::Solver;
-pub use unknowns::contact_coefficients;
+pub use unknowns::{contact_coefficients, edge_degrees};
 
 use crate::element::{SideValues, StressField};
 use crate::problem::{ContactPair, Problem};

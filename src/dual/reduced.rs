@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::factor::{Breakdown, Factor, power_of_two_near};
-use super::hybrid::{Motion, explain, held_unknowns, structure};
+use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
+use super::hybrid::{Motion, explain, held_unknowns};
 use super::long_contact::LongContact;
 use super::qp::{self, ContactState};
 use super::system::{System, isolate};
@@ -42,22 +42,22 @@ impl Reduced {
     pub fn new(
         problem: &Problem,
         system: &mut System,
+        structure: SymbolicFactor,
         motions: &[Motion],
         options: &Options,
     ) -> Result<Self, DualError> {
         let first_jump = system.unknowns.first_jump;
         let held = held_unknowns(problem, &system.unknowns, motions);
         let shift = make_definite(system, &held);
-        let structure = structure(problem, system, options)?;
         let par = options.par(structure.numbers());
         let factor = Factor::of_semidefinite(structure, (*system.matrix).as_ref(), par)
-            .map_err(|breakdown| explain(problem, system, breakdown))?;
+            .map_err(|breakdown| explain(problem, &system.unknowns, breakdown))?;
         Ok(Reduced { factor, held, first_jump, shift })
     }
 
     /// What the factorisation broke down at, where replaced pivots helped it on.
     pub fn breakdown(&self, problem: &Problem, system: &System) -> Option<DualError> {
-        Some(explain(problem, system, Breakdown::NotPositive(self.factor.broken()?)))
+        Some(explain(problem, &system.unknowns, Breakdown::NotPositive(self.factor.broken()?)))
     }
 
     /// L⁻¹b, and the load c = b_J − K_J1 K_11⁻¹ b_1 on the jumps.

@@ -12,7 +12,7 @@ use super::loaded::{Loaded, Start};
 use super::modes::ModeTable;
 use super::reduced::{Reduced, Schur};
 use super::rigid::unsupported;
-use super::system::{System, jump_moments, load_of_tractions};
+use super::system::{Structured, System, jump_moments, load_of_tractions};
 use super::{DualError, Options};
 use crate::element::{SideValues, StressField, side};
 use crate::problem::Problem;
@@ -35,8 +35,8 @@ impl Factorised {
     /// # Errors
     /// [`DualError::Factorisation`], [`DualError::TooLarge`].
     pub fn new(problem: &Problem, motions: &[Motion], options: &Options) -> Result<Self, DualError> {
-        let mut system = System::new(problem, options);
-        let reduced = Reduced::new(problem, &mut system, motions, options)?;
+        let Structured { mut system, structure, .. } = System::structured(problem, options);
+        let reduced = Reduced::new(problem, &mut system, structure?, motions, options)?;
         Ok(Factorised { system, reduced })
     }
 

@@ -7,14 +7,18 @@
 //! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
 
 use std::sync::Arc;
+use std::time::Instant;
 
-use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMat};
+use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef};
 use rayon::prelude::*;
 
-use super::Options;
+use super::factor::SymbolicFactor;
+use super::hybrid::structure;
 use super::modes::ModeTable;
+use super::pattern::Pattern;
 use super::rows::Sides;
 use super::unknowns::{Component, UnknownBlock, Unknowns};
+use super::{DualError, Options};
 use crate::element::side;
 use crate::lanes::wide;
 use crate::problem::{ContactPair, Problem};
@@ -36,52 +40,50 @@ pub struct System {
     pub jump_bound: Vec<f64>,
 }
 
+/// A system with the structure of its factor.
+pub struct Structured {
+    /// The assembled problem.
+    pub system: System,
+    /// The structure, where there is memory for its values.
+    pub structure: Result<SymbolicFactor, DualError>,
+    /// Seconds that it took.
+    pub seconds_of_structure: f64,
+}
+
 impl System {
     /// Numbers the unknowns of `problem` and assembles K and f.
     pub fn new(problem: &Problem, options: &Options) -> Self {
-        let modes = ModeTable::new(problem, options.elements.clone());
-        Self::assemble(problem, Unknowns::new(problem, modes.elements()), modes)
+        Self::new_beside(problem, options, |_, _| ()).0
     }
 
-    fn assemble(problem: &Problem, unknowns: Unknowns, modes: ModeTable) -> Self {
-        let mesh = &problem.mesh;
+    /// The same, and the structure of the factor of K with its jumps last, which another thread works out meanwhile.
+    pub fn structured(problem: &Problem, options: &Options) -> Structured {
+        let (system, (structure, seconds_of_structure)) = Self::new_beside(problem, options, |unknowns, pattern| {
+            let start = Instant::now();
+            let structure = structure(problem, unknowns, pattern, options);
+            (structure, start.elapsed().as_secs_f64())
+        });
+        Structured { system, structure, seconds_of_structure }
+    }
+
+    /// Assembles, and does what needs no more than the pattern of K beside it.
+    fn new_beside<T: Send>(
+        problem: &Problem,
+        options: &Options,
+        beside: impl FnOnce(&Unknowns, SymbolicSparseColMatRef<'_, usize>) -> T + Send,
+    ) -> (Self, T) {
+        let modes = ModeTable::new(problem, options.elements.clone());
+        let unknowns = Unknowns::new(problem, modes.elements());
         let pattern = Pattern::new(problem, &unknowns);
-        let mut values = vec![0.0; pattern.rows.len()];
-        let mut rhs = vec![0.0; unknowns.count];
-        // Element contributions are computed in parallel in chunks and added in order: the sum does not depend on
-        // the number of threads.
-        const CHUNK: usize = 1024;
-        let count = mesh.triangles.len();
-        let sides = |t: usize| Sides::new(mesh, &unknowns, t, modes.degree(t));
-        let mut memory = Vec::new();
-        for start in (0..count).step_by(CHUNK) {
-            let chunk: Vec<Sides> = (start..(start + CHUNK).min(count)).map(sides).collect();
-            let room = chunk.iter().map(|sides| sides.len() * (sides.len() + 1)).max().unwrap_or(0);
-            memory.resize(chunk.len() * room, 0.0);
-            let locals = memory.par_chunks_exact_mut(room).zip(&chunk).zip(start..start + chunk.len());
-            locals.with_min_len(64).for_each(|((out, sides), t)| local(problem, &unknowns, &modes, sides, t, out));
-            for ((local, sides), t) in memory.chunks_exact(room).zip(&chunk).zip(start..) {
-                let (load, rest) = local.split_at(sides.len());
-                let stiffness = &rest[..sides.len() * sides.len()];
-                match sides.free(&unknowns) {
-                    Some(first) => pattern.add_blocks(sides, first, stiffness, load, &mut values, &mut rhs),
-                    None => {
-                        let terms = terms(problem, &unknowns, sides);
-                        pattern.add_terms(&terms, stiffness, load, &mut values, &mut rhs);
-                    }
-                }
-                debug_assert_eq!(mesh.triangle_edges[t], sides.edges);
-            }
-        }
+        let entries = || entries(problem, &unknowns, &modes, &pattern);
+        let ((values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
         let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
-        let symbolic =
-            SymbolicSparseColMat::new_checked(unknowns.count, unknowns.count, pattern.columns, None, pattern.rows);
-        let matrix = Arc::new(SparseColMat::new(symbolic, values));
-        System { unknowns: Arc::new(unknowns), modes: Arc::new(modes), matrix, rhs, external, jump_bound }
+        let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
+        let (unknowns, modes) = (Arc::new(unknowns), Arc::new(modes));
+        (System { unknowns, modes, matrix, rhs, external, jump_bound }, done)
     }
-
     /// The size of the terms of K x: the largest entry of the diagonal times that of x, all of it or a part.
     pub fn size_of_terms(&self, x: &[f64]) -> f64 {
         let columns = self.matrix.symbolic().col_ptr();
@@ -93,6 +95,39 @@ impl System {
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         symmetric_multiply((*self.matrix).as_ref(), x)
     }
+}
+
+/// The entries of K in its pattern, and the part of f that is not from tractions.
+fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &Pattern) -> (Vec<f64>, Vec<f64>) {
+    let mesh = &problem.mesh;
+    let mut values = vec![0.0; pattern.symbolic.row_idx().len()];
+    let mut rhs = vec![0.0; unknowns.count];
+    // Element contributions are computed in parallel in chunks and added in order: the sum does not depend on
+    // the number of threads.
+    const CHUNK: usize = 1024;
+    let count = mesh.triangles.len();
+    let sides = |t: usize| Sides::new(mesh, unknowns, t, modes.degree(t));
+    let mut memory = Vec::new();
+    for start in (0..count).step_by(CHUNK) {
+        let chunk: Vec<Sides> = (start..(start + CHUNK).min(count)).map(sides).collect();
+        let room = chunk.iter().map(|sides| sides.len() * (sides.len() + 1)).max().unwrap_or(0);
+        memory.resize(chunk.len() * room, 0.0);
+        let locals = memory.par_chunks_exact_mut(room).zip(&chunk).zip(start..start + chunk.len());
+        locals.with_min_len(64).for_each(|((out, sides), t)| local(problem, unknowns, modes, sides, t, out));
+        for ((local, sides), t) in memory.chunks_exact(room).zip(&chunk).zip(start..) {
+            let (load, rest) = local.split_at(sides.len());
+            let stiffness = &rest[..sides.len() * sides.len()];
+            match sides.free(unknowns) {
+                Some(first) => pattern.add_blocks(sides, first, stiffness, load, &mut values, &mut rhs),
+                None => {
+                    let terms = terms(problem, unknowns, sides);
+                    pattern.add_terms(&terms, stiffness, load, &mut values, &mut rhs);
+                }
+            }
+            debug_assert_eq!(mesh.triangle_edges[t], sides.edges);
+        }
+    }
+    (values, rhs)
 }
 
 /// ∫ g B_k of each jump.
@@ -244,139 +279,4 @@ fn terms(problem: &Problem, unknowns: &Unknowns, sides: &Sides) -> Vec<Component
         terms[at + 1] = Some(across);
     }
     terms.into_iter().flatten().collect()
-}
-
-/// Sparsity pattern of the lower triangle, block by block.
-struct Pattern {
-    columns: Vec<usize>,
-    rows: Vec<usize>,
-    block_of: Vec<u32>,
-    blocks: Vec<UnknownBlock>,
-    /// For each block, its later neighbours with the offset of their rows behind the block's own.
-    neighbours: Vec<(u32, u32)>,
-    neighbour_start: Vec<u32>,
-}
-
-impl Pattern {
-    fn new(problem: &Problem, unknowns: &Unknowns) -> Self {
-        let blocks = unknowns.blocks.clone();
-        let block_of = unknowns.block_of();
-        let mut touching: Vec<(u32, u32)> = Vec::new();
-        for edges in &problem.mesh.triangle_edges {
-            let mut all = [0; 9];
-            let mut n = 0;
-            for &e in edges {
-                let (list, len) = unknowns.blocks_of_edge(e, &block_of);
-                all[n..n + len].copy_from_slice(&list[..len]);
-                n += len;
-            }
-            for &a in &all[..n] {
-                for &b in &all[..n] {
-                    if b > a {
-                        touching.push((a as u32, b as u32));
-                    }
-                }
-            }
-        }
-        touching.sort_unstable();
-        touching.dedup();
-        let mut neighbour_start = vec![0_u32; blocks.len() + 1];
-        for &(a, _) in &touching {
-            neighbour_start[a as usize + 1] += 1;
-        }
-        for b in 0..blocks.len() {
-            neighbour_start[b + 1] += neighbour_start[b];
-        }
-        let mut neighbours = Vec::with_capacity(touching.len());
-        let mut columns = Vec::with_capacity(unknowns.count + 1);
-        let mut rows = Vec::new();
-        columns.push(0);
-        for (b, block) in blocks.iter().enumerate() {
-            let list = &touching[neighbour_start[b] as usize..neighbour_start[b + 1] as usize];
-            let mut offset = 0_u32;
-            for &(_, n) in list {
-                neighbours.push((n, offset));
-                offset += blocks[n as usize].len as u32;
-            }
-            for own in 0..block.len {
-                rows.extend(block.start + own..block.start + block.len);
-                for &(_, n) in list {
-                    let other = blocks[n as usize];
-                    rows.extend(other.start..other.start + other.len);
-                }
-                columns.push(rows.len());
-            }
-        }
-        Pattern { columns, rows, block_of, blocks, neighbours, neighbour_start }
-    }
-
-    /// Adds a triangle whose sides are all free, with unknowns from `first` on, block by block.
-    fn add_blocks(
-        &self,
-        sides: &Sides,
-        first: [usize; 3],
-        stiffness: &[f64],
-        load: &[f64],
-        values: &mut [f64],
-        rhs: &mut [f64],
-    ) {
-        let m = sides.len();
-        // The place of each unknown of a side.
-        let at = |side: usize| (0..=sides.degrees[side]).flat_map(move |k| [0, 1].map(|c| sides.at(side, k) + c));
-        for p in 0..3 {
-            for (i, own) in at(p).enumerate() {
-                let unknown = first[p] + i;
-                rhs[unknown] += load[own];
-                let row = &stiffness[m * own..][..m];
-                values[self.columns[unknown]..].iter_mut().zip(at(p).skip(i)).for_each(|(v, at)| *v += row[at]);
-            }
-            for q in 0..p {
-                let (low, high) = if first[p] < first[q] { (p, q) } else { (q, p) };
-                // Blocks are whole: the first entry of each column tells where its others are.
-                let start = self.position(first[high], first[low]);
-                for (column, own) in at(low).enumerate() {
-                    let from = start - self.columns[first[low]] + self.columns[first[low] + column] - column;
-                    let row = &stiffness[m * own..][..m];
-                    values[from..].iter_mut().zip(at(high)).for_each(|(v, at)| *v += row[at]);
-                }
-            }
-        }
-    }
-
-    /// Adds any triangle, term by term.
-    fn add_terms(&self, terms: &[Component], stiffness: &[f64], load: &[f64], values: &mut [f64], rhs: &mut [f64]) {
-        let m = load.len();
-        for (a, own) in terms.iter().enumerate() {
-            for &(i, ci) in own.terms() {
-                rhs[i] += ci * load[a];
-                for (b, other) in terms.iter().enumerate().take(a + 1) {
-                    for &(j, cj) in other.terms() {
-                        // (a, b) stands for (b, a) too: twice on the diagonal, once below it.
-                        let twice = if i == j && a != b { 2.0 } else { 1.0 };
-                        if a != b || i >= j {
-                            values[self.position(i.max(j), i.min(j))] += twice * ci * cj * stiffness[m * a + b];
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// Where entry (i, j), i ≥ j, is stored.
-    fn position(&self, i: usize, j: usize) -> usize {
-        let (bi, bj) = (self.block_of[i], self.block_of[j]);
-        if bi == bj {
-            return self.columns[j] + (i - j);
-        }
-        let block = self.blocks[bj as usize];
-        let behind = self.columns[j] + (block.start + block.len - j);
-        let list = &self.neighbours
-            [self.neighbour_start[bj as usize] as usize..self.neighbour_start[bj as usize + 1] as usize];
-        for &(n, offset) in list {
-            if n == bi {
-                return behind + offset as usize + (i - self.blocks[n as usize].start);
-            }
-        }
-        unreachable!("entry ({i}, {j}) is not in the pattern")
-    }
 }

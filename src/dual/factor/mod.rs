@@ -12,6 +12,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
+use rayon::prelude::*;
 
 use crate::budget::{fallible, words};
 
@@ -87,6 +88,7 @@ impl SymbolicFactor {
         // Memory that is asked for and given back at once tells whether it is there; zeros then come from the system.
         fallible(|| Vec::<f64>::new().try_reserve_exact(inner.len_val())).map_err(|_| refused())?;
         let mut values = vec![0.0; inner.len_val()];
+        touch(&mut values);
         let params = Spec::default();
         let scratch = inner.factorize_numeric_llt_scratch::<f64>(par, params);
         let mut memory = fallible(|| MemBuffer::try_new(scratch)).map_err(|_| refused())?;
@@ -104,6 +106,16 @@ impl SymbolicFactor {
                 Breakdown::NotPositive(self.forward.get(index).copied().unwrap_or(0))
             })?;
         Ok(values)
+    }
+}
+
+/// Numbers that a thread touches at a time.
+const TOUCHED: usize = 1 << 16;
+
+/// Has the pages of a large block made by all threads: each waits for the system as long as for the numbers that go there.
+fn touch(values: &mut [f64]) {
+    if rayon::current_num_threads() > 1 {
+        values.par_chunks_mut(TOUCHED).for_each(|part| part.fill(0.0));
     }
 }
 
