@@ -17,9 +17,11 @@
 //!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
 //!    measured.
 
+use rayon::prelude::*;
+
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
 use super::jump::side_coefficients;
-use super::upper::{NoUpperBound, NodalValues, Prepared, admissible_and_prepared};
+use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on};
 use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, StressField, side};
 use crate::problem::{Condition, Problem, Scales};
@@ -85,21 +87,25 @@ impl Bracket {
     /// Computes both sides; the upper one may begin from `start`, and leaves what quantities on this mesh need again where it is
     /// to `keep` it.
     pub fn from_start(problem: &Problem, dual: &DualSolution, start: Option<NodalValues>, keep: bool) -> Self {
+        let degrees = dual.moments.iter().map(|moments| moments.len() - 1);
+        Self::on(Groundwork::new(problem, degrees), problem, dual, start, keep)
+    }
+
+    /// Does the same with what was made beside the dual solve for degrees of edges as those of its moments.
+    pub fn on(
+        ground: Result<Groundwork, NoUpperBound>,
+        problem: &Problem,
+        dual: &DualSolution,
+        start: Option<NodalValues>,
+        keep: bool,
+    ) -> Self {
         let complementary = complementary(problem, &dual.stress);
-        let size = |t: usize| {
-            let edges = problem.mesh.triangle_edges[t];
-            // A polynomial lies between its coefficients.
-            let at = |e: usize| {
-                let moments = dual.moments.of(e);
-                let along = |c: usize| side::from_moments(&moments.iter().map(|m| m[c]).collect::<Vec<_>>());
-                let largest = along(0).iter().zip(along(1)).fold(0.0_f64, |m, (x, y)| m.max(x.hypot(y)));
-                largest / problem.mesh.edge_frame(e).0
-            };
-            edges.map(at).into_iter().fold(0.0, f64::max)
-        };
+        let largest = largest_by_edge(problem, dual);
+        let size = |t: usize| problem.mesh.triangle_edges[t].map(|e| largest[e]).into_iter().fold(0.0, f64::max);
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = admissible_and_prepared(problem, dual, complementary.lower(), start, keep)
+        let free = ground
+            .and_then(|ground| admissible_on(ground, problem, dual, complementary.lower(), start, keep))
             .map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
         Bracket {
             complementary,
@@ -144,16 +150,29 @@ pub fn work_of_remainders(problem: &Problem, dual: &DualSolution, v: &Displaceme
     problem.scene.thickness * Equilibrium::measure(problem, &dual.stress, &moments).work
 }
 
+/// The largest displacement on every edge that its moments in the dual solution stand for: a polynomial lies between its
+/// coefficients.
+fn largest_by_edge(problem: &Problem, dual: &DualSolution) -> Vec<f64> {
+    let of = |e: usize| {
+        let along = |c: usize| side::from_moments(&dual.moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>());
+        let largest = along(0).iter().zip(along(1)).fold(0.0_f64, |m, (x, y)| m.max(x.hypot(y)));
+        largest / problem.mesh.edge_frame(e).0
+    };
+    (0..problem.mesh.edges.len()).into_par_iter().with_min_len(256).map(of).collect()
+}
+
 /// A rounding error of the tractions on the boundary of every triangle times the displacement there, whose size `size`
 /// gives by triangle; thickness included.
-fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize) -> f64) -> f64 {
+fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize) -> f64 + Sync) -> f64 {
     let mesh = &problem.mesh;
     let term = |t: usize| {
         let perimeter: f64 = mesh.triangle_edges[t].iter().map(|&e| mesh.edge_frame(e).0).sum();
         let largest = stress.block(t).iter().flatten().fold(0.0_f64, |m, s| m.max(s.abs()));
         perimeter * largest * size(t)
     };
-    ROUNDING_PER_VALUE * problem.scene.thickness * (0..mesh.triangles.len()).map(term).sum::<f64>()
+    // Threads make the terms, and one adds them up in their order.
+    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(term).collect();
+    ROUNDING_PER_VALUE * problem.scene.thickness * terms.iter().sum::<f64>()
 }
 
 /// The traction on rollers times the displacement across them; thickness included.

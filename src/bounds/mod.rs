@@ -17,6 +17,7 @@ pub use jump::{openings, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use sum::Sum;
 pub use upper::{
-    Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation, admissible,
-    bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides, supports_agree,
+    Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation,
+    admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,
+    supports_agree,
 };

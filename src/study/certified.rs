@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::admission::Admission;
-use crate::bounds::{Bracket, NoUpperBound, NodalValues, supports_agree, without_stress};
+use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
 use crate::problem::{Problem, ProblemError};
@@ -94,6 +94,16 @@ pub(super) fn balance(problem: &Problem, elements: &Elements) -> Result<Statics,
     }
 }
 
+/// Room for several times what a solve is estimated to take: nothing that it is refused for may depend on the threads.
+const AMPLE: f64 = 3.0;
+
+/// Whether another thread can make what the upper bound needs of the mesh beside the solve, and there is memory for both.
+fn may_prepare_beside(problem: &Problem, method: &dyn DualMethod, options: &Options) -> bool {
+    let size = Size::of_degrees(problem, &options.elements);
+    let both = AMPLE * method.memory(size) + size.bracket();
+    rayon::current_num_threads() > 1 && options.budget.admit_more(both).is_ok()
+}
+
 /// Solves a problem with an equilibrium and brackets its energy; the upper bound may begin from `start`.
 ///
 /// # Errors
@@ -116,10 +126,47 @@ pub(super) fn solve_balanced(
     }
     let motions = statics.held_at_vertices(&problem);
     let (mut dual, bracket) = options.on_threads(|| {
-        let dual = without_stress(&problem, dual::solve(method, &problem, &motions, options)?);
-        let bracket = Bracket::from_start(&problem, &dual, start, options.keep_factor);
+        let solve = || dual::solve(method, &problem, &motions, options);
+        let (dual, ground) = if may_prepare_beside(&problem, method, options) {
+            let degrees = dual::edge_degrees(&problem, &options.elements).into_iter().map(usize::from);
+            let (dual, ground) = rayon::join(solve, || Groundwork::factorised(&problem, degrees));
+            (dual?, Some(ground))
+        } else {
+            (solve()?, None)
+        };
+        let dual = without_stress(&problem, dual);
+        let bracket = match ground {
+            Some(ground) => Bracket::on(ground, &problem, &dual, start, options.keep_factor),
+            None => Bracket::from_start(&problem, &dual, start, options.keep_factor),
+        };
         Ok::<_, DualError>((dual, bracket))
     })?;
     dual.seconds.total = began.elapsed().as_secs_f64();
     Ok(Certified { problem, statics, dual, bracket })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::budget::Budget;
+    use crate::dual::Condensed;
+    use crate::scene::Scene;
+
+    /// What a run is refused for may not depend on its threads, so nothing is made beside where memory is short.
+    #[test]
+    fn nothing_is_made_beside_a_solve_without_another_thread_and_ample_memory() {
+        let scene = Scene::read(Path::new("cases/two_blocks.toml")).expect("a scene");
+        let problem = Problem::load(scene).expect("a problem");
+        let beside = |threads, budget| {
+            let options = Options { threads, budget, ..Options::default() };
+            options.on_threads(|| may_prepare_beside(&problem, &Condensed::default(), &options))
+        };
+        assert!(beside(2, Budget::UNLIMITED));
+        assert!(!beside(1, Budget::UNLIMITED));
+        let size = Size::of_degrees(&problem, &Elements::Uniform(&crate::element::Block));
+        let enough = Condensed::default().memory(size);
+        assert!(!beside(2, Budget::of(enough as u64)));
+    }
 }

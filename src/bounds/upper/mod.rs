@@ -15,6 +15,7 @@ mod ends;
 mod energies;
 mod fit;
 mod fronts;
+mod groundwork;
 mod groups;
 mod holds;
 mod interior;
@@ -34,12 +35,10 @@ mod sets;
 mod split;
 mod stiffness;
 
+pub use self::groundwork::Groundwork;
 pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
-use self::model::Model;
 pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
-use self::patches::Patches;
-use self::prepared::Made;
 pub use self::prepared::Prepared;
 pub use self::pull::Pull;
 pub use self::relax::Until;
@@ -86,14 +85,16 @@ pub fn admissible(
     floor: f64,
     start: Option<NodalValues>,
 ) -> Result<Displacement, NoUpperBound> {
-    Ok(admissible_and_prepared(problem, dual, floor, start, false)?.0)
+    let degrees = dual.moments.iter().map(|moments| moments.len() - 1);
+    Ok(admissible_on(Groundwork::new(problem, degrees)?, problem, dual, floor, start, false)?.0)
 }
 
-/// Does the same, and keeps what was made on the way for others on this mesh where that is asked for.
+/// Does the same from what is there already, and keeps what serves others on this mesh where that is asked for.
 ///
 /// # Errors
 /// As [`admissible`].
-pub fn admissible_and_prepared(
+pub fn admissible_on(
+    ground: Groundwork,
     problem: &Problem,
     dual: &DualSolution,
     floor: f64,
@@ -101,9 +102,7 @@ pub fn admissible_and_prepared(
     keep: bool,
 ) -> Result<(Displacement, Prepared), NoUpperBound> {
     let mesh = &problem.mesh;
-    let holds = holds(problem)?;
-    let nodes = Nodes::new(mesh.points.len(), dual.moments.iter().map(|moments| moments.len()));
-    let rows = rows::rows(problem, &nodes);
+    let Groundwork { nodes, holds, rows, mut made } = ground;
     let mut field = NodalValues::zeros(nodes.clone());
     let vertex = field.vertices_mut();
     vertex.copy_from_slice(&fit::vertex_values(problem, &dual.stress, &dual.moments));
@@ -127,12 +126,10 @@ pub fn admissible_and_prepared(
     if let Some(start) = start {
         candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
     }
-    let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
-    let mut patches = Patches::new(problem, &nodes);
-    let relaxed =
-        relax::relax(problem, &model, &mut patches, Until::Near(floor / problem.scene.thickness), candidates, at_rest)?;
-    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, &model);
-    let prepared = if keep { Prepared::holding(Made { model, patches }) } else { Prepared::default() };
+    let until = Until::Near(floor / problem.scene.thickness);
+    let relaxed = relax::relax(problem, &made.model, &mut made.patches, until, candidates, at_rest)?;
+    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, &made.model);
+    let prepared = if keep { Prepared::holding(made) } else { Prepared::default() };
     Ok((displacement, prepared))
 }
 

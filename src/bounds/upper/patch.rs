@@ -85,20 +85,26 @@ impl Patch {
         self.forces(model, group, values);
         let factor = match factors.kept[k].get() {
             Some(factor) => &factor[..],
-            None => {
-                self.assemble(model, group);
-                if !factorise(&mut self.matrix, n) {
-                    return None;
-                }
+            None if self.factorise(model, group) => {
                 factors.keep(k, &self.matrix);
                 &self.matrix
             }
+            None => return None,
         };
         if self.rows.is_empty() {
             return free_minimum(factor, &self.load);
         }
         let (b, room) = self.inequalities(model, values);
         minimum(factor, &self.load, &b, &room, slack)
+    }
+
+    /// Makes the factor of patch `k`, that of `group`, for the steps that come.
+    pub fn prepare(&mut self, model: &Model, group: &Group, k: usize, factors: &Factors) {
+        self.number(model, group);
+        let n = self.unknowns.len();
+        if n > 0 && n <= self.most && self.factorise(model, group) {
+            factors.keep(k, &self.matrix);
+        }
     }
 
     /// What the step found last moves.
@@ -154,6 +160,12 @@ impl Patch {
                 }
             }
         }
+    }
+
+    /// Assembles the stiffness and factorises it; `false` where the patch can move as a whole.
+    fn factorise(&mut self, model: &Model, group: &Group) -> bool {
+        self.assemble(model, group);
+        factorise(&mut self.matrix, self.unknowns.len())
     }
 
     /// Stiffness.

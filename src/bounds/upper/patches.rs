@@ -21,8 +21,10 @@ const MOST_VERTICES_BY_DEGREE: usize = 24;
 /// computed anew in every sweep.
 const KEPT_BY_VERTEX: usize = 512;
 
-/// Threads share the patches of a front from this many on: fewer are moved before another thread has begun.
-const SHARED_FROM: usize = 8;
+/// As many patches for quadratics are moved before another thread has begun …
+const SHARED_FROM: f64 = 24.0;
+/// … and no fewer than this of any degree.
+const LEAST_SHARED: usize = 4;
 
 /// No more than so many threads share them: a front has scores of patches, and each thread's memory grows with the mesh.
 const MOST_SHARING: usize = 8;
@@ -45,10 +47,12 @@ pub struct Patches {
     patches: Vec<Mutex<Patch>>,
     /// Patches that threads move at the same time, where there is more than one thread.
     fronts: Option<Fronts>,
+    /// So many of them are moved by the same thread.
+    together: usize,
 }
 
 impl Patches {
-    /// Groups the vertices of a mesh; factors are computed when they are needed first.
+    /// Groups the vertices of a mesh; factors are computed when they are needed first, or by [`Self::factorise`].
     pub fn new(problem: &Problem, nodes: &Nodes) -> Self {
         let size = size(nodes);
         let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
@@ -63,9 +67,19 @@ impl Patches {
             gained: vec![0.0; groups.len()],
             patches: (0..threads.min(MOST_SHARING)).map(|_| patch()).collect(),
             fronts: (threads > 1).then(|| Fronts::new(problem, &groups, &of_vertex)),
+            together: ((SHARED_FROM / (size * size)) as usize).max(LEAST_SHARED),
             groups,
             of_vertex,
         }
+    }
+
+    /// Makes the factors of all patches, on this thread alone: one that waits in what goes on beside would take half of them,
+    /// and be missed there.
+    pub fn factorise(&mut self, model: &Model) {
+        let Patches { groups, factors, patches, .. } = self;
+        let Some(patch) = patches.first_mut() else { return };
+        let patch = patch.get_mut().unwrap_or_else(PoisonError::into_inner);
+        groups.iter().enumerate().for_each(|(k, group)| patch.prepare(model, group, k, factors));
     }
 
     /// How many they are.
@@ -118,11 +132,11 @@ impl Patches {
 
     /// Moves patches that do not touch each other.
     fn move_front(&mut self, model: &Model, front: &[usize], slack: f64, values: &mut [[f64; 2]]) {
-        if front.len() < 2 * SHARED_FROM {
+        if front.len() < 2 * self.together {
             self.sweep(model, front.iter().copied(), false, slack, values);
             return;
         }
-        let Patches { groups, factors, patches, .. } = &*self;
+        let Patches { groups, factors, patches, together, .. } = &*self;
         let found: Vec<(f64, Vec<Move>)> = {
             let values = &*values;
             let of = |&k: &usize| {
@@ -131,7 +145,7 @@ impl Patches {
                 let step = patch.step(model, &groups[k], k, factors, slack, values);
                 step.map_or((0.0, Vec::new()), |step| (step.gain, patch.moves(&step).collect()))
             };
-            front.par_iter().with_min_len(SHARED_FROM).map(of).collect()
+            front.par_iter().with_min_len(*together).map(of).collect()
         };
         for (k, (gain, moves)) in front.iter().zip(found) {
             self.gained[*k] = gain;
@@ -222,8 +236,8 @@ mod tests {
                 *value = hold.impose([1e-2 * (n as f64).sin(), 1e-2 * (3.0 * n as f64).cos()]);
             }
             let relaxed = |alone: bool| {
-                let mut patches = Patches::new(&problem, &nodes);
-                assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * SHARED_FROM));
+                let mut patches = Patches { together: LEAST_SHARED, ..Patches::new(&problem, &nodes) };
+                assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * patches.together));
                 patches.fronts = patches.fronts.take().filter(|_| !alone);
                 let mut values = start.values.clone();
                 let gains: Vec<f64> =

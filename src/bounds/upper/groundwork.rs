@@ -1,0 +1,45 @@
+//! What the upper bound needs of a problem before its dual solution is known.
+
+use super::holds::{Holds, holds};
+use super::model::Model;
+use super::nodes::Nodes;
+use super::patches::Patches;
+use super::prepared::Made;
+use super::rows::{Row, rows};
+use super::{NoUpperBound, Pull};
+use crate::problem::Problem;
+
+/// Supports, contact and stiffness for displacements on one mesh, each edge with a degree of its own.
+///
+/// It holds nothing of a solution, so that another thread can make it beside the dual solve.
+pub struct Groundwork {
+    pub(super) nodes: Nodes,
+    pub(super) holds: Holds,
+    pub(super) rows: Vec<Vec<Row>>,
+    pub(super) made: Made,
+}
+
+impl Groundwork {
+    /// For displacements of one degree more than stresses, whose degree on every edge is given.
+    ///
+    /// # Errors
+    /// [`NoUpperBound::SupportsDisagree`].
+    pub fn new(problem: &Problem, degrees: impl IntoIterator<Item = usize>) -> Result<Self, NoUpperBound> {
+        let holds = holds(problem)?;
+        let nodes = Nodes::new(problem.mesh.points.len(), degrees.into_iter().map(|p| p + 1));
+        let rows = rows(problem, &nodes);
+        let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
+        let patches = Patches::new(problem, &nodes);
+        Ok(Groundwork { nodes, holds, rows, made: Made { model, patches } })
+    }
+
+    /// The same with the factors of all patches, which otherwise the first sweep makes.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn factorised(problem: &Problem, degrees: impl IntoIterator<Item = usize>) -> Result<Self, NoUpperBound> {
+        let mut ground = Self::new(problem, degrees)?;
+        ground.made.patches.factorise(&ground.made.model);
+        Ok(ground)
+    }
+}
