@@ -37,7 +37,7 @@ pub struct Plan {
 impl Default for Plan {
     fn default() -> Self {
         Plan {
-            methods: Method::ALL.to_vec(),
+            methods: Method::usual().collect(),
             levels: 4,
             repeats: 3,
             budget: 60.0,

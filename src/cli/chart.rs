@@ -6,12 +6,12 @@ use std::str::FromStr;
 
 use clap::value_parser;
 
+use super::methods::MethodOptions;
 use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive};
 use super::progress::Progress;
 use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
-use crate::measure::Method;
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
 use crate::scene::Scene;
@@ -42,9 +42,9 @@ pub struct Args {
     /// Runs of each kind; the median counts
     #[arg(long, value_name = "N", default_value_t = REPEATS, value_parser = value_parser!(u32).range(1..=99))]
     pub repeats: u32,
-    /// Only these methods; may be repeated
-    #[arg(long, value_name = "NAME", value_parser = known)]
-    pub method: Vec<Method>,
+    /// What is measured.
+    #[command(flatten)]
+    pub methods: MethodOptions,
     /// Run COMMAND in the place of FEniCSx, as `verify` does: {problem} stands for the file to read, {out} for the folder to write
     /// into, {degrees} for the degree that is wanted
     #[arg(long, value_name = "COMMAND")]
@@ -102,12 +102,6 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// The method of that name, or the names there are.
-pub(super) fn known(name: &str) -> Result<Method, String> {
-    let names = Method::ALL.map(Method::name).join(", ");
-    Method::of_name(name).ok_or_else(|| format!("there is no method {name}; choose from {names}"))
-}
-
 impl Args {
     fn plan(&self) -> Plan {
         let mut plan = Plan {
@@ -117,6 +111,7 @@ impl Args {
             memory: self.memory.max_memory,
             quantities: self.quantities(),
             program: self.reference.clone(),
+            methods: self.methods.chosen(),
             ..Plan::default()
         };
         if self.reduced {
@@ -124,9 +119,6 @@ impl Args {
         }
         if let Some(budget) = self.budget {
             plan.budget = budget;
-        }
-        if !self.method.is_empty() {
-            plan.methods = Method::ALL.into_iter().filter(|m| self.method.contains(m)).collect();
         }
         plan
     }
@@ -147,7 +139,7 @@ impl Args {
         let mut words: Vec<String> = vec!["hypercircle chart".to_string()];
         words.extend(self.scenes.iter().map(|path| quoted(&path.display().to_string())));
         words.extend(self.reduced.then(|| "--reduced".to_string()));
-        words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.methods.words());
         words.extend(self.reference.iter().map(|program| format!("--reference {}", quoted(program.line()))));
         for (name, value, usual) in
             [("refine", self.refine, REFINE), ("repeats", self.repeats, REPEATS), ("threads", self.threads, THREADS)]

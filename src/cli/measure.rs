@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Subcommand, value_parser};
 
-use super::chart::known;
+use super::methods::known;
 use super::options::{MemoryOptions, positive};
 use super::{CliError, Exit, threads};
 use crate::measure::{Clock, Method, Settings, measure};

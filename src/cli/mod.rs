@@ -17,6 +17,7 @@ pub mod job;
 pub mod judge;
 pub mod measure;
 pub mod memory;
+mod methods;
 pub mod options;
 pub mod progress;
 pub mod say;

@@ -2,11 +2,11 @@
 
 use clap::value_parser;
 
-use super::chart::{known as known_method, quoted, this_program};
+use super::chart::{quoted, this_program};
+use super::methods::MethodOptions;
 use super::options::{MemoryOptions, RunOptions, positive};
 use super::progress::Progress;
 use super::{CliError, Exit, say};
-use crate::measure::Method;
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
@@ -24,9 +24,9 @@ pub struct Args {
     /// Only these regimes; may be repeated
     #[arg(long, value_name = "NAME", value_parser = known, help = regimes())]
     pub regime: Vec<&'static Regime>,
-    /// Only these methods; may be repeated
-    #[arg(long, value_name = "NAME", value_parser = known_method)]
-    pub method: Vec<Method>,
+    /// What is swept.
+    #[command(flatten)]
+    pub methods: MethodOptions,
     /// Run COMMAND in the place of FEniCSx, as `verify` does: {problem} stands for the file to read, {out} for the folder to write
     /// into, {degrees} for the degrees that are wanted. It is judged like this program's own methods
     #[arg(long, value_name = "COMMAND")]
@@ -54,7 +54,7 @@ impl Args {
         let mut words: Vec<String> = vec!["hypercircle stability".to_string()];
         words.extend(self.reduced.then(|| "--reduced".to_string()));
         words.extend(self.regime.iter().map(|r| format!("--regime {}", r.id)));
-        words.extend(self.method.iter().map(|m| format!("--method {}", quoted(m.name()))));
+        words.extend(self.methods.words());
         words.extend(self.reference.iter().map(|program| format!("--reference {}", quoted(program.line()))));
         words.extend(self.budget.map(|s| format!("--budget {s}")));
         words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
@@ -93,7 +93,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         .map_err(|(path, error)| failed(format!("{}: {error}", path.display())))?;
     let what = Sweep {
         regimes: if args.regime.is_empty() { all() } else { args.regime.clone() },
-        methods: Method::ALL.into_iter().filter(|m| args.method.is_empty() || args.method.contains(m)).collect(),
+        methods: args.methods.chosen(),
         reduced: args.reduced,
         workers: args.threads.map_or(processors, |n| n as usize),
         budget: args.budget.unwrap_or(if args.reduced { BUDGET_REDUCED } else { BUDGET }),

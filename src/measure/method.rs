@@ -28,6 +28,12 @@ pub enum Method {
     FenicsP1,
     /// Quadratic displacements.
     FenicsP2,
+    /// Cubic displacements, beside quadratic stresses.
+    FenicsP3,
+    /// Displacements of degree 4.
+    FenicsP4,
+    /// Displacements of degree 5.
+    FenicsP5,
 }
 
 /// What a method is made of.
@@ -42,7 +48,7 @@ pub enum Family {
 
 impl Method {
     /// All of them, in the order of tables.
-    pub const ALL: [Method; 10] = [
+    pub const ALL: [Method; 13] = [
         Method::Condensed,
         Method::CondensedP2,
         Method::CondensedP3,
@@ -53,7 +59,20 @@ impl Method {
         Method::Uzawa,
         Method::FenicsP1,
         Method::FenicsP2,
+        Method::FenicsP3,
+        Method::FenicsP4,
+        Method::FenicsP5,
     ];
+
+    /// Those that are run where none are named; displacements are then linear and quadratic.
+    pub fn usual() -> impl Iterator<Item = Method> {
+        Self::ALL.into_iter().filter(|method| !method.is_primal() || method.degree() <= 2)
+    }
+
+    /// The displacement model of that degree.
+    pub fn primal(degree: u8) -> Option<Method> {
+        Self::ALL.into_iter().find(|method| method.is_primal() && method.degree() == usize::from(degree))
+    }
 
     /// Name in files, on the command line and in tables.
     pub fn name(self) -> &'static str {
@@ -68,6 +87,9 @@ impl Method {
             Method::Uzawa => "uzawa",
             Method::FenicsP1 => "FEniCSx P1",
             Method::FenicsP2 => "FEniCSx P2",
+            Method::FenicsP3 => "FEniCSx P3",
+            Method::FenicsP4 => "FEniCSx P4",
+            Method::FenicsP5 => "FEniCSx P5",
         }
     }
 
@@ -99,8 +121,9 @@ impl Method {
             Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
             Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
             Method::Uzawa => Family::Dual(Box::new(dual::Uzawa::default())),
-            Method::FenicsP1 => Family::Primal(1),
-            Method::FenicsP2 => Family::Primal(2),
+            Method::FenicsP1 | Method::FenicsP2 | Method::FenicsP3 | Method::FenicsP4 | Method::FenicsP5 => {
+                Family::Primal(self.degree() as u8)
+            }
         }
     }
 
@@ -108,10 +131,11 @@ impl Method {
     pub fn degree(self) -> usize {
         match self {
             Method::Condensed | Method::Adaptive | Method::ActiveSet | Method::Clarabel | Method::Uzawa => 1,
-            Method::CondensedP2 | Method::FenicsP2 => 2,
-            Method::CondensedP3 => 3,
-            Method::CondensedP4 => 4,
             Method::FenicsP1 => 1,
+            Method::CondensedP2 | Method::FenicsP2 => 2,
+            Method::CondensedP3 | Method::FenicsP3 => 3,
+            Method::CondensedP4 | Method::FenicsP4 => 4,
+            Method::FenicsP5 => 5,
         }
     }
 
@@ -127,7 +151,7 @@ impl Method {
 
     /// Whether it is the displacement model.
     pub fn is_primal(self) -> bool {
-        matches!(self, Method::FenicsP1 | Method::FenicsP2)
+        matches!(self.family(), Family::Primal(_))
     }
 }
 
@@ -145,5 +169,8 @@ mod tests {
             }
         }
         assert_eq!(Method::of_name("newton"), None);
+        let usual: Vec<Method> = Method::usual().filter(|method| method.is_primal()).collect();
+        assert_eq!(usual, [Method::FenicsP1, Method::FenicsP2]);
+        assert_eq!([1, 3, 9].map(Method::primal), [Some(Method::FenicsP1), Some(Method::FenicsP3), None]);
     }
 }

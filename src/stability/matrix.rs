@@ -190,7 +190,7 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
     let mut option = |name: &str, value: String| arguments.extend([name.into(), value.into()]);
     let methods = match task {
         Task::One(method) => vec![method],
-        Task::Primal => vec![Method::FenicsP1, Method::FenicsP2],
+        Task::Primal => what.methods.iter().copied().filter(|method| method.is_primal()).collect(),
         Task::Finer => {
             option("--refine", if heavy(regime, step) { 1 } else { FINER }.to_string());
             vec![Method::Condensed]

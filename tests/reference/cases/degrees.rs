@@ -1,6 +1,9 @@
 //! Displacements of higher degree on the same mesh: `--primal-degree`.
 
+use serde_json::Value;
+
 use super::run::{Run, case, with_reference};
+use crate::command::{ended, hypercircle, run};
 
 #[test]
 fn higher_degrees_agree_and_come_closer_to_the_stresses() {
@@ -54,4 +57,26 @@ fn a_wrong_model_of_higher_degree_is_found() {
         let causes = report.0["causes"].to_string();
         assert_eq!(causes.contains("looked for in degrees 1 and 2"), bug == "flip-sign", "{causes}");
     }
+}
+
+/// Beside stresses of degree 2, displacements of degree 3: as `verify` has them on the same mesh.
+#[test]
+fn a_chart_has_rows_of_higher_degrees_where_they_are_asked_for() {
+    if !with_reference() {
+        return;
+    }
+    let alone = Run::new("verify", &case("two_blocks"), &["--primal-degree", "3"]);
+    let energy = alone.report().0["primal"][0]["energy"].as_f64().expect("an energy");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = hypercircle(folder.path(), ["chart"]);
+    command.arg(case("two_blocks")).args(["--reduced", "--refine", "0", "--method", "condensed-p2"]);
+    command.args(["--primal-degree", "3", "--quiet", "--out", "out"]);
+    ended("chart", &run(command), 0, &[]);
+    let chart = std::fs::read_to_string(folder.path().join("out/chart.json")).expect("written");
+    let chart: Value = serde_json::from_str(&chart).expect("JSON");
+    let runs = chart["scenes"][0]["runs"].as_array().expect("runs");
+    let methods: Vec<&str> = runs.iter().filter_map(|run| run["method"].as_str()).collect();
+    assert_eq!(methods, ["condensed-p2", "fenics-p3"]);
+    let found = runs[1]["plot"]["upper"].as_f64().expect("an upper bound");
+    assert!((found - energy).abs() < 1e-10 * energy.abs(), "{found} is not {energy}");
 }
