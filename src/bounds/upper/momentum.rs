@@ -14,8 +14,8 @@ pub struct Momentum {
 }
 
 impl Momentum {
-    /// Moves `values`, the result of a sweep from `before`, and gives the energy gained. No jump grows beyond its gap by
-    /// more than `slack`.
+    /// Moves `values`, the result of a sweep from `before`, and gives the energy gained. A jump that would grow beyond its gap by
+    /// more than `slack` ends at it.
     pub fn push(&mut self, model: &Model, before: &[[f64; 2]], slack: f64, values: &mut [[f64; 2]]) -> f64 {
         // Near the minimum a sweep moves little but rounding, and a factor may be large: what supports hold stays out.
         let moved = values.iter().zip(before).map(|(v, b)| [v[0] - b[0], v[1] - b[1]]);
@@ -48,7 +48,8 @@ impl Momentum {
             let grows = row.terms().iter().map(|(k, f)| push[*k][0] * f[0] + push[*k][1] * f[1]).sum::<f64>();
             let room = (-row.excess(values)).max(0.0);
             if grows > room + slack {
-                part = part.min((room + slack) / grows);
+                // Not beyond it by slack: the next sweep would take that back, and the step after it be cut short by rounding.
+                part = part.min(room / grows);
             }
         }
         let gained = part * (force.dot(&best) - 0.5 * part * best.dot(&(stiffness * best)));
