@@ -65,12 +65,18 @@ class Factorised:
         compat.solve(self.solver, load, x)
 
     def _condense(self, r):
-        """A⁻¹r with held unknowns at zero, and the load c that is left on the jumps."""
+        """A⁻¹r without the part of r on held unknowns and jumps, and the load c that is left on the jumps.
+
+        Closed jumps carry tractions as large as the load: solved for with the rest, their rounding would be all that is left
+        of a small r.
+        """
+        on_jumps = self.model.jumps(r)
         r, z = r.copy(), r.duplicate()
         self._clear_held(r)
+        self.model.set_jumps(r, np.zeros(len(on_jumps)))
         self._solve(r, z)
         jumps = self.model.jumps(z)
-        return z, self.contact.apply(jumps) + self.shift * jumps
+        return z, on_jumps + self.contact.apply(jumps) + self.shift * jumps
 
     def _expand(self, z, jumps: np.ndarray):
         """All unknowns, from A⁻¹r and the jumps they are to have."""

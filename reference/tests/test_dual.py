@@ -98,6 +98,53 @@ def test_ranks_that_do_not_see_each_other_are_refused(tmp_path):
     assert done.returncode == 3 and "1 of 2 ranks see each other" in done.stderr, done.stderr
 
 
+def problem(folder, matrices, load, first_jump, solver="mumps"):
+    """Files of triangles with all unknowns each, whose Bᵀ are ``matrices`` (triangles, parameters, unknowns)."""
+    triangles, parameters, unknowns = matrices.shape
+    jumps = unknowns - first_jump
+    header = {**HEADER, "triangles": triangles, "unknowns": unknowns, "first_jump": first_jump,
+              "parameters": triangles * parameters, "linear_solver": solver}  # fmt: skip
+    integers = {
+        "start": np.arange(triangles + 1) * unknowns,
+        "unknowns": np.tile(np.arange(unknowns), triangles),
+        "matrix": np.arange(triangles) * parameters * unknowns,
+        "parameter": np.arange(triangles + 1) * parameters,
+        "blocks": np.append(np.arange(first_jump + 1), unknowns) if jumps else np.arange(unknowns + 1),
+        "pair": np.zeros(jumps),
+    }
+    numbers = {
+        "matrices": matrices, "given": np.zeros(triangles * parameters), "load": np.zeros(triangles * unknowns),
+        "external": load, "bound": np.zeros(jumps), "round_off": np.zeros(jumps),
+    }  # fmt: skip
+    for name, values in integers.items():
+        np.asarray(values, "<i8").tofile(folder / f"{name}.i64")
+    for name, values in numbers.items():
+        np.asarray(values, "<f8").tofile(folder / f"{name}.f64")
+    np.ones(jumps, "u1").tofile(folder / "guess.u8")
+    (folder / "problem.json").write_text(json.dumps(header))
+    return folder / "problem.json"
+
+
+def test_a_correction_has_the_digits_of_what_it_corrects(tmp_path):
+    from hypercircle_dual import compat
+    from hypercircle_dual.exchange import read
+    from hypercircle_dual.model import Model
+    from hypercircle_dual.solvers import Factorised
+
+    random = np.random.default_rng(3)
+    size, first_jump = 10, 8
+    # Stiffnesses from 1 to 10⁻⁸, as of a slender body.
+    root = np.linalg.qr(random.normal(size=(size, size)))[0] * 10.0 ** -np.linspace(0, 4, size)
+    path = problem(tmp_path, root.T[None], np.zeros(size), first_jump)
+    model = Model(compat.MPI.COMM_SELF, read(path), Factorised.padded)
+    left = model.zero.duplicate()
+    # The rest of a residual beside the tractions of closed contact.
+    left.array = np.concatenate([1e-12 * random.normal(size=first_jump), np.ones(size - first_jump)])
+    found = Factorised(model).correct(left, np.ones(size - first_jump, bool)).array_r[:first_jump]
+    expected = np.linalg.solve((root @ root.T)[:first_jump, :first_jump], left.array_r[:first_jump])
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
+
+
 TWO_LEVELS = """
 import numpy as np
 from hypercircle_dual import compat
