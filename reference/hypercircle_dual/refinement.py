@@ -8,7 +8,7 @@ conjugate, steps minimise the energy.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,18 +19,24 @@ ROUND_OFF = 2e-14
 ENOUGH = 1e-11
 """… or at which it may end when it has not helped for some steps."""
 PATIENCE, MOST_PATIENCE = 4, 25
+UNBALANCED = 1e-4
+"""Traction jumps against the loads that are more than what a solve leaves."""
+HELD = 0.5
+"""Part of the work of a load that stresses take up; springs have more than the rest where nothing holds a body."""
 
 
 @dataclass
 class Refined:
     """Unknowns x, mode parameters s of this rank's triangles, and the residual r of every unknown.
 
-    On free unknowns r is a jump of traction, on closed jumps minus the normal traction.
+    On free unknowns r is a jump of traction, on closed jumps minus the normal traction. Where no equilibrium was found since the
+    contact state leaves a body without hold against its load, ``motion`` is where that goes.
     """
 
     x: object
     s: np.ndarray
     r: object
+    motion: object = None
 
     @classmethod
     def of(cls, model: Model, x) -> "Refined":
@@ -58,7 +64,7 @@ def refine(
         return masked.norm(3) / load if load > 0.0 else masked.norm(3)
 
     best, least, stale = now, stray(now.r), 0
-    previous = None
+    previous, motion = None, None
     for _ in range(most):
         if least <= enough or stale >= (PATIENCE if least <= ENOUGH else MOST_PATIENCE):
             break
@@ -71,6 +77,8 @@ def refine(
             d.axpy((product - d.dot(r_last)) / product_last, last)
         ds = model.stresses(d, given=False)
         energy = model.energy_product(ds, ds)
+        if motion is None and energy < HELD * d.dot(r):
+            motion = d.copy()
         step = d.dot(r) / energy if energy > 0.0 else np.nan
         if not np.isfinite(step):
             break
@@ -81,4 +89,4 @@ def refine(
         else:
             stale += 1
         previous = d, r, product
-    return best
+    return replace(best, motion=motion) if least > UNBALANCED else best

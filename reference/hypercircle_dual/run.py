@@ -64,7 +64,7 @@ class Settled:
         zero = model.zero.duplicate()
         zero.set(0.0)
         self.now = Refined.of(model, zero)
-        model.load_size = _largest(model.external) or _largest(self.now.r)
+        model.load_size = _largest(model.external) or _largest(self.now.r) or model.files.load
         self.seen: set[bytes] = set()
         self._change(np.array(model.files.array("guess.u8"), bool))
         for _ in range(MOST_CHANGES + 4 * len(self.bound)):
@@ -125,7 +125,20 @@ class Settled:
 
     def _following(self) -> np.ndarray:
         """The state that stresses and jumps ask for, the same on all ranks."""
-        return self.model.comm.bcast(self.closed == (self._misses() <= GRAZING))
+        following = self._stopped()
+        if following is None:
+            following = self.closed == (self._misses() <= GRAZING)
+        return self.model.comm.bcast(following)
+
+    def _stopped(self) -> np.ndarray | None:
+        """The state in which contact stops a motion that nothing holds: the first open ends on its way are closed too."""
+        if self.now.motion is None:
+            return None
+        growth = np.where(self.closed, 0.0, self.model.jumps(self.now.motion))
+        room = np.maximum(self.bound - self.model.jumps(self.now.x), 0.0)
+        way = np.divide(room, growth, out=np.full(len(room), np.inf), where=growth > 0.0)
+        first = way.min(initial=np.inf)
+        return self.closed | (way <= first) if np.isfinite(first) else None
 
 
 def _largest(vector) -> float:

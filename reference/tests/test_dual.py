@@ -145,6 +145,54 @@ def test_a_correction_has_the_digits_of_what_it_corrects(tmp_path):
     assert found == pytest.approx(expected, rel=1e-6, abs=1e-6 * np.abs(expected).max())
 
 
+class Springs:
+    """Solves with K and springs at open jumps, and leaves the contact state to be found by changing it."""
+
+    def __init__(self, stiffness):
+        self.stiffness = stiffness
+
+    def state(self, r, room, start):
+        return None
+
+    def correct(self, r, closed):
+        free = np.append(np.ones(len(self.stiffness) - len(closed), bool), ~closed)
+        springs = np.diag(np.append(np.zeros(len(free) - len(closed)), 1e-6 * np.ones(len(closed))))
+        d = r.duplicate()
+        d.set(0.0)
+        values = np.zeros(len(free))
+        values[free] = np.linalg.solve((self.stiffness + springs)[np.ix_(free, free)], r.array_r[free])
+        d.array = values
+        return d
+
+
+def point_between_obstacles(tmp_path, load):
+    """Settles a point that two obstacles may stop, at 0.3 and 0.5, by springs of stiffness 1 and 2; at first it touches none."""
+    from hypercircle_dual import compat
+    from hypercircle_dual.exchange import read
+    from hypercircle_dual.model import Model
+    from hypercircle_dual.run import Settled
+
+    modes = np.array([[1.0, -1.0, 0.0], [np.sqrt(2.0), 0.0, -np.sqrt(2.0)]])
+    path = problem(tmp_path, modes[None], [load, 0.0, 0.0], 1)
+    np.array([0.3, 0.5]).tofile(tmp_path / "bound.f64")
+    np.array([0, 1], "<i8").tofile(tmp_path / "pair.i64")
+    np.zeros(2, "u1").tofile(tmp_path / "guess.u8")
+    return Settled(Model(compat.MPI.COMM_SELF, read(path), False), Springs(modes.T @ modes))
+
+
+def test_contact_stops_a_body_that_nothing_else_holds(tmp_path):
+    settled = point_between_obstacles(tmp_path, 1.0)
+    assert settled.closed.all()
+    assert settled.now.x.array_r == pytest.approx([(1.0 + 0.3 + 2.0 * 0.5) / 3.0, 0.3, 0.5], rel=1e-12)
+    assert settled.now.r.array_r[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_where_nothing_is_loaded_residuals_are_relative_to_the_least_that_counts(tmp_path):
+    settled = point_between_obstacles(tmp_path, 0.0)
+    assert not settled.closed.any()
+    assert settled.model.load_size == HEADER["load"]
+
+
 TWO_LEVELS = """
 import numpy as np
 from hypercircle_dual import compat
