@@ -54,31 +54,41 @@ def scale(refinements, ranks, solvers):
                 )
 
 
-def cases(ranks):
-    """Prints the differences from the condensed method; the exit code says whether all lower bounds agree to 1e-9."""
+def differ(expected, found):
+    """By how much lower and upper bounds differ, relative to the larger of both; nothing where there is no energy."""
+    size = max(abs(expected["lower"]), abs(expected["upper"]))
+    return [abs(expected[bound] - found[bound]) / size if size > 0.0 else 0.0 for bound in ("lower", "upper")]
+
+
+def cases(ranks, solver):
+    """Prints the differences from the condensed method, and counts the runs that differ.
+
+    Lower bounds are to agree to 1e-9, and upper ones too unless the scene leaves a displacement open, on which they depend.
+    """
     failed = 0
-    print("| scene | ranks | lower bounds differ by | upper bounds, part of the gap | equilibrium |")
-    print("|---|--:|--:|--:|--:|", flush=True)
+    print("| scene | ranks | lower bounds differ by | upper bounds | equilibrium | displacement |")
+    print("|---|--:|--:|--:|--:|---|", flush=True)
     for scene in sorted([*Path("cases").glob("*.toml"), *Path("tests/scenes").glob("*.toml")]):
-        expected, said = solve(str(scene))
+        expected, refused = solve(str(scene))
         for size in ranks:
-            found, said = solve(str(scene), *engine(size, "mumps"))
+            found, said = solve(str(scene), *engine(size, solver))
             if found is None or expected is None:
                 failed += found is not None or expected is not None
-                print(f"| {scene.stem} | {size} | {' '.join(said.split())[:200]} |", flush=True)
+                print(f"| {scene.stem} | {size} | {' '.join((said or refused).split())[:200]} |", flush=True)
                 continue
-            a, b = expected["energy"], found["energy"]
-            lower = abs(a["lower"] - b["lower"]) / max(abs(a["lower"]), abs(a["upper"]), 1e-300)
-            upper = abs(a["upper"] - b["upper"]) / max(a["gap"], 1e-9 * abs(a["upper"]), 1e-300)
+            lower, upper = differ(expected["energy"], found["energy"])
+            is_open = any("the displacement" in note["text"].lower() for note in expected["notes"])
             residual = found["dual"]["equilibrium_residual"]
-            failed += lower > 1e-9 or residual > 1e-9
-            print(f"| {scene.stem} | {size} | {lower:.1e} | {upper:.1e} | {residual:.1e} |", flush=True)
+            failed += lower > 1e-9 or residual > 1e-9 or (upper > 1e-9 and not is_open)
+            known = "left open" if is_open else "unique"
+            print(f"| {scene.stem} | {size} | {lower:.0e} | {upper:.0e} | {residual:.0e} | {known} |", flush=True)
     return failed
 
 
 if __name__ == "__main__":
     arguments = [argument.split() for argument in sys.argv[1:]]
     if arguments[:1] == [["cases"]]:
-        sys.exit(cases(arguments[1] if len(arguments) > 1 else ["1", "2", "4"]) > 0)
+        ranks, [solver] = [*arguments[1:], *[["1", "2", "4"], ["mumps"]][len(arguments) - 1 :]]
+        sys.exit(cases(ranks, solver) > 0)
     defaults = [["0", "1", "2", "3", "4"], ["1", "2"], ["mumps", "gamg"]]
     scale(*(arguments + defaults[len(arguments):]))
