@@ -3,9 +3,11 @@
 //! The coefficients at the ends are those of the vertices ([`super::ends`]). The ones between them are kept at most zero, and
 //! their sum is kept with the mean of the jump: what is above zero is taken from those below.
 
+use super::ends::largest;
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, of_pair, sides};
-use crate::dual::DualSolution;
+use super::share::Share;
+use crate::element::SideValues;
 use crate::element::side::lower_moments;
 use crate::problem::{ContactPair, Problem};
 use crate::vector::dot;
@@ -28,10 +30,10 @@ pub fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 }
 
 /// Mean of (v' − v'')·n̂ − g over a pair, from the moments of the dual solve.
-pub fn mean_excess(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
+pub fn mean_excess(problem: &Problem, moments: &SideValues<[f64; 2]>, pair: &ContactPair) -> f64 {
     let n = pair.direction.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let lowered = |c: usize| lower_moments(&dual.moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
+        let lowered = |c: usize| lower_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
         let [x, y] = [0, 1].map(lowered);
         let turned = problem.mesh.edges[e].vertices[0] != start;
         let [a, b] = if turned { [1, 0] } else { [0, 1] }.map(|end| [x[end], y[end]]);
@@ -100,12 +102,12 @@ pub fn penetration(problem: &Problem, field: &NodalValues) -> [f64; 2] {
 
 /// Gives the jump of every pair the mean of the dual solution where inner coefficients would penetrate, or the direction of
 /// contact turns.
-pub fn match_means(problem: &Problem, dual: &DualSolution, field: &mut NodalValues) {
+pub fn match_means(problem: &Problem, moments: &SideValues<[f64; 2]>, field: &mut NodalValues) {
     for jump in Jump::all(problem, &field.nodes) {
         if jump.pair.direction.is_constant() {
             keep_sum(&jump, &mut field.values);
         } else {
-            match_mean(&jump, mean_excess(problem, dual, jump.pair).min(0.0), &mut field.values);
+            match_mean(&jump, mean_excess(problem, moments, jump.pair).min(0.0), &mut field.values);
         }
     }
 }
@@ -159,8 +161,8 @@ fn match_mean(jump: &Jump<'_>, mean: f64, values: &mut [[f64; 2]]) {
 }
 
 /// Draws inner coefficients that are above zero down to it; `groups` are the rows of every pair.
-pub fn restrict_inside(problem: &Problem, groups: &[Vec<Row>], field: &mut NodalValues) {
-    let size = field.vertices().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+pub fn restrict_inside(problem: &Problem, groups: &[Vec<Row>], field: &mut NodalValues, share: &dyn Share) {
+    let size = largest(field.vertices(), share);
     let pairs = problem.pairs().zip(groups);
     for (jump, rows) in pairs.filter_map(|(pair, rows)| Some((Jump::new(problem, pair, &field.nodes)?, rows))) {
         let k = jump.degree;

@@ -10,7 +10,8 @@ use super::contact::{ROUNDING, give, mean_excess, shift};
 use super::holds::{Hold, jump_rounding};
 use super::nodes::Nodes;
 use super::rows::Row;
-use crate::dual::DualSolution;
+use super::share::Share;
+use crate::element::SideValues;
 use crate::problem::{ContactPair, Problem};
 use crate::vector::dot;
 
@@ -40,10 +41,11 @@ pub fn restrict(
     groups: &[Vec<Row>],
     holds: &[Hold],
     vertex: &mut [[f64; 2]],
+    share: &dyn Share,
 ) -> Result<(), NoUpperBound> {
     let ends = ends_below(problem, groups);
-    draw(&ends, holds, vertex);
-    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    draw(&ends, holds, vertex, share);
+    let size = largest(vertex, share);
     for end in &ends {
         let by = excess(end, vertex);
         if by > jump_rounding(problem, end.pair, size) {
@@ -56,8 +58,8 @@ pub fn restrict(
 
 /// Moves vertex values so that vertex jumps lie within the bounds of `ends`, as far as these do not contradict each
 /// other: the normals of two short edges in line differ by rounding, and so does what they demand of a sliding vertex.
-pub fn draw(ends: &[End<'_>], holds: &[Hold], vertex: &mut [[f64; 2]]) {
-    let size = vertex.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+pub fn draw(ends: &[End<'_>], holds: &[Hold], vertex: &mut [[f64; 2]], share: &dyn Share) {
+    let size = largest(vertex, share);
     let tolerance = 1e-13 * size;
     for _ in 0..MOST_SWEEPS {
         let mut moved = false;
@@ -91,6 +93,11 @@ pub fn draw(ends: &[End<'_>], holds: &[Hold], vertex: &mut [[f64; 2]]) {
     }
 }
 
+/// The largest component of a displacement, given by its values here, which are up to date.
+pub fn largest(values: &[[f64; 2]], share: &dyn Share) -> f64 {
+    share.largest(values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs())))
+}
+
 /// By how much the jump is above (positive) or below (negative) its bounds.
 fn excess(end: &End<'_>, vertex: &[[f64; 2]]) -> f64 {
     let jump = dot(vertex[end.first], end.normal) - end.second.map_or(0.0, |v| dot(vertex[v], end.normal));
@@ -118,12 +125,12 @@ fn ends_below<'a>(problem: &'a Problem, groups: &[Vec<Row>]) -> Vec<End<'a>> {
 }
 
 /// Both ends of all pairs, kept near the mean jumps of the dual solution; bounds of neighbouring pairs are merged.
-pub fn ends_near<'a>(problem: &'a Problem, dual: &DualSolution, nodes: &Nodes) -> Vec<End<'a>> {
+pub fn ends_near<'a>(problem: &'a Problem, moments: &SideValues<[f64; 2]>, nodes: &Nodes) -> Vec<End<'a>> {
     let mut ends = Vec::new();
     for interface in &problem.interfaces {
         let least = |pair: &ContactPair| {
             let degree = pair.edges[0].map_or(2, |e| nodes.degree(e));
-            0.5 * (degree + 1) as f64 * mean_excess(problem, dual, pair).min(0.0)
+            0.5 * (degree + 1) as f64 * mean_excess(problem, moments, pair).min(0.0)
         };
         let least: Vec<f64> = interface.pairs.iter().map(least).collect();
         for (k, pair) in interface.pairs.iter().enumerate() {

@@ -29,16 +29,14 @@ pub struct TriangleEnergy<'a> {
 }
 
 impl TriangleEnergies {
-    /// Those that `pull` pulls at.
-    pub fn new(problem: &Problem, nodes: &Nodes, pull: Pull<'_>) -> Self {
+    /// Those that `pull` pulls at; the first triangle of a shape has the stiffness of one with the corners `like`.
+    pub fn new(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, like: impl Fn(usize) -> [[f64; 2]; 3] + Sync) -> Self {
         let mesh = &problem.mesh;
         let materials = problem.materials();
-        let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
-        let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t));
-        let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
+        let (class, first) = similar(problem, nodes);
         let of = |t: &usize| {
-            let k = nodes.triangle_degree(mesh, *t);
-            Stiffness::new(k, degrees(*t), mesh.corners(*t), &materials[mesh.body[*t]])
+            let (k, degrees) = (nodes.triangle_degree(mesh, *t), mesh.triangle_edges[*t].map(|e| nodes.degree(e)));
+            Stiffness::new(k, degrees, like(*t), &materials[mesh.body[*t]])
         };
         let stiffness: Vec<Option<Stiffness>> = first.par_iter().with_min_len(16).map(of).collect();
         let count = |c: &u32| stiffness[*c as usize].as_ref().map_or(0, |s| s.size + s.inside);
@@ -73,6 +71,14 @@ impl TriangleEnergies {
     pub fn iter(&self) -> impl Iterator<Item = (usize, TriangleEnergy<'_>)> {
         (0..self.class.len()).filter_map(|t| Some((t, self.of(t)?)))
     }
+}
+
+/// Which triangles share a stiffness: the class of each, and the first triangle of each class.
+pub fn similar(problem: &Problem, nodes: &Nodes) -> (Vec<u32>, Vec<usize>) {
+    let mesh = &problem.mesh;
+    let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
+    let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t));
+    congruent::classes((0..mesh.triangles.len()).map(key))
 }
 
 impl<'a> TriangleEnergy<'a> {

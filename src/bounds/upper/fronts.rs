@@ -27,8 +27,13 @@ impl Fronts {
         Fronts(fronts)
     }
 
+    /// Those that are given, each after the ones that its patches read.
+    pub fn given(fronts: Vec<Vec<usize>>) -> Self {
+        Fronts(fronts)
+    }
+
     /// The fronts, from the first one on.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &[usize]> {
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &[usize]> + ExactSizeIterator {
         self.0.iter().map(Vec::as_slice)
     }
 }

@@ -15,6 +15,22 @@ pub fn fill(problem: &Problem, field: &NodalValues, model: &Model) -> Displaceme
     completed(problem, field, |t, k, block| inside(k, model.energies.of(t), block))
 }
 
+/// The same with the coefficients inside each triangle as [`fill`] has found them elsewhere.
+pub fn filled_with<'a>(
+    problem: &Problem,
+    field: &NodalValues,
+    found: impl Fn(usize) -> &'a [[f64; 2]] + Sync,
+) -> Displacement {
+    completed(problem, field, |t, k, block| {
+        let (boundary, inside) = block.split_at_mut(3 * k);
+        // There and back, as there: not a digit is another.
+        let base = boundary[0];
+        about(base, boundary);
+        back(base, boundary);
+        inside.copy_from_slice(found(t));
+    })
+}
+
 /// The displacement with the sides of `field`, its inside set by `inside`, which is given triangle, degree and coefficients.
 fn completed(
     problem: &Problem,
@@ -46,9 +62,8 @@ fn completed(
 /// Sets the inner coefficients, those on the boundary being given. Where nothing could be eliminated there is no unique minimum,
 /// and the quadratic is as good as any.
 fn inside(k: usize, energy: Option<TriangleEnergy<'_>>, block: &mut [[f64; 2]]) {
-    // About the value at the first corner: rigid translations cost no digits.
     let base = block[0];
-    block[..3 * k].iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
+    about(base, &mut block[..3 * k]);
     match energy {
         Some(energy) => {
             let (boundary, inside) = block.as_flattened_mut().split_at_mut(6 * k);
@@ -56,7 +71,16 @@ fn inside(k: usize, energy: Option<TriangleEnergy<'_>>, block: &mut [[f64; 2]]) 
         }
         None => quadratic(k, block),
     }
-    block.iter_mut().for_each(|v| *v = [v[0] + base[0], v[1] + base[1]]);
+    back(base, block);
+}
+
+/// Counts values from that at the first corner: rigid translations cost no digits.
+fn about(base: [f64; 2], values: &mut [[f64; 2]]) {
+    values.iter_mut().for_each(|v| *v = [v[0] - base[0], v[1] - base[1]]);
+}
+
+fn back(base: [f64; 2], values: &mut [[f64; 2]]) {
+    values.iter_mut().for_each(|v| *v = [v[0] + base[0], v[1] + base[1]]);
 }
 
 /// Sets the inner coefficients to those of the quadratic with the values of the boundary at corners and midpoints.

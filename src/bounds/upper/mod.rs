@@ -25,6 +25,7 @@ mod model;
 mod momentum;
 mod nearest;
 mod nodes;
+mod part;
 mod patch;
 mod patches;
 mod prepared;
@@ -32,6 +33,7 @@ mod pull;
 mod relax;
 mod rows;
 mod sets;
+mod share;
 mod split;
 mod stiffness;
 
@@ -39,13 +41,15 @@ pub use self::groundwork::Groundwork;
 pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
 pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
+pub use self::part::{Division, Found, Part};
 pub use self::prepared::Prepared;
 pub use self::pull::Pull;
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein, of_pair, sides};
+use self::share::{Share, Whole};
 use super::energy::potential;
 use crate::dual::DualSolution;
-use crate::element::{Displacement, PlainDisplacement};
+use crate::element::{Displacement, PlainDisplacement, SideValues, StressField};
 use crate::problem::Problem;
 
 /// Why no admissible displacement could be built.
@@ -101,36 +105,52 @@ pub fn admissible_on(
     start: Option<NodalValues>,
     keep: bool,
 ) -> Result<(Displacement, Prepared), NoUpperBound> {
+    let mut ground = ground;
+    let relaxed = relaxed(&mut ground, problem, (&dual.stress, &dual.moments), floor, start, &Whole)?;
+    let Groundwork { holds, rows, made, .. } = ground;
+    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed, &Whole)?.0, &made.model);
+    let prepared = if keep { Prepared::holding(made) } else { Prepared::default() };
+    Ok((displacement, prepared))
+}
+
+/// The values that relaxing leaves, which differ from admissible ones by rounding; `found` are the stresses of the dual solve and
+/// the moments of its displacement.
+fn relaxed(
+    ground: &mut Groundwork,
+    problem: &Problem,
+    (stress, moments): (&StressField, &SideValues<[f64; 2]>),
+    floor: f64,
+    start: Option<NodalValues>,
+    share: &dyn Share,
+) -> Result<NodalValues, NoUpperBound> {
     let mesh = &problem.mesh;
-    let Groundwork { nodes, holds, rows, mut made } = ground;
+    let Groundwork { nodes, holds, rows, made } = ground;
     let mut field = NodalValues::zeros(nodes.clone());
+    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments));
+    share.refresh(&mut field.values);
     let vertex = field.vertices_mut();
-    vertex.copy_from_slice(&fit::vertex_values(problem, &dual.stress, &dual.moments));
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
     }
-    ends::draw(&ends::ends_near(problem, dual, &nodes), &holds.vertices, vertex);
-    ends::restrict(problem, &rows, &holds.vertices, vertex)?;
+    ends::draw(&ends::ends_near(problem, moments, nodes), &holds.vertices, vertex, share);
+    ends::restrict(problem, rows, &holds.vertices, vertex, share)?;
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
-        let inside = edges::inside(dual.moments.of(e), mesh.edge_frame(e).0, ends);
+        let inside = edges::inside(moments.of(e), mesh.edge_frame(e).0, ends);
         for (value, found) in field.values[nodes.inside(e)].iter_mut().zip(inside) {
             *value = holds.edges[e].impose(found);
         }
     }
-    contact::match_means(problem, dual, &mut field);
-    contact::restrict_inside(problem, &rows, &mut field);
+    contact::match_means(problem, moments, &mut field);
+    contact::restrict_inside(problem, rows, &mut field, share);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
-    let at_rest = || Ok(restricted(problem, &holds, &rows, NodalValues::zeros(nodes.clone()))?.0);
+    let at_rest = || Ok(restricted(problem, holds, rows, NodalValues::zeros(nodes.clone()), share)?.0);
     let mut candidates = vec![field];
     if let Some(start) = start {
-        candidates.push(restricted(problem, &holds, &rows, start.on(mesh, &nodes))?.0);
+        candidates.push(restricted(problem, holds, rows, start.on(mesh, nodes), share)?.0);
     }
     let until = Until::Near(floor / problem.scene.thickness);
-    let relaxed = relax::relax(problem, &made.model, &mut made.patches, until, candidates, at_rest)?;
-    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed)?.0, &made.model);
-    let prepared = if keep { Prepared::holding(made) } else { Prepared::default() };
-    Ok((displacement, prepared))
+    relax::relax(problem, &made.model, &mut made.patches, until, candidates, at_rest, share)
 }
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
@@ -139,15 +159,17 @@ fn restricted(
     holds: &Holds,
     rows: &[Vec<Row>],
     mut field: NodalValues,
+    share: &dyn Share,
 ) -> Result<(NodalValues, f64), NoUpperBound> {
+    share.refresh(&mut field.values);
     let mut farthest = 0.0_f64;
     for (value, hold) in field.values.iter_mut().zip(holds.of_nodes(&field.nodes)) {
         let held = hold.impose(*value);
         farthest = farthest.max((held[0] - value[0]).hypot(held[1] - value[1]));
         *value = held;
     }
-    ends::restrict(problem, rows, &holds.vertices, field.vertices_mut())?;
-    contact::restrict_inside(problem, rows, &mut field);
+    ends::restrict(problem, rows, &holds.vertices, field.vertices_mut(), share)?;
+    contact::restrict_inside(problem, rows, &mut field, share);
     Ok((field, farthest))
 }
 
@@ -197,14 +219,14 @@ pub fn repaired(
     let start = NodalValues::quadratic(&problem.mesh, vertex, middle);
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
     let rows = rows::rows(problem, &start.nodes);
-    let (field, farthest) = restricted(problem, &holds, &rows, start)?;
+    let (field, farthest) = restricted(problem, &holds, &rows, start, &Whole)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
     let nearest = quadratic(problem, field);
     if repair == Repair::OfLeastEnergy
         && penetration > WORTH_LIFTING
         && let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, 2)
     {
-        let lifted = quadratic(problem, restricted(problem, &holds, &rows, lifted)?.0);
+        let lifted = quadratic(problem, restricted(problem, &holds, &rows, lifted, &Whole)?.0);
         if potential(problem, &lifted).total() < potential(problem, &nearest).total() {
             return Ok((lifted, violation));
         }
@@ -231,7 +253,7 @@ pub fn lifted_within(
     let holds = holds(problem)?;
     let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, degree) else { return Ok(None) };
     let rows = rows::rows(problem, &lifted.nodes);
-    let field = restricted(problem, &holds, &rows, lifted)?.0;
+    let field = restricted(problem, &holds, &rows, lifted, &Whole)?.0;
     let nodes = Nodes::new(field.nodes.vertices(), std::iter::repeat_n(2, field.nodes.edges()));
     Ok(Some(quadratic(problem, field.on(&problem.mesh, &nodes))))
 }
@@ -252,7 +274,7 @@ pub fn repaired_at_contact(
     let start = NodalValues { values: field.boundary().to_vec(), nodes };
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
     let rows = rows::rows(problem, &start.nodes);
-    let (nearest, farthest) = restricted(problem, &holds, &rows, start)?;
+    let (nearest, farthest) = restricted(problem, &holds, &rows, start, &Whole)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
     Ok((field.clone().with_boundary(&nearest.values).split(mesh), violation))
 }

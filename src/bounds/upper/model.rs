@@ -6,6 +6,7 @@ use super::holds::{Hold, Holds};
 use super::nodes::Nodes;
 use super::pull::Pull;
 use super::rows::Row;
+use super::share::Share;
 use crate::problem::Problem;
 
 /// What does not change while patches move.
@@ -31,6 +32,19 @@ impl Model {
     ///
     /// `groups` are the rows of every pair, `pull` what the energy has beside that of the strains.
     pub fn new(problem: &Problem, holds: &Holds, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) -> Self {
+        let like = |t| problem.mesh.corners(t);
+        Self::shaped(problem, holds, nodes, groups, pull, like)
+    }
+
+    /// The same where the first triangle of a shape has the stiffness of one with the corners `like`.
+    pub fn shaped(
+        problem: &Problem,
+        holds: &Holds,
+        nodes: &Nodes,
+        groups: &[Vec<Row>],
+        pull: Pull<'_>,
+        like: impl Fn(usize) -> [[f64; 2]; 3] + Sync,
+    ) -> Self {
         let mesh = &problem.mesh;
         let (mut of_triangles, mut start) = (Vec::new(), vec![0]);
         for t in 0..mesh.triangles.len() {
@@ -39,7 +53,7 @@ impl Model {
         }
         let rows_at = rows_at(problem, groups);
         Model {
-            energies: TriangleEnergies::new(problem, nodes, pull),
+            energies: TriangleEnergies::new(problem, nodes, pull, like),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
             rows_at,
@@ -64,13 +78,13 @@ impl Model {
 
     /// 𝓛 of the values per unit thickness less that of zero values, without the triangles that have no unique minimum
     /// inside. With zero values the body force still moves the inside of the triangles.
-    pub fn energy(&self, values: &[[f64; 2]]) -> f64 {
+    pub fn energy(&self, values: &[[f64; 2]], share: &dyn Share) -> f64 {
         let (mut u, mut room) = (Vec::new(), Vec::new());
         let of = |(t, element): (usize, TriangleEnergy<'_>)| {
             self.about_corner(t, values, &mut u);
             element.energy(&u, self.nodes(t).iter().flat_map(|&node| values[node]), &mut room)
         };
-        self.energies.iter().map(of).sum()
+        share.total(self.energies.iter().filter(|(t, _)| share.has_triangle(*t)).map(of).sum())
     }
 
     /// 𝓛 of zero values per unit thickness, as [`Self::energy`] leaves it out.
@@ -158,6 +172,7 @@ mod tests {
     use crate::bounds::upper::interior::fill;
     use crate::bounds::upper::nodes::NodalValues;
     use crate::bounds::upper::rows::rows;
+    use crate::bounds::upper::share::Whole;
     use crate::scene::Scene;
 
     /// A block on an obstacle with a gap, pressed and heavy.
@@ -200,7 +215,7 @@ mod tests {
     }
 
     fn energy(problem: &Problem, field: &NodalValues) -> f64 {
-        model(problem, &field.nodes).energy(&field.values)
+        model(problem, &field.nodes).energy(&field.values, &Whole)
     }
 
     /// Stiffness matrices against strains by quadrature, on edges of equal and of different degrees.
@@ -215,7 +230,7 @@ mod tests {
             let filled = |field: &NodalValues| potential(&problem, &fill(&problem, field, &model));
             let (found, at_rest) = (filled(&field), filled(&NodalValues::zeros(field.nodes.clone())));
             let expected = (found.total() - at_rest.total()) / problem.scene.thickness;
-            let of_model = model.energy(&field.values);
+            let of_model = model.energy(&field.values, &Whole);
             assert!((of_model - expected).abs() < 1e-11 * found.magnitude, "{of_model} is not {expected}");
         }
     }

@@ -6,6 +6,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::model::Model;
+use super::share::Share;
 
 /// The last step.
 #[derive(Debug, Default)]
@@ -16,18 +17,24 @@ pub struct Momentum {
 impl Momentum {
     /// Moves `values`, the result of a sweep from `before`, and gives the energy gained. A jump that would grow beyond its gap by
     /// more than `slack` ends at it.
-    pub fn push(&mut self, model: &Model, before: &[[f64; 2]], slack: f64, values: &mut [[f64; 2]]) -> f64 {
+    pub fn push(
+        &mut self,
+        model: &Model,
+        before: &[[f64; 2]],
+        slack: f64,
+        values: &mut [[f64; 2]],
+        share: &dyn Share,
+    ) -> f64 {
         // Near the minimum a sweep moves little but rounding, and a factor may be large: what supports hold stays out.
         let moved = values.iter().zip(before).map(|(v, b)| [v[0] - b[0], v[1] - b[1]]);
         let sweep: Vec<[f64; 2]> = moved.zip(&model.free).map(|(step, free)| free.along(step)).collect();
         if self.step.is_empty() {
             self.step = vec![[0.0; 2]; values.len()];
         }
-        let mut stiffness = Matrix2::zeros();
-        let mut force = Vector2::zeros();
+        let (mut stiffness, mut force) = (Matrix2::<f64>::zeros(), Vector2::<f64>::zeros());
         let (mut u, mut residual) = (Vec::new(), Vec::new());
         let mut steps = [Vec::new(), Vec::new()];
-        for (t, element) in model.energies.iter() {
+        for (t, element) in model.energies.iter().filter(|(t, _)| share.has_triangle(*t)) {
             model.about_corner(t, values, &mut u);
             element.residual(&u, &mut residual);
             for (i, moves) in [&sweep, &self.step].into_iter().enumerate() {
@@ -39,12 +46,15 @@ impl Momentum {
                 stiffness[(i, j)] += element.form(&steps[i], &steps[j]);
             }
         }
-        stiffness[(1, 0)] = stiffness[(0, 1)];
+        let mut sums = [force[0], force[1], stiffness[(0, 0)], stiffness[(0, 1)], stiffness[(1, 1)]];
+        share.sum(&mut sums);
+        let [f, g, a, b, c] = sums;
+        let (force, stiffness) = (Vector2::new(f, g), Matrix2::new(a, b, b, c));
         let best = factors(&stiffness, &force);
         let push = |(s, p): (&[f64; 2], &[f64; 2])| [0, 1].map(|c| best[0] * s[c] + best[1] * p[c]);
         let mut push: Vec<[f64; 2]> = sweep.iter().zip(&self.step).map(push).collect();
         let mut part = 1.0_f64;
-        for row in &model.rows {
+        for (_, row) in model.rows.iter().enumerate().filter(|(row, _)| share.has_row(*row)) {
             let grows = row.terms().iter().map(|(k, f)| push[*k][0] * f[0] + push[*k][1] * f[1]).sum::<f64>();
             let room = (-row.excess(values)).max(0.0);
             if grows > room + slack {
@@ -52,6 +62,7 @@ impl Momentum {
                 part = part.min(room / grows);
             }
         }
+        part = share.least(part);
         let gained = part * (force.dot(&best) - 0.5 * part * best.dot(&(stiffness * best)));
         if !(gained > 0.0 && gained.is_finite()) {
             part = 0.0;

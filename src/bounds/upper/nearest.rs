@@ -10,6 +10,7 @@ use super::nodes::{NodalValues, Nodes};
 use super::patches::Patches;
 use super::prepared::{Made, Prepared};
 use super::rows::{Row, rows};
+use super::share::Whole;
 use super::{Holds, NoUpperBound, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
@@ -77,11 +78,11 @@ impl<'a> Nearest<'a> {
             rows.iter().cloned().zip(bounds).map(|(row, bound)| row.bounded(*bound)).collect()
         };
         let rows: Vec<Vec<Row>> = self.rows.iter().zip(bounds).map(bounded).collect();
-        let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field)?.0);
+        let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field, &Whole)?.0);
         let candidates = vec![admissible(start)?];
         let at_rest = || admissible(NodalValues::zeros(self.nodes.clone()));
         self.pulled(pull, &rows, |model, patches| {
-            let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest)?;
+            let relaxed = relax::relax(self.problem, model, patches, until, candidates, at_rest, &Whole)?;
             let relaxed = admissible(relaxed)?;
             Ok((interior::fill(self.problem, &relaxed, model), relaxed))
         })
@@ -94,7 +95,7 @@ impl<'a> Nearest<'a> {
 
     /// The energy under `pull` of the displacement with these values at nodes, the inside of triangles of least energy.
     pub fn energy(&self, values: &NodalValues, pull: Pull<'_>) -> f64 {
-        self.pulled(pull, &self.rows, |model, _| model.energy(&values.values) + model.energy_at_rest())
+        self.pulled(pull, &self.rows, |model, _| model.energy(&values.values, &Whole) + model.energy_at_rest())
     }
 
     /// What `ask` says of the energy under `pull` with jumps bounded by `rows`.

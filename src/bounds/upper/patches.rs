@@ -9,6 +9,7 @@ use super::groups::{Group, groups};
 use super::model::Model;
 use super::nodes::Nodes;
 use super::patch::{Factors, Move, Patch, add};
+use super::share::Share;
 use crate::problem::Problem;
 
 /// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
@@ -30,7 +31,7 @@ const LEAST_SHARED: usize = 4;
 const MOST_SHARING: usize = 8;
 
 /// How many unknowns a patch has, relative to quadratics.
-fn size(nodes: &Nodes) -> f64 {
+pub fn size(nodes: &Nodes) -> f64 {
     let of_quadratics = nodes.vertices() + nodes.edges();
     nodes.count() as f64 / of_quadratics.max(1) as f64
 }
@@ -54,19 +55,20 @@ pub struct Patches {
 impl Patches {
     /// Groups the vertices of a mesh; factors are computed when they are needed first, or by [`Self::factorise`].
     pub fn new(problem: &Problem, nodes: &Nodes) -> Self {
-        let size = size(nodes);
-        let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
-        let mut of_vertex = vec![0; nodes.vertices()];
-        for (number, group) in groups.iter().enumerate() {
-            group.vertices.iter().for_each(|v| of_vertex[*v] = number);
-        }
+        let (groups, of_vertex) = grouped(problem, nodes);
+        let fronts = (rayon::current_num_threads() > 1).then(|| Fronts::new(problem, &groups, &of_vertex));
+        Self::of(nodes, size(nodes), groups, of_vertex, fronts)
+    }
+
+    /// Those of given groups, `size` being that of a patch relative to quadratics; with `fronts` they can be moved front by front.
+    pub fn of(nodes: &Nodes, size: f64, groups: Vec<Group>, of_vertex: Vec<usize>, fronts: Option<Fronts>) -> Self {
         let patch = || Mutex::new(Patch::new(nodes.count(), (MOST_IN_PATCH as f64 * size) as usize));
         let threads = rayon::current_num_threads();
         Patches {
             factors: Factors::new(groups.len(), (KEPT_BY_VERTEX as f64 * size * size) as usize * nodes.vertices()),
             gained: vec![0.0; groups.len()],
             patches: (0..threads.min(MOST_SHARING)).map(|_| patch()).collect(),
-            fronts: (threads > 1).then(|| Fronts::new(problem, &groups, &of_vertex)),
+            fronts,
             together: ((SHARED_FROM / (size * size)) as usize).max(LEAST_SHARED),
             groups,
             of_vertex,
@@ -114,20 +116,30 @@ impl Patches {
         sum
     }
 
-    /// The same with all patches, which threads share: not a digit is another.
-    pub fn sweep_all(&mut self, model: &Model, back: bool, slack: f64, values: &mut [[f64; 2]]) -> f64 {
+    /// The same with all patches, which threads and processes share: not a digit of the values is another.
+    pub fn sweep_all(
+        &mut self,
+        model: &Model,
+        back: bool,
+        slack: f64,
+        values: &mut [[f64; 2]],
+        share: &dyn Share,
+    ) -> f64 {
         let Some(fronts) = self.fronts.take() else {
             return self.sweep(model, 0..self.count(), back, slack, values);
         };
-        let mut along = |front: &[usize]| self.move_front(model, front, slack, values);
+        let mut along = |(number, front): (usize, &[usize])| {
+            self.move_front(model, front, slack, values);
+            share.hand_on(number, values);
+        };
         if back {
-            fronts.iter().rev().for_each(&mut along)
+            fronts.iter().enumerate().rev().for_each(&mut along)
         } else {
-            fronts.iter().for_each(&mut along)
+            fronts.iter().enumerate().for_each(&mut along)
         }
         self.fronts = Some(fronts);
         // In the order of one patch after the other.
-        if back { self.gained.iter().rev().sum() } else { self.gained.iter().sum() }
+        share.total(if back { self.gained.iter().rev().sum() } else { self.gained.iter().sum() })
     }
 
     /// Moves patches that do not touch each other.
@@ -174,6 +186,22 @@ impl Patches {
     }
 }
 
+/// The vertices of a mesh in groups, and the group of each.
+pub fn grouped(problem: &Problem, nodes: &Nodes) -> (Vec<Group>, Vec<usize>) {
+    let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
+    let of_vertex = of_vertices(&groups, nodes.vertices());
+    (groups, of_vertex)
+}
+
+/// The group of each of so many vertices; of one that is in none, the first.
+pub fn of_vertices(groups: &[Group], count: usize) -> Vec<usize> {
+    let mut of_vertex = vec![0; count];
+    for (number, group) in groups.iter().enumerate() {
+        group.vertices.iter().for_each(|v| of_vertex[*v] = number);
+    }
+    of_vertex
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,6 +209,7 @@ mod tests {
     use crate::bounds::upper::nodes::NodalValues;
     use crate::bounds::upper::pull::Pull;
     use crate::bounds::upper::rows::rows;
+    use crate::bounds::upper::share::Whole;
     use crate::scene::Scene;
 
     /// Two blocks, pressed together where a gap lets them.
@@ -241,7 +270,7 @@ mod tests {
                 patches.fronts = patches.fronts.take().filter(|_| !alone);
                 let mut values = start.values.clone();
                 let gains: Vec<f64> =
-                    [false, true, false].map(|back| patches.sweep_all(&model, back, 1e-12, &mut values)).into();
+                    [false, true, false].map(|back| patches.sweep_all(&model, back, 1e-12, &mut values, &Whole)).into();
                 (gains, values)
             };
             let (alone, shared) = in_threads(|| (relaxed(true), relaxed(false)));

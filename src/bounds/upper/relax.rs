@@ -8,10 +8,12 @@
 
 use super::NoUpperBound;
 use super::contact::ROUNDING;
+use super::ends::largest;
 use super::model::Model;
 use super::momentum::Momentum;
 use super::nodes::NodalValues;
 use super::patches::Patches;
+use super::share::Share;
 use crate::problem::Problem;
 
 /// Rounding of a step of all patches at once, in that of one: jumps that stay closed grow by it, and would cut the step short. What
@@ -107,9 +109,10 @@ pub fn relax(
     until: Until,
     candidates: Vec<NodalValues>,
     at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+    share: &dyn Share,
 ) -> Result<NodalValues, NoUpperBound> {
-    let (mut energy, NodalValues { nodes, mut values }) = begin(model, until, candidates, at_rest)?;
-    let slack = ROUNDING * values.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let (mut energy, NodalValues { nodes, mut values }) = begin(model, until, candidates, at_rest, share)?;
+    let slack = ROUNDING * largest(&values, share);
     let quiet = until.quiet(patches.count());
     let mut momentum = Momentum::default();
     let most = FEW * patches.count() as f64;
@@ -124,7 +127,7 @@ pub fn relax(
         if sweep >= until.least_sweeps() {
             if quiet.is_none() {
                 // What is left of a wild field is lost in the sum of what it gained.
-                energy = model.energy(&values);
+                energy = model.energy(&values, share);
             }
             if until.is_reached(problem, energy, gained) {
                 break;
@@ -136,8 +139,8 @@ pub fn relax(
             Some(few) => patches.sweep(model, few.iter().copied(), back, slack, &mut values),
             None => {
                 let before = (sweep >= SWEEPS).then(|| values.clone());
-                let gained = patches.sweep_all(model, back, slack, &mut values);
-                let pushed = before.map(|before| momentum.push(model, &before, AT_ONCE * slack, &mut values));
+                let gained = patches.sweep_all(model, back, slack, &mut values, share);
+                let pushed = before.map(|before| momentum.push(model, &before, AT_ONCE * slack, &mut values, share));
                 gained + pushed.unwrap_or(0.0)
             }
         };
@@ -154,16 +157,17 @@ fn begin(
     until: Until,
     candidates: Vec<NodalValues>,
     at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+    share: &dyn Share,
 ) -> Result<(f64, NodalValues), NoUpperBound> {
     // A displacement that is not a number has no energy to compare.
     let known = |energy: f64| if energy.is_nan() { f64::INFINITY } else { energy };
-    let fields = candidates.into_iter().map(|field| (known(model.energy(&field.values)), field));
+    let fields = candidates.into_iter().map(|field| (known(model.energy(&field.values, share)), field));
     let least = fields.min_by(|(a, _), (b, _)| a.total_cmp(b));
     match least {
         Some(least) if least.0 <= WILD * until.size() => Ok(least),
         other => {
             let rest = at_rest()?;
-            let own = model.energy(&rest.values);
+            let own = model.energy(&rest.values, share);
             Ok(other.filter(|(energy, _)| *energy <= WILD * own.abs()).unwrap_or((own, rest)))
         }
     }

@@ -1,0 +1,144 @@
+//! The part of the upper bound that one of several ranks makes.
+//!
+//! Relaxing moves one patch after the other, and [`super::fronts`] tells which of them may be moved at the same time. So ranks that
+//! move their own patches front by front, and hand on what these moved before the next one, make the displacement of one process:
+//! its values differ only where a sum over all triangles, which here is one of sums, decides about them.
+//!
+//! A rank has the triangles whose energy it counts, all triangles of its patches, and those at contact: what contact asks of
+//! values at vertices goes from pair to pair along it, and every rank does that by itself, alike.
+
+mod cut;
+mod division;
+mod file;
+mod numbers;
+#[cfg(test)]
+mod tests;
+mod traffic;
+
+pub use self::division::Division;
+use self::traffic::Traffic;
+use super::fronts::Fronts;
+use super::groups::Group;
+use super::holds::Holds;
+use super::model::Model;
+use super::nodes::Nodes;
+use super::patches::{Patches, of_vertices};
+use super::prepared::Made;
+use super::rows::rows;
+use super::share::Share;
+use super::{Groundwork, NoUpperBound, Pull, interior, relaxed, restricted};
+use crate::bounds::ranks::Ranks;
+use crate::bounds::sum::Sum;
+use crate::element::{SideValues, StressField};
+use crate::problem::Problem;
+
+/// What a rank needs of a problem and its dual solution.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// The problem on the triangles that are there.
+    problem: Problem,
+    /// λ_h and the moments of its displacement.
+    stress: StressField,
+    moments: SideValues<[f64; 2]>,
+    /// What the supports of the whole problem leave free: a straight side may go on beyond the part.
+    holds: Holds,
+    /// Corners of the triangle whose stiffness each one has.
+    like: Vec<[[f64; 2]; 3]>,
+    /// The patches of this rank, and which of them each front has.
+    groups: Vec<Group>,
+    fronts: Vec<Vec<usize>>,
+    /// Unknowns of a patch of the whole problem relative to quadratics.
+    size: f64,
+    /// Triangles and pairs that are counted here.
+    own_triangles: Vec<bool>,
+    own_pairs: Vec<bool>,
+    /// Nodes whose values are the result of this rank.
+    own_nodes: Vec<usize>,
+    /// What goes from rank to rank after each front, and of all nodes.
+    after: Vec<Traffic>,
+    all: Traffic,
+}
+
+/// What a rank finds.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Found {
+    /// Values of its nodes, as relaxing leaves them.
+    pub values: Vec<[f64; 2]>,
+    /// Coefficients inside its triangles, one triangle after the other.
+    pub inside: Vec<[f64; 2]>,
+}
+
+impl Part {
+    /// Makes this rank's part of the displacement; `floor` is a lower bound of the energy.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`], on all ranks alike.
+    pub fn displacement(&self, floor: f64, ranks: &dyn Ranks) -> Result<Found, NoUpperBound> {
+        let Part { problem, holds, .. } = self;
+        let nodes = Nodes::new(problem.mesh.points.len(), self.moments.iter().map(<[_]>::len));
+        let rows = rows(problem, &nodes);
+        let model = Model::shaped(problem, holds, &nodes, &rows, Pull::SCENE, |t| self.like[t]);
+        let of_vertex = of_vertices(&self.groups, nodes.vertices());
+        let fronts = Some(Fronts::given(self.fronts.clone()));
+        let mut patches = Patches::of(&nodes, self.size, self.groups.clone(), of_vertex, fronts);
+        // Before the first sweep, in which ranks wait for each other.
+        patches.factorise(&model);
+        let own_rows = self.own_pairs.iter().zip(&rows).flat_map(|(own, rows)| rows.iter().map(|_| *own)).collect();
+        let share = OfPart { part: self, own_rows, ranks };
+        let made = Made { model, patches };
+        let mut ground = Groundwork { nodes, holds: holds.clone(), rows, made };
+        let field = relaxed(&mut ground, problem, (&self.stress, &self.moments), floor, None, &share)?;
+        let values = self.own_nodes.iter().map(|node| field.values[*node]).collect();
+        let field = restricted(problem, holds, &ground.rows, field, &share)?.0;
+        let filled = interior::fill(problem, &field, &ground.made.model);
+        let own = (0..filled.len()).filter(|t| self.own_triangles[*t]);
+        let inside = own.flat_map(|t| &filled.block(t)[3 * filled.degree(t)..]).copied().collect();
+        Ok(Found { values, inside })
+    }
+}
+
+/// The share that a part is.
+struct OfPart<'a> {
+    part: &'a Part,
+    own_rows: Vec<bool>,
+    ranks: &'a dyn Ranks,
+}
+
+impl OfPart<'_> {
+    fn folded(&self, own: f64, fold: impl Fn(f64, f64) -> f64) -> f64 {
+        self.ranks.gather(&[own]).iter().flatten().copied().fold(own, fold)
+    }
+}
+
+impl Share for OfPart<'_> {
+    fn has_triangle(&self, t: usize) -> bool {
+        self.part.own_triangles[t]
+    }
+
+    fn has_row(&self, row: usize) -> bool {
+        self.own_rows[row]
+    }
+
+    fn hand_on(&self, front: usize, values: &mut [[f64; 2]]) {
+        self.part.after[front].pass(self.ranks, values);
+    }
+
+    fn refresh(&self, values: &mut [[f64; 2]]) {
+        self.part.all.pass(self.ranks, values);
+    }
+
+    fn sum(&self, own: &mut [f64]) {
+        let all = self.ranks.gather(own);
+        for (i, own) in own.iter_mut().enumerate() {
+            *own = all.iter().filter_map(|of_rank| of_rank.get(i).copied()).collect::<Sum>().value();
+        }
+    }
+
+    fn largest(&self, own: f64) -> f64 {
+        self.folded(own, f64::max)
+    }
+
+    fn least(&self, own: f64) -> f64 {
+        self.folded(own, f64::min)
+    }
+}

@@ -1,0 +1,213 @@
+//! Parts on threads that talk through channels, held against the displacement of one process.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use super::{Division, Found, Part};
+use crate::bounds::UpperBound;
+use crate::bounds::ranks::Ranks;
+use crate::bounds::upper::admissible;
+use crate::bounds::upper::groups::Group;
+use crate::bounds::upper::nodes::Nodes;
+use crate::bounds::upper::patches::grouped;
+use crate::dual::{Condensed, Options};
+use crate::element::{Displacement, Elements, block};
+use crate::problem::Problem;
+use crate::scene::Scene;
+use crate::study::{Certified, certify};
+
+/// A rank that is a thread.
+struct Thread {
+    to: Vec<Sender<Vec<f64>>>,
+    from: Vec<Receiver<Vec<f64>>>,
+}
+
+impl Ranks for Thread {
+    fn exchange(&self, to: &[(usize, Vec<f64>)], from: &[(usize, usize)]) -> Vec<Vec<f64>> {
+        to.iter().for_each(|(rank, numbers)| self.to[*rank].send(numbers.clone()).expect("the other one lives"));
+        let taken = |(rank, count): &(usize, usize)| {
+            let numbers = self.from[*rank].recv().expect("the other one lives");
+            assert_eq!(numbers.len(), *count);
+            numbers
+        };
+        from.iter().map(taken).collect()
+    }
+
+    fn gather(&self, own: &[f64]) -> Vec<Vec<f64>> {
+        self.to.iter().for_each(|to| to.send(own.to_vec()).expect("the other one lives"));
+        self.from.iter().map(|from| from.recv().expect("the other one lives")).collect()
+    }
+}
+
+fn threads(count: usize) -> Vec<Thread> {
+    let mut all: Vec<Thread> = (0..count).map(|_| Thread { to: Vec::new(), from: Vec::new() }).collect();
+    for from in 0..count {
+        for to in 0..count {
+            let (sender, receiver) = channel();
+            all[from].to.push(sender);
+            all[to].from.push(receiver);
+        }
+    }
+    all
+}
+
+/// The displacement that `ranks` threads make, the triangles being divided as `owner` says.
+fn of_parts(of: &Certified, floor: f64, ranks: usize, owner: &[usize]) -> Displacement {
+    let (problem, dual) = (&of.problem, &of.dual);
+    let division = Division::new(problem, &dual.moments, owner, ranks).expect("supports agree");
+    // As it goes to another process.
+    let sent = |rank| {
+        let mut file = Vec::new();
+        division.part(rank, &dual.stress, &dual.moments).write(&mut file).expect("memory");
+        Part::read(&file[..]).expect("what was written")
+    };
+    let parts: Vec<_> = (0..ranks).map(sent).collect();
+    let found: Vec<Found> = std::thread::scope(|scope| {
+        let started: Vec<_> = (parts.iter().zip(threads(ranks)))
+            .map(|(part, thread)| scope.spawn(move || part.displacement(floor, &thread).expect("an upper bound")))
+            .collect();
+        started.into_iter().map(|thread| thread.join().expect("an end")).collect()
+    });
+    division.displacement(&found).expect("admissible").expect("what belongs there")
+}
+
+fn case(name: &str) -> String {
+    std::fs::read_to_string(format!("{name}.toml")).expect("a scene")
+}
+
+fn solved(scene: &str, elements: impl Fn(usize) -> Elements) -> Certified {
+    let scene = Scene::parse(scene, "scene.toml".as_ref()).expect("a scene");
+    let problem = Problem::load(scene).expect("a problem");
+    let options = Options { elements: elements(problem.mesh.triangles.len()), ..Options::default() };
+    certify(problem, &Condensed::default(), &options).expect("solves")
+}
+
+fn of_degree(degree: usize) -> impl Fn(usize) -> Elements {
+    move |_| Elements::Uniform(block(degree))
+}
+
+fn mixed(triangles: usize) -> Elements {
+    Elements::Blocks((0..triangles).map(|t| 1 + (t * t % 3) as u8).collect())
+}
+
+/// Triangles in a row, from the first rank to the last one.
+fn in_a_row(triangles: usize, ranks: usize) -> Vec<usize> {
+    (0..triangles).map(|t| t * ranks / triangles).collect()
+}
+
+/// Triangles anywhere; a rank may have none.
+fn anywhere(triangles: usize, ranks: usize, seed: u64) -> Vec<usize> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize
+    };
+    (0..triangles).map(|_| next() % ranks).collect()
+}
+
+/// Long flat blocks, whose triangles tie vertices together.
+const FLAT: &str = r#"
+    [model]
+    kinematics = "plane-strain"
+    [geometry]
+    size = 4.0
+    [[geometry.polygons]]
+    body = "a"
+    points = [[0, 0], [9, 0], [9, 0.2], [0, 0.2]]
+    edges = ["foot", "", "over", ""]
+    [[geometry.polygons]]
+    body = "b"
+    points = [[0, 0.2], [9, 0.2], [9, 0.3], [0, 0.3]]
+    edges = ["under", "", "top", "axis"]
+    [bodies.a]
+    young = 1.0
+    poisson = 0.3
+    [bodies.b]
+    young = 2.0
+    poisson = 0.45
+    body_force = [0.2, -1.0]
+    [[supports]]
+    on = "foot"
+    type = "clamped"
+    [[supports]]
+    on = "axis"
+    type = "roller"
+    [[contacts]]
+    between = ["over", "under"]
+    gap = [[0, 0], [9, 0.001]]
+"#;
+
+/// By how much two displacements differ at most, in the size of the first.
+fn difference(a: &Displacement, b: &Displacement) -> f64 {
+    let pairs = (0..a.len()).flat_map(|t| a.block(t).iter().zip(b.block(t)));
+    let off = pairs.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0_f64, f64::max);
+    off / (0..a.len()).map(|t| a.largest(t)).fold(0.0, f64::max)
+}
+
+fn groups_of(problem: &Problem, degree: usize) -> Vec<Group> {
+    let nodes = Nodes::new(problem.mesh.points.len(), problem.mesh.edges.iter().map(|_| degree));
+    grouped(problem, &nodes).0
+}
+
+/// Without sums over all triangles, which are taken rank by rank.
+#[test]
+fn two_sweeps_of_any_ranks_end_with_every_digit_of_one_process() {
+    let scenes: [(&str, &dyn Fn(usize) -> Elements); 8] = [
+        (&case("cases/two_blocks"), &of_degree(1)),
+        (&case("cases/two_blocks"), &of_degree(3)),
+        (&case("cases/ring"), &mixed),
+        (&case("cases/seal"), &of_degree(1)),
+        (&case("cases/inclined"), &of_degree(2)),
+        (&case("tests/scenes/three_that_meet_in_a_point"), &of_degree(3)),
+        (&case("cases/stack"), &mixed),
+        (FLAT, &of_degree(3)),
+    ];
+    for (number, (scene, elements)) in scenes.into_iter().enumerate() {
+        let of = solved(scene, elements);
+        let one = admissible(&of.problem, &of.dual, f64::MAX, None).expect("an upper bound");
+        let n = one.len();
+        for ranks in [1, 2, 3, 5] {
+            for owner in [in_a_row(n, ranks), anywhere(n, ranks, 7)] {
+                let found = of_parts(&of, f64::MAX, ranks, &owner);
+                assert!(found == one, "scene {number} on {ranks} ranks: {:e}", difference(&one, &found));
+            }
+        }
+    }
+}
+
+/// Not in slivers: hundreds of sweeps end as far apart from moments that differ in their last digits.
+#[test]
+fn ranks_find_the_bounds_of_one_process() {
+    let scenes: [(&str, &dyn Fn(usize) -> Elements); 5] = [
+        (&case("cases/two_blocks"), &mixed),
+        (&case("cases/ring"), &of_degree(1)),
+        (&case("cases/stack"), &of_degree(1)),
+        (&case("cases/seal"), &of_degree(1)),
+        (&case("tests/scenes/three_that_meet_in_a_point"), &of_degree(1)),
+    ];
+    for (number, (scene, elements)) in scenes.into_iter().enumerate() {
+        let of = solved(scene, elements);
+        agree(&format!("scene {number}"), &of, of.bracket.complementary.lower());
+    }
+}
+
+/// Several ranks and one process find the same above the lower bound `floor`.
+#[track_caller]
+fn agree(scene: &str, of: &Certified, floor: f64) {
+    let one = admissible(&of.problem, &of.dual, floor, None).expect("an upper bound");
+    let energy = |v: &Displacement| UpperBound::new(&of.problem, &of.dual, v.clone());
+    let of_one = energy(&one);
+    for ranks in [1, 2, 5] {
+        let found = of_parts(of, floor, ranks, &anywhere(one.len(), ranks, 3));
+        let off = difference(&one, &found);
+        let apart = (of_one.upper() - energy(&found).upper()).abs() / of_one.potential.magnitude;
+        assert!(ranks > 1 || found == one, "{scene}: {off:e}");
+        assert!(off < 1e-12 && apart < 1e-13, "{scene} on {ranks} ranks: {off:e} {apart:e}");
+    }
+}
+
+#[test]
+fn flat_triangles_tie_vertices_together_across_contact() {
+    let of = solved(FLAT, of_degree(1));
+    let largest = groups_of(&of.problem, 2).iter().map(|group| group.vertices.len()).max();
+    assert!(largest > Some(3), "{largest:?}");
+}
