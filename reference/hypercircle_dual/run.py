@@ -152,10 +152,12 @@ def write(model: Model, solver, settled: Settled, seconds: dict) -> None:
         files.make("parameters.f64", files.parameters)
         files.make("moments.f64", files.unknowns)
         files.make("closed.u8", files.jumps)
+        files.make("owner.i64", files.triangles)
     comm.barrier()
     natural, local = model.numbering.own_part()
     files.write("parameters.f64", model.parameter_places, settled.now.s)
     files.write("moments.f64", natural, settled.now.x.array_r[local])
+    files.write("owner.i64", model.triangles, np.full(len(model.triangles), comm.rank))
     if comm.rank == 0:
         files.write("closed.u8", np.arange(files.jumps), settled.closed)
     memory = comm.gather(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)

@@ -17,6 +17,8 @@
 //!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
 //!    measured.
 
+use std::convert::Infallible;
+
 use rayon::prelude::*;
 
 use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
@@ -99,20 +101,34 @@ impl Bracket {
         start: Option<NodalValues>,
         keep: bool,
     ) -> Self {
+        let free =
+            |floor| Ok::<_, Infallible>(ground.and_then(|g| admissible_on(g, problem, dual, floor, start, keep)));
+        let Ok(bracket) = Self::with(problem, dual, free);
+        bracket
+    }
+
+    /// Does the same with an admissible displacement that `free` makes, given a lower bound of its energy.
+    ///
+    /// # Errors
+    /// That of `free`.
+    pub fn with<E>(
+        problem: &Problem,
+        dual: &DualSolution,
+        free: impl FnOnce(f64) -> Result<Result<(Displacement, Prepared), NoUpperBound>, E>,
+    ) -> Result<Self, E> {
         let complementary = complementary(problem, &dual.stress);
         let largest = largest_by_edge(problem, dual);
         let size = |t: usize| problem.mesh.triangle_edges[t].map(|e| largest[e]).into_iter().fold(0.0, f64::max);
         let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
         let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = ground
-            .and_then(|ground| admissible_on(ground, problem, dual, complementary.lower(), start, keep))
+        let free = free(complementary.lower())?
             .map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
-        Bracket {
+        Ok(Bracket {
             complementary,
             lower_widening: rounding + remainder,
             round_off: Scales::new(problem).round_off.energy,
             free,
-        }
+        })
     }
 
     /// −Π(λ_h), less what rounding and inexact equilibrium can have cost.

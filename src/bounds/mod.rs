@@ -5,6 +5,8 @@ mod bracket;
 pub mod energy;
 mod jump;
 mod mid;
+mod on_ranks;
+mod pipe;
 mod ranks;
 mod sum;
 pub mod upper;
@@ -16,10 +18,10 @@ pub use energy::{
 };
 pub use jump::{openings, side_coefficients};
 pub use mid::{mid_field, stress_of};
-pub use ranks::Ranks;
+pub use on_ranks::{make_part, on_ranks};
 pub use sum::Sum;
 pub use upper::{
-    Division, Found, Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Part, Prepared, Pull, Repair,
-    Row, Until, Violation, admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired,
-    repaired_at_contact, sides, supports_agree,
+    Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation,
+    admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,
+    supports_agree,
 };

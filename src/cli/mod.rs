@@ -19,6 +19,7 @@ pub mod measure;
 pub mod memory;
 mod methods;
 pub mod options;
+pub mod part;
 pub mod progress;
 pub mod say;
 pub mod schema;
@@ -35,7 +36,9 @@ pub mod version;
 use std::ffi::OsString;
 use std::io::Write;
 use std::panic::AssertUnwindSafe;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -77,6 +80,9 @@ pub enum Command {
     /// One run for a chart or a matrix, printed as JSON
     #[command(hide = true)]
     Measure(measure::Args),
+    /// The part of a bracket that one of several ranks makes
+    #[command(hide = true)]
+    Part(part::Args),
     /// Print the JSON Schema of a file format
     Schema(schema::Args),
     /// Print the script that completes command lines in a shell
@@ -85,8 +91,19 @@ pub enum Command {
     Man(shell::ManArgs),
 }
 
+/// The executable of this program; there is none where a program of someone else's calls the library.
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// What this process can start to be this program once more.
+fn program() -> Option<PathBuf> {
+    PROGRAM.get().cloned()
+}
+
 /// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
+    if let Ok(program) = std::env::current_exe() {
+        let _ = PROGRAM.set(program);
+    }
     let (cli, given) = match parsed(std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(error) if error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(|w| w == "--version") => {
@@ -135,6 +152,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Measure(args) => measure::run(args),
+        Command::Part(args) => part::run(args),
         Command::Schema(args) => schema::run(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

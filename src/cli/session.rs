@@ -1,13 +1,13 @@
 //! What the solving commands share: from the scene file to a bracket, and from a dossier to files and a verdict.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
 use super::options::{Engine, EngineOptions, Limits, SolveOptions};
 use super::progress::Progress;
-use super::{CliError, Exit, ci, threads};
+use super::{CliError, Exit, ci, program, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
@@ -101,7 +101,9 @@ impl Session {
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: Option<&Path>) -> Result<DualRun, CliError> {
         refuse_unknown(&self.scene, solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.progress.phase("reading the mesh");
-        let method = dual_method(solve);
+        // Quantities and finer meshes begin with what an upper bound in this process leaves.
+        let alone = solve.is_adaptive() || !self.scene.quantities.is_empty();
+        let method = dual_method(solve, if alone { None } else { program() });
         let admission = Admission::new(method.as_ref(), self.budget);
         let given = self.problem(solve, &admission)?;
         let problem = self.refined(&given, solve)?;
@@ -285,7 +287,7 @@ impl Session {
             self.progress
                 .phase(format!("{} triangles: guaranteed error {bound:.3} %, refining to tell", row.triangles));
         };
-        let method = dual_method(solve);
+        let method = dual_method(solve, None);
         let options = match patient {
             true => self.options(&SolveOptions { tolerance: None, tolerance_of: Vec::new(), ..solve.clone() }),
             false => self.options(solve),
@@ -318,8 +320,8 @@ pub fn refuse_unknown<'a>(scene: &Scene, names: impl Iterator<Item = &'a str>) -
     Ok(())
 }
 
-/// The solver that was asked for.
-fn dual_method(solve: &SolveOptions) -> Box<dyn DualMethod> {
+/// The solver that was asked for; ranks may start `program`.
+fn dual_method(solve: &SolveOptions, program: Option<PathBuf>) -> Box<dyn DualMethod> {
     let EngineOptions { engine, ranks, linear_solver, engine_seconds } = solve.engine;
     match engine {
         None => solve.method.method(),
@@ -328,6 +330,7 @@ fn dual_method(solve: &SolveOptions) -> Box<dyn DualMethod> {
             linear_solver,
             limit: limit(engine_seconds),
             interpreter: None,
+            program,
         }),
     }
 }

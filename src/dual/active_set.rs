@@ -193,6 +193,7 @@ impl ActiveSet {
                     seconds,
                     notes: Vec::new(),
                     factorised: None,
+                    divided: None,
                 });
             }
             closed = next;

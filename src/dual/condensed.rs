@@ -144,6 +144,7 @@ impl Condensed {
             seconds,
             notes,
             factorised: options.keep_factor.then(|| Arc::new(Factorised::of(system, reduced))),
+            divided: None,
         })
     }
 }

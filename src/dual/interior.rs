@@ -120,7 +120,17 @@ impl DualMethod for Clarabel {
             });
         }
         seconds.recover = start.elapsed().as_secs_f64();
-        Ok(Found { stress, moments, closed, unknowns: n, iterations, seconds, notes: Vec::new(), factorised: None })
+        Ok(Found {
+            stress,
+            moments,
+            closed,
+            unknowns: n,
+            iterations,
+            seconds,
+            notes: Vec::new(),
+            factorised: None,
+            divided: None,
+        })
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use faer::Par;
 
-use super::{Factorised, Motion, Phases, Size};
+use super::{Divided, Factorised, Motion, Phases, Size};
 use crate::budget::Budget;
 use crate::element::{Block, Elements, SideValues, StressField};
 use crate::problem::Problem;
@@ -45,6 +45,11 @@ pub trait DualMethod: Sync {
         false
     }
 
+    /// Whether processes that find the solution can make the upper bound, too.
+    fn divides(&self) -> bool {
+        false
+    }
+
     /// Bytes that this process holds at the peak of a run on a mesh of that size, its bracket included.
     fn memory(&self, size: Size) -> f64;
 
@@ -75,6 +80,8 @@ pub struct Found {
     pub notes: Vec<String>,
     /// K and its factor for further loads, where [`Options::keep_factor`] asks for it and the method has one.
     pub factorised: Option<Arc<Factorised>>,
+    /// Who found which part, where the method [`DualMethod::divides`].
+    pub divided: Option<Arc<Divided>>,
 }
 
 /// Choices of a dual solve.

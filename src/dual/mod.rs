@@ -45,7 +45,7 @@ pub use interior::Clarabel;
 pub use loaded::{Bounds, Loaded};
 pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
-pub use petsc::{LinearSolver, Petsc};
+pub use petsc::{Divided, LinearSolver, Petsc};
 pub use response::{Factorised, Load, Response, Responses};
 pub use solver::Solver;
 pub use unknowns::{contact_coefficients, edge_degrees};
@@ -82,6 +82,8 @@ pub struct DualSolution {
     pub notes: Vec<String>,
     /// K and its factor for further loads, where they were asked for and the method has them.
     pub factorised: Option<Arc<Factorised>>,
+    /// Who found which part, where processes that did can make the upper bound, too.
+    pub divided: Option<Arc<Divided>>,
 }
 
 /// Wall-clock seconds by phase of the dual solve.
@@ -135,6 +137,7 @@ pub fn solve(
         seconds,
         notes: found.notes,
         factorised: found.factorised,
+        divided: found.divided,
     })
 }
 

@@ -261,6 +261,7 @@ fn dual(problem: &Problem) -> DualSolution {
         accuracy: 1e-9,
         seconds: Phases { read: 0.01, assemble: 0.02, factor: 0.05, contact: 0.01, recover: 0.02, total: 0.11 },
         factorised: None,
+        divided: None,
         notes: Vec::new(),
     }
 }

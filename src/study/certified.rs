@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::admission::Admission;
-use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, supports_agree, without_stress};
+use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, on_ranks, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
 use crate::problem::{Problem, ProblemError};
@@ -125,19 +125,27 @@ pub(super) fn solve_balanced(
         return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part });
     }
     let motions = statics.held_at_vertices(&problem);
+    // Ranks keep nothing for quantities, and begin with nothing.
+    let divides = method.divides() && !options.keep_factor && start.is_none();
     let (mut dual, bracket) = options.on_threads(|| {
         let solve = || dual::solve(method, &problem, &motions, options);
-        let (dual, ground) = if may_prepare_beside(&problem, method, options) {
+        let (dual, ground) = if !divides && may_prepare_beside(&problem, method, options) {
             let degrees = dual::edge_degrees(&problem, &options.elements).into_iter().map(usize::from);
             let (dual, ground) = rayon::join(solve, || Groundwork::factorised(&problem, degrees));
             (dual?, Some(ground))
         } else {
             (solve()?, None)
         };
-        let dual = without_stress(&problem, dual);
-        let bracket = match ground {
-            Some(ground) => Bracket::on(ground, &problem, &dual, start, options.keep_factor),
-            None => Bracket::from_start(&problem, &dual, start, options.keep_factor),
+        let mut dual = without_stress(&problem, dual);
+        let divided = dual.divided.take().filter(|_| divides);
+        let bracket = match (divided, ground) {
+            (Some(divided), _) => {
+                let ranks = divided.petsc.ranks;
+                dual.notes.push(format!("The displacement of the upper bound was made on {ranks} ranks."));
+                on_ranks(&problem, &dual, &divided)?
+            }
+            (None, Some(ground)) => Bracket::on(ground, &problem, &dual, start, options.keep_factor),
+            (None, None) => Bracket::from_start(&problem, &dual, start, options.keep_factor),
         };
         Ok::<_, DualError>((dual, bracket))
     })?;

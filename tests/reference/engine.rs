@@ -101,6 +101,35 @@ fn ranks_find_the_bounds_of_the_condensed_method_where_rows_are_hardest() {
     }
 }
 
+/// The bounds on two ranks, which make the upper one too, and on one rank, where this program makes it: stresses and sums come in
+/// another order.
+#[track_caller]
+fn same_on_ranks(name: &str, options: &[&str]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let with = |ranks: &'static str| {
+        let engine = ["--engine", "petsc", "--ranks", ranks];
+        let arguments: Vec<&str> = options.iter().chain(&engine).copied().collect();
+        report(folder.path(), name, &arguments)
+    };
+    let [one, two] = ["1", "2"].map(with);
+    for key in ["/energy/lower", "/energy/upper"] {
+        let [one, two] = [&one, &two].map(|report| number(report, key));
+        assert!((one - two).abs() <= 1e-12 * one.abs(), "{name} {options:?} {key}: {one:e}, {two:e}");
+    }
+    let [one, two] = [one, two].map(|report| report["notes"].to_string().contains("upper bound was made on 2 ranks"));
+    assert!(two && !one, "{name}: who made the upper bound");
+}
+
+#[test]
+fn ranks_make_the_upper_bound_of_one_process() {
+    if with_reference() {
+        same_on_ranks("two_blocks", &[]);
+        same_on_ranks("two_blocks", &["--degree", "3"]);
+        same_on_ranks("ring", &[]);
+        same_on_ranks("stack", &["--refine", "1"]);
+    }
+}
+
 #[test]
 fn an_iteration_finds_the_same() {
     if with_reference() {
@@ -123,13 +152,14 @@ fn both_sides_run_on_the_ranks() {
 }
 
 /// A run on two ranks whose interpreter is the script `body`, in which `$python` stands for the real one.
-fn with_interpreter(body: &str) -> (Output, tempfile::TempDir) {
+fn with_interpreter(body: &str, refine: &str) -> (Output, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("a folder");
     let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or_else(|| "/usr/bin/python3".into(), PathBuf::from);
     let body = format!("here={}\npython={}\n{body}", folder.path().display(), python.display());
     let fake = script(folder.path().join("python"), &body);
     let scene = case("two_blocks");
-    let arguments = ["solve", scene.to_str().expect("plain path"), "--engine", "petsc", "--ranks", "2", "--quiet"];
+    let scene = scene.to_str().expect("plain path");
+    let arguments = ["solve", scene, "--engine", "petsc", "--ranks", "2", "--refine", refine, "--quiet"];
     let mut command = hypercircle(folder.path(), arguments);
     command.env("HYPERCIRCLE_PYTHON", fake);
     (run(command), folder)
@@ -147,15 +177,48 @@ fn a_killed_rank_ends_the_run_and_leaves_no_other() {
     }
     let body = "echo $$ >$here/rank-$OMPI_COMM_WORLD_RANK\n\
                 if [ $OMPI_COMM_WORLD_RANK = 1 ]; then sleep 0.5; kill -KILL $$; fi\nexec $python \"$@\"";
-    let (output, folder) = with_interpreter(body);
+    let (output, folder) = with_interpreter(body, "0");
     ended("a killed rank", &output, 3, &["the parallel solver failed"]);
     assert!(!folder.path().join("out").exists(), "a report of nothing");
-    let other = std::fs::read_to_string(folder.path().join("rank-0")).expect("a number");
+    goes(folder.path(), "rank-0");
+}
+
+/// The process whose number is in a file of `folder` ends soon.
+#[track_caller]
+fn goes(folder: &Path, file: &str) {
+    let process = std::fs::read_to_string(folder.join(file)).expect("a number");
     let patience = Instant::now();
-    while alive(other.trim()) && patience.elapsed() < Duration::from_secs(5) {
+    while alive(process.trim()) && patience.elapsed() < Duration::from_secs(5) {
         std::thread::sleep(Duration::from_millis(20));
     }
-    assert!(!alive(other.trim()), "rank 0 lives");
+    assert!(!alive(process.trim()), "{file} lives");
+}
+
+#[test]
+fn a_killed_part_ends_the_run_and_leaves_no_other() {
+    if !with_reference() {
+        return;
+    }
+    // The process of rank 1 is killed when it appears; the number of the other one is kept.
+    let body = "rank=$OMPI_COMM_WORLD_RANK\ncase \"$*\" in *--bracket*) echo $$ >$here/rank-$rank\n\
+                (until pgrep -P $$ -x hypercircle >$here/part-$rank; do sleep 0.01; done\n\
+                if [ $rank = 1 ]; then kill -KILL $(cat $here/part-1); fi) & ;; esac\nexec $python \"$@\"";
+    let (output, folder) = with_interpreter(body, "3");
+    ended("a killed part", &output, 3, &["the parallel solver failed", "ended before it was done"]);
+    assert!(!folder.path().join("out").exists(), "a report of nothing");
+    ["rank-0", "rank-1", "part-0", "part-1"].iter().for_each(|process| goes(folder.path(), process));
+}
+
+#[test]
+fn a_wrong_part_is_caught() {
+    if !with_reference() {
+        return;
+    }
+    // The last values that rank 1 finds are lost.
+    let body = "case \"$*\" in *--bracket*) $python \"$@\" || exit\n\
+                for folder in \"$@\"; do if [ -f \"$folder/found-1\" ]; then truncate -s -16 \"$folder/found-1\"; fi; done ;;\n\
+                *) exec $python \"$@\" ;; esac";
+    ended("a short file", &with_interpreter(body, "0").0, 3, &["cannot use", "check that the folder exists"]);
 }
 
 #[test]
@@ -166,7 +229,7 @@ fn a_wrong_answer_is_caught() {
     // The first parameters of what the ranks found are lost.
     let body = "for last in \"$@\"; do :; done\n$python \"$@\" || exit\nif [ $OMPI_COMM_WORLD_RANK = 0 ]; then\n\
                 dd if=/dev/zero of=$(dirname $last)/parameters.f64 bs=8 count=9 conv=notrunc 2>/dev/null\nfi";
-    ended("nine zeros", &with_interpreter(body).0, 3, &["petsc stopped", "with a residual of"]);
+    ended("nine zeros", &with_interpreter(body, "0").0, 3, &["petsc stopped", "with a residual of"]);
 }
 
 #[test]

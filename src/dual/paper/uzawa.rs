@@ -111,6 +111,7 @@ impl DualMethod for Uzawa {
             seconds,
             notes,
             factorised: None,
+            divided: None,
         })
     }
 }

@@ -87,6 +87,8 @@ pub struct Solution {
     pub unknowns: Vec<f64>,
     /// Closed jumps.
     pub closed: Vec<bool>,
+    /// The rank of each triangle, where it was asked for.
+    pub owner: Option<Vec<usize>>,
 }
 
 /// Writes the problem into `folder`; `guess` holds the jumps that may be closed, and is left out where it belongs to others.
@@ -171,7 +173,22 @@ pub fn read(folder: &Path, unknowns: usize, jumps: usize, parameters: usize) -> 
         parameters: read_numbers(folder, "parameters.f64", parameters)?,
         unknowns: read_numbers(folder, "moments.f64", unknowns)?,
         closed: closed.into_iter().map(|c| c != 0).collect(),
+        owner: None,
     })
+}
+
+/// Reads which of so many ranks each triangle was on.
+///
+/// # Errors
+/// A file is missing, has another length, or names a rank that is none.
+pub fn read_owner(folder: &Path, triangles: usize, ranks: usize) -> io::Result<Vec<usize>> {
+    let bytes = fs::read(folder.join("owner.i64"))?;
+    let owner = bytes.as_chunks::<8>().0.iter().map(|b| i64::from_le_bytes(*b));
+    let owner: Vec<usize> = owner.filter_map(|rank| usize::try_from(rank).ok().filter(|rank| *rank < ranks)).collect();
+    if bytes.len() != 8 * triangles || owner.len() != triangles {
+        return Err(io::Error::other(format!("owner.i64 does not name a rank for each of {triangles} triangles")));
+    }
+    Ok(owner)
 }
 
 fn read_numbers(folder: &Path, name: &str, count: usize) -> io::Result<Vec<f64>> {

@@ -10,8 +10,10 @@ mod exchange;
 mod nodal;
 
 use std::env;
+use std::ffi::OsString;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::equilibrium::Equilibrium;
@@ -29,6 +31,7 @@ const PACKAGE: Package = Package {
     files: &[
         ("__init__.py", include_str!("../../../reference/hypercircle_dual/__init__.py")),
         ("__main__.py", include_str!("../../../reference/hypercircle_dual/__main__.py")),
+        ("bracket.py", include_str!("../../../reference/hypercircle_dual/bracket.py")),
         ("compat.py", include_str!("../../../reference/hypercircle_dual/compat.py")),
         ("contact.py", include_str!("../../../reference/hypercircle_dual/contact.py")),
         ("distribution.py", include_str!("../../../reference/hypercircle_dual/distribution.py")),
@@ -42,6 +45,8 @@ const PACKAGE: Package = Package {
 
 /// Bytes that this process holds for each triangle: element matrices and stresses, then the bracket.
 const EACH: f64 = 9500.0;
+/// The same where ranks make the upper bound.
+const EACH_DIVIDED: f64 = 5000.0;
 
 /// How PETSc solves with K.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
@@ -65,6 +70,18 @@ pub struct Petsc {
     pub limit: Duration,
     /// The Python interpreter; `None` asks `HYPERCIRCLE_PYTHON`, then takes `/usr/bin/python3`.
     pub interpreter: Option<PathBuf>,
+    /// The executable of this program, which more than one rank start for their parts of the upper bound; `None` has it computed in
+    /// this process.
+    pub program: Option<PathBuf>,
+}
+
+/// Who found which part of a solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Divided {
+    /// The rank of each triangle.
+    pub owner: Vec<usize>,
+    /// How the ranks are started.
+    pub petsc: Petsc,
 }
 
 impl DualMethod for Petsc {
@@ -79,8 +96,12 @@ impl DualMethod for Petsc {
         self.linear_solver == LinearSolver::Gamg
     }
 
+    fn divides(&self) -> bool {
+        self.ranks > 1 && self.program.is_some()
+    }
+
     fn memory(&self, size: Size) -> f64 {
-        size.linear(EACH)
+        size.linear(if self.divides() { EACH_DIVIDED } else { EACH })
     }
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
@@ -95,17 +116,15 @@ impl DualMethod for Petsc {
             .map_err(failed)?;
         let written = start.elapsed().as_secs_f64();
 
-        let call = Call {
-            interpreter: self.interpreter.as_deref(),
-            ranks: Some(self.ranks),
-            arguments: vec![folder.join(exchange::PROBLEM_FILE).into()],
-            limit: self.limit,
-        };
-        PACKAGE.run(&call).map_err(|failure| self.explain(failure))?;
+        self.run(vec![folder.join(exchange::PROBLEM_FILE).into()])?;
 
         let start = Instant::now();
         let jumps = unknowns.count - unknowns.first_jump;
-        let found = exchange::read(&folder, unknowns.count, jumps, modes.parameters()).map_err(failed)?;
+        let mut found = exchange::read(&folder, unknowns.count, jumps, modes.parameters()).map_err(failed)?;
+        if self.divides() {
+            found.owner =
+                Some(exchange::read_owner(&folder, problem.mesh.triangles.len(), self.ranks).map_err(failed)?);
+        }
         let stress = modes.stresses(problem, &found.parameters);
         let moments = unknowns.moments(problem, &found.unknowns);
         let residual = Equilibrium::measure(problem, &stress, &moments).residual();
@@ -141,11 +160,27 @@ impl DualMethod for Petsc {
             seconds,
             notes: vec![self.note(answer)],
             factorised: None,
+            divided: found.owner.take().map(|owner| Arc::new(Divided { owner, petsc: self.clone() })),
         })
     }
 }
 
 impl Petsc {
+    fn run(&self, arguments: Vec<OsString>) -> Result<(), DualError> {
+        let call =
+            Call { interpreter: self.interpreter.as_deref(), ranks: Some(self.ranks), arguments, limit: self.limit };
+        PACKAGE.run(&call).map_err(|failure| self.explain(failure))
+    }
+
+    /// Has each rank make its part of an upper bound, from a file `part-…` of `folder` to a file `found-…`.
+    ///
+    /// # Errors
+    /// [`DualError`].
+    pub fn run_brackets(&self, folder: &Path) -> Result<(), DualError> {
+        let program = self.program.iter().flat_map(|program| ["--bracket".into(), program.clone().into()]);
+        self.run(std::iter::once(folder.into()).chain(program).collect())
+    }
+
     /// How the stresses were found.
     fn note(&self, answer: &exchange::Answer) -> String {
         let megabytes = answer.memory.iter().copied().max().unwrap_or(0) / 1_000_000;

@@ -205,6 +205,17 @@ fn agree(scene: &str, of: &Certified, floor: f64) {
     }
 }
 
+/// Similar triangles have the stiffness of the first of them in the whole mesh, wherever that is; refining makes some that differ in
+/// their last digits.
+#[test]
+fn parts_take_the_stiffness_of_the_whole() {
+    let scene = Scene::parse(&case("cases/ring"), "ring.toml".as_ref()).expect("a scene");
+    let problem = Problem::load(scene).and_then(|problem| problem.refine_uniform(1)).expect("a finer mesh");
+    let of = certify(problem, &Condensed::default(), &Options::default()).expect("solves");
+    let one = admissible(&of.problem, &of.dual, f64::MAX, None).expect("an upper bound");
+    assert!(of_parts(&of, f64::MAX, 2, &in_a_row(one.len(), 2)) == one);
+}
+
 #[test]
 fn flat_triangles_tie_vertices_together_across_contact() {
     let of = solved(FLAT, of_degree(1));
