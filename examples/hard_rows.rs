@@ -5,6 +5,7 @@
 
 use std::error::Error;
 use std::fmt;
+use std::path::Path;
 use std::time::Duration;
 
 use hypercircle::bounds::Bracket;
@@ -19,6 +20,9 @@ const LIMIT: Duration = Duration::from_secs(600);
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let ranks = arguments.next().unwrap_or_else(|| "1 2 4".to_string());
+    // Beside the folder of the examples.
+    let program = std::env::current_exe()?.parent().and_then(Path::parent).map(|built| built.join("hypercircle"));
+    let program = program.filter(|program| program.is_file()).ok_or("build the program first: ci/scale does")?;
     let ranks = ranks.split_whitespace().map(str::parse).collect::<Result<Vec<usize>, _>>()?;
     let wanted: Vec<String> = arguments.collect();
     let all = || REGIMES.iter().copied().flatten();
@@ -34,7 +38,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for row in rows {
         let expected: Vec<_> = row.values.iter().map(|&value| solve(row, value, &Condensed::default())).collect();
         for &ranks in &ranks {
-            let method = Petsc { ranks, linear_solver: LinearSolver::Mumps, limit: LIMIT, interpreter: None };
+            let method = Petsc {
+                ranks,
+                linear_solver: LinearSolver::Mumps,
+                limit: LIMIT,
+                interpreter: None,
+                program: Some(program.clone()),
+            };
             let mut worst = Difference::default();
             for (step, (&value, expected)) in row.values.iter().zip(&expected).enumerate() {
                 let found = solve(row, value, &method);

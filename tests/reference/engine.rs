@@ -91,7 +91,8 @@ fn ranks_find_the_bounds_of_the_condensed_method_where_rows_are_hardest() {
     for (row, step, ranks) in rows {
         let [lower, upper, _] = of_row(row, step, &Condensed::default());
         for &ranks in ranks {
-            let method = Petsc { ranks, linear_solver: LinearSolver::Mumps, limit: LIMIT, interpreter: None };
+            let program = Some(env!("CARGO_BIN_EXE_hypercircle").into());
+            let method = Petsc { ranks, linear_solver: LinearSolver::Mumps, limit: LIMIT, interpreter: None, program };
             let found = of_row(row, step, &method);
             for (found, expected) in found.into_iter().zip([lower, upper]) {
                 assert!(((found - expected) / lower).abs() < 1e-9, "{row}, {ranks} ranks: {found:e}, {expected:e}");

@@ -84,14 +84,18 @@ impl Until {
         }
     }
 
-    /// Whether a sweep that gained `gained` and led to this energy was the last one.
-    fn is_reached(self, problem: &Problem, energy: f64, gained: f64) -> bool {
+    /// Whether a sweep that gained `gained` and led to this energy, which is known but for `rounding`, was the last one.
+    fn is_reached(self, problem: &Problem, energy: f64, rounding: f64, gained: f64) -> bool {
         match self {
             Until::Gains { least, .. } => gained <= least || gained <= NO_GAIN * energy.abs(),
             Until::Near(floor) => {
                 let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
                 let gap = (energy - floor).max(0.0);
-                gap == 0.0 || gained <= least * (GOOD * floor.abs() / gap).min(1.0) * gap
+                // Where bodies that nothing holds have turned far, little energy is lost in the rounding of much motion, and
+                // what a sweep gains is known to more digits.
+                let nothing = (least * rounding).max(NO_GAIN * floor.abs());
+                let worth = if gap == 0.0 { nothing } else { least * (GOOD * floor.abs() / gap).min(1.0) * gap };
+                gained <= worth
             }
         }
     }
@@ -125,11 +129,14 @@ pub fn relax(
     let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
         if sweep >= until.least_sweeps() {
+            let mut rounding = 0.0;
             if quiet.is_none() {
                 // What is left of a wild field is lost in the sum of what it gained.
-                energy = model.energy(&values, share);
+                let found = model.energy(&values, share);
+                rounding = (found - energy).abs();
+                energy = found;
             }
-            if until.is_reached(problem, energy, gained) {
+            if until.is_reached(problem, energy, rounding, gained) {
                 break;
             }
         }
