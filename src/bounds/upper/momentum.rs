@@ -8,6 +8,10 @@ use nalgebra::{Matrix2, Vector2};
 use super::model::Model;
 use super::share::Share;
 
+/// Part of the slack that is left to a jump where a step is cut short: with all of it, rounding would decide whether the
+/// next step is cut there again, and with none of it no step would go on where contact is closed.
+const LEFT: f64 = 0.1;
+
 /// The last step.
 #[derive(Debug, Default)]
 pub struct Momentum {
@@ -58,8 +62,7 @@ impl Momentum {
             let grows = row.terms().iter().map(|(k, f)| push[*k][0] * f[0] + push[*k][1] * f[1]).sum::<f64>();
             let room = (-row.excess(values)).max(0.0);
             if grows > room + slack {
-                // Not beyond it by slack: the next sweep would take that back, and the step after it be cut short by rounding.
-                part = part.min(room / grows);
+                part = part.min((room + LEFT * slack) / grows);
             }
         }
         part = share.least(part);
