@@ -172,6 +172,16 @@ impl Problem {
         self.pairs().any(|pair| !pair.direction.is_constant())
     }
 
+    /// Whether the direction of contact differs along any contact, on one edge or from edge to edge.
+    pub fn contact_bends(&self) -> bool {
+        const STRAIGHT: f64 = 1e-9;
+        self.interfaces.iter().any(|interface| {
+            let directions = interface.pairs.iter().flat_map(|pair| [pair.direction.at(0.0), pair.direction.at(1.0)]);
+            let mut from = directions.clone();
+            from.next().is_some_and(|[x, y]| directions.clone().any(|[a, b]| (x * b - y * a).abs() > STRAIGHT))
+        })
+    }
+
     /// Whether refinement puts vertices on the curves that edges stand for.
     pub fn follows_curves(&self) -> bool {
         !curved(self).is_empty()

@@ -8,7 +8,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::mesh::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Adapted, Goal, adapt, certify, certify_divided};
+use hypercircle::study::{Adapt, Adapted, Goal, adapt, certify, certify_divided};
 
 /// Most triangles for one per cent.
 const MOST: usize = 3000;
@@ -43,6 +43,17 @@ fn blocks_that_meet_along_facets_of_an_arc_take_few_triangles_for_one_per_cent()
             }
         }
     }
+}
+
+/// Relaxing must not end while a body that slides as a whole moves on a little with every sweep: the upper bound then stays where
+/// it is on any number of triangles.
+#[test]
+fn the_error_does_not_stall_where_a_body_slides_around_facets() {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/sliding_around_facets.toml");
+    let problem = Problem::load(Scene::read(&file).expect("a scene")).expect("a problem");
+    let goal = Goal { adapt: Adapt::H, max_triangles: Some(20_000), ..Goal::new(0.003) };
+    let run = adapt(problem, &Condensed::default(), &Options::default(), &goal, |_| ()).expect("refines");
+    assert!(run.stopped.is_none(), "{:?}", run.history.last());
 }
 
 #[test]

@@ -28,9 +28,10 @@ const SWEEPS: usize = 2;
 const MOST_SWEEPS: usize = 500;
 const WORTH_A_SWEEP: f64 = 3e-3;
 
-/// The same where the direction of contact turns: with every polygon it is another, and the displacement of the mesh before
-/// is off by a little everywhere, which sweeps take away slowly.
-const WORTH_WHERE_TURNING: f64 = 1e-3;
+/// The same where the direction of contact is not the same everywhere: with every polygon along a curve it is another, one body
+/// slides around the other as a whole, and the displacement of the mesh before is off by a little everywhere, which sweeps take
+/// away slowly.
+const WORTH_WHERE_BENT: f64 = 1e-3;
 
 /// Of the smallest gain that is worth a sweep this part, divided among all patches: a patch that gained less, and lies beside none
 /// that gained more, rests …
@@ -85,16 +86,16 @@ impl Until {
     }
 
     /// Whether a sweep that gained `gained` and led to this energy, which is known but for `rounding`, was the last one.
-    fn is_reached(self, problem: &Problem, energy: f64, rounding: f64, gained: f64) -> bool {
+    /// `part` of the gap is worth a sweep.
+    fn is_reached(self, part: f64, energy: f64, rounding: f64, gained: f64) -> bool {
         match self {
             Until::Gains { least, .. } => gained <= least || gained <= NO_GAIN * energy.abs(),
             Until::Near(floor) => {
-                let least = if problem.contact_turns() { WORTH_WHERE_TURNING } else { WORTH_A_SWEEP };
                 let gap = (energy - floor).max(0.0);
                 // Where bodies that nothing holds have turned far, little energy is lost in the rounding of much motion, and
                 // what a sweep gains is known to more digits.
-                let nothing = (least * rounding).max(NO_GAIN * floor.abs());
-                let worth = if gap == 0.0 { nothing } else { least * (GOOD * floor.abs() / gap).min(1.0) * gap };
+                let nothing = (part * rounding).max(NO_GAIN * floor.abs());
+                let worth = if gap == 0.0 { nothing } else { part * (GOOD * floor.abs() / gap).min(1.0) * gap };
                 gained <= worth
             }
         }
@@ -117,6 +118,7 @@ pub fn relax(
 ) -> Result<NodalValues, NoUpperBound> {
     let (mut energy, NodalValues { nodes, mut values }) = begin(model, until, candidates, at_rest, share)?;
     let slack = ROUNDING * largest(&values, share);
+    let part = if problem.contact_bends() { WORTH_WHERE_BENT } else { WORTH_A_SWEEP };
     let quiet = until.quiet(patches.count());
     let mut momentum = Momentum::default();
     let most = FEW * patches.count() as f64;
@@ -136,7 +138,7 @@ pub fn relax(
                 rounding = (found - energy).abs();
                 energy = found;
             }
-            if until.is_reached(problem, energy, rounding, gained) {
+            if until.is_reached(part, energy, rounding, gained) {
                 break;
             }
         }
