@@ -44,6 +44,22 @@ OPTIONS = {
     "mg_coarse_mg_levels_pc_type": "jacobi",
 }
 """Two levels, the lower of which is solved with by eight conjugate gradients, each with a cycle of smoothed aggregation."""
+# Solves of one right-hand side take MUMPS several times as long.
+FACTORS = "cholmod" if PETSc.Sys.hasExternalPackage("suitesparse") else "mumps"
+SUBDOMAINS = {
+    # Edges of the mesh that lie between the same two subdomains are constrained together, though no entry joins them.
+    "pc_bddc_use_local_mat_graph": 0,
+    # Constraints become unknowns, or the matrix of a subdomain that nothing else holds could not be factorised.
+    "pc_bddc_use_change_of_basis": 1,
+    "pc_bddc_use_deluxe_scaling": 1,
+    # Rounding of what is eliminated inside subdomains may be all that is left on small loads.
+    "pc_bddc_switch_static": 1,
+    "pc_bddc_dirichlet_pc_type": "cholesky",
+    "pc_bddc_dirichlet_pc_factor_mat_solver_type": FACTORS,
+    "pc_bddc_neumann_pc_type": "cholesky",
+    "pc_bddc_neumann_pc_factor_mat_solver_type": FACTORS,
+}
+"""Balancing domain decomposition by constraints, with factorised subdomains."""
 WORKSPACE = {"mat_mumps_icntl_14": 60}
 """Percent of memory that MUMPS takes beyond its own estimate, which falls short over several ranks."""
 
@@ -167,6 +183,19 @@ def entries(comm: MPI.Comm, local: tuple[int, int], stride: int, rows, columns, 
     return out
 
 
+def kernel(motions: list[PETSc.Vec]) -> PETSc.NullSpace:
+    """The space of some vectors."""
+    basis: list[PETSc.Vec] = []
+    for motion in motions:
+        vector = motion.copy()
+        for _ in range(2):
+            for other in basis:
+                vector.axpy(-vector.dot(other), other)
+        vector.normalize()
+        basis.append(vector)
+    return PETSc.NullSpace().create(vectors=basis, comm=motions[0].comm)
+
+
 def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tolerance: float, most: int) -> PETSc.KSP:
     """Conjugate gradients with two levels: ``nodal`` maps the coarse unknowns to those of ``target``, and ``motions`` are
     coarse vectors that the coarse matrix all but annihilates."""
@@ -178,15 +207,7 @@ def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tol
     coarse.setDiagonal(diagonal)
     coarse.setBlockSize(2)
     finish(coarse)
-    kernel: list[PETSc.Vec] = []
-    for motion in motions:
-        vector = motion.copy()
-        for _ in range(2):
-            for other in kernel:
-                vector.axpy(-vector.dot(other), other)
-        vector.normalize()
-        kernel.append(vector)
-    coarse.setNearNullSpace(PETSc.NullSpace().create(vectors=kernel, comm=target.comm))
+    coarse.setNearNullSpace(kernel(motions))
     solver = with_options(target, OPTIONS)
     # The conjugate gradients below make the preconditioner another one in each iteration.
     solver.setType("fcg")
@@ -194,6 +215,33 @@ def multigrid(target: PETSc.Mat, nodal: PETSc.Mat, motions: list[PETSc.Vec], tol
     solver.pc.setMGLevels(2)
     solver.pc.setMGInterpolation(1, nodal)
     solver.pc.getMGCoarseSolve().setOperators(coarse)
+    solver.setTolerances(rtol=tolerance, atol=0.0, divtol=1e30, max_it=most)
+    solver.setFromOptions()
+    return set_up(solver)
+
+
+def substructured(
+    comm: MPI.Comm, own: PETSc.Mat, numbers: np.ndarray, local: int, fixed: np.ndarray, fields: list[np.ndarray],
+    motions: list[PETSc.Vec], tolerance: float, most: int,
+) -> PETSc.KSP:  # fmt: skip
+    """Conjugate gradients with a subdomain for each rank, for the sum of the matrices ``own`` of all ranks.
+
+    ``numbers`` are those of its rows among all, of which ``local`` belong to this rank, ``fixed`` the rows that stand alone.
+    Each of the ``fields``, into which the rows are divided, is constrained by itself wherever two subdomains share some of it.
+    """
+    target = PETSc.Mat().create(comm)
+    target.setSizes(((local, None), (local, None)))
+    target.setType("is")
+    numbering = PETSc.LGMap().create(numbers.astype(INDEX), comm=comm)
+    target.setLGMap(numbering, numbering)
+    target.setISLocalMat(own)
+    finish(target)
+    target.setNearNullSpace(kernel(motions))
+    solver = with_options(target, SUBDOMAINS)
+    solver.setType("cg")
+    solver.pc.setType("bddc")
+    solver.pc.setBDDCDofsSplittingLocal([index_set(MPI.COMM_SELF, field) for field in fields])
+    solver.pc.setBDDCDirichletBoundariesLocal(index_set(MPI.COMM_SELF, fixed))
     solver.setTolerances(rtol=tolerance, atol=0.0, divtol=1e30, max_it=most)
     solver.setFromOptions()
     return set_up(solver)
@@ -226,8 +274,8 @@ def solve(solver: PETSc.KSP, load: PETSc.Vec, out: PETSc.Vec) -> int:
 
 def failure(solver: PETSc.KSP, reason: int) -> str:
     """Why a solver stopped, in words."""
-    names = {-5: "it breaks down", -8: "the matrix is not definite", -9: "a value is no number",
-             -10: "the preconditioner is not definite"}  # fmt: skip
+    names = {-5: "it breaks down", -8: "the preconditioner is not definite", -9: "a value is no number",
+             -10: "the matrix is not definite"}  # fmt: skip
     if reason == -11 and solver.pc.getType() == "cholesky":
         code, detail = (solver.pc.getFactorMatrix().getMumpsInfog(i) for i in (1, 2))
         if code in (-8, -9, -13, -19):

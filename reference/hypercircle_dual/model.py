@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import compat
-from .distribution import Numbering, number_unknowns, own_triangles, ragged, share_out
+from .distribution import Numbering, connected_parts, number_unknowns, own_triangles, ragged, share_out
 from .exchange import Files, ranges
 
 CHUNK = 8192
@@ -44,10 +44,10 @@ class Group:
 class Model:
     """Matrices and loads of this rank's triangles, and vectors over all ranks."""
 
-    def __init__(self, comm, files: Files, padded: bool) -> None:
+    def __init__(self, comm, files: Files, padded: bool, whole_contact: bool = False) -> None:
         self.comm, self.files = comm, files
         self.load_size = 0.0
-        self.triangles = own_triangles(comm, files)
+        self.triangles = own_triangles(comm, files, whole_contact)
         first, lengths = ragged(files, self.triangles, "start.i64")
         unknowns = files.pieces("unknowns.i64", first, lengths)
         self.numbering: Numbering = number_unknowns(comm, files, unknowns, padded)
@@ -197,16 +197,49 @@ class Model:
         local, size = self.numbering.local, self.zero.getSize()
         room = np.minimum(np.maximum(own.array_r, 1), local), np.minimum(other.array_r, size - local)
         out = compat.matrix(self.comm, local, self.numbering.stride, *room)
+        self._add_stiffness(out, number)
+        gaps = np.setdiff1d(np.arange(local), number[owned] - self.numbering.first) + self.numbering.first
+        compat.add_blocks(out, gaps.reshape(-1, 1), np.ones((len(gaps), 1, 1)))
+        compat.finish(out)
+        return out
+
+    def subdomain(self):
+        """Σ B Bᵀ over this rank's triangles alone, by places in ``Numbering.natural``."""
+        count = len(self.numbering.natural)
+        room = np.zeros(count)
+        for group in self.groups:
+            room += np.bincount(group.unknowns.reshape(-1), minlength=count) * group.unknowns.shape[1]
+        out = compat.matrix(compat.MPI.COMM_SELF, count, 1, np.minimum(room, count), np.zeros(count))
+        self._add_stiffness(out, np.arange(count))
+        compat.finish(out)
+        return out
+
+    def shared_parts(self) -> list[np.ndarray]:
+        """Places in ``Numbering.natural`` by the connected parts of the ranks' triangles that have them, the same on all ranks."""
+        parts = connected_parts(self.files, self.triangles)
+        first, lengths = ragged(self.files, self.triangles, "start.i64")
+        places = self.numbering.place(self.files.pieces("unknowns.i64", first, lengths))
+        part = np.zeros(len(self.numbering.natural))
+        before = self.comm.exscan(int(parts.max(initial=-1)) + 1) or 0
+        np.maximum.at(part, places, np.repeat(parts + before + 1.0, lengths))
+        # At most two ranks have an unknown, and two numbers are known by their sum and that of their squares.
+        known = []
+        for power in (1, 2):
+            whole = self.zero.duplicate()
+            whole.set(0.0)
+            self.window.add(part**power, whole)
+            known.append(self.window.read(whole))
+        kind = np.unique(np.stack(known, 1), axis=0, return_inverse=True)[1].reshape(-1)
+        return [np.flatnonzero(kind == k) for k in range(kind.max(initial=-1) + 1)]
+
+    def _add_stiffness(self, out, number: np.ndarray) -> None:
+        """Add B Bᵀ of all triangles of this rank to a matrix whose rows have these numbers."""
         for group in self.groups:
             for part, matrix in group.chunks():
                 stiffness = np.swapaxes(matrix, -1, -2) @ matrix
                 numbers = number[group.unknowns[part]]
                 shape = (*numbers.shape, numbers.shape[1])
                 compat.add_blocks(out, numbers, np.broadcast_to(stiffness, shape))
-        gaps = np.setdiff1d(np.arange(local), number[owned] - self.numbering.first) + self.numbering.first
-        compat.add_blocks(out, gaps.reshape(-1, 1), np.ones((len(gaps), 1, 1)))
-        compat.finish(out)
-        return out
 
     def _owners(self) -> np.ndarray:
         """The rank that owns each unknown of this rank's triangles."""

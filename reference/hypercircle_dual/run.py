@@ -14,7 +14,7 @@ from . import compat
 from .exchange import Files, read
 from .model import Model
 from .refinement import ROUND_OFF, Refined, refine
-from .solvers import Factorised, Iterated
+from .solvers import Factorised, Iterated, Multigrid, Substructured
 
 MOST_CHANGES = 60
 """Changes of the contact state at most, beside four for each end."""
@@ -26,7 +26,7 @@ COARSE = 1e-4
 """Refinement of a contact state that is likely to change."""
 MOST_REFINEMENTS, FEW_REFINEMENTS = 200, 4
 """Limits of its steps, and of those for a contact state that is likely to change."""
-SOLVERS = {"mumps": Factorised, "gamg": Iterated}
+SOLVERS = {"mumps": Factorised, "gamg": Multigrid, "bddc": Substructured}
 
 
 def solve(comm, path: Path) -> None:
@@ -39,7 +39,7 @@ def solve(comm, path: Path) -> None:
         )
     kind = SOLVERS[files.linear_solver]
     log(comm, f"{files.triangles} triangles, {files.unknowns} unknowns, {comm.size} ranks, PETSc {compat.PETSC_VERSION}")
-    model = Model(comm, files, kind.padded)
+    model = Model(comm, files, kind.padded, kind.whole_contact)
     solver = kind(model)
     settled = Settled(model, solver)
     log(comm, f"solved: {settled.steps} contact states, {solver.iterations} iterations")

@@ -1,8 +1,9 @@
-"""Two ways from traction jumps to a correction of the unknowns with a given contact state.
+"""Ways from traction jumps to a correction of the unknowns with a given contact state.
 
 :class:`Factorised` factorises once, with the diagonal of the jumps shifted so that K is definite even where contact alone
 holds a body, and forms the Schur complement on the jumps by back-substitutions. :class:`Iterated` takes closed jumps out of
-K and solves by an iteration; it finds the contact state by changing what stresses and jumps contradict.
+K and solves by an iteration; it finds the contact state by changing what stresses and jumps contradict. Its preconditioner
+is that of :class:`Multigrid` or :class:`Substructured`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ SPRING = 1e-6
 class Factorised:
     """K with shifted jumps, factorised by MUMPS, and the contact problem that is left."""
 
-    padded = False
+    padded, whole_contact = False, False
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -111,23 +112,27 @@ class Factorised:
 
 
 class Iterated:
-    """K without its closed jumps, solved by conjugate gradients.
+    """K without its closed jumps, solved by conjugate gradients."""
 
-    One step of the preconditioner smooths, corrects by a displacement linear on triangles, and smooths. On these K is the
-    stiffness matrix of linear finite elements, where algebraic multigrid is at home.
-    """
-
-    padded = True
+    padded, whole_contact = False, False
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.iterations = self.first_iterations = 0
-        self.matrix = model.matrix()
         self.nodal, self.motions = model.nodal()
+        self._assemble()
         self.assembled = perf_counter()
         self.solver, self.closed = None, None
         self._prepare(np.ones(model.files.jumps, bool))
         self.factorised = perf_counter()
+
+    def _assemble(self) -> None:
+        """What does not change with the contact state."""
+        raise NotImplementedError
+
+    def _preconditioned(self, closed: np.ndarray):
+        """The solver for a contact state."""
+        raise NotImplementedError
 
     def _prepare(self, closed: np.ndarray) -> None:
         if self.closed is not None and np.array_equal(closed, self.closed):
@@ -135,18 +140,8 @@ class Iterated:
         if self.solver is not None:
             self.solver.destroy()
             compat.collect(self.model.comm)
-        matrix, self.closed = self.matrix.copy(), closed.copy()
-        # Open contact may leave a body without hold; refinement takes what the springs do away.
-        diagonal, springs = matrix.getDiagonal(), self.model.zero.duplicate()
-        springs.set(0.0)
-        self.model.set_jumps(springs, SPRING * self.model.jumps(diagonal))
-        diagonal.axpy(1.0, springs)
-        matrix.setDiagonal(diagonal)
-        matrix.zeroRowsColumns(self.model.fixed_numbers(closed).astype(compat.INDEX), 1.0)
-        compat.finish(matrix)
-        nodal = self.nodal.copy()
-        nodal.diagonalScale(self.model.free(closed), None)
-        self.solver = compat.multigrid(matrix, nodal, self.motions, INNER, MOST_ITERATIONS)
+        self.closed = closed.copy()
+        self.solver = self._preconditioned(closed)
 
     def state(self, r, room: np.ndarray, start: np.ndarray) -> None:
         """Nothing: the state is found by changing what stresses and jumps contradict."""
@@ -160,3 +155,67 @@ class Iterated:
         self.first_iterations = self.first_iterations or made
         self.iterations += made
         return x
+
+
+class Multigrid(Iterated):
+    """Two levels: block Jacobi on the unknowns, and algebraic multigrid below.
+
+    One step of the preconditioner smooths, corrects by a displacement linear on triangles, and smooths. On these K is the
+    stiffness matrix of linear finite elements, where algebraic multigrid is at home.
+    """
+
+    padded = True
+
+    def _assemble(self) -> None:
+        self.matrix = self.model.matrix()
+
+    def _preconditioned(self, closed: np.ndarray):
+        matrix = self.matrix.copy()
+        # Open contact may leave a body without hold; refinement takes what the springs do away.
+        diagonal, springs = matrix.getDiagonal(), self.model.zero.duplicate()
+        springs.set(0.0)
+        self.model.set_jumps(springs, SPRING * self.model.jumps(diagonal))
+        diagonal.axpy(1.0, springs)
+        matrix.setDiagonal(diagonal)
+        matrix.zeroRowsColumns(self.model.fixed_numbers(closed).astype(compat.INDEX), 1.0)
+        compat.finish(matrix)
+        nodal = self.nodal.copy()
+        nodal.diagonalScale(self.model.free(closed), None)
+        return compat.multigrid(matrix, nodal, self.motions, INNER, MOST_ITERATIONS)
+
+
+class Substructured(Iterated):
+    """Balancing domain decomposition by constraints: the triangles of each rank are a subdomain, which is factorised.
+
+    Two subdomains agree in the moments of all rigid motions on what they share before any iteration. Where a rank has parts of
+    two bodies in contact, or a part in pieces, this holds for each of them, or nothing would keep one in its place. Contact
+    lies within subdomains: open contact between two would keep neither.
+    """
+
+    whole_contact = True
+
+    def _assemble(self) -> None:
+        self.matrix = self.model.subdomain()
+        self.motions = [self.nodal * motion for motion in self.motions]
+        self.fields = self.model.shared_parts()
+
+    def _preconditioned(self, closed: np.ndarray):
+        numbering, matrix = self.model.numbering, self.matrix.copy()
+        first = self.model.files.first_jump
+        jumps = np.flatnonzero(numbering.natural >= first)
+        fixed = np.isin(numbering.natural, self.model.files.held)
+        fixed[jumps] = closed[numbering.natural[jumps] - first]
+        diagonal = matrix.getDiagonal()
+        values = diagonal.array
+        values[jumps] *= 1.0 + SPRING
+        diagonal.array = values
+        matrix.setDiagonal(diagonal)
+        fixed = np.flatnonzero(fixed).astype(compat.INDEX)
+        matrix.zeroRowsColumns(fixed, 1.0)
+        compat.finish(matrix)
+        motions = [motion.copy() for motion in self.motions]
+        for motion in motions:
+            motion.pointwiseMult(motion.copy(), self.model.free(closed))
+        return compat.substructured(
+            self.model.comm, matrix, numbering.number, numbering.local, fixed, self.fields, motions, INNER, MOST_ITERATIONS
+        )

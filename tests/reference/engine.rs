@@ -37,18 +37,21 @@ fn same(name: &str, options: &[&str], engine: &[&str]) -> usize {
     let expected = report(folder.path(), name, options);
     let arguments: Vec<&str> = options.iter().chain(&["--engine", "petsc"]).chain(engine).copied().collect();
     let found = report(folder.path(), name, &arguments);
-    let gamg = engine.contains(&"gamg");
-    assert_eq!(found["dual"]["method"], if gamg { "petsc-gamg" } else { "petsc" });
+    let value = |option: &str| engine.iter().skip_while(|&&argument| argument != option).nth(1).copied();
+    let solver = value("--linear-solver");
+    assert_eq!(found["dual"]["method"], solver.map_or("petsc".to_string(), |solver| format!("petsc-{solver}")));
     for key in ["/energy/lower", "/energy/upper"] {
         let (found, expected) = (number(&found, key), number(&expected, key));
         assert!(((found - expected) / expected).abs() < 1e-9, "{name} {arguments:?} {key}: {found:e}, {expected:e}");
     }
     let left = number(&found, "/dual/equilibrium_residual");
     assert!(left < 1e-9, "{name} {arguments:?}: {left:e}");
-    assert!(!gamg || number(&found, "/dual/iterations") > 10.0);
+    assert!(solver.is_none() || number(&found, "/dual/iterations") > 10.0);
     let notes = found["notes"].to_string();
-    let ranks = if engine.contains(&"2") { "on 2 ranks" } else { "on 1 rank" };
-    assert!(notes.contains("PETSc") && notes.contains(ranks), "{notes}");
+    let ranks = value("--ranks")
+        .filter(|&ranks| ranks != "1")
+        .map_or("on 1 rank,".to_string(), |ranks| format!("on {ranks} ranks,"));
+    assert!(notes.contains("PETSc") && notes.contains(&ranks), "{notes}");
     let states = notes.split_once("contact states tried: ").and_then(|(_, rest)| rest.split(';').next()?.parse().ok());
     states.unwrap_or_else(|| panic!("no states: {notes}"))
 }
@@ -139,6 +142,36 @@ fn an_iteration_finds_the_same() {
         let states = same("two_blocks", &["--refine", "2"], &["--ranks", "1", "--linear-solver", "gamg"]);
         assert!(states < 5, "{states} contact states from that of a coarser mesh");
     }
+}
+
+/// Bodies that contact alone holds, and more ranks than bodies.
+#[test]
+fn subdomains_find_the_same() {
+    if !with_reference() {
+        return;
+    }
+    for (name, ranks) in [("two_blocks", "2"), ("stack", "4"), ("cylinder_on_block", "2")] {
+        same(name, &[], &["--ranks", ranks, "--linear-solver", "bddc"]);
+    }
+}
+
+/// Multigrid takes thousands of iterations there.
+#[test]
+fn subdomains_do_not_mind_an_incompressible_body() {
+    if !with_reference() {
+        return;
+    }
+    let row = regime("poisson").expect("a row");
+    let step = row.values.iter().position(|&nu| nu > 0.4999).expect("a value near 1/2");
+    let problem = || row.problem(row.values[step]).expect("a problem");
+    let expected =
+        certify_divided(problem(), &Condensed::default(), &Options::default()).expect("bounds").bracket.lower();
+    let program = Some(env!("CARGO_BIN_EXE_hypercircle").into());
+    let method = Petsc { ranks: 2, linear_solver: LinearSolver::Bddc, limit: LIMIT, interpreter: None, program };
+    let found = certify_divided(problem(), &method, &Options::default()).expect("bounds");
+    let (lower, iterations) = (found.bracket.lower(), found.dual.iterations);
+    assert!(((lower - expected) / expected).abs() < 1e-9, "{lower:e}, {expected:e}");
+    assert!(iterations < 100, "{iterations} iterations");
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::dual::hybrid::{Motion, held_unknowns};
 use crate::dual::modes::ModeTable;
 use crate::dual::system::{jump_bounds, load_of_tractions};
 use crate::dual::unknowns::Unknowns;
-use crate::problem::{Problem, Scales};
+use crate::problem::{ContactPair, Problem, Scales};
 
 /// Name of the file that the package is started with.
 pub const PROBLEM_FILE: &str = "problem.json";
@@ -133,7 +133,10 @@ pub fn write(
     numbers("round_off.f64", &ends::round_off(problem, unknowns, modes, &scales))?;
     let pairs = unknowns.jump_blocks().enumerate();
     indices("pair.i64", &pairs.flat_map(|(i, b)| std::iter::repeat_n(i as i64, b.len)).collect::<Vec<_>>())?;
-    if linear_solver == LinearSolver::Gamg {
+    if linear_solver == LinearSolver::Bddc {
+        indices("pair_triangles.i64", sides_of_pairs(problem).as_flattened())?;
+    }
+    if linear_solver.iterates() {
         let nodal = Nodal::new(problem, unknowns);
         indices("nodal_start.i64", &nodal.start)?;
         indices("nodal.i64", &nodal.component)?;
@@ -213,6 +216,13 @@ fn with_file<T>(folder: &Path, name: &str, fill: impl FnOnce(&mut BufWriter<File
     let made = fill(&mut out)?;
     out.flush()?;
     Ok(made)
+}
+
+/// The triangles on the two sides of the contact pairs of two bodies.
+fn sides_of_pairs(problem: &Problem) -> Vec<[i64; 2]> {
+    let triangle = |e: usize| problem.mesh.edges[e].triangles[0].map(|t| t as i64);
+    let sides = |pair: &ContactPair| Some([triangle(pair.edges[0]?)?, triangle(pair.edges[1]?)?]);
+    problem.pairs().filter_map(sides).collect()
 }
 
 /// The triangles beside each triangle, across edges and across contact.

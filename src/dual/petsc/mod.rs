@@ -57,6 +57,15 @@ pub enum LinearSolver {
     Mumps,
     /// Conjugate gradients with algebraic multigrid
     Gamg,
+    /// Conjugate gradients with domain decomposition, a subdomain for each rank: also where materials are nearly incompressible
+    Bddc,
+}
+
+impl LinearSolver {
+    /// Whether it is an iteration, and not a factorisation.
+    fn iterates(self) -> bool {
+        self != LinearSolver::Mumps
+    }
 }
 
 /// The hybrid form on PETSc.
@@ -89,11 +98,12 @@ impl DualMethod for Petsc {
         match self.linear_solver {
             LinearSolver::Mumps => "petsc",
             LinearSolver::Gamg => "petsc-gamg",
+            LinearSolver::Bddc => "petsc-bddc",
         }
     }
 
     fn wants_guess(&self) -> bool {
-        self.linear_solver == LinearSolver::Gamg
+        self.linear_solver.iterates()
     }
 
     fn divides(&self) -> bool {
@@ -135,9 +145,10 @@ impl DualMethod for Petsc {
                 iterations: answer.steps + answer.iterations,
                 residual,
                 wanted: self.accuracy(),
-                advice: match self.linear_solver {
-                    LinearSolver::Mumps => "leave --engine out".to_string(),
-                    LinearSolver::Gamg => "use --linear-solver mumps, or leave --engine out".to_string(),
+                advice: if self.linear_solver.iterates() {
+                    "use --linear-solver mumps, or leave --engine out".to_string()
+                } else {
+                    "leave --engine out".to_string()
                 },
             });
         }
@@ -153,10 +164,7 @@ impl DualMethod for Petsc {
             moments,
             closed: unknowns.by_pair(found.closed),
             unknowns: unknowns.count,
-            iterations: match self.linear_solver {
-                LinearSolver::Mumps => answer.steps,
-                LinearSolver::Gamg => answer.iterations,
-            },
+            iterations: if self.linear_solver.iterates() { answer.iterations } else { answer.steps },
             seconds,
             notes: vec![self.note(answer)],
             factorised: None,
@@ -186,12 +194,14 @@ impl Petsc {
         let megabytes = answer.memory.iter().copied().max().unwrap_or(0) / 1_000_000;
         let (ranks, release, steps) = (answer.ranks, &answer.petsc, answer.steps);
         let ranks = if ranks == 1 { "1 rank".to_string() } else { format!("{ranks} ranks") };
+        let iterated = |with: &str| {
+            let (first, all) = (answer.first_iterations, answer.iterations);
+            format!("solved by conjugate gradients with {with}, {first} iterations in the first solve, {all} in all")
+        };
         let how = match self.linear_solver {
             LinearSolver::Mumps => "factorised by MUMPS".to_string(),
-            LinearSolver::Gamg => format!(
-                "solved by conjugate gradients with GAMG, {} iterations in the first solve, {} in all",
-                answer.first_iterations, answer.iterations
-            ),
+            LinearSolver::Gamg => iterated("GAMG"),
+            LinearSolver::Bddc => iterated("BDDC"),
         };
         format!(
             "The stresses were found by PETSc {release} on {ranks}, {how}; contact states tried: {steps}; largest memory of \
