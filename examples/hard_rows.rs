@@ -1,13 +1,14 @@
 //! The rows of the stability matrix over MPI ranks, held against the condensed method: prints a table of docs/scale.md.
 //!
-//! Run with `ci/scale rows [RANKS [ROW…]]`, for instance `ci/scale rows "1 2 4" slivers fan`. It fails where a bound differs by
-//! more than 10⁻⁹ of the energy, equilibrium is missed by more, or one method refuses what the other solves.
+//! Run with `ci/scale rows [RANKS [SOLVER [ROW…]]]`, for instance `ci/scale rows "1 2 4" gamg slivers fan`. It fails where a bound
+//! differs by more than 10⁻⁹ of the energy, equilibrium is missed by more, or one method refuses what the other solves.
 
 use std::error::Error;
 use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
+use clap::ValueEnum;
 use hypercircle::bounds::Bracket;
 use hypercircle::dual::{Condensed, DualMethod, LinearSolver, Options, Petsc};
 use hypercircle::stability::{REGIMES, Regime};
@@ -20,6 +21,8 @@ const LIMIT: Duration = Duration::from_secs(600);
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let ranks = arguments.next().unwrap_or_else(|| "1 2 4".to_string());
+    let linear_solver =
+        arguments.next().map_or(Ok(LinearSolver::default()), |name| LinearSolver::from_str(&name, false))?;
     // Beside the folder of the examples.
     let program = std::env::current_exe()?.parent().and_then(Path::parent).map(|built| built.join("hypercircle"));
     let program = program.filter(|program| program.is_file()).ok_or("build the program first: ci/scale does")?;
@@ -38,13 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for row in rows {
         let expected: Vec<_> = row.values.iter().map(|&value| solve(row, value, &Condensed::default())).collect();
         for &ranks in &ranks {
-            let method = Petsc {
-                ranks,
-                linear_solver: LinearSolver::Mumps,
-                limit: LIMIT,
-                interpreter: None,
-                program: Some(program.clone()),
-            };
+            let method =
+                Petsc { ranks, linear_solver, limit: LIMIT, interpreter: None, program: Some(program.clone()) };
             let mut worst = Difference::default();
             for (step, (&value, expected)) in row.values.iter().zip(&expected).enumerate() {
                 let found = solve(row, value, &method);
