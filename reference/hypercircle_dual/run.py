@@ -71,8 +71,11 @@ class Settled:
             self._refine(COARSE if isinstance(solver, Iterated) else ROUND_OFF)
             following = self._following()
             if np.array_equal(following, self.closed):
+                # Where contact alone holds a body a few steps may leave it without balance.
                 self._refine(ROUND_OFF)
                 following = self._following()
+                if np.array_equal(following, self.closed):
+                    following = self._stopped()
                 if np.array_equal(following, self.closed):
                     return
             self._change(following)
@@ -124,21 +127,28 @@ class Settled:
         return np.where(over > 0.0, over / np.maximum(of, np.finfo(float).tiny), 0.0)
 
     def _following(self) -> np.ndarray:
-        """The state that stresses and jumps ask for, the same on all ranks."""
-        following = self._stopped()
-        if following is None:
-            following = self.closed == (self._misses() <= GRAZING)
-        return self.model.comm.bcast(following)
+        """The state that stresses and jumps ask for, the same on all ranks.
 
-    def _stopped(self) -> np.ndarray | None:
-        """The state in which contact stops a motion that nothing holds: the first open ends on its way are closed too."""
-        if self.now.motion is None:
-            return None
-        growth = np.where(self.closed, 0.0, self.model.jumps(self.now.motion))
-        room = np.maximum(self.bound - self.model.jumps(self.now.x), 0.0)
-        way = np.divide(room, growth, out=np.full(len(room), np.inf), where=growth > 0.0)
-        first = way.min(initial=np.inf)
-        return self.closed | (way <= first) if np.isfinite(first) else None
+        One that has been there before gives way to the one in which contact stops a motion.
+        """
+        following = self.model.comm.bcast(self.closed == (self._misses() <= GRAZING))
+        changes = not np.array_equal(following, self.closed)
+        return self._stopped() if changes and following.tobytes() in self.seen else following
+
+    def _stopped(self) -> np.ndarray:
+        """The state in which contact stops a motion that nothing holds, the same on all ranks.
+
+        The first open ends on its way are closed too. Without such a motion it is the state that stresses and jumps ask for.
+        """
+        following = self.closed == (self._misses() <= GRAZING)
+        if self.now.motion is not None:
+            growth = np.where(self.closed, 0.0, self.model.jumps(self.now.motion))
+            room = np.maximum(self.bound - self.model.jumps(self.now.x), 0.0)
+            way = np.divide(room, growth, out=np.full(len(room), np.inf), where=growth > 0.0)
+            first = way.min(initial=np.inf)
+            if np.isfinite(first):
+                following = self.closed | (way <= first)
+        return self.model.comm.bcast(following)
 
 
 def _largest(vector) -> float:
