@@ -203,7 +203,7 @@ pub fn of_vertices(groups: &[Group], count: usize) -> Vec<usize> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::bounds::upper::holds::holds;
     use crate::bounds::upper::nodes::NodalValues;
@@ -212,40 +212,47 @@ mod tests {
     use crate::bounds::upper::share::Whole;
     use crate::scene::Scene;
 
-    /// Two blocks, pressed together where a gap lets them.
-    const SCENE: &str = r#"
-        [model]
-        kinematics = "plane-strain"
-        [geometry]
-        size = 0.03
-        [[geometry.polygons]]
-        body = "a"
-        points = [[0, 0], [1.3, 0], [1, 1], [0, 1]]
-        edges = ["foot", "", "over", ""]
-        [[geometry.polygons]]
-        body = "b"
-        points = [[0, 1], [1, 1], [1, 1.5], [0, 1.5]]
-        edges = ["under", "", "top", "axis"]
-        [bodies.a]
-        young = 1.0
-        poisson = 0.3
-        [bodies.b]
-        young = 2.0
-        poisson = 0.45
-        body_force = [0.2, -1.0]
-        [[supports]]
-        on = "foot"
-        type = "clamped"
-        [[supports]]
-        on = "axis"
-        type = "roller"
-        [[contacts]]
-        between = ["over", "under"]
-        gap = [[0, 0], [1, 0.1]]
-    "#;
+    /// Two blocks with these corners, pressed together where a gap, in m at its ends, lets them.
+    pub fn two_blocks(size: f64, [lower, upper]: [[[f64; 2]; 4]; 2], gap: [[f64; 2]; 2]) -> String {
+        format!(
+            r#"
+            [model]
+            kinematics = "plane-strain"
+            [geometry]
+            size = {size:?}
+            [[geometry.polygons]]
+            body = "a"
+            points = {lower:?}
+            edges = ["foot", "", "over", ""]
+            [[geometry.polygons]]
+            body = "b"
+            points = {upper:?}
+            edges = ["under", "", "top", "axis"]
+            [bodies.a]
+            young = 1.0
+            poisson = 0.3
+            [bodies.b]
+            young = 2.0
+            poisson = 0.45
+            body_force = [0.2, -1.0]
+            [[supports]]
+            on = "foot"
+            type = "clamped"
+            [[supports]]
+            on = "axis"
+            type = "roller"
+            [[contacts]]
+            between = ["over", "under"]
+            gap = {gap:?}
+            "#
+        )
+    }
 
     fn problem() -> Problem {
-        Problem::load(Scene::parse(SCENE, "blocks.toml".as_ref()).expect("a scene")).expect("a problem")
+        let lower = [[0.0, 0.0], [1.3, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let upper = [[0.0, 1.0], [1.0, 1.0], [1.0, 1.5], [0.0, 1.5]];
+        let scene = two_blocks(0.03, [lower, upper], [[0.0, 0.0], [1.0, 0.1]]);
+        Problem::load(Scene::parse(&scene, "blocks.toml".as_ref()).expect("a scene")).expect("a problem")
     }
 
     fn in_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {

@@ -9,6 +9,7 @@ use crate::bounds::upper::admissible;
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::nodes::Nodes;
 use crate::bounds::upper::patches::grouped;
+use crate::bounds::upper::patches::tests::two_blocks;
 use crate::dual::{Condensed, Options};
 use crate::element::{Displacement, Elements, block};
 use crate::problem::Problem;
@@ -105,36 +106,11 @@ fn anywhere(triangles: usize, ranks: usize, seed: u64) -> Vec<usize> {
 }
 
 /// Long flat blocks, whose triangles tie vertices together.
-const FLAT: &str = r#"
-    [model]
-    kinematics = "plane-strain"
-    [geometry]
-    size = 4.0
-    [[geometry.polygons]]
-    body = "a"
-    points = [[0, 0], [9, 0], [9, 0.2], [0, 0.2]]
-    edges = ["foot", "", "over", ""]
-    [[geometry.polygons]]
-    body = "b"
-    points = [[0, 0.2], [9, 0.2], [9, 0.3], [0, 0.3]]
-    edges = ["under", "", "top", "axis"]
-    [bodies.a]
-    young = 1.0
-    poisson = 0.3
-    [bodies.b]
-    young = 2.0
-    poisson = 0.45
-    body_force = [0.2, -1.0]
-    [[supports]]
-    on = "foot"
-    type = "clamped"
-    [[supports]]
-    on = "axis"
-    type = "roller"
-    [[contacts]]
-    between = ["over", "under"]
-    gap = [[0, 0], [9, 0.001]]
-"#;
+fn flat() -> String {
+    let lower = [[0.0, 0.0], [9.0, 0.0], [9.0, 0.2], [0.0, 0.2]];
+    let upper = [[0.0, 0.2], [9.0, 0.2], [9.0, 0.3], [0.0, 0.3]];
+    two_blocks(4.0, [lower, upper], [[0.0, 0.0], [9.0, 0.001]])
+}
 
 /// By how much two displacements differ at most, in the size of the first.
 fn difference(a: &Displacement, b: &Displacement) -> f64 {
@@ -159,7 +135,7 @@ fn two_sweeps_of_any_ranks_end_with_every_digit_of_one_process() {
         (&case("cases/inclined"), &of_degree(2)),
         (&case("tests/scenes/three_that_meet_in_a_point"), &of_degree(3)),
         (&case("cases/stack"), &mixed),
-        (FLAT, &of_degree(3)),
+        (&flat(), &of_degree(3)),
     ];
     for (number, (scene, elements)) in scenes.into_iter().enumerate() {
         let of = solved(scene, elements);
@@ -218,7 +194,7 @@ fn parts_take_the_stiffness_of_the_whole() {
 
 #[test]
 fn flat_triangles_tie_vertices_together_across_contact() {
-    let of = solved(FLAT, of_degree(1));
+    let of = solved(&flat(), of_degree(1));
     let largest = groups_of(&of.problem, 2).iter().map(|group| group.vertices.len()).max();
     assert!(largest > Some(3), "{largest:?}");
 }
