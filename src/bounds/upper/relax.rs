@@ -113,10 +113,32 @@ pub fn relax(
     patches: &mut Patches,
     until: Until,
     candidates: Vec<NodalValues>,
-    at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+    at_rest: impl Fn() -> Result<NodalValues, NoUpperBound>,
     share: &dyn Share,
 ) -> Result<NodalValues, NoUpperBound> {
-    let (mut energy, NodalValues { nodes, mut values }) = begin(model, until, candidates, at_rest, share)?;
+    let begun = begin(model, until, candidates, &at_rest, share)?;
+    let (energy, field) = relaxed(problem, model, patches, until, begun, share);
+    if let Until::Near(floor) = until
+        && energy - floor > floor.abs()
+        && let Ok(rest) = at_rest()
+    {
+        // A body that is held by little may have gone far, and sweeps bring it back slowly.
+        let nearer = best_between(model, rest, (energy, field), share);
+        return Ok(relaxed(problem, model, patches, until, nearer, share).1);
+    }
+    Ok(field)
+}
+
+/// The energy that sweeps lead to from `begun`, and the field that has it.
+fn relaxed(
+    problem: &Problem,
+    model: &Model,
+    patches: &mut Patches,
+    until: Until,
+    begun: (f64, NodalValues),
+    share: &dyn Share,
+) -> (f64, NodalValues) {
+    let (mut energy, NodalValues { nodes, mut values }) = begun;
     let slack = ROUNDING * largest(&values, share);
     let part = if problem.contact_bends() { WORTH_WHERE_BENT } else { WORTH_A_SWEEP };
     let quiet = until.quiet(patches.count());
@@ -157,7 +179,7 @@ pub fn relax(
         let moved = quiet.map(|quiet| patches.to_move(problem, quiet));
         few = moved.filter(|few| (few.len() as f64) < most);
     }
-    Ok(NodalValues { nodes, values })
+    (energy, NodalValues { nodes, values })
 }
 
 /// The least energy of a field to begin with, and the field.
@@ -165,7 +187,7 @@ fn begin(
     model: &Model,
     until: Until,
     candidates: Vec<NodalValues>,
-    at_rest: impl FnOnce() -> Result<NodalValues, NoUpperBound>,
+    at_rest: impl Fn() -> Result<NodalValues, NoUpperBound>,
     share: &dyn Share,
 ) -> Result<(f64, NodalValues), NoUpperBound> {
     // A displacement that is not a number has no energy to compare.
@@ -180,4 +202,18 @@ fn begin(
             Ok(other.filter(|(energy, _)| *energy <= WILD * own.abs()).unwrap_or((own, rest)))
         }
     }
+}
+
+/// The field of least energy on the way from `rest` to `field`, and its energy: what is admissible is convex.
+fn best_between(model: &Model, rest: NodalValues, field: (f64, NodalValues), share: &dyn Share) -> (f64, NodalValues) {
+    let at = |part: f64| {
+        let pairs = rest.values.iter().zip(&field.1.values);
+        let values: Vec<[f64; 2]> = pairs.map(|(r, v)| [0, 1].map(|c| r[c] + part * (v[c] - r[c]))).collect();
+        (model.energy(&values, share), NodalValues { nodes: rest.nodes.clone(), values })
+    };
+    let (first, half, last) = (at(0.0), at(0.5), field.0);
+    let bend = 2.0 * (first.0 + last) - 4.0 * half.0;
+    let part = (first.0 + bend - last) / (2.0 * bend);
+    let least = at(if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 });
+    [first, least, field].into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b)).expect("three fields")
 }
