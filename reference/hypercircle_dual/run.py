@@ -75,7 +75,7 @@ class Settled:
                 self._refine(ROUND_OFF)
                 following = self._following()
                 if np.array_equal(following, self.closed):
-                    following = self._stopped()
+                    following = self._stopped(following)
                 if np.array_equal(following, self.closed):
                     return
             self._change(following)
@@ -133,22 +133,20 @@ class Settled:
         """
         following = self.model.comm.bcast(self.closed == (self._misses() <= GRAZING))
         changes = not np.array_equal(following, self.closed)
-        return self._stopped() if changes and following.tobytes() in self.seen else following
+        return self._stopped(following) if changes and following.tobytes() in self.seen else following
 
-    def _stopped(self) -> np.ndarray:
-        """The state in which contact stops a motion that nothing holds, the same on all ranks.
+    def _stopped(self, following: np.ndarray) -> np.ndarray:
+        """The state in which contact stops a motion that nothing holds, the same on all ranks; ``following`` without such a motion.
 
-        The first open ends on its way are closed too. Without such a motion it is the state that stresses and jumps ask for.
+        The first open ends on its way are closed too.
         """
-        following = self.closed == (self._misses() <= GRAZING)
-        if self.now.motion is not None:
-            growth = np.where(self.closed, 0.0, self.model.jumps(self.now.motion))
-            room = np.maximum(self.bound - self.model.jumps(self.now.x), 0.0)
-            way = np.divide(room, growth, out=np.full(len(room), np.inf), where=growth > 0.0)
-            first = way.min(initial=np.inf)
-            if np.isfinite(first):
-                following = self.closed | (way <= first)
-        return self.model.comm.bcast(following)
+        if self.now.motion is None:
+            return following
+        growth = np.where(self.closed, 0.0, self.model.jumps(self.now.motion))
+        room = np.maximum(self.bound - self.model.jumps(self.now.x), 0.0)
+        way = np.divide(room, growth, out=np.full(len(room), np.inf), where=growth > 0.0)
+        first = way.min(initial=np.inf)
+        return self.model.comm.bcast(self.closed | (way <= first) if np.isfinite(first) else following)
 
 
 def _largest(vector) -> float:

@@ -103,7 +103,7 @@ impl Until {
 }
 
 /// Lowers the energy, that of `model`, of the best of several admissible fields, or of the one `at_rest` where these are
-/// wild.
+/// wild. Where that ends far above the lower bound, the best field on the way to the one at rest is relaxed again.
 ///
 /// # Errors
 /// That of `at_rest`.
@@ -211,9 +211,10 @@ fn best_between(model: &Model, rest: NodalValues, field: (f64, NodalValues), sha
         let values: Vec<[f64; 2]> = pairs.map(|(r, v)| [0, 1].map(|c| r[c] + part * (v[c] - r[c]))).collect();
         (model.energy(&values, share), NodalValues { nodes: rest.nodes.clone(), values })
     };
-    let (first, half, last) = (at(0.0), at(0.5), field.0);
-    let bend = 2.0 * (first.0 + last) - 4.0 * half.0;
-    let part = (first.0 + bend - last) / (2.0 * bend);
-    let least = at(if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 });
-    [first, least, field].into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b)).expect("three fields")
+    let (first, half, last) = (model.energy(&rest.values, share), at(0.5).0, field.0);
+    let bend = 2.0 * (first + last) - 4.0 * half;
+    let part = (first + bend - last) / (2.0 * bend);
+    let between = part.is_finite().then(|| at(part.clamp(0.0, 1.0)));
+    let all = between.into_iter().chain([(first, rest), field]);
+    all.min_by(|(a, _), (b, _)| a.total_cmp(b)).expect("two fields or three")
 }
