@@ -16,7 +16,7 @@ use crate::scene::Scene;
 pub struct Plan {
     /// The methods.
     pub methods: Vec<Method>,
-    /// Uniform refinements 0 … levels − 1; the adaptive method divides its tolerance by four from one to the next.
+    /// Uniform refinements 0 … levels − 1; adaptive methods divide their tolerance by four from one to the next.
     pub levels: usize,
     /// Runs of each kind.
     pub repeats: usize,
@@ -50,7 +50,7 @@ impl Default for Plan {
     }
 }
 
-/// Tolerance of the adaptive method at level 0.
+/// Tolerance of adaptive methods at level 0.
 const FIRST_TOLERANCE: f64 = 0.08;
 /// Triangles at which an adaptive run of a chart stops.
 const MOST_TRIANGLES: usize = 400_000;
@@ -233,7 +233,7 @@ impl Campaign<'_> {
         cache: Option<&Path>,
     ) -> Result<Ended, CampaignError> {
         let mut arguments: Vec<OsString> = vec!["scene".into(), scene.path.clone().into()];
-        let refine = if method == Method::Adaptive { 0 } else { refine };
+        let refine = if method.is_adaptive() { 0 } else { refine };
         let mut option = |name: &str, value: String| arguments.extend([name.into(), value.into()]);
         option("--method", method.name().to_string());
         option("--refine", refine.to_string());
@@ -260,9 +260,10 @@ impl Campaign<'_> {
         let budget = REFERENCE_BUDGETS * self.plan.budget;
         let mut runs = Vec::new();
         for method in reference::OF.into_iter().filter(|m| self.plan.methods.contains(m) || m.has_bracket()) {
-            let (what, refine, tolerance) = match method {
-                Method::Adaptive => (format!("to {} %", 100.0 * self.plan.reference), 0, Some(self.plan.reference)),
-                _ => (format!("{REFERENCE_PRIMAL} refinements"), REFERENCE_PRIMAL, None),
+            let (what, refine, tolerance) = if method.is_adaptive() {
+                (format!("to {} %", 100.0 * self.plan.reference), 0, Some(self.plan.reference))
+            } else {
+                (format!("{REFERENCE_PRIMAL} refinements"), REFERENCE_PRIMAL, None)
             };
             let one = One { method, refine, tolerance, quantities: &[] };
             runs.push((what, self.once(scene, one, budget, None)?));
@@ -294,7 +295,7 @@ impl Campaign<'_> {
 
 /// Tolerance of a run at `level`.
 fn tolerance(method: Method, level: usize) -> Option<f64> {
-    (method == Method::Adaptive).then(|| FIRST_TOLERANCE * 0.25_f64.powi(level as i32))
+    method.is_adaptive().then(|| FIRST_TOLERANCE * 0.25_f64.powi(level as i32))
 }
 
 fn hash(path: &Path) -> Result<String, CampaignError> {

@@ -104,9 +104,9 @@ pub struct Run {
     /// The displacement solver that was run in the place of FEniCSx.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<String>,
-    /// Uniform refinements, or steps of the tolerance for the adaptive method.
+    /// Uniform refinements, or steps of the tolerance for adaptive methods.
     pub level: usize,
-    /// Tolerance asked for, for the adaptive method.
+    /// Tolerance asked for, for adaptive methods.
     pub tolerance: Option<f64>,
     /// How it ended.
     pub status: Status,

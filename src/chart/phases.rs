@@ -21,14 +21,15 @@ const ORDER: [&str; 12] = [
     "statics and bounds",
 ];
 
-/// A bar of phases for every method, at the finest level that all uniform methods with numbers reached; the adaptive
-/// method at the run whose true error is nearest to that of the first of them.
+/// A bar of phases for every method, at the finest level that all uniform methods with numbers reached; adaptive
+/// methods at the run whose true error is nearest to that of the first of them.
 ///
 /// # Errors
 /// What the drawing library reported.
 pub fn phase_figure(scene: &SceneChart) -> Result<String, PlotError> {
     let finest = |m: Method| scene.done(m).map(|(run, _)| run.level).max();
-    let uniform = Method::ALL.into_iter().filter(|m| *m != Method::Adaptive);
+    let [adaptive, uniform] =
+        [true, false].map(|wanted| Method::ALL.into_iter().filter(move |m| m.is_adaptive() == wanted));
     let level = uniform.clone().filter_map(finest).min().unwrap_or(0);
     let mut chosen: Vec<(&Run, &Plot)> = Vec::new();
     for method in uniform {
@@ -36,7 +37,8 @@ pub fn phase_figure(scene: &SceneChart) -> Result<String, PlotError> {
     }
     let wanted = chosen.first().and_then(|(_, plot)| plot.true_error).unwrap_or(0.0);
     let distance = |plot: &Plot| plot.true_error.map_or(f64::INFINITY, |e| (e / wanted).ln().abs());
-    chosen.extend(scene.done(Method::Adaptive).min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))));
+    let nearest = |method| scene.done(method).min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
+    chosen.extend(adaptive.filter_map(nearest));
     let parts: Vec<String> = ORDER.iter().map(ToString::to_string).collect();
     let list: Vec<Bar> = chosen
         .iter()

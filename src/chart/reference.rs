@@ -4,7 +4,7 @@ use super::data::{Reference, SceneChart};
 use crate::measure::{Ended, Measured, Method};
 
 /// Guaranteed relative error that the reference of a chart is refined to …
-pub const REFERENCE_ADAPTIVE: f64 = 5e-4;
+pub const REFERENCE_ADAPTIVE: f64 = 1e-4;
 /// … and the refinements of the scene's own mesh on which FEniCSx may lower the upper bound further.
 pub const REFERENCE_PRIMAL: usize = 1;
 
@@ -85,7 +85,7 @@ impl SceneChart {
 }
 
 /// Names of the methods that a reference is made of.
-pub(super) const OF: [Method; 2] = [Method::Adaptive, Method::FenicsP2];
+pub(super) const OF: [Method; 2] = [Method::AdaptiveHp, Method::FenicsP2];
 
 #[cfg(test)]
 mod tests {

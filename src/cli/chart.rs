@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use clap::value_parser;
+use clap::{ValueEnum, value_parser};
 
 use super::methods::MethodOptions;
 use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive};
@@ -12,6 +12,7 @@ use super::progress::Progress;
 use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
+use crate::measure::Method;
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
 use crate::scene::Scene;
@@ -207,12 +208,15 @@ pub(super) fn this_program() -> Result<PathBuf, CliError> {
     })
 }
 
-/// What an adaptive run was told to reach.
-fn tolerances(scene: &SceneChart, tolerance: f64) -> String {
-    match scene.quantities().as_slice() {
-        [] => format!("--tolerance {tolerance}"),
-        names => names.iter().map(|name| format!("--tolerance-of {name}={tolerance}")).collect::<Vec<_>>().join(" "),
-    }
+/// What an adaptive run was told to refine, and to reach.
+fn tolerances(scene: &SceneChart, method: Method, tolerance: f64) -> String {
+    let adapt =
+        method.adapt().and_then(|adapt| adapt.to_possible_value()).map(|value| format!("--adapt {}", value.get_name()));
+    let tolerances = match scene.quantities().as_slice() {
+        [] => vec![format!("--tolerance {tolerance}")],
+        names => names.iter().map(|name| format!("--tolerance-of {name}={tolerance}")).collect(),
+    };
+    adapt.into_iter().chain(tolerances).collect::<Vec<_>>().join(" ")
 }
 
 /// The fastest runs for what is `wanted`, one line a scene and kind of error.
@@ -228,7 +232,7 @@ fn choices(chart: &Chart, wanted: &Accuracy) -> String {
             let line = match fastest(scene, of, error, guaranteed) {
                 Some(choice) => {
                     let how = match choice.run.tolerance {
-                        Some(tolerance) => tolerances(scene, tolerance),
+                        Some(tolerance) => tolerances(scene, choice.run.method, tolerance),
                         None => format!("--refine {}", choice.run.level),
                     };
                     format!(

@@ -19,9 +19,6 @@ use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study::{self, Adapt, Adapted, Admission, Answer, Certified, Goal, Sharpened, StudyError, outlook};
 
-/// Degree of the stresses that refinement of mesh and degrees begins with: linear ones tell little of where to raise it.
-const FIRST_DEGREE: u32 = 3;
-
 /// A scene on its way through a command.
 pub struct Session {
     /// The scene.
@@ -163,9 +160,9 @@ impl Session {
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {
-        let adaptive = solve.is_adaptive() && solve.adapt() == Adapt::Hp;
-        let degree = solve.degree.unwrap_or(if adaptive { FIRST_DEGREE } else { 1 });
-        let elements = solve.elements.clone().unwrap_or_else(|| Elements::Uniform(block(degree as usize)));
+        let first = if solve.is_adaptive() { solve.adapt() } else { Adapt::H }.first_degree();
+        let degree = solve.degree.map_or(first, |degree| degree as usize);
+        let elements = solve.elements.clone().unwrap_or_else(|| Elements::Uniform(block(degree)));
         let keep_factor = !self.scene.quantities.is_empty();
         Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }
     }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::dual::{self, DualMethod};
+use crate::study::Adapt;
 
 /// A way to answer a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -18,6 +19,8 @@ pub enum Method {
     CondensedP4,
     /// Linear stresses on meshes refined where the gap is.
     Adaptive,
+    /// Stresses whose degrees grow, on meshes refined, where the gap is.
+    AdaptiveHp,
     /// Active set, refactorising at each step.
     ActiveSet,
     /// Interior point.
@@ -40,20 +43,21 @@ pub enum Method {
 pub enum Family {
     /// Equilibrated stresses on the mesh as it is.
     Dual(Box<dyn DualMethod>),
-    /// Equilibrated stresses on meshes that are refined on the way.
-    Adaptive(Box<dyn DualMethod>),
+    /// Equilibrated stresses on meshes, and with degrees, that are refined on the way.
+    Adaptive(Adapt, Box<dyn DualMethod>),
     /// FEniCSx with displacements of this degree.
     Primal(u8),
 }
 
 impl Method {
     /// All of them, in the order of tables.
-    pub const ALL: [Method; 13] = [
+    pub const ALL: [Method; 14] = [
         Method::Condensed,
         Method::CondensedP2,
         Method::CondensedP3,
         Method::CondensedP4,
         Method::Adaptive,
+        Method::AdaptiveHp,
         Method::ActiveSet,
         Method::Clarabel,
         Method::Uzawa,
@@ -82,6 +86,7 @@ impl Method {
             Method::CondensedP3 => "condensed-p3",
             Method::CondensedP4 => "condensed-p4",
             Method::Adaptive => "adaptive",
+            Method::AdaptiveHp => "adaptive-hp",
             Method::ActiveSet => "active-set",
             Method::Clarabel => "clarabel",
             Method::Uzawa => "uzawa",
@@ -117,7 +122,8 @@ impl Method {
             Method::Condensed | Method::CondensedP2 | Method::CondensedP3 | Method::CondensedP4 => {
                 Family::Dual(Box::new(dual::Condensed::default()))
             }
-            Method::Adaptive => Family::Adaptive(Box::new(dual::Condensed::default())),
+            Method::Adaptive => Family::Adaptive(Adapt::H, Box::new(dual::Condensed::default())),
+            Method::AdaptiveHp => Family::Adaptive(Adapt::Hp, Box::new(dual::Condensed::default())),
             Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
             Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
             Method::Uzawa => Family::Dual(Box::new(dual::Uzawa::default())),
@@ -127,11 +133,13 @@ impl Method {
         }
     }
 
-    /// Polynomial degree of its stresses, or of its displacements where it is the displacement model.
+    /// Polynomial degree of its stresses, which an adaptive method begins with, or of its displacements where it is the displacement
+    /// model.
     pub fn degree(self) -> usize {
         match self {
             Method::Condensed | Method::Adaptive | Method::ActiveSet | Method::Clarabel | Method::Uzawa => 1,
             Method::FenicsP1 => 1,
+            Method::AdaptiveHp => Adapt::Hp.first_degree(),
             Method::CondensedP2 | Method::FenicsP2 => 2,
             Method::CondensedP3 | Method::FenicsP3 => 3,
             Method::CondensedP4 | Method::FenicsP4 => 4,
@@ -142,6 +150,19 @@ impl Method {
     /// Whether its stresses are of a higher degree than those of the paper.
     pub fn is_higher(self) -> bool {
         !self.is_primal() && self.degree() > 1
+    }
+
+    /// What it refines on the way to a tolerance.
+    pub fn adapt(self) -> Option<Adapt> {
+        match self.family() {
+            Family::Adaptive(adapt, _) => Some(adapt),
+            _ => None,
+        }
+    }
+
+    /// Whether it refines on the way to a tolerance.
+    pub fn is_adaptive(self) -> bool {
+        self.adapt().is_some()
     }
 
     /// Whether it delivers a two-sided bracket of its own.
@@ -164,7 +185,7 @@ mod tests {
         for (i, method) in Method::ALL.into_iter().enumerate() {
             assert_eq!(Method::of_name(method.name()), Some(method));
             assert_eq!(method.index(), i);
-            if method.is_higher() || method.is_primal() {
+            if method.is_primal() || method.is_higher() && !method.is_adaptive() {
                 assert!(method.name().ends_with(&method.degree().to_string()));
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::budget::Budget;
 use crate::primal::SolverCommand;
-use crate::study::{Goal, Wanted};
+use crate::study::{Adapt, Goal, Wanted};
 
 /// Choices of a run that are not the problem's.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,11 +26,11 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What an adaptive run is to reach.
-    pub(super) fn goal(&self) -> Goal {
+    /// What an adaptive run is to reach by refining this.
+    pub(super) fn goal(&self, adapt: Adapt) -> Goal {
         let tolerance = self.tolerance.unwrap_or(f64::MIN_POSITIVE);
         let wanted = self.quantities.iter().map(|name| Wanted { name: name.clone(), tolerance });
         let of_energy = if self.quantities.is_empty() { tolerance } else { f64::INFINITY };
-        Goal { max_triangles: self.max_triangles, wanted: wanted.collect(), ..Goal::new(of_energy) }
+        Goal { max_triangles: self.max_triangles, wanted: wanted.collect(), adapt, ..Goal::new(of_energy) }
     }
 }

@@ -32,8 +32,8 @@ pub fn measure(
     for &method in methods {
         let result = match method.family() {
             Family::Dual(solver) => stresses(&make, method, solver.as_ref(), None, settings, clock),
-            Family::Adaptive(solver) => {
-                let goal = settings.goal();
+            Family::Adaptive(adapt, solver) => {
+                let goal = settings.goal(adapt);
                 stresses(&make, method, solver.as_ref(), Some(goal), settings, clock)
             }
             Family::Primal(_) => continue,

@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 /// How series number i is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ink {
-    /// Colour after Okabe and Ito, the last three after Tol.
+    /// Colour after Okabe and Ito, the last seven after Tol.
     pub colour: RGBColor,
     /// Length of dashes and of the space between them, in pixels; `None` is a solid line.
     pub dash: Option<[i32; 2]>,
@@ -26,11 +26,17 @@ const LEFT: &[(i32, i32)] = &[(-6, 0), (4, -5), (4, 5)];
 const RIGHT: &[(i32, i32)] = &[(6, 0), (-4, 5), (-4, -5)];
 const HOURGLASS: &[(i32, i32)] = &[(-5, -5), (5, -5), (-5, 5), (5, 5)];
 
+const BOW: &[(i32, i32)] = &[(-5, -5), (5, 5), (5, -5), (-5, 5)];
+const PENTAGON: &[(i32, i32)] = &[(0, -6), (6, -1), (4, 5), (-4, 5), (-6, -1)];
+const UPRIGHT: &[(i32, i32)] = &[(-2, -6), (2, -6), (2, 6), (-2, 6)];
+const FLAT: &[(i32, i32)] = &[(-6, -2), (6, -2), (6, 2), (-6, 2)];
+
 /// Number of series that look different.
-const COUNT: usize = 10;
+const COUNT: usize = 14;
 
 /// The markers in the order of the series.
-pub const MARKERS: [&[(i32, i32)]; COUNT] = [CIRCLE, STAR, SQUARE, DIAMOND, PLUS, UP, DOWN, LEFT, RIGHT, HOURGLASS];
+pub const MARKERS: [&[(i32, i32)]; COUNT] =
+    [CIRCLE, STAR, SQUARE, DIAMOND, PLUS, UP, DOWN, LEFT, RIGHT, HOURGLASS, BOW, PENTAGON, UPRIGHT, FLAT];
 
 const COLOURS: [RGBColor; COUNT] = [
     RGBColor(0, 114, 178),
@@ -43,6 +49,10 @@ const COLOURS: [RGBColor; COUNT] = [
     RGBColor(136, 34, 85),
     RGBColor(153, 153, 51),
     RGBColor(51, 34, 136),
+    RGBColor(17, 119, 51),
+    RGBColor(170, 68, 153),
+    RGBColor(102, 37, 6),
+    RGBColor(119, 119, 119),
 ];
 
 const DASHES: [Option<[i32; 2]>; COUNT] = [
@@ -56,10 +66,14 @@ const DASHES: [Option<[i32; 2]>; COUNT] = [
     Some([5, 2]),
     Some([12, 9]),
     Some([2, 2]),
+    Some([22, 4]),
+    Some([4, 10]),
+    Some([14, 10]),
+    Some([7, 6]),
 ];
 
 impl Ink {
-    /// The ink of series `i`; after ten they repeat.
+    /// The ink of series `i`; after fourteen they repeat.
     pub fn of(i: usize) -> Ink {
         let i = i % MARKERS.len();
         Ink { colour: COLOURS[i], dash: DASHES[i], marker: MARKERS[i] }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::measure::{Answer, Machine, Method};
 
 /// The methods that promise a range in which they are correct.
-pub const PROMISING: [Method; 2] = [Method::Condensed, Method::Adaptive];
+pub const PROMISING: [Method; 3] = [Method::Condensed, Method::Adaptive, Method::AdaptiveHp];
 
 /// Everything in `stability.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -199,7 +199,7 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
     for method in methods {
         option("--method", method.name().to_string());
     }
-    if task == Task::One(Method::Adaptive) {
+    if matches!(task, Task::One(method) if method.is_adaptive()) {
         option("--tolerance", TOLERANCE.to_string());
         option("--max-triangles", MOST_TRIANGLES.to_string());
     }
@@ -270,7 +270,7 @@ fn row(what: &Sweep<'_>, r: usize, jobs: &[Job]) -> Row {
                         Some([energy, _]) => truths[0].map(|t| t.scaled(energy)),
                         None => truths[i],
                     };
-                    let truth = truth.filter(|_| method != Method::Adaptive || !changes_with_its_mesh(regime, step));
+                    let truth = truth.filter(|_| !method.is_adaptive() || !changes_with_its_mesh(regime, step));
                     let claim = Claim { known: &known, truth, first: first.as_ref(), first_error, flat: regime.flat };
                     let judged = judge(method, of(step, task).as_ref().unwrap_or(&missing), &claim);
                     if i == 0 {

@@ -51,6 +51,16 @@ pub enum Adapt {
     Hp,
 }
 
+impl Adapt {
+    /// Degree of the stresses to begin with where none is given: linear ones tell little of where to raise it.
+    pub fn first_degree(self) -> usize {
+        match self {
+            Adapt::H => 1,
+            Adapt::Hp => 3,
+        }
+    }
+}
+
 /// A quantity that is to be known more closely.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {

@@ -41,7 +41,18 @@ fn records(text: &str) -> Vec<Vec<String>> {
     all
 }
 
-const QUICK: [&str; 8] = ["--reduced", "--method", "condensed", "--method", "adaptive", "--refine", "1", "--quiet"];
+const QUICK: [&str; 10] = [
+    "--reduced",
+    "--method",
+    "condensed",
+    "--method",
+    "adaptive",
+    "--method",
+    "adaptive-hp",
+    "--refine",
+    "1",
+    "--quiet",
+];
 
 #[test]
 fn errors_fall_bounds_hold_and_phases_add_up() {
@@ -54,7 +65,7 @@ fn errors_fall_bounds_hold_and_phases_add_up() {
     // The exact energy of this scene, from meshes ten times finer: between −1.79642 and −1.79640.
     assert!(lower < -1.79640 && -1.79642 < upper, "{lower} … {upper}");
     let runs = scene["runs"].as_array().expect("runs");
-    assert_eq!(runs.len(), 4);
+    assert_eq!(runs.len(), 6);
     for run in runs {
         let plot = &run["plot"];
         let number = |key: &str| plot[key].as_f64().unwrap_or_else(|| panic!("{key} of {run}"));
@@ -69,6 +80,13 @@ fn errors_fall_bounds_hold_and_phases_add_up() {
     }
     let guaranteed = |i: usize| runs[i]["plot"]["guaranteed"].as_f64().expect("a number");
     assert!(guaranteed(1) < 0.6 * guaranteed(0));
+    // Degrees pay where both methods have the same tolerance.
+    let unknowns = |method: &str| {
+        let finest = runs.iter().rfind(|run| run["method"] == method).expect("a run");
+        assert!(finest["plot"]["guaranteed"].as_f64() <= finest["tolerance"].as_f64(), "{finest}");
+        finest["plot"]["unknowns"].as_u64().expect("a number")
+    };
+    assert!(unknowns("adaptive-hp") < unknowns("adaptive"));
     for name in ["chart.html", "chart.csv", "figures/chart-two_blocks-error-whole.svg"] {
         assert!(folder.path().join(name).is_file(), "{name}");
     }
@@ -127,8 +145,8 @@ fn a_resumed_chart_makes_only_the_runs_that_are_missing() {
     let resumed = json(folder.path());
     let runs = resumed["scenes"][0]["runs"].as_array().expect("runs");
     assert_eq!(runs[0]["plot"]["whole"]["median"].as_f64(), Some(12345.0));
-    assert_eq!(runs.len(), 4);
-    assert_eq!(runs[3]["plot"]["lower"], forgotten["plot"]["lower"]);
+    assert_eq!(runs.len(), 6);
+    assert_eq!(runs[5]["plot"]["lower"], forgotten["plot"]["lower"]);
 
     chart(folder.path(), &QUICK);
     assert_ne!(json(folder.path())["scenes"][0]["runs"][0]["plot"]["whole"]["median"].as_f64(), Some(12345.0));
@@ -163,7 +181,10 @@ fn the_fastest_choice_for_an_accuracy_is_printed() {
     let output = chart(folder.path(), &options);
     let text = String::from_utf8(output.stdout).expect("text");
     let line = text.lines().find(|l| l.contains("guaranteed error")).unwrap_or_else(|| panic!("{text}"));
-    assert!(line.starts_with("two_blocks: ") && (line.contains("--refine") || line.contains("--tolerance")));
+    assert!(
+        line.starts_with("two_blocks: ")
+            && (line.contains("--refine") || line.contains("--adapt h") && line.contains(" --tolerance "))
+    );
     let percent: f64 = line
         .split("guaranteed error ")
         .nth(1)
@@ -201,7 +222,7 @@ fn a_quantity_is_charted_with_its_interval() {
         }
         widths.push(half);
     }
-    assert!(widths.len() == 4 && widths[1] < 0.6 * widths[0], "{widths:?}");
+    assert!(widths.len() == 6 && widths[1] < 0.6 * widths[0], "{widths:?}");
     let text = String::from_utf8(output.stdout).expect("text");
     for kind in ["guaranteed", "true"] {
         let line = text.lines().find(|line| line.contains(&format!("{kind} error of tip")));

@@ -162,6 +162,7 @@ fn what_is_not_correct_where_it_is_promised_is_found() {
     assert_eq!(missed(Method::Condensed, [Correct, Correct, Inaccurate]), [0; 0]);
     assert_eq!(missed(Method::Condensed, [Correct, Inaccurate, Correct]), [1]);
     assert_eq!(missed(Method::Adaptive, [Refused, NoConvergence, Correct]), [0, 1]);
+    assert_eq!(missed(Method::AdaptiveHp, [Correct, Wrong, Correct]), [1]);
     assert_eq!(missed(Method::Clarabel, [Refused, Refused, Refused]), [0; 0]);
     let defects = |method, worst| promising(method, [Correct, Correct, worst]).defects().len();
     assert_eq!([Wrong, Crash, Inaccurate].map(|worst| defects(Method::Uzawa, worst)), [1, 1, 0]);
