@@ -16,7 +16,7 @@ use crate::scene::Scene;
 pub struct Plan {
     /// The methods.
     pub methods: Vec<Method>,
-    /// Uniform refinements 0 … levels − 1; adaptive methods divide their tolerance by four from one to the next.
+    /// Uniform refinements 0 … levels − 1; adaptive methods divide their tolerance by five from one to the next.
     pub levels: usize,
     /// Runs of each kind.
     pub repeats: usize,
@@ -51,7 +51,7 @@ impl Default for Plan {
 }
 
 /// Tolerance of adaptive methods at level 0.
-const FIRST_TOLERANCE: f64 = 0.08;
+const FIRST_TOLERANCE: f64 = 0.05;
 /// Triangles at which an adaptive run of a chart stops.
 const MOST_TRIANGLES: usize = 400_000;
 /// The reference may take this many budgets.
@@ -295,7 +295,7 @@ impl Campaign<'_> {
 
 /// Tolerance of a run at `level`.
 fn tolerance(method: Method, level: usize) -> Option<f64> {
-    method.is_adaptive().then(|| FIRST_TOLERANCE * 0.25_f64.powi(level as i32))
+    method.is_adaptive().then(|| FIRST_TOLERANCE / 5_f64.powi(level as i32))
 }
 
 fn hash(path: &Path) -> Result<String, CampaignError> {
