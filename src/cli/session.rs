@@ -17,7 +17,7 @@ use crate::problem::{Problem, ProblemError};
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
-use crate::study::{self, Adapt, Adapted, Admission, Answer, Certified, Goal, Sharpened, StudyError, outlook};
+use crate::study::{self, Adapted, Admission, Answer, Certified, Goal, Sharpened, StudyError, outlook};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -160,8 +160,7 @@ impl Session {
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {
-        let first = if solve.is_adaptive() { solve.adapt() } else { Adapt::H }.first_degree();
-        let degree = solve.degree.map_or(first, |degree| degree as usize);
+        let degree = solve.degree.unwrap_or(1) as usize;
         let elements = solve.elements.clone().unwrap_or_else(|| Elements::Uniform(block(degree)));
         let keep_factor = !self.scene.quantities.is_empty();
         Options { elements, threads: self.threads, keep_factor, budget: self.budget, ..Options::default() }

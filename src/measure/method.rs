@@ -138,8 +138,7 @@ impl Method {
     pub fn degree(self) -> usize {
         match self {
             Method::Condensed | Method::Adaptive | Method::ActiveSet | Method::Clarabel | Method::Uzawa => 1,
-            Method::FenicsP1 => 1,
-            Method::AdaptiveHp => Adapt::Hp.first_degree(),
+            Method::FenicsP1 | Method::AdaptiveHp => 1,
             Method::CondensedP2 | Method::FenicsP2 => 2,
             Method::CondensedP3 | Method::FenicsP3 => 3,
             Method::CondensedP4 | Method::FenicsP4 => 4,
@@ -185,7 +184,7 @@ mod tests {
         for (i, method) in Method::ALL.into_iter().enumerate() {
             assert_eq!(Method::of_name(method.name()), Some(method));
             assert_eq!(method.index(), i);
-            if method.is_primal() || method.is_higher() && !method.is_adaptive() {
+            if method.is_primal() || method.is_higher() {
                 assert!(method.name().ends_with(&method.degree().to_string()));
             }
         }

@@ -47,18 +47,8 @@ const UNKNOWN: f64 = 10.0;
 pub enum Adapt {
     /// The mesh.
     H,
-    /// The mesh and the degrees of its triangles.
+    /// The mesh and the degrees of its triangles. Where linear stresses on the first mesh do not do, it is solved on with cubic ones.
     Hp,
-}
-
-impl Adapt {
-    /// Degree of the stresses to begin with where none is given: linear ones tell little of where to raise it.
-    pub fn first_degree(self) -> usize {
-        match self {
-            Adapt::H => 1,
-            Adapt::Hp => 3,
-        }
-    }
 }
 
 /// A quantity that is to be known more closely.
@@ -246,8 +236,9 @@ impl Measured {
         Some(Seen { mesh: &certified.problem.mesh, elements, terms })
     }
 
-    /// Whether to bisect each triangle or to raise its degree, from what that was worth since `before`.
+    /// Whether to bisect each triangle or to raise its degree, from what that was worth since `before`. Linear stresses tell nothing of it.
     fn learn_ways(&mut self, before: Option<&Measured>) {
+        let before = before.filter(|before| before.solved.elements.largest_degree() > 1);
         if let Some((now, before)) = self.seen().zip(before)
             && let Some(then) = before.seen()
         {

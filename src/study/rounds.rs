@@ -9,7 +9,7 @@ use super::indicators::Indicators;
 use super::stage::{Solved, Stage};
 use super::trend::{EXPECTED, inherited, raised};
 use crate::dual::Size;
-use crate::element::Elements;
+use crate::element::{Elements, block};
 use crate::problem::Problem;
 use crate::report::number::vector;
 
@@ -27,6 +27,12 @@ const AIM: f64 = 0.9;
 
 /// How far growth and prediction may be off before a round is made smaller.
 const SLACK: f64 = 0.1;
+
+/// Degrees are chosen from this one on: linear stresses tell little of where to raise it.
+const FIRST_DEGREE: usize = 3;
+
+/// Where no more than this factor is left of the gap, some more linear triangles cost less than higher degrees.
+const NEAR: f64 = 4.0;
 
 /// Least growth: a mesh with hardly more triangles than the last one costs as much and tells little more.
 const WORTH_A_SOLVE: f64 = 1.1;
@@ -119,6 +125,12 @@ impl<'a> Rounds<'a> {
         if in_time < WORTH_A_SOLVE {
             return Ok(Next::Nothing("the time that is left is too short for the next mesh".to_string()));
         }
+        if left > NEAR
+            && let Some(raised) = self.with_first_degree(&stage)
+            && unknowns(&raised) <= in_time * solved
+        {
+            return Ok(Next::Mesh(Box::new(raised)));
+        }
         let growth = GROWTH.min(in_time).min(MORE * (left / (AIM * AIM)).powf(SLOWEST));
         let aim = Aim { enough: terms.total() * AIM * AIM / left, solved, most: growth * solved };
         let mut terms = terms.clone();
@@ -135,6 +147,18 @@ impl<'a> Rounds<'a> {
                 return Ok(Next::Mesh(Box::new(stage)));
             }
         }
+    }
+
+    /// Degrees are chosen, and these stresses are linear blocks: the same mesh with those that choosing begins with, where they may be
+    /// solved.
+    fn with_first_degree(&self, stage: &Stage) -> Option<Stage> {
+        let linear = matches!(stage.elements, Elements::Uniform(element) if element.name() == block(1).name());
+        if self.goal.adapt != Adapt::Hp || !linear {
+            return None;
+        }
+        let mut raised = Stage::new(stage.problem.clone(), stage.refinement.clone(), stage.elements.clone());
+        raised.elements = Elements::Uniform(block(FIRST_DEGREE));
+        self.beyond(&raised).is_none().then_some(raised)
     }
 
     /// Why no refinement reaches what is wanted: most of the error, and more than may stay, lies in triangles that are as small

@@ -87,6 +87,29 @@ fn a_solution_in_the_space_is_found_in_every_mixture() {
 /// Bounds of the energy of the paper's example, from linear stresses on 54,696 triangles.
 const TWO_BLOCKS: [f64; 2] = [-1.796_413_415_2, -1.796_413_402_3];
 
+/// Linear stresses where they do, and the degrees of a run that began with cubic ones where they do not.
+#[test]
+fn degrees_are_raised_where_linear_stresses_do_not_do() {
+    let problem = case("hertz_rigid.toml");
+    let linear = solved(&problem, &Condensed::default(), &of_degree(1));
+    let error = linear.bracket.relative_error(bounds(&linear)[1]);
+    let reached = |degree, tolerance| {
+        let goal = Goal { adapt: Adapt::Hp, ..Goal::new(tolerance) };
+        let run = adapt(problem.clone(), &Condensed::default(), &of_degree(degree), &goal, |_| ()).expect("solves");
+        assert!(run.stopped.is_none());
+        run.history.iter().map(|row| (row.triangles, row.unknowns, row.lower)).collect::<Vec<_>>()
+    };
+    let easy = reached(1, 1.1 * error);
+    assert_eq!(easy.iter().map(|row| row.0).collect::<Vec<_>>(), [problem.mesh.triangles.len()]);
+    assert_eq!(easy[0].1, linear.dual.unknowns);
+    // Not far away a few more linear triangles are enough.
+    let near = reached(1, 0.7 * error);
+    assert!(near.len() == 2 && near[1].0 > near[0].0 && near[1].1 < 2 * near[0].1, "{near:?}");
+    let [far, cubic] = [1, 3].map(|degree| reached(degree, 0.05 * error));
+    assert_eq!((far[1].0, far[1].1), (far[0].0, 2 * far[0].1));
+    assert_eq!(far[1..].iter().map(|row| row.1).collect::<Vec<_>>(), cubic.iter().map(|row| row.1).collect::<Vec<_>>());
+}
+
 #[test]
 fn mesh_and_degrees_together_cost_few_unknowns() {
     let problem = case("two_blocks.toml");
