@@ -80,12 +80,15 @@ pub fn supervise(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     Ok(Ended { outcome, log })
 }
 
-/// Ends every process that is under supervision now, and what it started, at once: this process is about to end.
+/// Ends every process that is under supervision now, and what it started, at once: this process is about to end. Nobody who waits for
+/// one of them is told of it, and none is started any more: what they would say or write could come before the end.
 pub(super) fn end_all() {
-    for pid in unpoisoned(&LIVING).iter() {
+    let living = unpoisoned(&LIVING);
+    for pid in living.iter() {
         let family = descendants(*pid);
         kill(*pid, Signal::KILL, &family);
     }
+    std::mem::forget(living);
 }
 
 struct Supervised {

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, mpsc};
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -18,12 +18,14 @@ static CHANGING: Mutex<()> = Mutex::new(());
 
 /// Waits on a thread of its own for an interrupt, a request to terminate or the end of the terminal. Then the processes
 /// under supervision end, the temporary folders are removed, and this process ends by that signal, as if it had not been
-/// waited for. A signal that is ignored, as `nohup` does, stays ignored.
+/// waited for. A signal that is ignored, as `nohup` does, stays ignored. Returns when the thread waits.
 pub fn watch() {
     let ignored = ignored();
     let waited_for: Vec<i32> = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|s| ignored & 1 << (s - 1) == 0).collect();
+    let (ready, waits) = mpsc::channel::<()>();
     let work = move || {
         let Ok(mut signals) = Signals::new(waited_for) else { return };
+        drop(ready);
         if let Some(signal) = signals.forever().next() {
             let _unbroken = unbroken();
             child::end_all();
@@ -36,6 +38,8 @@ pub fn watch() {
     };
     // Without a thread, signals end the process as they always do, and the next one cleans up.
     let _ = std::thread::Builder::new().name("signals".into()).spawn(work);
+    // Nothing is sent: this returns when the other end is gone.
+    let _ = waits.recv();
 }
 
 /// Said when a signal ends this process, as long as this value lives.
