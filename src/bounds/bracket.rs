@@ -1,39 +1,14 @@
-//! The two-sided bracket that a dual solution gives without any help, widened by what rounding can have cost.
-//!
-//! Four things separate the numbers computed from bounds in exact arithmetic; each has its term, none is estimated from
-//! the result.
-//! 1. *Evaluation.* Every energy is a sum of products of a few numbers. One relative error u in each of them changes the
-//!    energy by at most u times its sensitivity Σ |∂E/∂x| |x|, which is added up along with it: not the size of the
-//!    terms alone, because near ν = ½, in bodies that turn and in slivers the numbers behind a term are much larger
-//!    than the term. The sums themselves are compensated (Neumaier) and add one unit of the result.
-//! 2. *Equilibrium.* λ_h misses it by what [`Equilibrium`] measures on every edge and of every triangle by itself. An exactly
-//!    equilibrated field λ_h + δ is near; aλ_h being the strain of the edge displacement, Π changes by the traction
-//!    jumps of δ times the moments of that displacement, up to ½‖δ‖²_a, the square of a rounding error. The absolute
-//!    values are added up, so that no cancellation is relied upon.
-//! 3. *Equilibrium within triangles in balance*, where it is a property of the basis and not measured: a rounding error of λ_h
-//!    times the displacement along the boundary of the triangle.
-//! 4. *Admissibility* of the displacement: supports and gaps are met to a rounding error of the displacement, and what
-//!    that is worth is the traction times that error; the same expression. Where triangles are tiny, rounding of their corners
-//!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
-//!    measured.
+//! The two-sided bracket that a dual solution gives without any help, widened by what rounding can have cost ([`super::rounding`]).
 
-use std::convert::Infallible;
-
-use rayon::prelude::*;
-
-use super::energy::{Complementary, LocalGap, Potential, complementary, local_gap, potential};
+use super::counted::Counted;
+use super::energy::{Complementary, Potential};
+use super::gap::LocalGap;
 use super::jump::side_coefficients;
+use super::terms::{LowerTerms, UpperTerms};
 use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on};
 use crate::dual::{DualSolution, Equilibrium};
-use crate::element::{Displacement, StressField, side};
-use crate::problem::{Condition, Problem, Scales};
-
-/// Relative errors that the evaluation of one term can pick up: some thirty operations one after the other, each with an
-/// error of at most half a unit.
-pub const ROUNDING_PER_TERM: f64 = 16.0 * f64::EPSILON;
-
-/// Relative error of a nodal stress in the balance of its triangle, or of a displacement in a support or contact.
-const ROUNDING_PER_VALUE: f64 = 8.0 * f64::EPSILON;
+use crate::element::{Displacement, side};
+use crate::problem::{Problem, Scales};
 
 /// Lower bound, free upper bound, and the gap between them in local terms.
 #[derive(Debug, Clone)]
@@ -66,12 +41,15 @@ pub struct UpperBound {
 impl UpperBound {
     /// Evaluates an admissible displacement against λ_h.
     pub fn new(problem: &Problem, dual: &DualSolution, displacement: Displacement) -> Self {
-        let potential = potential(problem, &displacement);
-        let local = local_gap(problem, &dual.stress, &displacement);
-        let size = |t: usize| displacement.largest(t);
-        let rounding = ROUNDING_PER_TERM * potential.sensitivity + balance_rounding(problem, &dual.stress, size);
-        let widening = rounding + across_rollers(problem, &dual.stress, &displacement);
-        UpperBound { widening, displacement, potential, local, prepared: Prepared::default() }
+        let terms = UpperTerms::new(problem, &dual.stress, &displacement, Counted::ALL);
+        Self::of_terms(problem, displacement, terms)
+    }
+
+    /// The same with all terms that there are.
+    pub fn of_terms(problem: &Problem, displacement: Displacement, terms: UpperTerms) -> Self {
+        let UpperTerms { potential, widening, triangles, pairs } = terms;
+        let local = LocalGap::of(problem, triangles, pairs);
+        UpperBound { displacement, potential, widening, local, prepared: Prepared::default() }
     }
 
     /// 𝓛(v), plus what rounding can have cost.
@@ -101,34 +79,25 @@ impl Bracket {
         start: Option<NodalValues>,
         keep: bool,
     ) -> Self {
-        let free =
-            |floor| Ok::<_, Infallible>(ground.and_then(|g| admissible_on(g, problem, dual, floor, start, keep)));
-        let Ok(bracket) = Self::with(problem, dual, free);
-        bracket
+        let lower = LowerTerms::new(problem, &dual.stress, &dual.moments, Counted::ALL);
+        let made = ground.and_then(|g| admissible_on(g, problem, dual, lower.complementary.lower(), start, keep));
+        let free = made.map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
+        Self::of_terms(problem, dual, lower, free)
     }
 
-    /// Does the same with an admissible displacement that `free` makes, given a lower bound of its energy.
-    ///
-    /// # Errors
-    /// That of `free`.
-    pub fn with<E>(
+    /// The same with what was found of both sides.
+    pub fn of_terms(
         problem: &Problem,
         dual: &DualSolution,
-        free: impl FnOnce(f64) -> Result<Result<(Displacement, Prepared), NoUpperBound>, E>,
-    ) -> Result<Self, E> {
-        let complementary = complementary(problem, &dual.stress);
-        let largest = largest_by_edge(problem, dual);
-        let size = |t: usize| problem.mesh.triangle_edges[t].map(|e| largest[e]).into_iter().fold(0.0, f64::max);
-        let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance_rounding(problem, &dual.stress, size);
-        let remainder = problem.scene.thickness * dual.equilibrium.work;
-        let free = free(complementary.lower())?
-            .map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
-        Ok(Bracket {
-            complementary,
-            lower_widening: rounding + remainder,
+        lower: LowerTerms,
+        free: Result<UpperBound, NoUpperBound>,
+    ) -> Self {
+        Bracket {
+            complementary: lower.complementary,
+            lower_widening: lower.rounding + problem.scene.thickness * dual.equilibrium.work,
             round_off: Scales::new(problem).round_off.energy,
             free,
-        })
+        }
     }
 
     /// −Π(λ_h), less what rounding and inexact equilibrium can have cost.
@@ -164,42 +133,4 @@ pub fn work_of_remainders(problem: &Problem, dual: &DualSolution, v: &Displaceme
         }
     }
     problem.scene.thickness * Equilibrium::measure(problem, &dual.stress, &moments).work
-}
-
-/// The largest displacement on every edge that its moments in the dual solution stand for: a polynomial lies between its
-/// coefficients.
-fn largest_by_edge(problem: &Problem, dual: &DualSolution) -> Vec<f64> {
-    let of = |e: usize| {
-        let along = |c: usize| side::from_moments(&dual.moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>());
-        let largest = along(0).iter().zip(along(1)).fold(0.0_f64, |m, (x, y)| m.max(x.hypot(y)));
-        largest / problem.mesh.edge_frame(e).0
-    };
-    (0..problem.mesh.edges.len()).into_par_iter().with_min_len(256).map(of).collect()
-}
-
-/// A rounding error of the tractions on the boundary of every triangle times the displacement there, whose size `size`
-/// gives by triangle; thickness included.
-fn balance_rounding(problem: &Problem, stress: &StressField, size: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let mesh = &problem.mesh;
-    let term = |t: usize| {
-        let perimeter: f64 = mesh.triangle_edges[t].iter().map(|&e| mesh.edge_frame(e).0).sum();
-        let largest = stress.block(t).iter().flatten().fold(0.0_f64, |m, s| m.max(s.abs()));
-        perimeter * largest * size(t)
-    };
-    // Threads make the terms, and one adds them up in their order.
-    let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(term).collect();
-    ROUNDING_PER_VALUE * problem.scene.thickness * terms.iter().sum::<f64>()
-}
-
-/// The traction on rollers times the displacement across them; thickness included.
-fn across_rollers(problem: &Problem, stress: &StressField, v: &Displacement) -> f64 {
-    let term = |e: usize| {
-        let (length, [x, y]) = problem.mesh.edge_frame(e);
-        let across = |values: &[[f64; 2]]| values.iter().map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
-        let degree = problem.mesh.edges[e].triangles[0].map_or(0, |t| stress.degree(t));
-        let traction = stress.edge_traction(&problem.mesh, e, 0, degree);
-        length * across(&traction) * across(&side_coefficients(problem, v, e))
-    };
-    let rollers = (0..problem.mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller);
-    problem.scene.thickness * rollers.map(term).sum::<f64>()
 }

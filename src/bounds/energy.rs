@@ -1,14 +1,9 @@
-//! Complementary and potential energy, and the gap between them term by term.
-//!
-//! −Π(λ) = −½∫ a λ:λ + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g, 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫_{Γτ} P·v, and
-//!
-//! 𝓛(v) + Π(λ) = ½‖c e(v) − λ‖²_a + ∫_{ΓK} (−t(λ)) (g − (v' − v'')·n̂) ds
-//!
-//! for equilibrated λ with T' = t n̂ on Γ_K and admissible v; t is T_n where the direction of contact n̂ is the normal n'. The two sides share no arithmetic.
+//! Complementary and potential energy: −Π(λ) = −½∫ a λ:λ + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g and 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫_{Γτ} P·v.
 
 use rayon::prelude::*;
 
-use super::jump::{openings, side_coefficients};
+use super::counted::Counted;
+use super::jump::side_coefficients;
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
@@ -62,12 +57,20 @@ pub fn square(problem: &Problem, stress: &StressField) -> f64 {
 
 /// Computes the complementary energy of `stress`, thickness included.
 pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
+    complementary_of(problem, stress, Counted::ALL)
+}
+
+/// What `counted` has of it.
+pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> Complementary {
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
+            if !counted.triangle(t) {
+                return (0.0, 0.0);
+            }
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
             let sum = 0.5 * square_on(stress, t, material, third);
@@ -79,9 +82,9 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
         .collect();
     let strain: Sum = terms.iter().map(|t| t.0).collect();
     let sensitivity: f64 = terms.iter().map(|t| t.1).sum();
-    let support = support_work(problem, stress);
+    let support = support_work_of(problem, stress, counted);
     let mut gap = Sum::default();
-    for pair in problem.pairs() {
+    for (_, pair) in problem.pairs().enumerate().filter(|(p, _)| counted.pair(*p)) {
         let t = contact_traction(problem, stress, pair);
         gap.add(pair.length * side::integral(&t, &pair.gap));
     }
@@ -97,10 +100,16 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
 
 /// ∫_{Γu} T·u0 of a stress, per unit thickness.
 pub fn support_work(problem: &Problem, stress: &StressField) -> Sum {
+    support_work_of(problem, stress, Counted::ALL)
+}
+
+fn support_work_of(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> Sum {
     let mesh = &problem.mesh;
     let mut work = Sum::default();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Clamped(u0) = condition {
+        if let Condition::Clamped(u0) = condition
+            && counted.boundary_edge(mesh, e)
+        {
             let (length, _) = mesh.edge_frame(e);
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
             let tractions = stress.edge_traction(&problem.mesh, e, 0, degree);
@@ -134,12 +143,20 @@ impl Potential {
 
 /// Computes the potential energy of `v`, thickness included.
 pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
+    potential_of(problem, v, Counted::ALL)
+}
+
+/// What `counted` has of it.
+pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -> Potential {
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let terms: Vec<[f64; 2]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
+            if !counted.triangle(t) {
+                return [0.0; 2];
+            }
             let corners = mesh.corners(t);
             let area = sub_area(corners);
             let material = &materials[mesh.body[t]];
@@ -159,7 +176,8 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
         .collect();
     let strain: Sum = terms.iter().map(|t| t[0]).collect();
     let sensitivity: f64 = terms.iter().map(|t| t[1]).sum();
-    let work = work(problem, v);
+    let force = |body: usize| problem.scene.bodies[body].body_force;
+    let work = counted_work(problem, v, force, problem.tractions(), counted);
     let t = problem.scene.thickness;
     Potential {
         strain: t * strain.value(),
@@ -182,9 +200,19 @@ pub fn work_of(
     force: impl Fn(usize) -> [f64; 2],
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
 ) -> Sum {
+    counted_work(problem, v, force, tractions, Counted::ALL)
+}
+
+fn counted_work(
+    problem: &Problem,
+    v: &Displacement,
+    force: impl Fn(usize) -> [f64; 2],
+    tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
+    counted: Counted<'_>,
+) -> Sum {
     let mesh = &problem.mesh;
     let mut work = Sum::default();
-    for t in 0..mesh.triangles.len() {
+    for t in (0..mesh.triangles.len()).filter(|t| counted.triangle(*t)) {
         let force = force(mesh.body[t]);
         if force != [0.0; 2] {
             // Every Bernstein polynomial has the same mean.
@@ -195,6 +223,7 @@ pub fn work_of(
             }
         }
     }
+    let tractions = tractions.filter(|(e, _)| counted.boundary_edge(mesh, *e));
     tractions.for_each(|(e, ends)| work.extend(work_on_edge(problem, v, e, ends)));
     work
 }
@@ -221,66 +250,4 @@ pub fn shape(corners: [[f64; 2]; 3]) -> f64 {
     let [a, b, c] = corners;
     let longest = square(a, b).max(square(b, c)).max(square(c, a));
     (longest / (6.0 * sub_area(corners))).max(1.0)
-}
-
-/// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LocalGap {
-    /// ½‖c e(v) − λ‖²_a on each triangle.
-    pub triangles: Vec<f64>,
-    /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, interface by interface.
-    pub pairs: Vec<Vec<f64>>,
-    /// Their sum.
-    pub total: f64,
-}
-
-/// Integrates the local terms of the gap, thickness included.
-pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> LocalGap {
-    let thickness = problem.scene.thickness;
-    let triangles = constitutive_error(problem, stress, v);
-    let pairs: Vec<Vec<f64>> = problem
-        .interfaces
-        .iter()
-        .map(|interface| {
-            interface
-                .pairs
-                .iter()
-                .map(|pair| {
-                    let t = contact_traction(problem, stress, pair);
-                    -thickness * pair.length * side::integral(&t, &openings(problem, v, pair))
-                })
-                .collect()
-        })
-        .collect();
-    let total: Sum = triangles.iter().copied().chain(pairs.iter().flatten().copied()).collect();
-    LocalGap { triangles, pairs, total: total.value() }
-}
-
-/// ½‖c e(v) − λ‖²_a on each triangle, thickness included.
-pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacement) -> Vec<f64> {
-    let mesh = &problem.mesh;
-    let materials = problem.materials();
-    let thickness = problem.scene.thickness;
-    (0..mesh.triangles.len())
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|t| {
-            let material = &materials[mesh.body[t]];
-            let corners = mesh.corners(t);
-            let (of_v, own) = (v.degree(t) - 1, stress.degree(t));
-            let (samples, shapes) = (Samples::of(of_v, own), Samples::of_stress(own, of_v));
-            let mut sum = 0.0;
-            let mut strains = Strains::default();
-            for sub in 0..3 {
-                strains.on(corners, v, t, sub);
-                for (q, (_, weight)) in samples.points.iter().enumerate() {
-                    let e = strains.sample(samples, q);
-                    let of_stress = material.strain(stress.sample(t, sub, shapes, q));
-                    let d = [e[0] - of_stress[0], e[1] - of_stress[1], e[2] - of_stress[2]];
-                    sum += 0.5 * weight * sub_area(corners) * material.strain_product(d, d);
-                }
-            }
-            thickness * sum
-        })
-        .collect()
 }

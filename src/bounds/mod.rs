@@ -2,23 +2,27 @@
 
 mod at_rest;
 mod bracket;
+mod counted;
 pub mod energy;
+mod gap;
 mod jump;
 mod mid;
 mod on_ranks;
 mod pipe;
 mod ranks;
+mod rounding;
 mod sum;
+mod terms;
 pub mod upper;
 
 pub use at_rest::without_stress;
-pub use bracket::{Bracket, ROUNDING_PER_TERM, UpperBound, work_of_remainders};
-pub use energy::{
-    Complementary, LocalGap, Potential, complementary, local_gap, potential, support_work, work, work_of,
-};
+pub use bracket::{Bracket, UpperBound, work_of_remainders};
+pub use energy::{Complementary, Potential, complementary, potential, support_work, work, work_of};
+pub use gap::{LocalGap, local_gap};
 pub use jump::{openings, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use on_ranks::{make_part, on_ranks};
+pub use rounding::ROUNDING_PER_TERM;
 pub use sum::Sum;
 pub use upper::{
     Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation,

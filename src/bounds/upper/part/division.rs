@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use super::cut::{Cut, place};
 use super::traffic::Traffic;
 use super::{Found, Part};
+use crate::bounds::UpperBound;
+use crate::bounds::terms::{LowerTerms, UpperTerms};
 use crate::bounds::upper::energies::similar;
 use crate::bounds::upper::fronts::Fronts;
 use crate::bounds::upper::groups::Group;
@@ -170,7 +172,6 @@ impl<'a> Division<'a> {
                 groups.push(cut.group(group));
             }
         }
-        let own_pair = |v: usize| self.rank_of(v) == Some(rank);
         let here = |nodes: &[usize]| nodes.iter().map(|node| place(&cut.nodes, *node)).collect();
         let mut after = vec![Traffic::default(); self.fronts];
         for ((front, from, to), nodes) in &self.after {
@@ -198,7 +199,7 @@ impl<'a> Division<'a> {
             fronts,
             size: size(&self.nodes),
             own_triangles: cut.triangles.iter().map(|t| self.owner[*t] == rank).collect(),
-            own_pairs: self.problem.pairs().map(|pair| own_pair(pair.first[0])).collect(),
+            own_pairs: self.problem.pairs().map(|pair| self.rank_of(pair.first[0]) == Some(rank)).collect(),
             own_nodes: here(&self.nodes_of(rank)),
             after,
             all,
@@ -210,12 +211,27 @@ impl<'a> Division<'a> {
         self.owned_nodes().filter(|(_, owner)| *owner == Some(rank)).map(|(node, _)| node).collect()
     }
 
-    /// The displacement of what the ranks found, one after the other; `None` where that is not what belongs there. Whatever the
-    /// numbers are, it is admissible: on contact and supports they are drawn to what these allow.
+    /// The displacement of what the ranks found, one after the other, and both sides of the bracket; `None` where that is not what
+    /// belongs there.
     ///
     /// # Errors
     /// [`NoUpperBound::ForcedPenetration`].
-    pub fn displacement(&self, found: &[Found]) -> Result<Option<Displacement>, NoUpperBound> {
+    pub fn bracket(&self, found: &[Found]) -> Result<Option<(LowerTerms, UpperBound)>, NoUpperBound> {
+        let Some(displacement) = self.displacement(found)? else { return Ok(None) };
+        let triangles = gathered(found.iter().map(|found| &found.triangles), self.owner.iter().map(|rank| Some(*rank)));
+        let pairs = self.problem.pairs().map(|pair| self.rank_of(pair.first[0]));
+        let pairs = gathered(found.iter().map(|found| &found.pairs), pairs);
+        let lower = LowerTerms::sum(found.iter().map(|found| &found.lower[..]));
+        let Some((triangles, pairs)) = triangles.zip(pairs) else { return Ok(None) };
+        let upper = UpperTerms::sum(found.iter().map(|found| &found.upper[..]), triangles, pairs);
+        let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
+        let whole = finite(&lower.numbers()) && finite(&upper.numbers());
+        Ok(whole.then(|| (lower, UpperBound::of_terms(self.problem, displacement, upper))))
+    }
+
+    /// The displacement. Whatever the numbers are, it is admissible: on contact and supports they are drawn to what these allow, as
+    /// the ranks do with the same values.
+    fn displacement(&self, found: &[Found]) -> Result<Option<Displacement>, NoUpperBound> {
         let mesh = &self.problem.mesh;
         let degree = |t: usize| self.nodes.triangle_degree(mesh, t);
         let inner = |t: usize| split_len(degree(t)) - 3 * degree(t);
@@ -242,4 +258,15 @@ impl<'a> Division<'a> {
         let field = restricted(self.problem, &self.holds, &rows(self.problem, &self.nodes), field, &Whole)?.0;
         Ok(Some(interior::filled_with(self.problem, &field, |t| &inside[start[t]..start[t + 1]])))
     }
+}
+
+/// The terms that the ranks have, each its own in order, in the order of what `owners` says the ranks of; `None` where these are
+/// not as many, or not finite.
+fn gathered<'a>(
+    found: impl Iterator<Item = &'a Vec<f64>>,
+    owners: impl Iterator<Item = Option<usize>>,
+) -> Option<Vec<f64>> {
+    let mut own: Vec<_> = found.map(|terms| terms.iter()).collect();
+    let all: Option<Vec<f64>> = owners.map(|rank| own.get_mut(rank?)?.next().copied()).collect();
+    all.filter(|all| own.iter().all(|left| left.len() == 0) && all.iter().all(|term| term.is_finite()))
 }

@@ -104,7 +104,10 @@ impl Found {
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         let mut out = Writer(out);
         out.vectors(&self.values)?;
-        out.vectors(&self.inside)
+        out.vectors(&self.inside)?;
+        [&self.lower, &self.upper, &self.triangles, &self.pairs]
+            .into_iter()
+            .try_for_each(|list| out.numbers(list.iter().copied()))
     }
 
     /// Reads one that was written.
@@ -113,7 +116,14 @@ impl Found {
     /// Those of `from`, and numbers that are none of a result.
     pub fn read(from: impl Read) -> io::Result<Self> {
         let mut from = Reader(from);
-        Ok(Found { values: from.vectors()?, inside: from.vectors()? })
+        Ok(Found {
+            values: from.vectors()?,
+            inside: from.vectors()?,
+            lower: from.numbers()?,
+            upper: from.numbers()?,
+            triangles: from.numbers()?,
+            pairs: from.numbers()?,
+        })
     }
 }
 

@@ -27,8 +27,10 @@ use super::prepared::Made;
 use super::rows::rows;
 use super::share::Share;
 use super::{Groundwork, NoUpperBound, Pull, interior, relaxed, restricted};
+use crate::bounds::counted::Counted;
 use crate::bounds::ranks::Ranks;
 use crate::bounds::sum::Sum;
+use crate::bounds::terms::{LowerTerms, UpperTerms};
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 
@@ -66,16 +68,29 @@ pub struct Found {
     pub values: Vec<[f64; 2]>,
     /// Coefficients inside its triangles, one triangle after the other.
     pub inside: Vec<[f64; 2]>,
+    /// Its terms of the lower bound and of the energy of the displacement, as [`LowerTerms`] and [`UpperTerms`] number them.
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    /// The terms of the gap on its triangles and on its contact pairs.
+    pub triangles: Vec<f64>,
+    pub pairs: Vec<f64>,
 }
 
 impl Part {
-    /// Makes this rank's part of the displacement; `floor` is a lower bound of the energy.
+    /// Makes this rank's part of the displacement, and of both sides of the bracket. Relaxing ends near `floor`, a lower bound of
+    /// the energy: that of all ranks where none is given.
     ///
     /// # Errors
     /// [`NoUpperBound`], on all ranks alike.
-    pub fn displacement(&self, floor: f64, ranks: &dyn Ranks) -> Result<Found, NoUpperBound> {
-        let Part { problem, holds, .. } = self;
-        let nodes = Nodes::new(problem.mesh.points.len(), self.moments.iter().map(<[_]>::len));
+    pub fn bracket(&self, floor: Option<f64>, ranks: &dyn Ranks) -> Result<Found, NoUpperBound> {
+        let Part { problem, holds, stress, moments, own_triangles, own_pairs, .. } = self;
+        let counted = Counted::of(own_triangles, own_pairs);
+        let lower = LowerTerms::new(problem, stress, moments, counted).numbers();
+        let floor = floor.unwrap_or_else(|| {
+            let all = ranks.gather(&lower);
+            LowerTerms::sum(all.iter().map(Vec::as_slice)).complementary.lower()
+        });
+        let nodes = Nodes::new(problem.mesh.points.len(), moments.iter().map(<[_]>::len));
         let rows = rows(problem, &nodes);
         let model = Model::shaped(problem, holds, &nodes, &rows, Pull::SCENE, |t| self.like[t]);
         let of_vertex = of_vertices(&self.groups, nodes.vertices());
@@ -83,17 +98,23 @@ impl Part {
         let mut patches = Patches::of(&nodes, self.size, self.groups.clone(), of_vertex, fronts);
         // Before the first sweep, in which ranks wait for each other.
         patches.factorise(&model);
-        let own_rows = self.own_pairs.iter().zip(&rows).flat_map(|(own, rows)| rows.iter().map(|_| *own)).collect();
+        let own_rows = own_pairs.iter().zip(&rows).flat_map(|(own, rows)| rows.iter().map(|_| *own)).collect();
         let share = OfPart { part: self, own_rows, ranks };
         let made = Made { model, patches };
         let mut ground = Groundwork { nodes, holds: holds.clone(), rows, made };
-        let field = relaxed(&mut ground, problem, (&self.stress, &self.moments), floor, None, &share)?;
+        let field = relaxed(&mut ground, problem, (stress, moments), floor, None, &share)?;
         let values = self.own_nodes.iter().map(|node| field.values[*node]).collect();
         let field = restricted(problem, holds, &ground.rows, field, &share)?.0;
         let filled = interior::fill(problem, &field, &ground.made.model);
-        let own = (0..filled.len()).filter(|t| self.own_triangles[*t]);
+        let own = (0..filled.len()).filter(|t| own_triangles[*t]);
         let inside = own.flat_map(|t| &filled.block(t)[3 * filled.degree(t)..]).copied().collect();
-        Ok(Found { values, inside })
+        let terms = UpperTerms::new(problem, stress, &filled, counted);
+        let upper = terms.numbers();
+        let [triangles, pairs] = [(terms.triangles, own_triangles), (terms.pairs, own_pairs)].map(|(terms, own)| {
+            let own = terms.into_iter().zip(own).filter(|(_, own)| **own);
+            own.map(|(term, _)| term).collect()
+        });
+        Ok(Found { values, inside, lower: lower.into(), upper: upper.into(), triangles, pairs })
     }
 }
 
