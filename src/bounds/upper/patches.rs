@@ -39,8 +39,6 @@ pub fn size(nodes: &Nodes) -> f64 {
 /// What relaxing needs of a mesh, whatever the loads.
 pub struct Patches {
     groups: Vec<Group>,
-    /// The group of each vertex.
-    of_vertex: Vec<usize>,
     factors: Factors,
     /// What each patch gained when it was moved last.
     gained: Vec<f64>,
@@ -57,11 +55,11 @@ impl Patches {
     pub fn new(problem: &Problem, nodes: &Nodes) -> Self {
         let (groups, of_vertex) = grouped(problem, nodes);
         let fronts = (rayon::current_num_threads() > 1).then(|| Fronts::new(problem, &groups, &of_vertex));
-        Self::of(nodes, size(nodes), groups, of_vertex, fronts)
+        Self::of(nodes, size(nodes), groups, fronts)
     }
 
     /// Those of given groups, `size` being that of a patch relative to quadratics; with `fronts` they can be moved front by front.
-    pub fn of(nodes: &Nodes, size: f64, groups: Vec<Group>, of_vertex: Vec<usize>, fronts: Option<Fronts>) -> Self {
+    pub fn of(nodes: &Nodes, size: f64, groups: Vec<Group>, fronts: Option<Fronts>) -> Self {
         let patch = || Mutex::new(Patch::new(nodes.count(), (MOST_IN_PATCH as f64 * size) as usize));
         let threads = rayon::current_num_threads();
         Patches {
@@ -71,7 +69,6 @@ impl Patches {
             fronts,
             together: ((SHARED_FROM / (size * size)) as usize).max(LEAST_SHARED),
             groups,
-            of_vertex,
         }
     }
 
@@ -89,63 +86,65 @@ impl Patches {
         self.groups.len()
     }
 
-    /// Moves the patches `which`, in this order or from the last one `back`, each to its minimum, and gives the energy gained.
+    /// Moves all patches, or those of `which` in order, from the first one on or from the last one `back`, each to its minimum, and
+    /// gives the energy gained. Threads and processes share them: not a digit of the values is another.
     pub fn sweep(
         &mut self,
         model: &Model,
-        which: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator,
-        back: bool,
-        slack: f64,
-        values: &mut [[f64; 2]],
-    ) -> f64 {
-        let Patches { groups, factors, gained, patches, .. } = self;
-        let Some(patch) = patches.first_mut() else { return 0.0 };
-        let patch = patch.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let mut sum = 0.0;
-        let mut relax = |k: usize| {
-            let step = patch.step(model, &groups[k], k, factors, slack, values);
-            gained[k] = step.as_ref().map_or(0.0, |step| step.gain);
-            step.iter().flat_map(|step| patch.moves(step)).for_each(|(node, by)| add(&mut values[node], by));
-            sum += gained[k];
-        };
-        if back {
-            which.rev().for_each(&mut relax)
-        } else {
-            which.for_each(&mut relax)
-        }
-        sum
-    }
-
-    /// The same with all patches, which threads and processes share: not a digit of the values is another.
-    pub fn sweep_all(
-        &mut self,
-        model: &Model,
+        which: Option<&[usize]>,
         back: bool,
         slack: f64,
         values: &mut [[f64; 2]],
         share: &dyn Share,
     ) -> f64 {
-        let Some(fronts) = self.fronts.take() else {
-            return self.sweep(model, 0..self.count(), back, slack, values);
+        let all: Vec<usize>;
+        let which_of_all = match which {
+            Some(which) => which,
+            None => {
+                all = (0..self.count()).collect();
+                &all
+            }
         };
-        let mut along = |(number, front): (usize, &[usize])| {
-            self.move_front(model, front, slack, values);
-            share.hand_on(number, values);
-        };
-        if back {
-            fronts.iter().enumerate().rev().for_each(&mut along)
+        if let Some(fronts) = self.fronts.take() {
+            let mut moves = vec![which.is_none(); self.count()];
+            which.iter().copied().flatten().for_each(|k| moves[*k] = true);
+            let mut along = |(number, front): (usize, &[usize])| {
+                let front: Vec<usize> = front.iter().copied().filter(|k| moves[*k]).collect();
+                self.move_front(model, &front, slack, values);
+                share.hand_on(number, values);
+            };
+            if back {
+                fronts.iter().enumerate().rev().for_each(&mut along)
+            } else {
+                fronts.iter().enumerate().for_each(&mut along)
+            }
+            self.fronts = Some(fronts);
+        } else if back {
+            self.move_each(model, which_of_all.iter().rev().copied(), slack, values);
         } else {
-            fronts.iter().enumerate().for_each(&mut along)
+            self.move_each(model, which_of_all.iter().copied(), slack, values);
         }
-        self.fronts = Some(fronts);
         // In the order of one patch after the other.
-        share.total(if back { self.gained.iter().rev().sum() } else { self.gained.iter().sum() })
+        let gains = which_of_all.iter().map(|k| self.gained[*k]);
+        share.total(if back { gains.rev().sum() } else { gains.sum() })
+    }
+
+    /// Moves patches, one after the other.
+    fn move_each(&mut self, model: &Model, which: impl Iterator<Item = usize>, slack: f64, values: &mut [[f64; 2]]) {
+        let Patches { groups, factors, gained, patches, .. } = self;
+        let Some(patch) = patches.first_mut() else { return };
+        let patch = patch.get_mut().unwrap_or_else(PoisonError::into_inner);
+        for k in which {
+            let step = patch.step(model, &groups[k], k, factors, slack, values);
+            gained[k] = step.as_ref().map_or(0.0, |step| step.gain);
+            step.iter().flat_map(|step| patch.moves(step)).for_each(|(node, by)| add(&mut values[node], by));
+        }
     }
 
     /// Moves patches that do not touch each other.
     fn move_front(&mut self, model: &Model, front: &[usize], slack: f64, values: &mut [[f64; 2]]) {
         if front.len() < 2 * self.together {
-            self.sweep(model, front.iter().copied(), false, slack, values);
+            self.move_each(model, front.iter().copied(), slack, values);
             return;
         }
         let Patches { groups, factors, patches, together, .. } = &*self;
@@ -166,40 +165,36 @@ impl Patches {
     }
 
     /// The patches that gained more than `quiet` when they were moved last, and those beside them, in order.
-    pub fn to_move(&self, problem: &Problem, quiet: f64) -> Vec<usize> {
-        self.and_gaining(problem, quiet, vec![false; self.count()])
+    pub fn to_move(&self, problem: &Problem, model: &Model, quiet: f64, share: &dyn Share) -> Vec<usize> {
+        // The gain of the patch of each vertex, where other processes move it too.
+        let mut gains = vec![[0.0; 2]; model.free.len()];
+        for (group, gained) in self.groups.iter().zip(&self.gained) {
+            group.vertices.iter().for_each(|v| gains[*v] = [*gained, 0.0]);
+        }
+        share.refresh(&mut gains);
+        let gains = |t: &usize| problem.mesh.triangles[*t].iter().any(|v| gains[*v][0] > quiet);
+        (0..self.count()).filter(|k| self.groups[*k].triangles.iter().any(gains)).collect()
     }
 
     /// The same with those that contact bounds.
-    pub fn to_move_or_bounded(&self, problem: &Problem, model: &Model, quiet: f64) -> Vec<usize> {
-        let bounded = |group: &Group| group.vertices.iter().any(|v| !model.rows_at[*v].is_empty());
-        self.and_gaining(problem, quiet, self.groups.iter().map(bounded).collect())
-    }
-
-    fn and_gaining(&self, problem: &Problem, quiet: f64, mut moves: Vec<bool>) -> Vec<usize> {
-        for (group, _) in self.groups.iter().zip(&self.gained).filter(|(_, gained)| **gained > quiet) {
-            for v in group.triangles.iter().flat_map(|t| problem.mesh.triangles[*t]) {
-                moves[self.of_vertex[v]] = true;
-            }
-        }
-        (0..self.count()).filter(|k| moves[*k]).collect()
+    pub fn to_move_or_bounded(&self, problem: &Problem, model: &Model, quiet: f64, share: &dyn Share) -> Vec<usize> {
+        let bounded = |k: &usize| self.groups[*k].vertices.iter().any(|v| !model.rows_at[*v].is_empty());
+        let mut few = self.to_move(problem, model, quiet, share);
+        few.extend((0..self.count()).filter(bounded));
+        few.sort_unstable();
+        few.dedup();
+        few
     }
 }
 
-/// The vertices of a mesh in groups, and the group of each.
+/// The vertices of a mesh in groups, and the group of each; of one that is in none, the first.
 pub fn grouped(problem: &Problem, nodes: &Nodes) -> (Vec<Group>, Vec<usize>) {
     let groups = groups(problem, MOST_VERTICES_BY_DEGREE / nodes.highest());
-    let of_vertex = of_vertices(&groups, nodes.vertices());
-    (groups, of_vertex)
-}
-
-/// The group of each of so many vertices; of one that is in none, the first.
-pub fn of_vertices(groups: &[Group], count: usize) -> Vec<usize> {
-    let mut of_vertex = vec![0; count];
+    let mut of_vertex = vec![0; nodes.vertices()];
     for (number, group) in groups.iter().enumerate() {
         group.vertices.iter().for_each(|v| of_vertex[*v] = number);
     }
-    of_vertex
+    (groups, of_vertex)
 }
 
 #[cfg(test)]
@@ -276,8 +271,9 @@ pub(super) mod tests {
                 assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * patches.together));
                 patches.fronts = patches.fronts.take().filter(|_| !alone);
                 let mut values = start.values.clone();
-                let gains: Vec<f64> =
-                    [false, true, false].map(|back| patches.sweep_all(&model, back, 1e-12, &mut values, &Whole)).into();
+                let gains: Vec<f64> = [false, true, false]
+                    .map(|back| patches.sweep(&model, None, back, 1e-12, &mut values, &Whole))
+                    .into();
                 (gains, values)
             };
             let (alone, shared) = in_threads(|| (relaxed(true), relaxed(false)));

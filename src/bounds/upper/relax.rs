@@ -36,6 +36,8 @@ const WORTH_WHERE_BENT: f64 = 1e-3;
 /// Of the smallest gain that is worth a sweep this part, divided among all patches: a patch that gained less, and lies beside none
 /// that gained more, rests …
 const QUIET: f64 = 0.05;
+/// (the same near a lower bound, where a sweep of few patches is worth less in proportion)
+const QUIET_NEAR: f64 = 0.3;
 /// … where no more than this part of all have to move.
 const FEW: f64 = 0.5;
 
@@ -77,26 +79,30 @@ impl Until {
         }
     }
 
-    /// What a patch must gain to be moved again with few others, where these are `count`: what is wanted is known then.
-    fn quiet(self, count: usize) -> Option<f64> {
+    /// What a sweep of all patches that leads to this energy must gain to be worth its time; `part` of the gap is.
+    fn worth(self, part: f64, energy: f64, rounding: f64) -> f64 {
         match self {
-            Until::Near(_) => None,
-            Until::Gains { least, .. } => Some(QUIET * least / count as f64),
-        }
-    }
-
-    /// Whether a sweep that gained `gained` and led to this energy, which is known but for `rounding`, was the last one.
-    /// `part` of the gap is worth a sweep.
-    fn is_reached(self, part: f64, energy: f64, rounding: f64, gained: f64) -> bool {
-        match self {
-            Until::Gains { least, .. } => gained <= least || gained <= NO_GAIN * energy.abs(),
+            Until::Gains { least, .. } => least.max(NO_GAIN * energy.abs()),
             Until::Near(floor) => {
                 let gap = (energy - floor).max(0.0);
                 // Where bodies that nothing holds have turned far, little energy is lost in the rounding of much motion, and
                 // what a sweep gains is known to more digits.
                 let nothing = (part * rounding).max(NO_GAIN * floor.abs());
-                let worth = if gap == 0.0 { nothing } else { part * (GOOD * floor.abs() / gap).min(1.0) * gap };
-                gained <= worth
+                if gap == 0.0 { nothing } else { part * (GOOD * floor.abs() / gap).min(1.0) * gap }
+            }
+        }
+    }
+
+    /// What a patch must gain to be moved again with few others, where these are `count`; none where all go on moving. Near a lower
+    /// bound that is where contact does not bend and the bound is good already, so that what is left of the gap lies at corners and ends of
+    /// contact: what spoils a poor one may be everywhere, and move slowly. The energy has to be known, which began with `begun`.
+    fn quiet(self, bends: bool, energy: f64, begun: f64, count: f64) -> Option<f64> {
+        match self {
+            Until::Gains { least, .. } => Some(QUIET * least / count),
+            Until::Near(floor) => {
+                let (gap, worth) = (energy - floor, self.worth(WORTH_A_SWEEP, energy, 0.0));
+                let good = gap > 0.0 && gap <= GOOD * floor.abs() && NO_GAIN * begun.abs() <= worth;
+                (good && !bends).then_some(QUIET_NEAR * worth / count)
             }
         }
     }
@@ -138,46 +144,49 @@ fn relaxed(
     begun: (f64, NodalValues),
     share: &dyn Share,
 ) -> (f64, NodalValues) {
-    let (mut energy, NodalValues { nodes, mut values }) = begun;
+    let (begun, NodalValues { nodes, mut values }) = begun;
+    let mut energy = begun;
     let slack = ROUNDING * largest(&values, share);
-    let part = if problem.contact_bends() { WORTH_WHERE_BENT } else { WORTH_A_SWEEP };
-    let quiet = until.quiet(patches.count());
+    let bends = problem.contact_bends();
+    let part = if bends { WORTH_WHERE_BENT } else { WORTH_A_SWEEP };
+    let count = share.total(patches.count() as f64);
     let mut momentum = Momentum::default();
-    let most = FEW * patches.count() as f64;
-    let mut few = match (until, quiet) {
+    // Those to move, and how many all processes have of them, where these are few.
+    let few = |moved: Vec<usize>| {
+        let all = share.total(moved.len() as f64);
+        (all < FEW * count).then_some((moved, all))
+    };
+    let mut next = match (until, until.quiet(bends, energy, begun, count)) {
         (Until::Gains { relaxed: true, .. }, Some(quiet)) => {
-            Some(patches.to_move_or_bounded(problem, model, quiet)).filter(|few| (few.len() as f64) < most)
+            few(patches.to_move_or_bounded(problem, model, quiet, share))
         }
         _ => None,
     };
-    let mut gained = f64::INFINITY;
     for sweep in 0..MOST_SWEEPS {
-        if sweep >= until.least_sweeps() {
-            let mut rounding = 0.0;
-            if quiet.is_none() {
-                // What is left of a wild field is lost in the sum of what it gained.
-                let found = model.energy(&values, share);
-                rounding = (found - energy).abs();
-                energy = found;
-            }
-            if until.is_reached(part, energy, rounding, gained) {
-                break;
-            }
-        }
         // Back and forth: what one direction pushes ahead of it the other brings back.
         let back = sweep % 2 == 1;
-        gained = match &few {
-            Some(few) => patches.sweep(model, few.iter().copied(), back, slack, &mut values),
-            None => {
-                let before = (sweep >= SWEEPS).then(|| values.clone());
-                let gained = patches.sweep_all(model, back, slack, &mut values, share);
-                let pushed = before.map(|before| momentum.push(model, &before, AT_ONCE * slack, &mut values, share));
-                gained + pushed.unwrap_or(0.0)
-            }
-        };
+        let before = (sweep >= SWEEPS && next.is_none()).then(|| values.clone());
+        let which = next.as_ref().map(|(which, _)| &which[..]);
+        let mut gained = patches.sweep(model, which, back, slack, &mut values, share);
+        if let Some(before) = before {
+            gained += momentum.push(model, &before, AT_ONCE * slack, &mut values, share);
+        }
         energy -= gained;
-        let moved = quiet.map(|quiet| patches.to_move(problem, quiet));
-        few = moved.filter(|few| (few.len() as f64) < most);
+        let is_near = matches!(until, Until::Near(_));
+        let mut rounding = 0.0;
+        if is_near && next.is_none() && sweep + 1 >= SWEEPS {
+            // What is left of a wild field is lost in the sum of what it gained.
+            let found = model.energy(&values, share);
+            rounding = (found - energy).abs();
+            energy = found;
+        }
+        // Moving a few patches takes less time than moving all.
+        let part_moved = next.as_ref().filter(|_| is_near).map_or(1.0, |(_, all)| all / count);
+        if sweep + 1 >= until.least_sweeps() && gained <= part_moved * until.worth(part, energy, rounding) {
+            break;
+        }
+        let quiet = until.quiet(bends, energy, begun, count);
+        next = quiet.and_then(|quiet| few(patches.to_move(problem, model, quiet, share)));
     }
     (energy, NodalValues { nodes, values })
 }

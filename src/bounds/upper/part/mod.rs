@@ -22,7 +22,7 @@ use super::groups::Group;
 use super::holds::Holds;
 use super::model::Model;
 use super::nodes::Nodes;
-use super::patches::{Patches, of_vertices};
+use super::patches::Patches;
 use super::prepared::Made;
 use super::rows::rows;
 use super::share::Share;
@@ -93,9 +93,8 @@ impl Part {
         let nodes = Nodes::new(problem.mesh.points.len(), moments.iter().map(<[_]>::len));
         let rows = rows(problem, &nodes);
         let model = Model::shaped(problem, holds, &nodes, &rows, Pull::SCENE, |t| self.like[t]);
-        let of_vertex = of_vertices(&self.groups, nodes.vertices());
         let fronts = Some(Fronts::given(self.fronts.clone()));
-        let mut patches = Patches::of(&nodes, self.size, self.groups.clone(), of_vertex, fronts);
+        let mut patches = Patches::of(&nodes, self.size, self.groups.clone(), fronts);
         // Before the first sweep, in which ranks wait for each other.
         patches.factorise(&model);
         let own_rows = own_pairs.iter().zip(&rows).flat_map(|(own, rows)| rows.iter().map(|_| *own)).collect();
