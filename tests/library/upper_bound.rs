@@ -106,6 +106,18 @@ fn a_higher_degree_gives_a_sharper_bracket() {
     }
 }
 
+/// The sides of the contact do not coincide, and some of their vertices are 10⁻⁵ m apart: four have to move together.
+#[test]
+fn a_higher_degree_is_sharper_where_contact_sides_do_not_coincide() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/cylinder_on_block.toml");
+    let problem = Problem::load(Scene::read(&path).expect("valid")).expect("valid");
+    let gaps = [4, 6, 8].map(|p| {
+        let bracket = bracket(&problem, uniform(p));
+        bracket.free.as_ref().expect("an upper bound").upper() - bracket.lower()
+    });
+    assert!(gaps[0] > 2.0 * gaps[1] && gaps[1] > 2.0 * gaps[2], "{gaps:?}");
+}
+
 /// The effectivity √(gap/d) on the cases, d = 𝓛(u) + Π(λ_h) being enclosed by two degrees more on the same mesh. Set
 /// `HYPERCIRCLE_DEGREE` for more degrees than 1 and 2.
 #[test]
