@@ -98,6 +98,11 @@ impl<'a> Division<'a> {
         self.of_group[self.of_vertex[v]].map(|(rank, _)| rank)
     }
 
+    /// The rank that counts each contact pair.
+    fn ranks_of_pairs(&self) -> impl Iterator<Item = Option<usize>> {
+        self.problem.pairs().map(|pair| self.rank_of(pair.first[0]))
+    }
+
     /// The nodes in order, each with the rank that its value is the result of: that of its vertex, or of the first one of its edge.
     fn owned_nodes(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         let edges = self.problem.mesh.edges.iter().enumerate();
@@ -199,7 +204,7 @@ impl<'a> Division<'a> {
             fronts,
             size: size(&self.nodes),
             own_triangles: cut.triangles.iter().map(|t| self.owner[*t] == rank).collect(),
-            own_pairs: self.problem.pairs().map(|pair| self.rank_of(pair.first[0]) == Some(rank)).collect(),
+            own_pairs: self.ranks_of_pairs().map(|of_pair| of_pair == Some(rank)).collect(),
             own_nodes: here(&self.nodes_of(rank)),
             after,
             all,
@@ -219,8 +224,7 @@ impl<'a> Division<'a> {
     pub fn bracket(&self, found: &[Found]) -> Result<Option<(LowerTerms, UpperBound)>, NoUpperBound> {
         let Some(displacement) = self.displacement(found)? else { return Ok(None) };
         let triangles = gathered(found.iter().map(|found| &found.triangles), self.owner.iter().map(|rank| Some(*rank)));
-        let pairs = self.problem.pairs().map(|pair| self.rank_of(pair.first[0]));
-        let pairs = gathered(found.iter().map(|found| &found.pairs), pairs);
+        let pairs = gathered(found.iter().map(|found| &found.pairs), self.ranks_of_pairs());
         let lower = LowerTerms::sum(found.iter().map(|found| &found.lower[..]));
         let Some((triangles, pairs)) = triangles.zip(pairs) else { return Ok(None) };
         let upper = UpperTerms::sum(found.iter().map(|found| &found.upper[..]), triangles, pairs);
