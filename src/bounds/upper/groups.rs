@@ -8,6 +8,14 @@ use crate::problem::Problem;
 
 /// Triangles whose height is below this part of their longest side are flat.
 const FLAT: f64 = 0.15;
+/// Below this part they are slivers: moved in two patches, what they tie is strained by its whole displacement over so small a height, and
+/// sweeps hardly move it.
+const SLIVER: f64 = 5e-3;
+
+/// Slivers tie together no more vertices than this …
+const MOST_VERTICES: usize = 12;
+/// … and other flat triangles no more than this over the degree: patches grow with the square of both.
+const MOST_VERTICES_BY_DEGREE: usize = 24;
 
 /// One patch: the vertices that move, and every triangle at one of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +26,9 @@ pub struct Group {
     pub triangles: Vec<usize>,
 }
 
-/// Divides the vertices into groups, ordered by place so that the numbering of the mesh has no part in what follows. Flat
-/// triangles add no more vertices to a group than `most`.
-pub fn groups(problem: &Problem, most: usize) -> Vec<Group> {
+/// Divides the vertices into groups, ordered by place so that the numbering of the mesh has no part in what follows; `degree` is the
+/// highest of the displacement.
+pub fn groups(problem: &Problem, degree: usize) -> Vec<Group> {
     let mesh = &problem.mesh;
     let mut sets = Sets::new(mesh.points.len());
     for pair in problem.pairs() {
@@ -28,8 +36,9 @@ pub fn groups(problem: &Problem, most: usize) -> Vec<Group> {
             sets.unite(*v, *w, usize::MAX);
         }
     }
-    for (v, w) in tied(problem) {
-        sets.unite(v, w, most);
+    let most = (MOST_VERTICES_BY_DEGREE / degree).min(MOST_VERTICES);
+    for (v, w, by_sliver) in tied(problem) {
+        sets.unite(v, w, if by_sliver { MOST_VERTICES } else { most });
     }
     let mut number = vec![usize::MAX; mesh.points.len()];
     let mut groups: Vec<Group> = Vec::new();
@@ -52,10 +61,10 @@ pub fn groups(problem: &Problem, most: usize) -> Vec<Group> {
     groups
 }
 
-/// Pairs of vertices that flat triangles tie together, the closest first.
-fn tied(problem: &Problem) -> Vec<(usize, usize)> {
+/// Pairs of vertices that flat triangles tie together, the closest first, and whether a sliver does.
+fn tied(problem: &Problem) -> Vec<(usize, usize, bool)> {
     let mesh = &problem.mesh;
-    let mut found: Vec<(f64, [f64; 2], (usize, usize))> = Vec::new();
+    let mut found: Vec<(f64, [f64; 2], (usize, usize, bool))> = Vec::new();
     for (t, corners) in mesh.triangles.iter().enumerate() {
         let sides = mesh.triangle_edges[t].map(|e| mesh.edge_frame(e).0);
         let longest = sides.iter().copied().fold(0.0, f64::max);
@@ -70,7 +79,7 @@ fn tied(problem: &Problem) -> Vec<(usize, usize)> {
             if cap || length == shortest {
                 let (v, w) = (corners[(side + 1) % 3], corners[(side + 2) % 3]);
                 let [a, b] = [mesh.points[v], mesh.points[w]];
-                found.push((length, [a[0] + b[0], a[1] + b[1]], (v, w)));
+                found.push((length, [a[0] + b[0], a[1] + b[1]], (v, w, height < SLIVER * longest)));
             }
         }
     }

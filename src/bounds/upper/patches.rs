@@ -15,12 +15,6 @@ use crate::problem::Problem;
 /// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
 
-/// Flat triangles tie together no more vertices than this over the degree: patches grow with the square of both …
-const MOST_VERTICES_BY_DEGREE: usize = 24;
-/// … but as many as these in any degree: two vertices that face each other across a contact, and one beside each where sides do not
-/// coincide. Moved by twos they strain the sliver between them, and the body above does not come down.
-const LEAST_VERTICES: usize = 4;
-
 /// Numbers of kept factors for each vertex at most, for quadratics: where patches are larger on average, some factors are
 /// computed anew in every sweep.
 const KEPT_BY_VERTEX: usize = 512;
@@ -192,7 +186,7 @@ impl Patches {
 
 /// The vertices of a mesh in groups, and the group of each; of one that is in none, the first.
 pub fn grouped(problem: &Problem, nodes: &Nodes) -> (Vec<Group>, Vec<usize>) {
-    let groups = groups(problem, (MOST_VERTICES_BY_DEGREE / nodes.highest()).max(LEAST_VERTICES));
+    let groups = groups(problem, nodes.highest());
     let mut of_vertex = vec![0; nodes.vertices()];
     for (number, group) in groups.iter().enumerate() {
         group.vertices.iter().for_each(|v| of_vertex[*v] = number);
