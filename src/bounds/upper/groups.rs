@@ -37,7 +37,7 @@ pub fn groups(problem: &Problem, degree: usize) -> Vec<Group> {
         }
     }
     let most = (MOST_VERTICES_BY_DEGREE / degree).min(MOST_VERTICES);
-    for (v, w, by_sliver) in tied(problem) {
+    for Tie { ends: [v, w], by_sliver, .. } in tied(problem) {
         sets.unite(v, w, if by_sliver { MOST_VERTICES } else { most });
     }
     let mut number = vec![usize::MAX; mesh.points.len()];
@@ -61,10 +61,19 @@ pub fn groups(problem: &Problem, degree: usize) -> Vec<Group> {
     groups
 }
 
-/// Pairs of vertices that flat triangles tie together, the closest first, and whether a sliver does.
-fn tied(problem: &Problem) -> Vec<(usize, usize, bool)> {
+/// Two vertices that a flat triangle ties together.
+struct Tie {
+    ends: [usize; 2],
+    length: f64,
+    /// Twice the point half way.
+    place: [f64; 2],
+    by_sliver: bool,
+}
+
+/// The ties of all flat triangles, the shortest first.
+fn tied(problem: &Problem) -> Vec<Tie> {
     let mesh = &problem.mesh;
-    let mut found: Vec<(f64, [f64; 2], (usize, usize, bool))> = Vec::new();
+    let mut found = Vec::new();
     for (t, corners) in mesh.triangles.iter().enumerate() {
         let sides = mesh.triangle_edges[t].map(|e| mesh.edge_frame(e).0);
         let longest = sides.iter().copied().fold(0.0, f64::max);
@@ -77,14 +86,18 @@ fn tied(problem: &Problem) -> Vec<(usize, usize, bool)> {
         let cap = height < FLAT * shortest;
         for (side, length) in sides.into_iter().enumerate() {
             if cap || length == shortest {
-                let (v, w) = (corners[(side + 1) % 3], corners[(side + 2) % 3]);
-                let [a, b] = [mesh.points[v], mesh.points[w]];
-                found.push((length, [a[0] + b[0], a[1] + b[1]], (v, w, height < SLIVER * longest)));
+                let ends = [corners[(side + 1) % 3], corners[(side + 2) % 3]];
+                let [a, b] = ends.map(|v| mesh.points[v]);
+                let place = [a[0] + b[0], a[1] + b[1]];
+                found.push(Tie { ends, length, place, by_sliver: height < SLIVER * longest });
             }
         }
     }
-    found.sort_by(|(l, p, _), (m, q, _)| l.total_cmp(m).then(p[0].total_cmp(&q[0])).then(p[1].total_cmp(&q[1])));
-    found.into_iter().map(|(_, _, ends)| ends).collect()
+    found.sort_by(|one: &Tie, other: &Tie| {
+        let by_place = |c: usize| one.place[c].total_cmp(&other.place[c]);
+        one.length.total_cmp(&other.length).then(by_place(0)).then(by_place(1))
+    });
+    found
 }
 
 /// All vertices by their place; where several share a place, by their body.
