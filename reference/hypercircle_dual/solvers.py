@@ -112,9 +112,10 @@ class Factorised:
 
 
 class Iterated:
-    """K without its closed jumps, solved by conjugate gradients."""
+    """K without its closed jumps, in a ``unit`` of its own, solved by conjugate gradients."""
 
     padded, whole_contact = False, False
+    unit = 1.0
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -151,6 +152,7 @@ class Iterated:
         self._prepare(closed)
         load, x = r.duplicate(), r.duplicate()
         load.pointwiseMult(r, self.model.free(closed))
+        load.scale(1.0 / self.unit)
         made = compat.solve(self.solver, load, x)
         self.first_iterations = self.first_iterations or made
         self.iterations += made
@@ -198,6 +200,10 @@ class Substructured(Iterated):
         self.matrix = self.model.subdomain()
         self.motions = [self.nodal * motion for motion in self.motions]
         self.fields = self.model.shared_parts()
+        # Factorisations take small pivots for none, and rows that stand alone have ones. Powers of two keep all digits.
+        largest = self.model.comm.allreduce(self.matrix.getDiagonal().array_r.max(initial=0.0), compat.MPI.MAX)
+        self.unit = 2.0 ** np.round(np.log2(largest)) if largest > 0.0 else 1.0
+        self.matrix.scale(1.0 / self.unit)
 
     def _preconditioned(self, closed: np.ndarray):
         numbering, matrix = self.model.numbering, self.matrix.copy()

@@ -68,6 +68,11 @@ fn ranks_find_the_stresses_of_the_condensed_method() {
     same("two_blocks", &["--tolerance", "0.05"], &["--ranks", "2"]);
 }
 
+fn petsc(ranks: usize, linear_solver: LinearSolver) -> Petsc {
+    let program = Some(env!("CARGO_BIN_EXE_hypercircle").into());
+    Petsc { ranks, linear_solver, limit: LIMIT, interpreter: None, program }
+}
+
 /// Bounds and residual of the row `row` of the stability matrix at its value `step`.
 fn of_row(row: &str, step: usize, method: &dyn DualMethod) -> [f64; 3] {
     let row = regime(row).expect("a row");
@@ -94,9 +99,7 @@ fn ranks_find_the_bounds_of_the_condensed_method_where_rows_are_hardest() {
     for (row, step, ranks) in rows {
         let [lower, upper, _] = of_row(row, step, &Condensed::default());
         for &ranks in ranks {
-            let program = Some(env!("CARGO_BIN_EXE_hypercircle").into());
-            let method = Petsc { ranks, linear_solver: LinearSolver::Mumps, limit: LIMIT, interpreter: None, program };
-            let found = of_row(row, step, &method);
+            let found = of_row(row, step, &petsc(ranks, LinearSolver::Mumps));
             for (found, expected) in found.into_iter().zip([lower, upper]) {
                 assert!(((found - expected) / lower).abs() < 1e-9, "{row}, {ranks} ranks: {found:e}, {expected:e}");
             }
@@ -153,6 +156,12 @@ fn subdomains_find_the_same() {
     for (name, ranks) in [("two_blocks", "2"), ("stack", "4"), ("cylinder_on_block", "2")] {
         same(name, &[], &["--ranks", ranks, "--linear-solver", "bddc"]);
     }
+    // In units in which all entries of K are far from those of rows that stand alone.
+    let [lower, upper, _] = of_row("scale-length", 6, &Condensed::default());
+    let found = of_row("scale-length", 6, &petsc(2, LinearSolver::Bddc));
+    for (found, expected) in found.into_iter().zip([lower, upper]) {
+        assert!(((found - expected) / lower).abs() < 1e-9, "{found:e}, {expected:e}");
+    }
 }
 
 /// Multigrid takes thousands of iterations there.
@@ -166,9 +175,7 @@ fn subdomains_do_not_mind_an_incompressible_body() {
     let problem = || row.problem(row.values[step]).expect("a problem");
     let expected =
         certify_divided(problem(), &Condensed::default(), &Options::default()).expect("bounds").bracket.lower();
-    let program = Some(env!("CARGO_BIN_EXE_hypercircle").into());
-    let method = Petsc { ranks: 2, linear_solver: LinearSolver::Bddc, limit: LIMIT, interpreter: None, program };
-    let found = certify_divided(problem(), &method, &Options::default()).expect("bounds");
+    let found = certify_divided(problem(), &petsc(2, LinearSolver::Bddc), &Options::default()).expect("bounds");
     let (lower, iterations) = (found.bracket.lower(), found.dual.iterations);
     assert!(((lower - expected) / expected).abs() < 1e-9, "{lower:e}, {expected:e}");
     assert!(iterations < 100, "{iterations} iterations");
