@@ -81,24 +81,24 @@ impl Quantity {
 }
 
 /// A contact: its pressure and what follows from it.
-#[pyclass(frozen, module = "hypercircle")]
-pub struct Contact {
+#[pyclass(frozen, module = "hypercircle", name = "Contact")]
+pub struct ContactAnswer {
     of: ContactSummary,
     arc_length: Vec<f64>,
     pressure: Vec<f64>,
 }
 
-impl Contact {
+impl ContactAnswer {
     /// Of the stress side.
     pub fn new(of: ContactSummary) -> Self {
         let own = of.profiles.iter().find(|profile| profile.model == "dual");
         let (arc_length, pressure) = own.iter().flat_map(|profile| &profile.points).map(|[s, p]| (*s, *p)).unzip();
-        Contact { of, arc_length, pressure }
+        ContactAnswer { of, arc_length, pressure }
     }
 }
 
 #[pymethods]
-impl Contact {
+impl ContactAnswer {
     /// `first|second`, or `first|rigid`.
     #[getter]
     fn name(&self) -> &str {

@@ -32,7 +32,7 @@ fn hypercircle(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::Scene>()?;
     module.add_class::<solution::Solution>()?;
     module.add_class::<answers::Quantity>()?;
-    module.add_class::<answers::Contact>()?;
+    module.add_class::<answers::ContactAnswer>()?;
     module.add_class::<certificate::Certificate>()?;
     module.add_function(wrap_pyfunction!(workbench::workbench, module)?)?;
     module.add_function(wrap_pyfunction!(element::element, module)?)?;

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use super::answers::{Contact, Quantity};
+use super::answers::{ContactAnswer, Quantity};
 use super::arrays;
 use super::certificate::{Certificate, Claims, certify};
 use super::line::Line;
@@ -124,7 +124,7 @@ impl Solution {
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let out = PyDict::new(py);
         for contact in &self.solved.comparison.contacts {
-            out.set_item(&contact.name, Bound::new(py, Contact::new(contact.clone()))?)?;
+            out.set_item(&contact.name, Bound::new(py, ContactAnswer::new(contact.clone()))?)?;
         }
         Ok(out)
     }
