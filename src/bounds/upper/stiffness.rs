@@ -34,10 +34,14 @@ impl Stiffness {
         if !cholesky::factorise(&mut factor, inside, 0.0) {
             return None;
         }
-        let rows = |rows: std::ops::Range<usize>| rows.flat_map(|i| &split.row(i)[..boundary]).copied().collect();
-        let mut across: Vec<f64> = rows(boundary..boundary + inside);
+        let rows = |rows: std::ops::Range<usize>| {
+            let mut out = Vec::with_capacity(rows.len() * boundary);
+            rows.for_each(|i| out.extend_from_slice(&split.row(i)[..boundary]));
+            out
+        };
+        let mut across = rows(boundary..boundary + inside);
         cholesky::forward(&factor, &mut across, inside);
-        let mut matrix: Vec<f64> = rows(0..boundary);
+        let mut matrix = rows(0..boundary);
         eliminate(&mut matrix, &across, boundary);
         let raising = if degrees == [k; 3] { Vec::new() } else { raising(k, degrees) };
         let size = 6 + 2 * degrees.iter().map(|k| k - 1).sum::<usize>();
