@@ -200,9 +200,11 @@ class Substructured(Iterated):
         self.matrix = self.model.subdomain()
         self.motions = [self.nodal * motion for motion in self.motions]
         self.fields = self.model.shared_parts()
-        # Factorisations take small pivots for none, and rows that stand alone have ones. Powers of two keep all digits.
-        largest = self.model.comm.allreduce(self.matrix.getDiagonal().array_r.max(initial=0.0), compat.MPI.MAX)
-        self.unit = 2.0 ** np.round(np.log2(largest)) if largest > 0.0 else 1.0
+        # Factorisations take small pivots for none: no row is to be below those that stand alone, which have ones. Powers of two
+        # keep all digits.
+        diagonal = self.matrix.getDiagonal().array_r
+        least = self.model.comm.allreduce(diagonal[diagonal > 0.0].min(initial=np.inf), compat.MPI.MIN)
+        self.unit = 2.0 ** np.round(np.log2(least)) if np.isfinite(least) else 1.0
         self.matrix.scale(1.0 / self.unit)
 
     def _preconditioned(self, closed: np.ndarray):

@@ -156,11 +156,13 @@ fn subdomains_find_the_same() {
     for (name, ranks) in [("two_blocks", "2"), ("stack", "4"), ("cylinder_on_block", "2")] {
         same(name, &[], &["--ranks", ranks, "--linear-solver", "bddc"]);
     }
-    // In units in which all entries of K are far from those of rows that stand alone.
-    let [lower, upper, _] = of_row("scale-length", 6, &Condensed::default());
-    let found = of_row("scale-length", 6, &petsc(2, LinearSolver::Bddc));
-    for (found, expected) in found.into_iter().zip([lower, upper]) {
-        assert!(((found - expected) / lower).abs() < 1e-9, "{found:e}, {expected:e}");
+    // Lengths in which all entries of K are far from those of rows that stand alone, and a body 1e12 times as stiff as the other.
+    for row in ["scale-length", "stiffness"] {
+        let [lower, upper, _] = of_row(row, 6, &Condensed::default());
+        let found = of_row(row, 6, &petsc(2, LinearSolver::Bddc));
+        for (found, expected) in found.into_iter().zip([lower, upper]) {
+            assert!(((found - expected) / lower).abs() < 1e-9, "{row}: {found:e}, {expected:e}");
+        }
     }
 }
 
