@@ -1,9 +1,11 @@
 //! The contact problem on Γ_K alone: min ½ jᵀSj − cᵀj over jumps j ≤ g, with the dense Schur complement S.
 //!
 //! Primal–dual active sets (block principal pivoting), started from closed contact. Where the blocks come back to a
-//! state they have been in, or meet an open set that leaves a body without hold, a primal active-set method in the
-//! manner of Lawson and Hanson finishes: it changes one end at a time, the energy falls with every step, and no state
-//! can come twice.
+//! state they have been in, or meet an open set that leaves a body without hold, the proximal-point method goes on
+//! (Rockafellar 1976): springs between the iterates hold every body, each subproblem is definite and solved by a few block
+//! steps, and the springs become weaker from one to the next. Should the state that it finds not settle without springs, a
+//! primal active-set method in the manner of Lawson and Hanson finishes: it changes one end at a time, the energy falls
+//! with every step, and no state can come twice.
 //!
 //! What round-off is depends on the size of the terms of S j − c, not on that of their sum: a body that rests on a point
 //! turns and shifts by much, and its contact forces are small differences. Ends are compared with each other, so S is
@@ -28,8 +30,15 @@ pub struct ContactState {
     pub steps: usize,
 }
 
-/// Steps of block pivoting before the careful method takes over.
-const BLOCK_STEPS: usize = 200;
+/// Steps of block pivoting before the proximal-point method takes over.
+const BLOCK_STEPS: usize = 60;
+/// Springs of the proximal-point method, relative to the diagonal of S: from one that lets no open set move far to one that
+/// moves what is held by contact no more than round-off does.
+const PROXIMAL: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10];
+/// Subproblems with the same spring.
+const PROXIMAL_STEPS: usize = 4;
+/// Block steps for one subproblem: it starts from the state of the one before.
+const PROXIMAL_BLOCK_STEPS: usize = 12;
 /// Tension and penetration below this fraction of the largest force and jump are round-off: an end that grazes keeps its
 /// state.
 pub const GRAZING: f64 = 1e-13;
@@ -44,20 +53,94 @@ const REGULAR: [f64; 3] = [1e-13, 1e-11, 1e-9];
 /// [`DualError::ContactUndetermined`] where the energy has no minimum, [`DualError::NotConverged`] where round-off keeps
 /// the state from settling.
 pub fn solve(s: &Mat<f64>, c: &[f64], bound: &[f64], start: Option<&[bool]>) -> Result<ContactState, DualError> {
-    let mut closed = start.map_or_else(|| bound.iter().map(|g| g.is_finite()).collect(), <[bool]>::to_vec);
-    let mut seen = HashSet::new();
-    while seen.len() < BLOCK_STEPS && seen.insert(closed.clone()) {
-        let Some(jumps) = with_closed_or_springs(s, c, bound, &closed) else { break };
-        let slack = slack(s, c, &jumps, &closed);
-        let next = next_state(&gradient(s, c, &jumps), &jumps, bound, &slack, &closed);
-        if next == closed {
-            return Ok(ContactState { jumps, closed, steps: seen.len() });
-        }
-        closed = next;
+    let closed = start.map_or_else(|| bound.iter().map(|g| g.is_finite()).collect(), <[bool]>::to_vec);
+    let plain = Proximal { s, c, bound, spring: 0.0, centre: &[] };
+    let first = plain.block_pivoting(closed, BLOCK_STEPS);
+    if first.settled {
+        return Ok(first.state);
     }
-    let last = with_closed(s, c, bound, &closed);
-    let state = one_by_one(s, c, bound, last.as_deref())?;
-    Ok(ContactState { steps: seen.len() + state.steps, ..state })
+    let held = proximal_points(s, c, bound);
+    let second = plain.block_pivoting(held.closed, BLOCK_STEPS);
+    let steps = first.state.steps + held.steps + second.state.steps;
+    if second.settled {
+        return Ok(ContactState { steps, ..second.state });
+    }
+    let state = one_by_one(s, c, bound, Some(&held.jumps))?;
+    Ok(ContactState { steps: steps + state.steps, ..state })
+}
+
+/// The contact problem with springs of stiffness `spring` · S_ii between each jump and its value in `centre`; without
+/// springs where `spring` is zero.
+struct Proximal<'a> {
+    s: &'a Mat<f64>,
+    c: &'a [f64],
+    bound: &'a [f64],
+    spring: f64,
+    centre: &'a [f64],
+}
+
+/// A state that block pivoting came to, and whether its last step changed nothing.
+struct Pivoted {
+    state: ContactState,
+    settled: bool,
+}
+
+impl Proximal<'_> {
+    /// Primal–dual steps from `closed`, until the state settles, comes back, leaves a body without hold, or `most` are done.
+    fn block_pivoting(&self, mut closed: Vec<bool>, most: usize) -> Pivoted {
+        let mut seen = HashSet::new();
+        let mut jumps = Vec::new();
+        while seen.len() < most && seen.insert(closed.clone()) {
+            let Some(found) = self.with_closed(&closed) else { break };
+            jumps = found;
+            let slack = slack(self.s, self.c, &jumps, &closed);
+            let next = next_state(&self.tension(&jumps), &jumps, self.bound, &slack, &closed);
+            if next == closed {
+                return Pivoted { state: ContactState { jumps, closed, steps: seen.len() }, settled: true };
+            }
+            closed = next;
+        }
+        Pivoted { state: ContactState { jumps, closed, steps: seen.len() }, settled: false }
+    }
+
+    fn with_closed(&self, closed: &[bool]) -> Option<Vec<f64>> {
+        if self.spring == 0.0 {
+            return with_closed_or_springs(self.s, self.c, self.bound, closed);
+        }
+        let pull = self.centre.iter().enumerate().map(|(i, centre)| self.spring * self.s[(i, i)] * centre);
+        let load: Vec<f64> = self.c.iter().zip(pull).map(|(c, pull)| c + pull).collect();
+        equilibrium(self.s, &load, self.bound, closed, self.spring)
+    }
+
+    fn tension(&self, jumps: &[f64]) -> Vec<f64> {
+        let mut out = gradient(self.s, self.c, jumps);
+        for (i, (centre, jump)) in self.centre.iter().zip(jumps).enumerate() {
+            out[i] += self.spring * self.s[(i, i)] * (jump - centre);
+        }
+        out
+    }
+}
+
+/// Where the proximal-point method arrives from closed contact.
+fn proximal_points(s: &Mat<f64>, c: &[f64], bound: &[f64]) -> ContactState {
+    let jumps = bound.iter().map(|g| if g.is_finite() { *g } else { 0.0 }).collect();
+    let mut now = ContactState { jumps, closed: bound.iter().map(|g| g.is_finite()).collect(), steps: 0 };
+    for spring in PROXIMAL {
+        for _ in 0..PROXIMAL_STEPS {
+            let problem = Proximal { s, c, bound, spring, centre: &now.jumps };
+            let found = problem.block_pivoting(now.closed.clone(), PROXIMAL_BLOCK_STEPS).state;
+            let steps = now.steps + found.steps;
+            if found.jumps.is_empty() {
+                return now;
+            }
+            let same = found.closed == now.closed;
+            now = ContactState { steps, ..found };
+            if same {
+                break;
+            }
+        }
+    }
+    now
 }
 
 /// The primal–dual step: closed ends under more tension than their `slack` open, open ends that penetrate close.

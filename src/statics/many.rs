@@ -3,7 +3,8 @@
 //! Supports are taken out piece by piece: what they leave of (a, b, s ω) are the coordinates here, so that projections
 //! stay orthogonal. Pieces are numbered along the contacts (Cuthill & McKee), and elimination fills in little. The
 //! projection of the loads is found by primal–dual active sets from closed contacts; where these come back to a state
-//! they have been in, one row at a time in the manner of Lawson and Hanson, as for small groups.
+//! they have been in, the proximal-point method leads to a better start, and from there single rows change in the manner of
+//! Lawson and Hanson, as for small groups, should blocks not settle there either.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -13,13 +14,23 @@ use super::balance::{Cone, RANK};
 use super::cone::Unsettled;
 use super::restraint::{Group, Part, Points, along};
 use super::span::Span;
-use super::sparse::{Row, Triangular, dense, dot, least_squares, norm, transposed};
+use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, norm, transposed};
 
 /// Forces and pulls below this fraction of the loads are round-off.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Steps of whole sets before single rows are changed.
-const BLOCK_STEPS: usize = 60;
+/// Steps of whole sets before the proximal-point method, and after it before single rows are changed.
+const BLOCK_STEPS: usize = 4;
+/// First ρ of the proximal-point method, for rows of length one, and the last.
+const FIRST_RHO: f64 = 1e-1;
+const LAST_RHO: f64 = 1e-9;
+/// What ρ is multiplied with after a subproblem whose blocks settle, and after one whose blocks do not.
+const WEAKER: f64 = 0.3;
+const STIFFER: f64 = 4.0;
+/// Subproblems.
+const PROXIMAL_STEPS: usize = 24;
+/// Block steps for one subproblem: it starts from the rows of the one before.
+const PROXIMAL_BLOCK_STEPS: usize = 12;
 
 /// The allowed motions of a group.
 pub(super) struct SparseCone<'a> {
@@ -103,28 +114,139 @@ impl<'a> SparseCone<'a> {
         least_squares(&matrix, active.len(), load)
     }
 
+    /// The least forces on the `active` rows that balance `load` best, and what they leave. The factor is that of the rows
+    /// themselves, whose order along the contacts keeps it narrow; where rows depend on each other forces are shared.
+    fn least_forces(&self, active: &[usize], load: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let rows: Vec<&Row> = active.iter().map(|i| &self.rows[*i]).collect();
+        let factor = Triangular::of(self.coordinates, rows.iter().copied());
+        let free = factor.null_vectors();
+        let mut rest = load.to_vec();
+        let mut unbalanced = vec![0.0; load.len()];
+        if !free.is_empty() {
+            let (_, balanced) = least_squares(&transposed(&free, self.coordinates), free.len(), load);
+            unbalanced.iter_mut().zip(load.iter().zip(&balanced)).for_each(|(u, (load, part))| *u = load - part);
+            rest = balanced;
+        }
+        let mut forces = vec![0.0; rows.len()];
+        for _ in 0..CORRECTIONS {
+            let motion = factor.solve_normal(rest.clone());
+            for (force, row) in forces.iter_mut().zip(&rows) {
+                let more = dot(row, &motion);
+                *force += more;
+                row.iter().for_each(|(k, v)| rest[*k] -= v * more);
+            }
+        }
+        rest.iter_mut().zip(&unbalanced).for_each(|(rest, part)| *rest += part);
+        (forces, rest)
+    }
+
     /// What is left of `load` beside all forces that rows can carry, see [`super::cone::unbalanced`].
     fn unbalanced_rest(&self, load: &[f64]) -> Result<Vec<f64>, Unsettled> {
         let size = load.iter().fold(0.0, |m: f64, v| m.hypot(*v));
-        let mut active: Vec<usize> = (0..self.rows.len()).collect();
+        self.block_steps((0..self.rows.len()).collect(), load, size)
+            .or_else(|_| self.proximal_points(load, size))
+            .or_else(|active| self.block_steps(active, load, size))
+            .or_else(|active| self.one_by_one(active, load, size))
+    }
+
+    /// Primal–dual steps of whole sets from the rows `active`. What the loads leave, or the set at which the steps came back
+    /// to one that they had been at.
+    fn block_steps(&self, mut active: Vec<usize>, load: &[f64], size: f64) -> Result<Vec<f64>, Vec<usize>> {
         let mut seen = HashSet::new();
         while seen.len() < BLOCK_STEPS && seen.insert(active.clone()) {
-            let (forces, rest) = self.balance(&active, load);
-            let mut next = vec![false; self.rows.len()];
-            active.iter().zip(&forces).for_each(|(i, force)| next[*i] = *force >= -ROUND_OFF * size);
-            let kept = next.iter().filter(|kept| **kept).count() == active.len();
-            let is_active: HashSet<usize> = active.iter().copied().collect();
-            let mut pulled = false;
-            for (i, row) in self.rows.iter().enumerate().filter(|(i, _)| !is_active.contains(i)) {
-                next[i] = dot(row, &rest) > ROUND_OFF * size;
-                pulled |= next[i];
-            }
-            if kept && !pulled {
+            let (forces, rest) = self.least_forces(&active, load);
+            let next = self.next_set(&active, |k| forces[k], |i| dot(&self.rows[i], &rest), ROUND_OFF * size);
+            if next == active {
                 return Ok(rest);
             }
-            active = (0..next.len()).filter(|i| next[*i]).collect();
+            active = next;
         }
-        self.one_by_one(active, load, size)
+        Err(active)
+    }
+
+    /// The `active` rows whose `force` (that of the k-th of them) does not pull, and the others that `violation` breaks.
+    fn next_set(
+        &self,
+        active: &[usize],
+        force: impl Fn(usize) -> f64,
+        violation: impl Fn(usize) -> f64,
+        round_off: f64,
+    ) -> Vec<usize> {
+        let mut next = vec![None; self.rows.len()];
+        active.iter().enumerate().for_each(|(k, i)| next[*i] = Some(force(k) >= -round_off));
+        let stays = |i: usize| next[i].unwrap_or_else(|| violation(i) > round_off);
+        (0..self.rows.len()).filter(|i| stays(*i)).collect()
+    }
+
+    /// What the loads leave by the proximal-point method (Rockafellar 1976): with ρ/2 |μ − μ_k|² added the forces μ are unique
+    /// and a few block steps find them; ρ falls from one step to the next. Where rows depend on each other it needs no choice
+    /// among them. The rows that carry force in the end, where that leaves more than round-off.
+    fn proximal_points(&self, load: &[f64], size: f64) -> Result<Vec<f64>, Vec<usize>> {
+        let mut active: Vec<usize> = (0..self.rows.len()).collect();
+        let mut centre = vec![0.0; self.rows.len()];
+        let mut rho = FIRST_RHO;
+        for _ in 0..PROXIMAL_STEPS {
+            let Some((settled, forces)) = self.settled(active.clone(), load, size, &centre, rho) else {
+                rho = (rho * STIFFER).min(FIRST_RHO);
+                continue;
+            };
+            rho = (rho * WEAKER).max(LAST_RHO);
+            active = settled;
+            centre.fill(0.0);
+            active.iter().zip(&forces).for_each(|(i, force)| centre[*i] = force.max(0.0));
+            let rest = self.left_of(load, &centre);
+            let holds = |(row, force): (&Row, &f64)| {
+                let pull = dot(row, &rest);
+                pull <= ROUND_OFF * size && (*force == 0.0 || pull >= -ROUND_OFF * size)
+            };
+            if self.rows.iter().zip(&centre).all(holds) {
+                return Ok(rest);
+            }
+        }
+        Err(active)
+    }
+
+    /// The rows that carry force in the subproblem of `rho` and `centre`, and their forces: block steps from `active`.
+    fn settled(
+        &self,
+        mut active: Vec<usize>,
+        load: &[f64],
+        size: f64,
+        centre: &[f64],
+        rho: f64,
+    ) -> Option<(Vec<usize>, Vec<f64>)> {
+        for _ in 0..PROXIMAL_BLOCK_STEPS {
+            let (forces, rest) = self.proximal_forces(&active, load, centre, rho);
+            let pull = |i: usize| dot(&self.rows[i], &rest) + rho * centre[i];
+            let next = self.next_set(&active, |k| forces[k], pull, ROUND_OFF * size);
+            if next == active {
+                return Some((active, forces));
+            }
+            active = next;
+        }
+        None
+    }
+
+    /// `load` without the `forces` on all rows.
+    fn left_of(&self, load: &[f64], forces: &[f64]) -> Vec<f64> {
+        let mut rest = load.to_vec();
+        for (row, force) in self.rows.iter().zip(forces).filter(|(_, force)| **force != 0.0) {
+            row.iter().for_each(|(k, v)| rest[*k] -= v * force);
+        }
+        rest
+    }
+
+    /// Forces μ on the `active` rows that minimise ½ |load − Σ μ_i g_i|² + ρ/2 |μ − centre|², and what they leave.
+    fn proximal_forces(&self, active: &[usize], load: &[f64], centre: &[f64], rho: f64) -> (Vec<f64>, Vec<f64>) {
+        let mut factor = Triangular::new(self.coordinates);
+        (0..self.coordinates).for_each(|k| factor.insert(vec![(k, rho.sqrt())]));
+        active.iter().for_each(|i| factor.insert(self.rows[*i].clone()));
+        let mut kept = vec![0.0; self.rows.len()];
+        active.iter().for_each(|i| kept[*i] = centre[*i]);
+        let rest = self.left_of(load, &kept);
+        let motion = factor.solve_normal(rest);
+        let forces = active.iter().map(|i| centre[*i] + dot(&self.rows[*i], &motion)).collect();
+        (forces, motion.iter().map(|v| rho * v).collect())
     }
 
     /// The same from the rows `active`: one row joins at a time, and rows whose force would turn negative leave.

@@ -16,7 +16,7 @@ pub(super) struct Triangular {
 }
 
 /// Corrections of a least-squares solution: the first is the solution, the others bring it to round-off.
-const CORRECTIONS: usize = 4;
+pub(super) const CORRECTIONS: usize = 4;
 
 impl Triangular {
     /// The factor of no rows at all in `columns` unknowns.
@@ -95,7 +95,7 @@ impl Triangular {
     }
 
     /// x of RᵀR x = b, zero in free columns.
-    fn solve_normal(&self, mut b: Vec<f64>) -> Vec<f64> {
+    pub fn solve_normal(&self, mut b: Vec<f64>) -> Vec<f64> {
         for column in 0..b.len() {
             match &self.rows[column] {
                 Some(own) => {
