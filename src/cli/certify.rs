@@ -151,7 +151,7 @@ fn held(
     let mut claimed = None;
     if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
         session.progress.phase("holding the field to its claim");
-        let claim = study::claim(&certified.problem, judged, &allow)
+        let claim = study::claim(&certified.problem, judged, &certified.bracket, &allow)
             .map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
         let admissible = format!("admissible/{}", judged.candidate.name);
@@ -166,6 +166,10 @@ fn held(
     }
     // The field has its values on its own mesh, intervals come from the finest one.
     let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+    if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
+        let check = study::error_check(judged, &sharpest.bracket, &allow);
+        comparison.checks.push(check);
+    }
     let answers = session.answers(sharpest, &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     let meant = if args.solution { Meant::Discrete } else { Meant::Exact };

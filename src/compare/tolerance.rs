@@ -23,7 +23,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 25] = [
+const NAMES: [&str; 26] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -42,6 +42,7 @@ const NAMES: [&str; 25] = [
     "contact/{contact}/pressure-max",
     "contact/{contact}/reactions",
     "contact/{contact}/resultant",
+    "solution/guaranteed-error",
     "solution/residual",
     "solution/supports",
     "solution/reactions",

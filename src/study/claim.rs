@@ -1,7 +1,7 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
-use crate::bounds::{NoUpperBound, lifted_within, potential};
-use crate::compare::{Allowances, Check, Comparison, Judged, Solution};
+use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
+use crate::compare::{Allowances, Basis, Check, Comparison, Extent, Judged, Solution};
 use crate::diagnose::{Diagnosis, Energies, diagnose};
 use crate::problem::{Problem, Scales};
 
@@ -16,16 +16,47 @@ pub struct Claim {
     pub residual: Vec<f64>,
 }
 
-/// Holds a field against everything that is true of a discrete solution of its degree on its mesh.
+/// A field whose guaranteed relative error is larger than this is no solution of anything.
+const NO_SOLUTION: f64 = 1.0;
+
+/// Holds a field against everything that is true of a discrete solution of its degree on its mesh; `bracket` is that of the stress
+/// side, which says how large a solution can be.
 ///
 /// # Errors
 /// [`NoUpperBound`] where supports contradict each other.
-pub fn claim(problem: &Problem, judged: &Judged, allow: &Allowances) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?;
+pub fn claim(problem: &Problem, judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Result<Claim, NoUpperBound> {
+    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?.within(extent(bracket));
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
-    let diagnosis =
-        checks.iter().any(|c| !c.passed || c.excused).then(|| diagnose(&solution, energies(problem, judged)));
+    let diagnosis = checks
+        .iter()
+        .any(|c| (!c.passed && c.value.is_some()) || c.excused)
+        .then(|| diagnose(&solution, energies(problem, judged)));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
+}
+
+/// How large a solution can be.
+fn extent(bracket: &Bracket) -> Extent {
+    let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
+        let field = &free.displacement;
+        (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
+    });
+    Extent { strain: bracket.complementary.strain, displacement }
+}
+
+/// Whether the sharpest `bracket` of a run leaves a field the name of a solution at all: its guaranteed error is below 100 %.
+pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Check {
+    let mut checks = [Check::at_most(
+        "solution/guaranteed-error",
+        judged.relative_error(bracket),
+        0.0,
+        NO_SOLUTION,
+        Basis::Claimed,
+        "The guaranteed relative energy-norm error of the stress of the field, made admissible where it was not. Beyond 100 % a \
+         stress of zero is closer to the truth, and the field is not called a solution: refine its mesh.",
+    )];
+    allow.apply(&mut checks);
+    let [check] = checks;
+    check
 }
 
 /// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose

@@ -385,3 +385,26 @@ fn a_field_out_of_its_plane_and_a_missing_package_are_told() {
     command.env("HYPERCIRCLE_PYTHON", script(folder.join("python"), "echo h5py >&2; exit 45"));
     ended("h5py", &run(command), 2, &["needs the Python package h5py", "pip install h5py", "python3-h5py"]);
 }
+
+/// A shifted body without stress, whose few digits would excuse any residual, and a modulus 5 % off in four digits.
+#[test]
+fn digits_that_hide_a_mistake_are_no_excuse() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/rounded");
+    let out = tempfile::tempdir().expect("a folder");
+    for name in ["lift_only", "E5_4"] {
+        let target = out.path().join(name);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hypercircle"));
+        command.arg("certify").arg(folder.join("mix.toml")).args(["--solution", "--quiet", "--displacement"]);
+        command.arg(folder.join(format!("{name}.vtu"))).arg("--out").arg(&target);
+        let output = command.output().expect("the program");
+        assert_eq!(output.status.code(), Some(1), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(target.join("report.json")).expect("a report");
+        let report: Value = serde_json::from_str(&text).expect("JSON");
+        let residual = check(&report, "solution/residual");
+        assert_eq!(residual["passed"], false, "{name}");
+        let allowed = residual["allowed"].as_f64().expect("a number");
+        assert!(allowed < 0.05, "{name}: {allowed}");
+        let why = residual["why"].as_str().expect("a sentence");
+        assert!(residual["value"].is_number() || why.contains("needed to tell 5 % of E"), "{name}: {why}");
+    }
+}

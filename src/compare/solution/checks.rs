@@ -1,5 +1,6 @@
 //! The checks of a field that claims to be a discrete solution.
 
+use super::digits::Allowance;
 use super::{SOLVER, Site, Solution};
 use crate::bounds::Hold;
 use crate::compare::{Allowances, Basis, Check};
@@ -18,17 +19,17 @@ impl Solution<'_> {
             let name = |what: &str| format!("solution/contact/{}/{what}", interface.name);
             checks.push(self.penetration_check(index, &name("penetration")));
             let [(pulling, pulled), (open, opened)] = self.complementarity(index);
-            let digits = self.rounding / self.scale;
-            checks.push(claimed(
+            let forces = self.of_forces();
+            checks.push(self.claimed(
                 &name("pulling"),
                 pulling,
-                SOLVER + digits,
+                forces,
                 format!("Contact pushes and never pulls: the sum of the nodal forces that pull{pulled}, relative to all forces."),
             ));
-            checks.push(claimed(
+            checks.push(self.claimed(
                 &name("pressure-where-open"),
                 open,
-                SOLVER + digits,
+                forces,
                 format!("Contact carries a force only where it is closed: the sum of the nodal forces at open nodes{opened}, relative to all forces."),
             ));
         }
@@ -55,7 +56,7 @@ impl Solution<'_> {
              supports and along contacts: what is left of the nodal forces, relative to all of them.{places}{digits}",
             self.candidate.degree
         );
-        claimed("solution/residual", residual, self.allowed(), what)
+        self.claimed("solution/residual", residual, self.of_forces(), what)
     }
 
     fn force_at(&self, node: usize) -> String {
@@ -72,19 +73,19 @@ impl Solution<'_> {
         let worst = (0..self.rest.len()).max_by(|a, b| off(*a).total_cmp(&off(*b)));
         let depth = worst.map_or(0.0, off);
         let place = worst.filter(|_| depth > 0.0).map_or(String::new(), |n| format!(", most at {}", self.named(n)));
-        claimed(
+        self.claimed(
             "solution/supports",
             self.relative(depth),
-            SOLVER + self.candidate.precision,
+            self.of_displacements(1.0),
             format!(
                 "The field has the displacement that supports prescribe{place}, relative to the largest displacement."
             ),
         )
     }
 
-    /// `length` relative to the largest displacement.
+    /// `length` relative to the largest displacement, or to what the problem allows where the field is larger.
     fn relative(&self, length: f64) -> f64 {
-        if self.largest > 0.0 { length / self.largest } else { length }
+        if self.reference > 0.0 { length / self.reference } else { length }
     }
 
     fn reactions_check(&self, scales: &Scales) -> Check {
@@ -114,10 +115,10 @@ impl Solution<'_> {
         let worst = worst.filter(|_| !self.is_pushed());
         let value = worst.map_or(self.residual(), relative);
         let force = worst.map_or(String::new(), |p| format!(" ({:.3e}, {:.3e}) is missing.", sum[p][0], sum[p][1]));
-        claimed(
+        self.claimed(
             "solution/reactions",
             value,
-            SOLVER + self.rounding / self.scale,
+            self.of_forces(),
             format!(
                 "Forces of supports and contacts, from the stresses of the field, are in equilibrium with the loads on every body.{force}"
             ),
@@ -140,15 +141,17 @@ impl Solution<'_> {
         let gaps: f64 = distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum();
         let (left, right) = (2.0 * self.strain, work + supports - gaps);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
-        Check::equal(
-            "solution/energy-identity",
-            left,
-            right,
-            scale * (SOLVER + self.rounding / self.scale) + scales.round_off.energy,
-            Basis::Claimed,
-            "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
-             prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",
-        )
+        self.with_digits(self.of_forces(), |part| {
+            Check::equal(
+                "solution/energy-identity",
+                left,
+                right,
+                scale * part + scales.round_off.energy,
+                Basis::Claimed,
+                "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
+                 prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",
+            )
+        })
     }
 
     fn penetration_check(&self, interface: usize, name: &str) -> Check {
@@ -157,10 +160,10 @@ impl Solution<'_> {
         let place = deepest.filter(|_| depth > 0.0).map_or(String::new(), |site| {
             format!(" It is deepest, {depth:.3e}, at {}.", self.named(self.sites.list[site].first))
         });
-        claimed(
+        self.claimed(
             name,
             self.relative(depth),
-            SOLVER + 2.0 * self.candidate.precision,
+            self.of_displacements(2.0),
             format!("No node penetrates, relative to the largest displacement.{place}"),
         )
     }
@@ -178,7 +181,8 @@ impl Solution<'_> {
         }
         let total = self.applied().max(self.carried(interface));
         let share = |force: f64| if total > 0.0 { force / total } else { force };
-        let open = -2.0 * (SOLVER + self.candidate.precision) * self.largest;
+        let rounding = self.of_displacements(1.0);
+        let open = -2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference;
         let (forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
         let own = || (0..forces.len()).filter(|s| self.sites.list[*s].interface == interface);
         let sum = |force: &dyn Fn(usize) -> f64| {
@@ -192,8 +196,10 @@ impl Solution<'_> {
         let in_coefficients = sum(&|s| pushed(forces[s], distances[s]));
         [pulling, if at_nodes.0 <= in_coefficients.0 { at_nodes } else { in_coefficients }]
     }
-}
 
-fn claimed(name: &str, value: f64, allowed: f64, why: String) -> Check {
-    Check::at_most(name, value, 0.0, allowed, Basis::Claimed, why)
+    /// A check of `value` ≤ `allowance`.
+    fn claimed(&self, name: &str, value: f64, allowance: Allowance, why: String) -> Check {
+        let made = |allowed| Check::at_most(name, value, 0.0, allowed, Basis::Claimed, why.as_str());
+        self.with_digits(allowance, made)
+    }
 }

@@ -7,8 +7,10 @@
 //! coefficients, which differ at the end of contact: what either of the two explains is explained.
 
 mod checks;
+mod digits;
 mod sites;
 
+pub use digits::Extent;
 pub use sites::{Site, Sites, Span};
 
 use super::balance::Balance;
@@ -77,6 +79,10 @@ pub struct Solution<'a> {
     pub strain: f64,
     /// The largest component of the displacement.
     pub largest: f64,
+    /// What displacements are relative to: the largest one, or what the problem allows where the field is larger.
+    pub reference: f64,
+    /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
+    ceiling: f64,
     /// What the closed Bernstein coefficients, pushing alone, leave over: relative to `scale`.
     pushed: f64,
     /// What rounding of the displacements, to the digits that the file keeps, can leave of the residual.
@@ -100,7 +106,8 @@ impl<'a> Solution<'a> {
         let value = |node: usize| candidate.value(node);
         let excess = sites.list.iter().map(|site| site.excess(value)).collect();
         let balance = Balance::new(problem, candidate, strain)?;
-        let digits = candidate.precision / f64::EPSILON;
+        // A product is rounded several times, a value of the file once.
+        let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
         Ok(Solution {
             problem,
             candidate,
@@ -111,8 +118,10 @@ impl<'a> Solution<'a> {
             scale: balance.scale.max(f64::MIN_POSITIVE),
             strain,
             largest: candidate.largest(),
+            reference: candidate.largest(),
+            ceiling: f64::INFINITY,
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
-            rounding: balance.rounding * digits.max(1.0),
+            rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
             sites,
             forces,
         })
@@ -126,7 +135,7 @@ impl<'a> Solution<'a> {
 
     /// What may be left of it where every equation is solved.
     pub fn allowed(&self) -> f64 {
-        SOLVER + self.rounding / self.scale
+        SOLVER + (self.rounding / self.scale).min(self.ceiling)
     }
 
     /// Whether closed Bernstein coefficients that push explain all contact forces.

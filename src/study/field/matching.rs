@@ -158,8 +158,21 @@ const UNFILLED: f64 = 1e-3;
 /// Pairs of triangles that are tried when parents are looked for.
 const MOST_PAIRS: usize = 4_000_000;
 
-/// Where every triangle of `mesh` is in `field`.
+/// How near points of a triangle are that are one.
+type Nearness = fn(&ForeignField, &[[f64; 2]; 3]) -> f64;
+
+/// Where every triangle of `mesh` is in `field`: by points that are equal but for round-off, for contacts may have put a vertex
+/// close beside another; where that finds no place for every triangle, by points that a writer has rounded.
 fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result<(Partners, Parents), FieldError> {
+    partners_within(field, mesh, scene, round_off).or_else(|_| partners_within(field, mesh, scene, tolerance))
+}
+
+fn partners_within(
+    field: &ForeignField,
+    mesh: &Triangulation,
+    scene: &Scene,
+    nearness: Nearness,
+) -> Result<(Partners, Parents), FieldError> {
     let along = |p: [f64; 2]| DIRECTION[0] * p[0] + DIRECTION[1] * p[1];
     let mut order: Vec<(f64, usize)> =
         (0..mesh.triangles.len()).map(|t| (along(centroid(&mesh.corners(t))), t)).collect();
@@ -168,7 +181,7 @@ fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result
     let mut strays = Vec::new();
     for (number, nodes) in field.triangles.iter().enumerate() {
         let corners = [0, 1, 2].map(|i| field.points[nodes[i]]);
-        let close = tolerance(field, &corners);
+        let close = nearness(field, &corners);
         let place = along(centroid(&corners));
         let start = order.partition_point(|(key, _)| *key < place - close);
         let near = order[start..].iter().take_while(|(key, _)| *key <= place + close);
@@ -184,7 +197,7 @@ fn partners(field: &ForeignField, mesh: &Triangulation, scene: &Scene) -> Result
         }
         found[t] = Some((number, permutation));
     }
-    match parents(field, mesh, &found, &strays) {
+    match parents(field, mesh, &found, &strays, nearness) {
         Ok(parents) => Ok((found, parents)),
         Err(Lost::Field(number)) => {
             let corners = [0, 1, 2].map(|i| field.points[field.triangles[number][i]]);
@@ -204,7 +217,13 @@ enum Lost {
 }
 
 /// The triangles among `strays` that those of `mesh` without a partner are parts of; the parts fill them.
-fn parents(field: &ForeignField, mesh: &Triangulation, found: &Partners, strays: &[usize]) -> Result<Parents, Lost> {
+fn parents(
+    field: &ForeignField,
+    mesh: &Triangulation,
+    found: &Partners,
+    strays: &[usize],
+    nearness: Nearness,
+) -> Result<Parents, Lost> {
     let mut parents: Parents = vec![None; found.len()];
     let alone: Vec<usize> = (0..found.len()).filter(|t| found[*t].is_none()).collect();
     let first_lost = |t: usize| strays.first().map_or(Lost::Mesh(t), |number| Lost::Field(*number));
@@ -218,7 +237,7 @@ fn parents(field: &ForeignField, mesh: &Triangulation, found: &Partners, strays:
         let parent = strays.iter().position(|number| {
             let outer = corners(*number);
             // A field may be rounded where the mesh is not.
-            let slack = INSIDE.max(tolerance(field, &outer) / longest(&outer));
+            let slack = INSIDE.max(nearness(field, &outer) / longest(&outer));
             own.iter().all(|p| barycentric(&outer, *p).iter().all(|l| *l > -slack))
         });
         let place = parent.ok_or_else(|| first_lost(t))?;
