@@ -23,6 +23,8 @@ pub(super) struct End {
     pub distance: f64,
     /// The ratio that s and k ask for.
     pub ratio: f64,
+    /// The largest |k| relative to the largest displacement and weight: zero where the pair needs no opening, for either sign.
+    pub beyond: f64,
     pub pass: Pass,
     /// sign · z.
     pub nodes: NodalValues,
@@ -43,8 +45,8 @@ impl Search<'_, '_> {
         let Known { problem, middle, .. } = self.known;
         let fields = Fields { middle, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1 };
         let pass = pass(problem, self.functional, fields);
-        let Bound { bound, centre, distance, ratio } = self.bounded(response, Some(lifted), &pass, sign);
-        End { bound, centre, first_order: None, distance, ratio, pass, nodes: NodalValues::none() }
+        let Bound { bound, centre, distance, ratio, beyond } = self.bounded(response, Some(lifted), &pass, sign);
+        End { bound, centre, first_order: None, distance, ratio, beyond, pass, nodes: NodalValues::none() }
     }
 
     /// Bound and Q_h of a stress alone, z being zero; `pass` is that of a pair with this stress.
@@ -93,6 +95,7 @@ impl Search<'_, '_> {
         // Jumps beyond their bound by rounding do work on the exact pressure, of the size of that of λ.
         let size = lifted.map_or(0.0, |(z, _)| (0..z.len()).map(|t| z.largest(t)).fold(0.0, f64::max));
         let mut excess = Vec::with_capacity(pressure.len());
+        let mut beyond = 0.0_f64;
         let pressures = dual.contact_traction.iter().flat_map(|of| of.iter());
         for ((pair, weights), t) in problem.pairs().zip(&self.functional.load.weights).zip(pressures) {
             let jumps = lifted.map_or_else(
@@ -103,11 +106,13 @@ impl Search<'_, '_> {
             let degree = jumps.len().max(open.len()).max(weights.len()) - 1;
             let [jumps, open] = [jumps, open].map(|c| side::elevate(&c, degree));
             let weights = if weights.is_empty() { vec![0.0; degree + 1] } else { side::elevate(weights, degree) };
-            let slack = BEYOND * weights.iter().fold(size, |m, w| m.max(w.abs()));
+            let largest = weights.iter().fold(size, |m, w| m.max(w.abs()));
+            let slack = BEYOND * largest;
             let force = 2.0 * pair.length * t.iter().map(|t| t.abs()).sum::<f64>() / t.len().max(1) as f64;
             for ((j, w), o) in jumps.iter().zip(&weights).zip(&open) {
                 let (k, o) = (sign * (j + w), o.max(0.0));
                 asked = asked.max(ratio(k - slack, o));
+                beyond = beyond.max(ratio(k.abs(), largest));
                 excess.push((k, o, force));
             }
         }
@@ -117,7 +122,7 @@ impl Search<'_, '_> {
         }
         let centre = sign * sum.value();
         let bound = centre - width(distance, *square, asked) - rounding;
-        Bound { bound, centre, distance, ratio: asked }
+        Bound { bound, centre, distance, ratio: asked, beyond }
     }
 }
 
@@ -127,6 +132,7 @@ struct Bound {
     centre: f64,
     distance: f64,
     ratio: f64,
+    beyond: f64,
 }
 
 /// The largest D √(H − X) + ρX for 0 ≤ X ≤ H.

@@ -13,7 +13,7 @@ use super::region::{Cut, cut, twice_area};
 use crate::bounds::{holds_at, work};
 use crate::dual::Load;
 use crate::element::Displacement;
-use crate::problem::{Condition, ContactPair, Problem};
+use crate::problem::{Condition, ContactPair, Problem, Sizes};
 use crate::scene::{Extent, Holder, Quantity, Region, Target};
 
 /// What a quantity is, for the words of reports.
@@ -37,6 +37,16 @@ impl Kind {
             Kind::Force => "force",
             Kind::Moment => "moment",
             Kind::Stress => "stress",
+        }
+    }
+
+    /// What such a quantity has of `sizes`; a moment has the largest arm.
+    pub fn size(self, problem: &Problem, sizes: &Sizes) -> f64 {
+        match self {
+            Kind::Displacement => sizes.displacement,
+            Kind::Stress => sizes.stress,
+            Kind::Moment => sizes.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
+            Kind::Force => sizes.force,
         }
     }
 }

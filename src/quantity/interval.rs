@@ -11,17 +11,20 @@
 
 use super::end::End;
 use super::functional::Functional;
-use super::pass::{Pass, strained, uncancelled};
+use super::pass::{strained, uncancelled};
 use super::search::Search;
 use super::value::displaced;
 use crate::bounds::energy::square;
 use crate::bounds::{Bracket, Nearest, UpperBound, mid_field, openings};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
 use crate::element::{StressField, side};
-use crate::problem::{ContactPair, Problem};
+use crate::problem::{ContactPair, Problem, Scales};
 
-/// Relative squares of stresses that are none: what is left is a matter of statics.
-const NO_STRESS: f64 = 1e-18;
+/// Ends that are closer than this, relative to the value, are one but for rounding.
+const ONE: f64 = 1e-9;
+
+/// What rounding leaves in a value that was computed, relative to what the data can cause.
+const ROUNDED: f64 = 1e-11;
 
 /// Contacts of up to so many jumps have a dense Schur complement.
 const LONGEST_DENSE: usize = 6000;
@@ -42,8 +45,11 @@ pub struct Interval {
     pub first_order: [f64; 2],
     /// The value of λ for forces and stresses, of v for displacements: nearer to the truth than the middle.
     pub value: f64,
-    /// Whether equilibrium alone determines the value.
+    /// Whether equilibrium alone determines the value: every equilibrium has it, whatever its contact pressures, and the ends
+    /// differ by rounding.
     pub exact_by_statics: bool,
+    /// How far outside rounding may put a correct value that was computed.
+    pub rounding: f64,
     /// Why an end is infinite.
     pub reasons: [Option<String>; 2],
     /// What each triangle adds to the width.
@@ -59,6 +65,7 @@ impl Interval {
             first_order: ends,
             value: f64::NAN,
             exact_by_statics: false,
+            rounding: 0.0,
             reasons: [Some(reason.to_string()), Some(reason.to_string())],
             shares: Vec::new(),
         }
@@ -69,9 +76,9 @@ impl Interval {
         self.ends.iter().any(|end| end.is_finite())
     }
 
-    /// By how much `x` lies outside; zero inside.
+    /// By how much `x` lies outside; zero inside, and where rounding may have put it there.
     pub fn outside(&self, x: f64) -> f64 {
-        outside(self.ends, x)
+        outside(self.ends, self.rounding, x)
     }
 
     /// Half of the width.
@@ -80,9 +87,10 @@ impl Interval {
     }
 }
 
-/// By how much `x` lies outside of an interval; zero inside.
-pub fn outside([lower, upper]: [f64; 2], x: f64) -> f64 {
-    (lower - x).max(x - upper).max(0.0)
+/// By how much `x` lies outside of an interval; zero inside, and no farther outside than `rounding`.
+pub fn outside([lower, upper]: [f64; 2], rounding: f64, x: f64) -> f64 {
+    let off = (lower - x).max(x - upper).max(0.0);
+    if off <= rounding { 0.0 } else { off }
 }
 
 /// What is known of a problem that was solved.
@@ -156,7 +164,7 @@ impl<'a> Known<'a> {
             Err(reason) => reasons = [Some(reason.clone()), Some(reason)],
             Ok(neutral) => {
                 let begun = search.begin(neutral);
-                let none = Pass::default();
+                exact = search.is_static(&begun);
                 let mut found: [Option<End>; 2] = [None, None];
                 for (end, sign) in [(0, 1.0), (1, -1.0)] {
                     let best = match &found[0] {
@@ -176,10 +184,6 @@ impl<'a> Known<'a> {
                         Err(reason) => reasons[end] = Some(reason),
                     }
                 }
-                let pass = found.iter().flatten().map(|end| &end.pass).next().unwrap_or(&none);
-                exact = functional.natural > 0.0
-                    && found.iter().all(Option::is_some)
-                    && pass.balanced <= NO_STRESS * functional.natural;
                 for end in found.iter().flatten() {
                     self.add_shares(end, &mut shares);
                 }
@@ -189,14 +193,30 @@ impl<'a> Known<'a> {
         let [ends, first_order] = [ends, first_order].map(|interval| clipped(interval, of_one_sign));
         reasons.iter_mut().zip(of_one_sign).filter(|(_, is)| *is).for_each(|(reason, _)| *reason = None);
         let scaled = |v: f64| functional.scale * v;
+        let exact = exact && self.are_one(functional, ends);
         Interval {
             ends: ends.map(scaled),
             first_order: first_order.map(scaled),
             value: scaled(value.max(ends[0]).min(ends[1])),
             exact_by_statics: exact,
+            rounding: self.rounding(functional, ends.map(scaled)),
             reasons,
             shares: shares.into_iter().map(|s| functional.scale * s).collect(),
         }
+    }
+
+    /// Whether the ends differ by rounding alone: relative to the value, or to what rounding leaves where it is zero.
+    fn are_one(&self, functional: &Functional, [lower, upper]: [f64; 2]) -> bool {
+        let zero = functional.kind.size(self.problem, &Scales::new(self.problem).round_off) / functional.scale;
+        upper - lower <= (ONE * lower.abs().max(upper.abs())).max(zero)
+    }
+
+    /// How far outside rounding may put a value: bounded by what the data can cause, whatever the ends are.
+    fn rounding(&self, functional: &Functional, ends: [f64; 2]) -> f64 {
+        let scales = Scales::new(self.problem);
+        let [data, zero] = [&scales.data, &scales.round_off].map(|sizes| functional.kind.size(self.problem, sizes));
+        let largest = ends.iter().filter(|end| end.is_finite()).fold(0.0_f64, |m, end| m.max(end.abs()));
+        (ROUNDED * data).min((ONE * largest).max(zero))
     }
 
     /// The response with s at least `floor`, with a remainder of at most `enough` where that can be had.

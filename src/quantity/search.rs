@@ -38,6 +38,15 @@ const UNSEEN_FAR: f64 = 1e-6;
 /// Part of the width that a sweep over z has to gain for another one to follow.
 const WORTH_A_SWEEP: f64 = 1e-3;
 
+/// Relative squares of stresses that are none.
+const NO_STRESS: f64 = 1e-18;
+
+/// The same for what is left between an adjoint stress and its displacement, both being computed.
+const NO_STRAIN: f64 = 1e-15;
+
+/// Jumps that are none, relative to the largest displacement and weight.
+const NO_JUMP: f64 = 1e-8;
+
 /// The search for one end.
 pub(super) struct Search<'s, 'a> {
     pub known: &'s Known<'a>,
@@ -131,6 +140,22 @@ impl Search<'_, '_> {
             nodes: lower.nodes.clone(),
             ..*lower
         }
+    }
+
+    /// Whether the pair that takes no notice of the state of contact is without stress and without k: then every equilibrium,
+    /// whatever its pressures, has the value Q_h.
+    pub fn is_static(&self, begun: &Begun) -> bool {
+        let Known { nearest, .. } = self.known;
+        let natural = self.functional.natural;
+        if natural <= 0.0 {
+            return false;
+        }
+        let sigma = self.stress(&begun.response.stress);
+        let filled = nearest.filled(&begun.nodes, Pull { scene: 0.0, stress: Some(&sigma) });
+        let pair = self.measured(&begun.response, (&filled, 1.0), 1.0);
+        pair.pass.balanced <= NO_STRESS * natural
+            && pair.pass.pair.square <= NO_STRAIN * natural
+            && pair.beyond <= NO_JUMP
     }
 
     /// σ̂ + cχ, χ by its mean where a triangle is cut.

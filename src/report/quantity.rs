@@ -32,6 +32,9 @@ pub struct QuantitySummary {
     pub first_order: [f64; 2],
     /// Whether equilibrium alone determines the value.
     pub exact_by_statics: bool,
+    /// How far outside rounding may put a correct value that was computed.
+    #[serde(skip)]
+    pub rounding: f64,
     /// The values of the displacement models.
     pub primal: Vec<QuantityOfModel>,
     /// Why there is no interval, or only one end of it; `null` where there is one.
@@ -47,6 +50,8 @@ pub struct QuantityOfModel {
     pub degree: usize,
     /// Its value; `null` where its displacement does not tell.
     pub value: Option<f64>,
+    /// Why there is no value; `null` where there is one.
+    pub reason: Option<String>,
     /// Whether it lies in the interval; `null` where there is no value or no interval.
     pub inside: Option<bool>,
 }
@@ -60,6 +65,8 @@ pub(crate) struct Held {
     pub degree: Option<usize>,
     /// The value; `None` where the field does not tell.
     pub value: Option<f64>,
+    /// Why the field does not tell.
+    pub reason: Option<String>,
     /// Whether its distance from the interval is within what its own error allows, where that was checked.
     pub allowed: Option<bool>,
 }
@@ -92,7 +99,7 @@ impl QuantitySummary {
 
     /// By how much `x` lies outside; zero inside.
     pub fn outside(&self, x: f64) -> f64 {
-        outside([self.lower, self.upper], x)
+        outside([self.lower, self.upper], self.rounding, x)
     }
 
     /// The digits that tell the ends of the interval apart.
@@ -137,12 +144,14 @@ impl QuantitySummary {
             of: model.solver.clone(),
             degree: Some(model.degree),
             value: model.value,
+            reason: model.reason.clone(),
             allowed: checks(&model.solver).next().map(|check| check.passed),
         };
         let given = checks("given").map(|check| Held {
             of: "given".to_string(),
             degree: None,
             value: check.value,
+            reason: None,
             allowed: Some(check.passed),
         });
         self.primal.iter().map(of_model).chain(given).collect()
@@ -150,7 +159,10 @@ impl QuantitySummary {
 
     /// How a value that is held against the interval lies to it, in words; empty inside.
     pub(crate) fn verdict_on(&self, held: &Held) -> String {
-        let Some(value) = held.value else { return "its displacement does not tell".to_string() };
+        let Some(value) = held.value else {
+            let why = held.reason.as_ref().map_or(String::new(), |reason| format!(": {reason}"));
+            return format!("its displacement does not tell{why}");
+        };
         let outside = self.outside(value);
         if outside == 0.0 {
             return String::new();

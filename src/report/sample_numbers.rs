@@ -213,6 +213,7 @@ fn quantities() -> Vec<QuantitySummary> {
         solver: "FEniCSx P2".to_string(),
         degree: 2,
         value: Some(value),
+        reason: None,
         inside: Some(inside),
     };
     let row = |name: &str, kind: &str, lower: f64, value: f64, upper: f64| QuantitySummary {
@@ -223,6 +224,7 @@ fn quantities() -> Vec<QuantitySummary> {
         upper,
         first_order: [lower - 0.1, upper + 0.1],
         exact_by_statics: lower == upper,
+        rounding: 0.0,
         primal: vec![model(value, true)],
         reason: upper.is_infinite().then(|| "nothing holds <it>".to_string()),
     };

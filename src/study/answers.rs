@@ -122,12 +122,14 @@ fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool 
 /// The rows of the report: every answer with the values of the displacement models that were `compared`.
 pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
     let summary = |answer: &Answer| {
-        let Interval { ends: [lower, upper], first_order, value, exact_by_statics, reasons, .. } = &answer.interval;
+        let Interval { ends: [lower, upper], first_order, value, exact_by_statics, rounding, reasons, .. } =
+            &answer.interval;
         let known = answer.interval.has_an_end();
         let primal = |(judged, value): (&Judged, Option<f64>)| QuantityOfModel {
             solver: judged.candidate.name.clone(),
             degree: judged.candidate.degree,
             value,
+            reason: value.is_none().then(|| not_told(certified, answer)),
             inside: value.filter(|_| known).map(|v| answer.interval.outside(v) == 0.0),
         };
         QuantitySummary {
@@ -138,6 +140,7 @@ pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Compari
             upper: *upper,
             first_order: *first_order,
             exact_by_statics: *exact_by_statics,
+            rounding: *rounding,
             primal: comparison.judged.iter().zip(values_in(certified, answer, comparison)).map(primal).collect(),
             reason: reasons.iter().flatten().next().cloned(),
         }
@@ -154,6 +157,21 @@ fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) ->
         value_of(problem, functional.as_ref()?, &judged.field.displacement).filter(|value| value.is_finite())
     };
     comparison.judged.iter().map(value).collect()
+}
+
+/// Why a displacement has no value of a quantity.
+fn not_told(certified: &Certified, answer: &Answer) -> String {
+    let problem = &certified.problem;
+    let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
+    match quantity.map(|quantity| Functional::new(problem, quantity)) {
+        Some(Err(error)) => error.to_string(),
+        Some(Ok(functional)) if functional.lift.is_none() && functional.load.weights.iter().any(|w| !w.is_empty()) => {
+            "the contact shares a vertex with a support or another contact, or its direction turns: no displacement of the \
+             mesh moves it alone, and how they share the force there is not told"
+                .to_string()
+        }
+        _ => "the displacement has no finite value of it".to_string(),
+    }
 }
 
 /// How a value outside an interval is judged.
@@ -191,7 +209,7 @@ pub fn quantity_checks(
             } else {
                 format!("no correct value lies outside, and that of {field} has to lie inside")
             };
-            let allowed = own + SOLVED * size(&scales, &certified.problem, answer);
+            let allowed = own + SOLVED * answer.kind.size(&certified.problem, &scales.data);
             checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
         }
     }
@@ -250,16 +268,6 @@ fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) ->
         answer.name
     );
     Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
-}
-
-/// What such a quantity can be at most, in order of magnitude.
-fn size(scales: &Scales, problem: &Problem, answer: &Answer) -> f64 {
-    match answer.kind {
-        Kind::Displacement => scales.data.displacement,
-        Kind::Stress => scales.data.stress,
-        Kind::Moment => scales.data.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
-        Kind::Force => scales.data.force,
-    }
 }
 
 /// What the energy of a displacement leaves open of its value: the width of first order belongs to H, its own error to its

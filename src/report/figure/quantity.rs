@@ -21,7 +21,8 @@ const AROUND: f64 = 0.05;
 /// One lane for the interval and one for each value, over an axis of the quantity's own; `None` where there is no number to
 /// draw.
 pub fn quantity(summary: &QuantitySummary, report: &Report) -> Option<String> {
-    let own = Held { of: "dual solve".to_string(), degree: None, value: Some(summary.value), allowed: None };
+    let own =
+        Held { of: "dual solve".to_string(), degree: None, value: Some(summary.value), reason: None, allowed: None };
     let mut list = vec![own];
     list.extend(summary.held(report));
     list.retain(|held| held.value.is_some_and(f64::is_finite));
