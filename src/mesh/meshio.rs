@@ -60,7 +60,7 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
                 return Err(failure(what, remedy));
             }
             Outcome::Exit(_) | Outcome::Lost(_) => {
-                let end = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("no message");
+                let end = reason(ended.log.iter().map(String::as_str));
                 return Err(failure(format!("meshio cannot read it: {end}"), format!("check the file, or {instead}")));
             }
             Outcome::TimedOut => {
@@ -76,4 +76,29 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
              interpreter that has it, or {instead}"
         ),
     ))
+}
+
+/// What a script that failed said: its last line, and before it the last one that meshio printed as an error, which has the reason
+/// where the last line only says that reading failed.
+fn reason<'a>(log: impl Iterator<Item = &'a str>) -> String {
+    let lines: Vec<&str> = log.map(str::trim).filter(|line| !line.is_empty()).collect();
+    let Some((last, before)) = lines.split_last() else { return "no message".to_string() };
+    let printed = before.iter().rev().find_map(|line| line.strip_prefix("Error:"));
+    match printed.map(|text| text.trim().trim_end_matches('.')) {
+        Some(text) if !last.contains(text) => format!("{text} ({last})"),
+        _ => (*last).to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reason_that_was_printed_before_the_last_line_is_kept() {
+        let log = ["Error: Element type not available: CPE3", "", "Couldn't read file x.inp as abaqus"];
+        assert_eq!(reason(log.into_iter()), "Element type not available: CPE3 (Couldn't read file x.inp as abaqus)");
+        assert_eq!(reason(["Error: no cells", "no cells"].into_iter()), "no cells");
+        assert_eq!(reason([].into_iter()), "no message");
+    }
 }
