@@ -20,4 +20,5 @@ mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
+mod schemas;
 mod stability;
