@@ -16,6 +16,7 @@ mod jobs;
 mod malformed;
 mod malformed_meshes;
 mod memory;
+mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
