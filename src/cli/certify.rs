@@ -95,7 +95,9 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     args.judge.refuse_early(&session.scene, Some(field.iter().map(ForeignField::name).collect()), &args.job)?;
     let run = session.solve(&stress_side(args, has_field), &args.limits, Some(&folder))?;
     let (comparison, particulars) = judged(args, &session, &run, field.as_ref(), &given, reading)?;
-    session.conclude(&run, &comparison, particulars, &folder)
+    let exit = session.conclude(&run, &comparison, particulars, &folder)?;
+    args.judge.say_accepted(args.run.quiet, &args.job);
+    Ok(exit)
 }
 
 /// How the stress side is solved. A field belongs to the mesh as given: what is refined is the stress side alone, afterwards.

@@ -118,6 +118,7 @@ impl Session {
 
     fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
+        let replaced = report_of_another_command(folder, self.command);
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
@@ -146,6 +147,9 @@ impl Session {
                 say::line(&format!("  worth a look: {}", remark.name));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
+            if let Some(other) = replaced {
+                say::line(&format!("  in place of the report of `{other}` that was there; --out DIR keeps both"));
+            }
         }
         Ok(match dossier.report.status {
             Status::Agree => Exit::Agree,
@@ -154,6 +158,13 @@ impl Session {
             Status::Failed => Exit::Failed,
         })
     }
+}
+
+/// The command whose report lies in `folder`, where it is not `command`.
+fn report_of_another_command(folder: &Path, command: &str) -> Option<String> {
+    let text = std::fs::read(folder.join("report.json")).ok()?;
+    let report: serde_json::Value = serde_json::from_slice(&text).ok()?;
+    report["command"].as_str().filter(|other| *other != command).map(str::to_owned)
 }
 
 /// The command of this process, with quotes around what a shell would take apart.

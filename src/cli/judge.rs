@@ -2,7 +2,7 @@
 
 use super::job::JobOptions;
 use super::options::{JudgeOptions, SignatureOptions};
-use super::{CliError, Exit};
+use super::{CliError, Exit, say};
 use crate::compare::{Allowances, Check, Comparison, names_of_checks};
 use crate::report::BaselineRow;
 use crate::scene::{Contact, Scene};
@@ -128,6 +128,14 @@ impl JudgeOptions {
             return Ok((Vec::new(), Vec::new()));
         }
         Ok((present.checks(&Baseline::read(file).map_err(refused)?, allow), Vec::new()))
+    }
+
+    /// Says which baseline now holds the numbers of a run; the job does so for the scenes of one.
+    pub fn say_accepted(&self, quiet: bool, job: &JobOptions) {
+        let accepted = self.baseline.as_ref().filter(|_| self.accept && !quiet && !job.is_part());
+        if let Some(file) = accepted {
+            say::line(&format!("baseline: {} holds the numbers of this run", file.display()));
+        }
     }
 
     /// Who accepts, when and why.

@@ -10,6 +10,7 @@ use crate::budget::{self, Budget};
 use crate::dual::{LinearSolver, Solver};
 use crate::element::Elements;
 use crate::report;
+use crate::report::number::significant;
 use crate::scene::Scene;
 use crate::study::{Adapt, GivenValue, Wanted};
 
@@ -59,7 +60,7 @@ pub struct SolveOptions {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
     pub refine: u32,
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
-    #[arg(long, value_name = "X", value_parser = positive)]
+    #[arg(long, value_name = "X", value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Refine adaptively until the half-width of the interval of quantity NAME is below X times its value; may be repeated
     #[arg(long, value_name = "NAME=X")]
@@ -239,7 +240,7 @@ impl FromStr for NamedTolerance {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = named(text, "tip=1e-3")?;
-        if value > 0.0 { Ok(NamedTolerance { name, value }) } else { Err(format!("{value} is not above zero")) }
+        Ok(NamedTolerance { name, value: as_tolerance(value)? })
     }
 }
 
@@ -273,6 +274,22 @@ fn number(text: &str) -> Result<f64, String> {
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     let value = number(text)?;
     if value > 0.0 { Ok(value) } else { Err(format!("{text} is not above zero")) }
+}
+
+/// A relative error: above zero, and at most one.
+fn tolerance(text: &str) -> Result<f64, String> {
+    as_tolerance(number(text)?)
+}
+
+fn as_tolerance(value: f64) -> Result<f64, String> {
+    if value <= 0.0 {
+        return Err(format!("{value} is not above zero"));
+    }
+    if value > 1.0 {
+        let [percent, meant] = [value * 100.0, value / 100.0].map(|number| significant(number, 6));
+        return Err(format!("{value} would allow an error of {percent} %; write {meant} for {value} %"));
+    }
+    Ok(value)
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -60,6 +60,18 @@ impl Args {
         words.extend(self.memory.max_memory.map(|bytes| format!("--max-memory {bytes}")));
         words.join(" ")
     }
+
+    /// Refuses a solver in the place of FEniCSx where the methods that are named leave FEniCSx out.
+    fn refuse_unrun(&self) -> Result<(), CliError> {
+        match &self.reference {
+            Some(program) if !self.methods.chosen().iter().any(|method| method.is_primal()) => Err(CliError::stopped(
+                Exit::BadInput,
+                format!("--reference runs {} in the place of FEniCSx, and --method leaves FEniCSx out", program.name()),
+                "add --method 'FEniCSx P1', or --primal-degree with the degrees to run; or leave --reference out",
+            )),
+            _ => Ok(()),
+        }
+    }
 }
 
 fn known(id: &str) -> Result<&'static Regime, String> {
@@ -82,6 +94,7 @@ fn regimes() -> String {
 /// # Errors
 /// No answer can be given.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
+    args.refuse_unrun()?;
     let folder = args.run.folder_named("stability");
     let program = this_program()?;
     let progress = Progress::new(args.run.quiet);

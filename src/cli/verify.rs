@@ -179,6 +179,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         ..Particulars::default()
     };
     let exit = session.conclude(&run, &comparison, particulars, &folder)?;
+    args.judge.say_accepted(args.run.quiet, &args.job);
     match failure {
         None => Ok(exit),
         Some(error) => {

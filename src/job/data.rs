@@ -272,7 +272,8 @@ impl Gathered {
 
 /// JSON Schema of `job.json`.
 pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(Job).to_value()
+    let written = schemars::generate::SchemaSettings::default().for_serialize();
+    written.into_generator().into_root_schema_for::<Job>().to_value()
 }
 
 #[cfg(test)]

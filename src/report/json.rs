@@ -1,5 +1,6 @@
 //! `report.json` and its schema.
 
+use schemars::generate::SchemaSettings;
 use schemars::transform::{RecursiveTransform, Transform};
 use serde_json::Value;
 
@@ -15,7 +16,8 @@ pub fn json(report: &Report) -> Result<String, serde_json::Error> {
 /// JSON Schema of `report.json`. Every floating-point number may be `null`: that is how one that is not finite is
 /// written.
 pub fn schema() -> Value {
-    let mut schema = schemars::schema_for!(Report);
+    let written = SchemaSettings::default().for_serialize();
+    let mut schema = written.into_generator().into_root_schema_for::<Report>();
     RecursiveTransform(|schema: &mut schemars::Schema| {
         if schema.get("type").and_then(Value::as_str) == Some("number") {
             schema.insert("type".to_string(), serde_json::json!(["number", "null"]));

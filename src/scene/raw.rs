@@ -253,7 +253,7 @@ pub(super) struct RawContact {
 #[schemars(rename = "Gap")]
 pub(super) enum RawGap {
     /// The same everywhere.
-    Constant(#[schemars(range(min = 0))] f64),
+    Constant(f64),
     /// Rows [s, g] with s increasing.
     Table(#[schemars(with = "Vec<[f64; 2]>", length(min = 1))] Vec<Pair>),
     /// A curve that touches the side at one point.

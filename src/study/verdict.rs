@@ -39,7 +39,7 @@ pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&E
         ([], _) if status == Status::Undecided => {
             format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
         }
-        ([], 0) => format!("The bracket holds.{bound}"),
+        ([], 0) => format!("{}{bound}", given_values(findings).unwrap_or("The bracket holds.".to_string())),
         ([], _) if findings.command == "certify" => {
             let claim = if findings.is_claimed { "the discrete solution it claims to be" } else { "admissible" };
             format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")
@@ -47,6 +47,17 @@ pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&E
         ([], _) => format!("The stress and displacement models agree{allowances}.{bound}"),
         ([one], _) => format!("{told}One check failed: {one}.{bound}"),
         (several, _) => format!("{told}{} checks failed, first {}.{bound}", several.len(), several[0]),
+    }
+}
+
+/// Says where values lie that were given without a field and passed; `None` without any.
+fn given_values(findings: &Findings<'_>) -> Option<String> {
+    let of_value = |name: &'_ str| name.strip_prefix("quantity/")?.strip_suffix("/given").map(str::to_string);
+    let names: Vec<String> = findings.comparison.checks.iter().filter_map(|check| of_value(&check.name)).collect();
+    match names.as_slice() {
+        [] => None,
+        [one] => Some(format!("The value given for {one} lies in its interval.")),
+        several => Some(format!("The values given for {} lie in their intervals.", several.join(", "))),
     }
 }
 

@@ -72,7 +72,8 @@ pub struct Report {
 
 /// The JSON Schema of `report.json`.
 pub fn schema() -> serde_json::Value {
-    schemars::schema_for!(Report).to_value()
+    let written = schemars::generate::SchemaSettings::default().for_serialize();
+    written.into_generator().into_root_schema_for::<Report>().to_value()
 }
 
 impl Report {

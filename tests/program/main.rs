@@ -16,8 +16,10 @@ mod jobs;
 mod malformed;
 mod malformed_meshes;
 mod memory;
+mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
+mod schemas;
 mod stability;

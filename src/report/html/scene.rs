@@ -70,7 +70,7 @@ fn supports(scene: &Scene) -> Markup {
 fn contacts(problem: &Problem) -> Markup {
     html! {
         ul { @for (contact, interface) in problem.scene.contacts.iter().zip(&problem.interfaces) { li {
-            bdi { code { (clean(&interface.name)) } } ": " (grouped(interface.pairs.len())) " pairs of edges, gap "
+            bdi { code { (clean(&interface.name)) } } ": " (grouped(interface.pairs.len())) (if interface.pairs.len() == 1 { " pair" } else { " pairs" }) " of edges, gap "
             @match &contact.gap {
                 Gap::Constant(g) => (significant(*g, 5)),
                 Gap::Table(rows) => { "from a table of " (rows.len()) " rows" }

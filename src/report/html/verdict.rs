@@ -101,7 +101,7 @@ fn agreement(report: &Report) -> Markup {
             }
             @if !worth_a_look(report).is_empty() {
                 p {
-                    (worth_a_look(report).len()) " of " (report.remarks.len()) " " a href="#remarks" { "remarks" }
+                    (worth_a_look(report).len()) " of " (report.remarks.len()) " " a href="#remarks" { (if report.remarks.len() == 1 { "remark" } else { "remarks" }) }
                     " " (if worth_a_look(report).len() == 1 { "is" } else { "are" }) " worth a look."
                 }
             }

@@ -1,0 +1,107 @@
+//! Every scene of the repository and every JSON file that the program writes, held against the schemas that it prints by
+//! Python's jsonschema.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::command::{case, hypercircle, run, said};
+
+/// Validates files against a schema, and says which do not fit: SCHEMA FILE...
+const VALIDATE: &str = r#"
+import json, sys, tomllib
+from jsonschema import Draft202012Validator
+
+schema = json.load(open(sys.argv[1]))
+Draft202012Validator.check_schema(schema)
+validator = Draft202012Validator(schema)
+wrong = 0
+for path in sys.argv[2:]:
+    with open(path, "rb") as file:
+        text = file.read().decode("utf-8-sig")
+    content = tomllib.loads(text) if path.endswith(".toml") else json.loads(text)
+    for error in validator.iter_errors(content):
+        wrong = 1
+        print(f"{path}: {error.json_path}: {error.message[:200]}")
+sys.exit(wrong)
+"#;
+
+/// What does not fit the schema called `name`; nothing where all `files` do.
+fn misfits(folder: &Path, name: &str, files: &[PathBuf]) -> String {
+    let printed = run(hypercircle(folder, ["schema", name]));
+    let schema = folder.join(format!("{name}.schema.json"));
+    std::fs::write(&schema, printed.stdout).expect("writable");
+    let mut python = Command::new("/usr/bin/python3");
+    let output = python.args(["-c", VALIDATE]).arg(schema).args(files).output().expect("Python");
+    let lines = String::from_utf8_lossy(&output.stdout).into_owned();
+    match output.status.success() {
+        true => String::new(),
+        false => format!("{lines}{}", String::from_utf8_lossy(&output.stderr)),
+    }
+}
+
+/// The files of `folder` in the repository that end with `.toml`.
+fn scenes(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries = std::fs::read_dir(folder).expect("part of the repository");
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("readable").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    files
+}
+
+#[test]
+fn all_scenes_fit_their_schema() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files: Vec<PathBuf> = ["cases", "tests/scenes", "tests/malformed/valid"].into_iter().flat_map(scenes).collect();
+    assert!(files.len() > 30, "{files:?}");
+    assert_eq!(misfits(folder.path(), "scene", &files), "");
+}
+
+#[test]
+fn a_misspelt_key_does_not_fit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(case("ring")).expect("part of the repository");
+    assert!(text.contains("young"));
+    let scene = folder.path().join("ring.toml");
+    std::fs::write(&scene, text.replace("young", "yuong")).expect("writable");
+    let found = misfits(folder.path(), "scene", &[scene]);
+    assert!(found.contains("ring.toml: $.bodies") && found.contains("yuong"), "{found}");
+}
+
+#[test]
+fn written_reports_fit_their_schemas() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let blocks = case("two_blocks").display().to_string();
+    let ring = case("ring").display().to_string();
+    let quantities = format!("{}/tests/malformed/valid/quantities.toml", env!("CARGO_MANIFEST_DIR"));
+    let unheld = path("unheld.toml");
+    let text = std::fs::read_to_string(&blocks).expect("part of the repository");
+    std::fs::write(&unheld, text.replace("value = [4.0, 0.0]", "value = [-4.0, 0.0]")).expect("writable");
+    let unheld = unheld.display().to_string();
+    let runs: [(&[&str], &str); 7] = [
+        (&["solve", &blocks], "plain"),
+        (&["solve", &ring, "--tolerance", "0.05"], "adaptive"),
+        (&["solve", &quantities], "quantities"),
+        (&["solve", &unheld], "unheld"),
+        (&["certify", &quantities, "--value", "drift=1", "--baseline", "b.toml", "--accept"], "accepted"),
+        (&["certify", &quantities, "--value", "drift=1", "--baseline", "b.toml"], "compared"),
+        (&["solve", &blocks, &ring], "job"),
+    ];
+    let mut reports = Vec::new();
+    for (words, out) in runs {
+        let output = run(hypercircle(folder.path(), words.iter().copied().chain(["--quiet", "--out", out])));
+        let report = path(out).join(if out == "job" { "job.json" } else { "report.json" });
+        assert!(report.is_file(), "{words:?}: {}", said(&output));
+        reports.push(report);
+    }
+    let job = reports.pop().expect("the last one");
+    reports.push(path("job/two_blocks/report.json"));
+    assert_eq!(misfits(folder.path(), "report", &reports), "");
+    assert_eq!(misfits(folder.path(), "job", &[job]), "");
+
+    let output = run(hypercircle(folder.path(), ["element", "p1", "--quiet", "--out", "element"]));
+    let element = path("element/report.json");
+    assert!(element.is_file(), "{}", said(&output));
+    assert_eq!(misfits(folder.path(), "element", &[element]), "");
+}
