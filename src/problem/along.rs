@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{ContactPair, Direction, Interface, ProblemError};
+use super::contact::interpolated_gap;
+use super::{ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::along::{Facing, facing, outward, turned};
 use crate::mesh::error::at;
@@ -22,6 +23,7 @@ pub(super) fn pair_along(
     given: [f64; 2],
     scene: &Scene,
     mesh: &Triangulation,
+    notes: &mut Vec<Note>,
 ) -> Result<Interface, ProblemError> {
     let fault = |what: String, remedy: &str| ProblemError::Contact {
         contact: contact.name(),
@@ -78,6 +80,7 @@ pub(super) fn pair_along(
         let what = format!("seen along its direction, '{}' and '{}' do not face each other", names[0], names[1]);
         return Err(fault(what, "correct `direction`, or the names"));
     }
+    notes.extend(interpolated_gap(contact, &pairs));
     Ok(Interface { name: contact.name(), pairs })
 }
 

@@ -17,7 +17,7 @@ pub(super) fn pair_up(
     notes: &mut Vec<Note>,
 ) -> Result<Interface, ProblemError> {
     if let (ContactSides::Between(names), Some(direction)) = (&contact.sides, contact.direction) {
-        return pair_along(contact, names, direction, scene, mesh);
+        return pair_along(contact, names, direction, scene, mesh, notes);
     }
     let fault = |what: String, remedy: &str| ProblemError::Contact {
         contact: contact.name(),
@@ -108,18 +108,18 @@ fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
 }
 
 /// A remark on how far the gap at the vertices, linear between them, is from the curve that it stands for, at the edges
-/// that touch it.
-fn interpolated_gap(contact: &Contact, pairs: &[ContactPair]) -> Option<Note> {
+/// that touch it. It weakens the guarantee: the bounds are for another gap than the scene's.
+pub(super) fn interpolated_gap(contact: &Contact, pairs: &[ContactPair]) -> Option<Note> {
     let (Gap::Circle(Touching { radius, at }) | Gap::Parabola(Touching { radius, at })) = contact.gap else {
         return None;
     };
     let touching = pairs.iter().filter(|pair| pair.arc[0] <= at && at <= pair.arc[1]);
     let longest = touching.map(|pair| pair.length).fold(0.0, f64::max);
     Some(Note {
-        weakens_guarantee: false,
+        weakens_guarantee: true,
         text: format!(
             "{} a curve of radius {radius:?} at the vertices of this mesh and linear between them: at s = {at:?} up to {:.1e} \
-             away from it. The bounds are for the gap that is linear on every edge",
+             away from it. The bounds are for the gap that is linear on every edge, and not guaranteed for the curve",
             gap_note(contact),
             longest * longest / (8.0 * radius)
         ),
