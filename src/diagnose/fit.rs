@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::physical::is_simple;
 use super::space::Space;
 use super::{Finding, Trial};
 
@@ -9,6 +10,12 @@ use super::{Finding, Trial};
 const DEPENDENT: f64 = 1e-9;
 /// Pairs are made of this many terms at most: those that explain most alone.
 const PAIRED: usize = 16;
+
+/// Of what either leaves alone, what a pair may leave.
+const TOGETHER: f64 = 1e-2;
+/// Of the length of the residual, what each of a pair has to move at least, and may move at most: of two that are longer, one
+/// undoes the other.
+const MOVED: [f64; 2] = [0.03, 10.0];
 
 /// What a term says about its coefficients.
 type Told<'a> = Box<dyn Fn(&[f64]) -> Vec<Finding> + 'a>;
@@ -32,9 +39,10 @@ impl<'a> Terms<'a> {
         Terms { residual: &space.residual, square: space.square, list: Vec::new() }
     }
 
-    /// One more, told from its coefficients; without effect where its columns are zero.
+    /// One more, told from its coefficients; without effect where its columns are zero, or too many for what they explain.
     pub fn push(&mut self, rank: usize, columns: Vec<Vec<f64>>, told: impl Fn(&[f64]) -> Vec<Finding> + 'a) {
-        if columns.iter().flatten().any(|x| *x != 0.0) {
+        let numbers = self.residual.iter().filter(|r| **r != 0.0).count();
+        if is_simple(columns.len(), numbers) && columns.iter().flatten().any(|x| *x != 0.0) {
             self.list.push(Term { rank, columns, told: Box::new(told) });
         }
     }
@@ -50,7 +58,25 @@ impl<'a> Terms<'a> {
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         order.truncate(PAIRED);
         let pairs = (0..order.len()).flat_map(|i| (i + 1..order.len()).map(move |j| (i, j)));
-        pairs.map(|(i, j)| self.trial(&[order[i].1, order[j].1])).filter(Trial::is_possible).collect()
+        let pairs = pairs.filter_map(|(i, j)| {
+            let terms = [order[i].1, order[j].1];
+            let trial = self.trial(&terms);
+            let alone = order[i].0.min(order[j].0);
+            (trial.left <= TOGETHER * alone && self.both_move(terms)).then_some(trial)
+        });
+        pairs.filter(Trial::is_possible).collect()
+    }
+
+    /// Whether each of two terms that are fitted together takes a part of the residual that is worth the name.
+    fn both_move(&self, terms: [&Term<'a>; 2]) -> bool {
+        let columns: Vec<&[f64]> = terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect();
+        let (coefficients, _) = fit(&columns, self.residual, self.square);
+        let split = terms[0].columns.len();
+        [0..split, split..columns.len()].into_iter().all(|own| {
+            let at = |k: usize| own.clone().map(|i| columns[i][k] * coefficients[i]).sum::<f64>();
+            let moved = ((0..self.residual.len()).map(|k| at(k).powi(2)).sum::<f64>() / self.square).sqrt();
+            (MOVED[0]..=MOVED[1]).contains(&moved)
+        })
     }
 
     fn trial(&self, terms: &[&Term<'a>]) -> Trial {

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::fit::fit;
+use super::physical::is_simple;
 use super::space::{Moduli, Space};
 use super::words::{factor, near, number};
 use super::{Finding, Trial};
@@ -84,7 +85,8 @@ impl<'a> Places<'a> {
         Trial { rank: 4, left, findings: vec![finding] }
     }
 
-    /// What is left where nothing is asked of the given nodes, nor of those that contacts tie to them.
+    /// What is left where nothing is asked of the given nodes, nor of those that contacts tie to them; all of it where these
+    /// are a large part of the mesh.
     fn without(&self, nodes: impl IntoIterator<Item = usize>) -> f64 {
         let mut all: BTreeSet<usize> = nodes.into_iter().collect();
         for site in &self.space.solution.sites.list {
@@ -92,6 +94,9 @@ impl<'a> Places<'a> {
             if all.contains(&site.first) || all.contains(&second) {
                 all.extend([site.first, second]);
             }
+        }
+        if !is_simple(all.len(), self.space.count()) {
+            return 1.0;
         }
         let inside: f64 = all.into_iter().map(|n| self.space.square_at(n)).sum();
         (1.0 - inside / self.space.square).max(0.0)

@@ -133,14 +133,17 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
                 let first = own(0);
                 let [young, poisson] =
                     Moduli::engineering(scene.kinematics, first.lambda * (1.0 + x[0]), first.mu * (1.0 + x[1]));
-                let both = format!(
-                    "the material of every body has E = {} and ν = {} in place of {} and {}",
-                    number(young),
-                    number(poisson),
-                    bodies[0].young,
-                    bodies[0].poisson
-                );
-                vec![Finding::new("bodies/poisson", Some(poisson), Some(bodies[0].poisson), both)]
+                let sentence = |what: &str, found: f64, given: f64| {
+                    format!("{what} of every body is {} in place of {given}", number(found))
+                };
+                let of = |key: &str, what: &str, found: f64, given: f64| {
+                    Finding::new(format!("bodies/{key}"), Some(found), Some(given), sentence(what, found, given))
+                };
+                let mut findings = vec![of("poisson", "Poisson's ratio", poisson, bodies[0].poisson)];
+                if !near(young, bodies[0].young) {
+                    findings.push(of("young", "Young's modulus", young, bodies[0].young));
+                }
+                findings
             });
         }
     }

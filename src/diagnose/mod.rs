@@ -3,7 +3,8 @@
 //! The residual r = Q(K u − F) of a field, with Q what neither supports nor contacts can take, is linear in the loads and in the
 //! elastic constants of every body. A wrong one of these leaves a residual in the span of a few columns, which least squares find;
 //! mistakes that are not linear are made on purpose and held against the residual as well. Of the hypotheses that explain it
-//! about equally well the simplest is named, of two together where none does alone, and none where none does. What contact and
+//! about equally well the simplest is named, of two together where none does alone, and none where none does. A hypothesis is one that somebody can have made
+//! (`physical`) and has far fewer unknowns than the residual has numbers. What contact and
 //! supports do shows in forces and displacements there and is read from them.
 
 mod contact;
@@ -11,6 +12,7 @@ mod fit;
 mod loads;
 mod local;
 mod material;
+mod physical;
 mod space;
 mod supports;
 mod values;
@@ -26,8 +28,8 @@ use space::Space;
 
 /// Of the squared residual what an explanation may leave: a hundredth of the residual.
 const LEFT: f64 = 1e-4;
-/// Of a Young's modulus, what a wrong one is no less than.
-const LEAST_STIFFNESS: f64 = 1e-12;
+/// Of the squared residual what the nearest hypothesis has to explain to be worth a name.
+const NAMED: f64 = 0.5;
 /// Explanations that leave less than this times what the best leaves are as good.
 const AS_GOOD: f64 = 10.0;
 
@@ -75,15 +77,6 @@ struct Trial {
 }
 
 impl Trial {
-    /// Whether a material with the constants found exists: one without stiffness would explain everything.
-    fn is_possible(&self) -> bool {
-        self.findings.iter().all(|f| match (f.value, f.expected) {
-            (Some(young), Some(given)) if f.name.ends_with("/young") => young > LEAST_STIFFNESS * given,
-            (Some(poisson), _) if f.name.ends_with("/poisson") => -1.0 < poisson && poisson < 0.5,
-            _ => true,
-        })
-    }
-
     /// Whether a finding of forces or displacements along supports and contacts stands beside this explanation, and is no
     /// consequence of it.
     fn leaves(&self, finding: &Finding) -> bool {
@@ -142,6 +135,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         loads::terms(&space, &mut terms);
         trials.extend(terms.alone());
         diagnosis.tried = trials.len();
+        trials.retain(Trial::is_possible);
         let floor = (solution.allowed() / solution.residual()).powi(2);
         let found = simplest(trials, floor).or_else(|trials| {
             let together = terms.together();
@@ -157,6 +151,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
                 nearest = trials.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
+                nearest = nearest.filter(|trial| 1.0 - trial.left >= NAMED);
             }
         }
     }
@@ -186,7 +181,13 @@ fn sentence(diagnosis: &Diagnosis, nearest: Option<&Trial>) -> String {
         text = format!("This explains it: {text}.");
     }
     match (diagnosis.explained, nearest) {
-        (Some(share), None) => text += &format!(" It accounts for {} of the residual.", words::share(share)),
+        (Some(share), None) if share > 0.0 => {
+            text += &format!(" It accounts for {} of the residual.", words::share(share));
+        }
+        (Some(_), None) => {
+            let begin = if text.is_empty() { "" } else { " " };
+            text += &format!("{begin}None of {} hypotheses explains the residual, nor half of it.", diagnosis.tried);
+        }
         (Some(_), Some(trial)) => {
             let (near, share) = (words::list(&trial.findings), words::share(1.0 - trial.left));
             let begin = if text.is_empty() { "" } else { " " };

@@ -1,0 +1,87 @@
+//! What a hypothesis must be beside near: something that a person or a program can have done.
+
+use super::words::near;
+use super::{Finding, Trial};
+
+/// Factors between these are those of a number that was read or typed wrongly.
+const DECADE: [f64; 2] = [0.1, 10.0];
+/// Powers of ten up to this one are units.
+const UNITS: i32 = 9;
+/// One unknown of a hypothesis for this many numbers of the residual, or fewer: with more, it repeats what it should explain.
+const NUMBERS: usize = 4;
+
+/// Whether a positive constant can be `s` times what it should be: within a decade, or by a power of ten.
+fn is_mistyped(s: f64) -> bool {
+    let power = s.log10().round();
+    let in_decade = (DECADE[0]..=DECADE[1]).contains(&s);
+    s > 0.0 && (in_decade || (power.abs() <= f64::from(UNITS) && near(s, 10.0_f64.powf(power))))
+}
+
+/// Whether `unknowns` are few enough beside the `numbers` that they explain.
+pub fn is_simple(unknowns: usize, numbers: usize) -> bool {
+    NUMBERS * unknowns <= numbers
+}
+
+impl Finding {
+    /// Whether the number found can be one of a model.
+    fn is_physical(&self) -> bool {
+        let Some(value) = self.value else { return true };
+        match self.name.rsplit('/').next().unwrap_or(&self.name) {
+            "young" => self.expected.is_none_or(|given| is_mistyped(value / given)),
+            "poisson" => -1.0 < value && value < 0.5,
+            "shear" => is_mistyped(value),
+            // Its sign is what is mistaken most often: 1 + 2ν in place of 1 − 2ν is no change of it.
+            "lambda" => value == 0.0 || is_mistyped(value.abs()),
+            _ => value.is_finite(),
+        }
+    }
+
+    /// Whether it says that a body is softer or stiffer.
+    fn is_of_stiffness(&self) -> bool {
+        self.name.starts_with("stiffness/") || ["/young", "/poisson"].iter().any(|end| self.name.ends_with(end))
+    }
+
+    /// Whether it takes a load away.
+    fn takes_load(&self) -> bool {
+        (self.name == "loads" || self.name.starts_with("load/") || self.name.ends_with("/body_force"))
+            && self.value.zip(self.expected).is_some_and(|(found, given)| near(given + found, given))
+    }
+}
+
+impl Trial {
+    /// Whether every constant found can be one, and a problem is left: without loads any stiffness is as good as another.
+    pub fn is_possible(&self) -> bool {
+        let empty = self.findings.iter().any(Finding::takes_load) && self.findings.iter().any(Finding::is_of_stiffness);
+        !empty && self.findings.iter().all(Finding::is_physical)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(findings: &[(&str, f64, f64)]) -> Trial {
+        let findings = findings.iter().map(|(name, value, given)| Finding::new(*name, Some(*value), Some(*given), ""));
+        Trial { rank: 1, left: 0.0, findings: findings.collect() }
+    }
+
+    #[test]
+    fn constants_are_those_that_somebody_can_have_typed() {
+        for young in [500.0, 9_500.0, 1e4, 1e5, 1e7, 10.0] {
+            assert_eq!(trial(&[("body/b/young", young, 1e4)]).is_possible(), young != 500.0, "{young}");
+        }
+        for young in [-1e4, 0.0, 4.8e-8, 3.7e7, f64::NAN] {
+            assert!(!trial(&[("body/b/young", young, 1e4)]).is_possible(), "{young}");
+        }
+        assert!(!trial(&[("body/b/poisson", 0.5, 0.3)]).is_possible());
+        assert!(trial(&[("stiffness/lambda", -1.0, 1.0)]).is_possible());
+        assert!(!trial(&[("stiffness/shear", -1.0, 1.0)]).is_possible());
+    }
+
+    #[test]
+    fn a_stiffness_without_its_load_is_no_explanation() {
+        assert!(trial(&[("load/top", 0.0, 1.0)]).is_possible());
+        assert!(!trial(&[("body/b/young", 9e3, 1e4), ("load/top", 1e-9, 1.0)]).is_possible());
+        assert!(trial(&[("body/b/young", 9e3, 1e4), ("load/top", 0.5, 1.0)]).is_possible());
+    }
+}
