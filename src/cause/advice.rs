@@ -40,6 +40,8 @@ impl Kind {
             "body" | "bodies" | "stiffness" | "kinematics" => Kind::Material,
             "thickness" => Kind::Thickness,
             "displacement" | "value" => Kind::Values,
+            "boundary" if name.ends_with("/forces") => Kind::Load,
+            "boundary" if name.ends_with("/clamped") => Kind::Support,
             _ => Kind::Local,
         }
     }

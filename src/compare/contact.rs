@@ -15,6 +15,8 @@ use crate::problem::{Interface, Problem, Scales};
 
 /// Pressures below this fraction of the largest count as none.
 const NO_PRESSURE: f64 = 1e-9;
+/// Pressures below this fraction of the stress that the loads can ask for count as none, however large the others are.
+const NO_STRESS: f64 = 1e-10;
 /// Reactions below this fraction of the largest are what a solver leaves of zero.
 const NO_REACTION: f64 = 1e-7;
 /// A trace scatters around zero where the bodies are apart, by a few per cent of the largest pressure.
@@ -60,7 +62,7 @@ impl Sides<'_> {
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
-        let threshold = NO_PRESSURE * largest;
+        let threshold = (NO_PRESSURE * largest).max(self.no_pressure());
         ContactSummary {
             name: interface.name.clone(),
             resultant: TwoSides { dual: force, primal: None },
@@ -107,13 +109,14 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
         // Reactions are zero or not; a trace is never quite zero.
-        let threshold = largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE };
+        let threshold = (largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE }).max(self.no_pressure());
         summary.resultant.primal = Some(force);
         summary.moment.primal = Some(about_zero(problem, moment, force));
         summary.pressure_max.primal = Some(largest);
         summary.pressure_max_at.primal = Some(problem.scene.as_written(at));
         summary.open_fraction_primal = Some(open_length(interface, &pieces, threshold) / summary.length);
-        summary.pressure_l2_difference = (norm > 0.0).then(|| difference / norm);
+        let presses = norm > 0.0 && summary.pressure_max.dual > self.no_pressure();
+        summary.pressure_l2_difference = presses.then(|| difference / norm);
 
         let mut checks = Vec::new();
         // A field that solves nothing promises no pressure; its trace is shown, and judged by the energy alone.
@@ -134,7 +137,8 @@ impl Sides<'_> {
             Some(difference) => checks.extend(self.bounded_pressure(best, (index, interface), &difference)),
             None => checks.extend(chosen_pressure(summary)),
         }
-        let disagree = disagreement(interface, (own, NO_PRESSURE * summary.pressure_max.dual), (&pieces, threshold));
+        let own_threshold = (NO_PRESSURE * summary.pressure_max.dual).max(self.no_pressure());
+        let disagree = disagreement(interface, (own, own_threshold), (&pieces, threshold));
         let pressed = 1.0 - summary.open_fraction;
         checks.push(Check::with_difference(
             &format!("contact/{}/open-length", interface.name),
@@ -147,6 +151,11 @@ impl Sides<'_> {
              carries pressure, or three edges.",
         ));
         checks
+    }
+
+    /// The pressure below which a contact is open, from the loads of the scene.
+    fn no_pressure(&self) -> f64 {
+        self.scales.round_off.stress.max(NO_STRESS * self.scales.data.stress)
     }
 
     /// What rounding and the accuracy of a solver leave in a single reaction, thickness included.

@@ -287,3 +287,38 @@ fn settle(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const ENDS: usize = 12;
+    const RANK: usize = 7;
+
+    proptest! {
+        /// A solution is planted: jumps at or below their bound, tension where they are below it none, pressure at it. S is
+        /// singular, so open sets leave bodies without hold; the minimum of the energy is unique all the same.
+        #[test]
+        fn the_planted_minimum_is_found(
+            factor in proptest::collection::vec(-1.0..1.0f64, RANK * ENDS),
+            planted in proptest::collection::vec((any::<bool>(), 0.01..1.0f64, 0.0..0.5f64), ENDS),
+        ) {
+            let b = Mat::from_fn(RANK, ENDS, |i, k| factor[i * ENDS + k]);
+            let s = b.transpose() * &b;
+            let bound: Vec<f64> = planted.iter().map(|(_, _, gap)| *gap).collect();
+            let jumps: Vec<f64> =
+                planted.iter().map(|(closed, size, gap)| if *closed { *gap } else { gap - size }).collect();
+            let pressure = |i: usize| if planted[i].0 { planted[i].1 } else { 0.0 };
+            let zero = vec![0.0; ENDS];
+            let c: Vec<f64> = gradient(&s, &zero, &jumps).iter().enumerate().map(|(i, sj)| sj + pressure(i)).collect();
+            let energy = |j: &[f64]| (0..ENDS).map(|i| 0.5 * j[i] * (gradient(&s, &zero, j)[i] - 2.0 * c[i])).sum::<f64>();
+
+            for found in [solve(&s, &c, &bound, None), Ok(proximal_points(&s, &c, &bound))] {
+                let found = found.unwrap();
+                prop_assert!(found.jumps.iter().zip(&bound).all(|(j, g)| *j <= g + 1e-9));
+                prop_assert!((energy(&found.jumps) - energy(&jumps)).abs() < 1e-7, "{} {}", energy(&found.jumps), energy(&jumps));
+            }
+        }
+    }
+}

@@ -78,12 +78,15 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
     ))
 }
 
-/// What a script that failed said: its last line, and before it the last one that meshio printed as an error, which has the reason
-/// where the last line only says that reading failed.
+/// What a script that failed said: its last line, and before it the one that meshio printed as an error or just before one,
+/// which has the reason where the other only says that reading failed.
 fn reason<'a>(log: impl Iterator<Item = &'a str>) -> String {
     let lines: Vec<&str> = log.map(str::trim).filter(|line| !line.is_empty()).collect();
     let Some((last, before)) = lines.split_last() else { return "no message".to_string() };
-    let printed = before.iter().rev().find_map(|line| line.strip_prefix("Error:"));
+    let printed = match last.strip_prefix("Error:") {
+        Some(_) => before.last().copied(),
+        None => before.iter().rev().find_map(|line| line.strip_prefix("Error:")),
+    };
     match printed.map(|text| text.trim().trim_end_matches('.')) {
         Some(text) if !last.contains(text) => format!("{text} ({last})"),
         _ => (*last).to_string(),

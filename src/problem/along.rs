@@ -1,6 +1,7 @@
 //! The two sides of a contact that acts along a given direction, edge against edge.
 
 use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_2;
 
 use super::contact::interpolated_gap;
 use super::{ContactPair, Direction, Interface, Note, ProblemError};
@@ -12,6 +13,10 @@ use crate::scene::{Contact, Gap, Scene};
 
 /// Part of an interval within which its ends are those of another one.
 const MATCHED: f64 = 1e-6;
+/// Radians by which the normals of a straight side may differ …
+const STRAIGHT: f64 = 1e-6;
+/// … and beyond which a direction is another one than the normal: a tangential part of a tenth.
+const OBLIQUE: f64 = 0.1;
 /// Part of the size of the mesh by which sides may cross for round-off.
 const ROUND_OFF: f64 = 1e-10;
 
@@ -81,7 +86,30 @@ pub(super) fn pair_along(
         return Err(fault(what, "correct `direction`, or the names"));
     }
     notes.extend(interpolated_gap(contact, &pairs));
+    notes.extend(oblique(contact, &pairs, d));
     Ok(Interface { name: contact.name(), pairs })
+}
+
+/// A remark where contact acts along a direction that is not the normal of a straight side: its forces have a tangential part.
+fn oblique(contact: &Contact, pairs: &[ContactPair], d: [f64; 2]) -> Option<Note> {
+    let off = |pair: &ContactPair| {
+        let [nx, ny] = pair.normal;
+        (nx * d[1] - ny * d[0]).atan2(nx * d[0] + ny * d[1])
+    };
+    let angles = || pairs.iter().map(off);
+    let [least, most] = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
+    let is_straight = most - least <= STRAIGHT;
+    (is_straight && most.abs() > OBLIQUE && most.abs() < FRAC_PI_2).then(|| Note {
+        weakens_guarantee: false,
+        text: format!(
+            "contact {}: `direction` is {:.0}° off the normal of its straight first side. Contact acts along `direction`, so its \
+             forces have a tangential part of {:.2} times the normal one, which a frictionless contact along the normal has not; \
+             give the normal where that is meant",
+            contact.name(),
+            most.abs().to_degrees(),
+            most.abs().tan()
+        ),
+    })
 }
 
 /// The edge of the other side that covers the same interval.

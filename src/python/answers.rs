@@ -93,8 +93,15 @@ impl ContactAnswer {
     pub fn new(of: ContactSummary) -> Self {
         let own = of.profiles.iter().find(|profile| profile.model == "dual");
         let (arc_length, pressure) = own.iter().flat_map(|profile| &profile.points).map(|[s, p]| (*s, *p)).unzip();
+        let pressure = without_rounding(pressure);
         ContactAnswer { of, arc_length, pressure }
     }
+}
+
+/// Pressures below zero by no more than rounding, relative to the largest, as zero.
+fn without_rounding(pressure: Vec<f64>) -> Vec<f64> {
+    let rounding = 1e-12 * pressure.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
+    pressure.into_iter().map(|p| if p < 0.0 && p > -rounding { 0.0 } else { p }).collect()
 }
 
 #[pymethods]

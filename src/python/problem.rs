@@ -16,13 +16,21 @@ pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'
     out.set_item("kinematics", scene.kinematics.name())?;
     out.set_item("thickness", scene.thickness)?;
     out.set_item("bodies", list(py, &scene.bodies, body_entry)?)?;
+    let normals: Vec<[f64; 2]> = (0..mesh.edges.len()).map(|e| mesh.edge_frame(e).1).collect();
     out.set_item("points", numbers(mesh.points.iter().map(|p| scene.as_written(*p)).collect())?)?;
     out.set_item("triangles", indices(mesh.triangles.into_pyobject(py)?)?)?;
     out.set_item("body", indices(mesh.body.into_pyobject(py)?)?)?;
+    let names: Vec<Option<&str>> =
+        mesh.edges.iter().map(|e| e.name.and_then(|name| mesh.names.get(name)).map(String::as_str)).collect();
+    out.set_item("boundaries", names)?;
     let edges: Vec<[usize; 2]> = mesh.edges.iter().map(|e| e.vertices).collect();
     out.set_item("edges", indices(edges.into_pyobject(py)?)?)?;
     out.set_item("triangle_edges", indices(mesh.triangle_edges.into_pyobject(py)?)?)?;
-    out.set_item("conditions", list(py, &conditions, condition_entry)?)?;
+    let known = list(py, &conditions, condition_entry)?;
+    for (k, _) in conditions.iter().enumerate().filter(|(_, condition)| matches!(condition, Condition::Roller)) {
+        known.get_item(k)?.set_item("normal", normals[k])?;
+    }
+    out.set_item("conditions", known)?;
     out.set_item("interfaces", list(py, &interfaces, interface_entry)?)?;
     Ok(out)
 }
@@ -73,6 +81,7 @@ fn interface_entry<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Boun
         entry.set_item("first", pair.first)?;
         entry.set_item("second", pair.second)?;
         entry.set_item("normal", pair.normal)?;
+        entry.set_item("direction", pair.direction.ends)?;
         entry.set_item("length", pair.length)?;
         entry.set_item("gap", pair.gap)?;
         pairs.append(entry)?;

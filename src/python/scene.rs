@@ -94,7 +94,8 @@ impl Scene {
     }
 
     /// The scene on its mesh, refined uniformly `refine` times: `points` (n × 2), `triangles` (m × 3), `body` (m, index into
-    /// `bodies`), `edges` (e × 2), `triangle_edges` (m × 3), `conditions` of the edges, `interfaces`, `bodies`, `kinematics`,
+    /// `bodies`), `edges` (e × 2), `triangle_edges` (m × 3), `conditions` of the edges (a roller has its outward
+    /// `normal`), `boundaries` (the name of each edge, or `None`), `interfaces` (each pair has the `direction` of contact at its two ends), `bodies`, `kinematics`,
     /// `thickness`.
     #[pyo3(signature = (refine = 0))]
     fn problem<'py>(&self, py: Python<'py>, refine: u32) -> PyResult<Bound<'py, PyDict>> {

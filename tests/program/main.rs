@@ -15,6 +15,7 @@ mod jobs;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;
+mod many_bodies;
 mod memory;
 mod printed;
 mod quantities;
