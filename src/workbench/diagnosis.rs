@@ -3,16 +3,22 @@
 //! With R the matrix of the isoparametric element of the same nodes, every mistake of the list makes a matrix M, and what it explains
 //! of K − R is 1 − |K − M|² / |K − R|². The simplest one that explains all but rounding is named.
 
+mod points;
+mod slopes;
+mod whole;
+
 use nalgebra::{DMatrix, Matrix3};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::displacement::{DisplacementElement, Order};
-use super::formulas::{Family, Variant};
+use super::formulas::{Family, Point, Variant};
 use crate::report::number::{percent, significant};
 
 /// Of |K − R|², what an explanation may leave.
 const LEFT: f64 = 1e-8;
+/// Part of the difference below which the nearest mistake is not named.
+const WORTH_NAMING: f64 = 0.5;
 /// The cause where none is found.
 const UNEXPLAINED: &str = "unexplained";
 /// Of all entries, how many may be wrong for them to be listed.
@@ -87,11 +93,20 @@ impl Reference {
 
     fn variant(&self, hooke: &Matrix3<f64>, variant: Variant) -> Result<DMatrix<f64>, String> {
         let variant = if variant == Variant::Right { self.rule } else { variant };
-        let own = self.family.stiffness(&self.nodes, hooke, 1.0, variant)?;
+        Ok(self.placed(&self.family.stiffness(&self.nodes, hooke, 1.0, variant)?))
+    }
+
+    /// The quadrature points of the reference, of a quadrilateral alone where there are several; `None` for other shapes.
+    fn points(&self) -> Option<Vec<Point>> {
+        (self.family == Family::Q4).then(|| self.family.points(&self.nodes, self.rule).ok()).flatten()
+    }
+
+    /// A matrix of the family, numbered as the element is.
+    fn placed(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
         let mut at = vec![0; self.order.len()];
         self.order.iter().enumerate().for_each(|(i, &n)| at[n] = i);
         let place = |i: usize| 2 * at[i / 2] + i % 2;
-        Ok(DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))]))
+        DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))])
     }
 }
 
@@ -124,6 +139,9 @@ fn explanation(e: &DisplacementElement, reference: &Reference) -> Option<Diagnos
     let mut trials = materials(e, reference);
     trials.extend(variants(reference));
     trials.extend(numberings(e, right));
+    trials.extend(slopes::trials(reference));
+    trials.extend(whole::trials(reference));
+    trials.extend(points::trials(k, reference));
     let scaled: Vec<Trial> = trials.iter().filter_map(|t| with_factor(k, t)).collect();
     trials.extend(scaled);
     trials.extend(fitted_hooke(k, reference));
@@ -140,6 +158,10 @@ fn explanation(e: &DisplacementElement, reference: &Reference) -> Option<Diagnos
     }
     let nearest = trials.iter().min_by(|a, b| left(a).total_cmp(&left(b)))?;
     let explained = (1.0 - left(nearest)).max(0.0);
+    if explained < WORTH_NAMING {
+        let sentence = format!("None of {} mistakes explains the difference.", trials.len());
+        return Some(Diagnosis { cause: UNEXPLAINED.into(), explained, sentence });
+    }
     let sentence = format!(
         "None of {} mistakes explains the difference; nearest, to {}, comes this one: {}.",
         trials.len(),
@@ -161,6 +183,10 @@ fn materials(e: &DisplacementElement, r: &Reference) -> Vec<Trial> {
         format!("K is {} times what it must be, as with another Young's modulus or thickness", significant(factor, 6));
     push(4, "factor", text, Ok(&r.matrix * factor));
     if let Some(material) = e.material {
+        if material.kinematics == crate::scene::Kinematics::PlaneStress && material.poisson.abs() > 1e-3 {
+            let text = "E/(1 − ν) stands where E/(1 − ν²) belongs".into();
+            push(1, "plane-stress-factor", text, Ok(&r.matrix * (1.0 + material.poisson)));
+        }
         let other = material.in_other_kinematics();
         let text = format!("K is that of {} and not of {}", other.kinematics.words(), material.kinematics.words());
         push(1, "plane-state", text, r.variant(&(other.hooke() * other.thickness), Variant::Right));
@@ -244,7 +270,7 @@ fn orders(n: usize) -> Vec<Vec<usize>> {
 
 /// The same mistake with a factor on top.
 fn with_factor(k: &DMatrix<f64>, trial: &Trial) -> Option<Trial> {
-    if matches!(trial.cause, "sign" | "factor" | "shear") {
+    if matches!(trial.cause, "sign" | "factor" | "shear" | "weights" | "plane-stress-factor") {
         return None;
     }
     let factor = k.dot(&trial.matrix) / trial.matrix.norm_squared();

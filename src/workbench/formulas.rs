@@ -33,6 +33,31 @@ pub enum Variant {
     Transposed,
 }
 
+/// A quadrature point of an element.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    /// Its place on the reference shape.
+    pub at: [f64; 2],
+    /// Its weight.
+    pub weight: f64,
+    /// |det J|.
+    pub det: f64,
+    /// Gradients of the shape functions.
+    pub gradients: Vec<[f64; 2]>,
+}
+
+impl Point {
+    /// Its part Bᵀ D B w |det J| of the stiffness matrix per unit thickness.
+    pub fn stiffness(&self, d: &Matrix3<f64>) -> DMatrix<f64> {
+        let mut b = DMatrix::zeros(3, 2 * self.gradients.len());
+        for (i, &[x, y]) in self.gradients.iter().enumerate() {
+            (b[(0, 2 * i)], b[(1, 2 * i + 1)]) = (x, y);
+            (b[(2, 2 * i)], b[(2, 2 * i + 1)]) = (y, x);
+        }
+        b.transpose() * d * b * (self.weight * self.det)
+    }
+}
+
 /// Barycentric or bilinear place, and weight.
 type Rule = Vec<([f64; 2], f64)>;
 
@@ -120,7 +145,16 @@ impl Family {
         if nodes.len() != n {
             return Err(format!("{} nodes, but the {} has {n}", nodes.len(), self.words()));
         }
-        let mut k = DMatrix::zeros(2 * n, 2 * n);
+        let points = self.points(nodes, variant)?;
+        Ok(points.iter().fold(DMatrix::zeros(2 * n, 2 * n), |k, p| k + p.stiffness(d) * thickness))
+    }
+
+    /// The quadrature points with the gradients there, nodes in the order of the family.
+    ///
+    /// # Errors
+    /// The Jacobian vanishes at one of them.
+    pub(super) fn points(self, nodes: &[[f64; 2]], variant: Variant) -> Result<Vec<Point>, String> {
+        let mut points = Vec::new();
         for (at, weight) in self.rule(variant) {
             let slopes = self.slopes(at);
             let jacobian = |c: usize, a: usize| nodes.iter().zip(&slopes).map(|(x, g)| x[c] * g[a]).sum::<f64>();
@@ -130,17 +164,11 @@ impl Family {
                 return Err("the Jacobian vanishes at a quadrature point".into());
             }
             let (p, q) = if variant == Variant::Transposed { (j[0][1], j[1][0]) } else { (j[1][0], j[0][1]) };
-            let mut b = DMatrix::zeros(3, 2 * n);
-            for (i, g) in slopes.iter().enumerate() {
-                // J⁻ᵀ: x from (y_t, −y_s), y from (−x_t, x_s).
-                let x = (j[1][1] * g[0] - p * g[1]) / det;
-                let y = (j[0][0] * g[1] - q * g[0]) / det;
-                (b[(0, 2 * i)], b[(1, 2 * i + 1)]) = (x, y);
-                (b[(2, 2 * i)], b[(2, 2 * i + 1)]) = (y, x);
-            }
-            k += b.transpose() * d * b * (weight * det.abs() * thickness);
+            // J⁻ᵀ: x from (y_t, −y_s), y from (−x_t, x_s).
+            let gradient = |g: &[f64; 2]| [(j[1][1] * g[0] - p * g[1]) / det, (j[0][0] * g[1] - q * g[0]) / det];
+            points.push(Point { at, weight, det: det.abs(), gradients: slopes.iter().map(gradient).collect() });
         }
-        Ok(k)
+        Ok(points)
     }
 
     /// The element with its formula, on the reference shape.
