@@ -67,6 +67,18 @@ impl Finding {
     }
 }
 
+impl Finding {
+    /// Whether it asks for forces on a boundary that is a side of a contact which one of the findings `told` is about.
+    fn is_of_contact_in(&self, told: &[&str]) -> bool {
+        let side = self.name.strip_prefix("boundary/").and_then(|rest| rest.strip_suffix("/forces"));
+        let about = |side: &str, name: &&str| {
+            let contact = name.strip_prefix("contact/").and_then(|rest| rest.rsplit_once('/'));
+            contact.is_some_and(|(sides, _)| sides.split('|').any(|of| of == side))
+        };
+        side.is_some_and(|side| told.iter().any(|name| about(side, name)))
+    }
+}
+
 /// A hypothesis after it was held against the residual.
 struct Trial {
     /// The simpler the smaller.
@@ -136,6 +148,9 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         trials.extend(terms.alone());
         diagnosis.tried = trials.len();
         trials.retain(Trial::is_possible);
+        // What contact does at a side is read from the contact itself.
+        let told: Vec<&str> = diagnosis.findings.iter().map(|finding| finding.name.as_str()).collect();
+        trials.retain(|trial| !trial.findings.iter().any(|finding| finding.is_of_contact_in(&told)));
         let floor = (solution.allowed() / solution.residual()).powi(2);
         let found = simplest(trials, floor).or_else(|trials| {
             let together = terms.together();

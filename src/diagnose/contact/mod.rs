@@ -10,6 +10,8 @@ use crate::compare::solution::SOLVER;
 
 pub use tangential::trials;
 
+/// Rounded displacements that meet in the force of a node: all may be off the same way.
+const MEETING: f64 = 16.0;
 /// Forces this small beside all others are none.
 const NO_FORCE: f64 = 1e-6;
 /// How well penetrations have to follow a constant for another gap.
@@ -41,7 +43,7 @@ impl<'a> Along<'a> {
             name: &solution.problem.interfaces[index].name,
             sites,
             enough: 2.0 * (SOLVER + solution.candidate.precision) * solution.largest,
-            least: (NO_FORCE + solution.rounding / solution.scale) * total,
+            least: (NO_FORCE + MEETING * solution.rounding / solution.scale) * total,
         }
     }
 

@@ -5,6 +5,8 @@ use nalgebra::DMatrix;
 use super::{Reference, Trial};
 use crate::report::number::significant;
 
+/// Points whose weights are fitted: more of them explain too much of a matrix of a quadrilateral.
+const MOST_POINTS: usize = 4;
 /// How far a fitted weight may be from the one a mistake makes.
 const NEAR: f64 = 1e-4;
 
@@ -30,7 +32,8 @@ pub(super) fn trials(k: &DMatrix<f64>, r: &Reference) -> Vec<Trial> {
     }
     let system = DMatrix::from_fn(k.len(), each.len(), |row, c| each[c][row]);
     let given = DMatrix::from_column_slice(k.len(), 1, k.as_slice());
-    if let Ok(found) = system.svd(true, true).solve(&given, 1e-12) {
+    let fitted = (each.len() <= MOST_POINTS).then(|| system.svd(true, true).solve(&given, 1e-12));
+    if let Some(Ok(found)) = fitted {
         let w: Vec<f64> = found.iter().copied().collect();
         let one = |value: f64| {
             let at = w.iter().position(|x| (x - value).abs() < NEAR)?;
