@@ -101,6 +101,11 @@ fn failed(check: &Check) -> String {
             format!("The guaranteed relative error is {value}, and {allowed} was to be reached.")
         }
         ("certified", who, _) => format!("The stresses of {who} may be wrong by {value}; {allowed} at most."),
+        ("solution", "guaranteed-error", _) => {
+            format!(
+                "All stresses of the field may be wrong: its guaranteed relative error is {value}, above {reference}."
+            )
+        }
         ("solution", "residual", _) => {
             format!("{value} of the nodal forces is left unbalanced, where a solution leaves {allowed}.")
         }
