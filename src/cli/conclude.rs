@@ -183,7 +183,8 @@ fn sharpened_note(finer: &Certified, stopped: Option<String>) -> Note {
     let triangles = finer.problem.mesh.triangles.len();
     let how = format!(
         "The bracket of the mesh as given could not tell two models apart. The stress side alone was refined to {triangles} \
-         triangles; the energy bounds are from there, contacts and stresses are compared on the mesh as given."
+         triangles; the energy bounds and the intervals of quantities are from there, contacts and stresses are compared on the \
+         mesh as given."
     );
     Note { weakens_guarantee: false, text: stopped.map_or(how.clone(), |reason| format!("{how} {reason}")) }
 }

@@ -159,6 +159,16 @@ impl Session {
         study::answers(certified, &self.options(solve), |_| true)
     }
 
+    /// The same where the stress side was `sharpened` after it was solved: the interval of the mesh as given, and that of the
+    /// finer one, hold the same value.
+    pub fn sharpest_answers(&self, run: &DualRun, sharpened: Option<&Sharpened>, solve: &SolveOptions) -> Vec<Answer> {
+        let own = self.answers(&run.certified, solve);
+        match sharpened {
+            Some(finer) => study::sharper(own, &self.answers(&finer.certified, solve)),
+            None => own,
+        }
+    }
+
     fn options(&self, solve: &SolveOptions) -> Options {
         let degree = solve.degree.unwrap_or(1) as usize;
         let elements = solve.elements.clone().unwrap_or_else(|| Elements::Uniform(block(degree)));

@@ -20,6 +20,7 @@ pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
+pub use pressure::weighted_reactions;
 pub use solution::{Extent, Numbering, Solution};
 pub use stress::{primal_means, von_mises, von_mises_map};
 pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};

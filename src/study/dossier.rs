@@ -1,10 +1,11 @@
 //! From results to the data behind the report.
 
 use super::Certified;
-use super::answers::{Answer, summaries};
+use super::answers::Answer;
 use super::curves;
 use super::maps::Fields;
 use super::provenance::{identifier, provenance};
+use super::quantity_checks::summaries;
 use super::verdict::verdict;
 use crate::bounds::{Bracket, UpperBound};
 use crate::cause::causes;
