@@ -62,7 +62,7 @@ impl Sides<'_> {
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
-        let threshold = (NO_PRESSURE * largest).max(self.no_pressure());
+        let threshold = self.open_below(NO_PRESSURE * largest);
         ContactSummary {
             name: interface.name.clone(),
             resultant: TwoSides { dual: force, primal: None },
@@ -109,7 +109,7 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
         // Reactions are zero or not; a trace is never quite zero.
-        let threshold = (largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE }).max(self.no_pressure());
+        let threshold = self.open_below(largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE });
         summary.resultant.primal = Some(force);
         summary.moment.primal = Some(about_zero(problem, moment, force));
         summary.pressure_max.primal = Some(largest);
@@ -137,7 +137,7 @@ impl Sides<'_> {
             Some(difference) => checks.extend(self.bounded_pressure(best, (index, interface), &difference)),
             None => checks.extend(chosen_pressure(summary)),
         }
-        let own_threshold = (NO_PRESSURE * summary.pressure_max.dual).max(self.no_pressure());
+        let own_threshold = self.open_below(NO_PRESSURE * summary.pressure_max.dual);
         let disagree = disagreement(interface, (own, own_threshold), (&pieces, threshold));
         let pressed = 1.0 - summary.open_fraction;
         checks.push(Check::with_difference(
@@ -156,6 +156,11 @@ impl Sides<'_> {
     /// The pressure below which a contact is open, from the loads of the scene.
     fn no_pressure(&self) -> f64 {
         self.scales.round_off.stress.max(NO_STRESS * self.scales.data.stress)
+    }
+
+    /// The pressure below which an edge is open where that of its contact is nothing below `part`.
+    fn open_below(&self, part: f64) -> f64 {
+        part.max(self.no_pressure())
     }
 
     /// What rounding and the accuracy of a solver leave in a single reaction, thickness included.

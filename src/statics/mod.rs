@@ -11,6 +11,7 @@ mod balance;
 mod components;
 pub(crate) mod cone;
 mod few;
+mod gaps;
 mod loads;
 mod many;
 mod pins;
@@ -143,6 +144,10 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
             let told = both_ways.len() < MOST_NOTES;
             both_ways.push(if told { words::free_both_ways(&components, &words(&motion)) } else { String::new() });
             held.push(motion);
+        }
+        for (names, direction) in gaps::free_while_open(problem, &group, &loads, &found)? {
+            let motion = motion(&group, &direction).0;
+            both_ways.push(words::free_while_open(&components, &words(&motion), &names));
         }
         if let Some(driven) = found.driven {
             let (motion, factor) = motion(&group, &driven.motion);

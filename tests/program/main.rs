@@ -24,3 +24,4 @@ mod quantities;
 mod random;
 mod schemas;
 mod stability;
+mod statics;
