@@ -7,7 +7,7 @@
 use super::StaticsError;
 use super::balance::{RANK, Verdict};
 use super::loads::LoadResultants;
-use super::restraint::Group;
+use super::restraint::{Group, Run};
 use super::span::Span;
 use crate::problem::Problem;
 use nalgebra::DVector;
@@ -17,6 +17,17 @@ const MANY: usize = 24;
 
 /// Part of the largest displacement below which a piece is at rest.
 const AT_REST: f64 = 1e-9;
+
+/// Whether the contact of `run` has a gap all along.
+fn is_apart(problem: &Problem, run: &Run) -> bool {
+    problem.interfaces[run.interface].pairs.iter().all(|pair| pair.gap.iter().all(|g| *g > 0.0))
+}
+
+/// `group` without the contacts that have a gap all along.
+pub(super) fn without_gaps<'a>(problem: &Problem, group: &Group<'a>) -> Group<'a> {
+    let runs = group.runs.iter().copied().filter(|run| !is_apart(problem, run)).collect();
+    Group { components: group.components, members: group.members.clone(), runs }
+}
 
 /// Motions beside those that `found` has for `group`, each with the names of the contacts that have to stay open for it.
 ///
@@ -28,15 +39,11 @@ pub(super) fn free_while_open(
     loads: &LoadResultants,
     found: &Verdict,
 ) -> Result<Vec<(Vec<String>, DVector<f64>)>, StaticsError> {
-    let apart =
-        |interface: usize| problem.interfaces[interface].pairs.iter().all(|pair| pair.gap.iter().all(|g| *g > 0.0));
-    let with_gap = || group.runs.iter().filter(|run| apart(run.interface));
+    let with_gap = || group.runs.iter().filter(|run| is_apart(problem, run));
     if found.driven.is_some() || group.members.len() > MANY || with_gap().next().is_none() {
         return Ok(Vec::new());
     }
-    let runs = group.runs.iter().copied().filter(|run| !apart(run.interface)).collect();
-    let without = Group { components: group.components, members: group.members.clone(), runs };
-    let alone = Verdict::of(problem, &without, loads)?;
+    let alone = Verdict::of(problem, &without_gaps(problem, group), loads)?;
     if alone.driven.is_some() {
         return Ok(Vec::new());
     }

@@ -145,9 +145,10 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
             both_ways.push(if told { words::free_both_ways(&components, &words(&motion)) } else { String::new() });
             held.push(motion);
         }
+        let open = gaps::without_gaps(problem, &group);
         for (names, direction) in gaps::free_while_open(problem, &group, &loads, &found)? {
-            let motion = motion(&group, &direction).0;
-            both_ways.push(words::free_while_open(&components, &words(&motion), &names));
+            let moving = words::moving(problem, &open, &loads, &motion(&group, &direction).0);
+            both_ways.push(words::free_while_open(&components, &moving, &names));
         }
         if let Some(driven) = found.driven {
             let (motion, factor) = motion(&group, &driven.motion);

@@ -12,6 +12,7 @@ mod element;
 mod fields;
 mod hostile;
 mod jobs;
+mod labels;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;
