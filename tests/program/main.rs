@@ -17,6 +17,8 @@ mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+#[path = "../support/pages.rs"]
+mod pages;
 mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
@@ -24,3 +26,6 @@ mod quantities;
 mod random;
 mod schemas;
 mod stability;
+mod stale;
+#[path = "../support/validate.rs"]
+mod validate;
