@@ -29,3 +29,4 @@ mod stability;
 mod stale;
 #[path = "../support/validate.rs"]
 mod validate;
+mod words;

@@ -72,3 +72,30 @@ fn written_reports_fit_their_schemas() {
     assert!(element.is_file(), "{}", said(&output));
     assert_eq!(misfits(folder.path(), "element", &[element]), "");
 }
+
+/// A solver that tells nothing but displacements: zeros, which are no solution.
+const ZEROS: &str = r#"
+import json, sys
+points = json.load(open(sys.argv[1]))["points"]
+answer = {"format": "hypercircle-primal", "version": 1, "degree": 1, "vertex_displacement": [[0, 0]] * len(points)}
+json.dump(answer, open(sys.argv[2] + "/primal-P1.json", "w"))
+"#;
+
+#[test]
+fn what_a_solver_does_not_tell_is_missing_and_not_zero() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("zeros.py"), ZEROS).expect("writable");
+    let blocks = case("two_blocks").display().to_string();
+    let solver = format!("/usr/bin/python3 {}/zeros.py {{problem}} {{out}}", folder.path().display());
+    let words = ["verify", &blocks, "--reference", &solver, "--quiet", "--out", "out"];
+    let output = run(hypercircle(folder.path(), words));
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let file = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).expect("written");
+    let report: serde_json::Value = serde_json::from_str(&file("report.json")).expect("JSON");
+    let model = &report["primal"][0];
+    assert!(model["unknowns"].is_null() && model["iterations"].is_null(), "{model}");
+    let summary = file("summary.md");
+    let row = summary.lines().find(|line| line.contains(" P1 |")).unwrap_or_else(|| panic!("{summary}"));
+    assert!(row.ends_with("| – |"), "{row}");
+    assert_eq!(misfits(folder.path(), "report", &[folder.path().join("out/report.json")]), "");
+}
