@@ -7,7 +7,7 @@
 use super::error::at;
 use super::polyline::SAME;
 use super::{MeshError, Triangulation};
-use crate::scene::{Contact, Note, Scene};
+use crate::scene::{Contact, Note, Scene, counted};
 
 /// Cosine of the angle between the direction and a normal below which an edge does not face the other side.
 const GRAZING: f64 = 0.05;
@@ -118,7 +118,7 @@ pub(super) fn match_along(
         MeshError::contact(scene, contact.name(), what, "mesh both sides with about the same edge lengths")
     };
     let mesh = mesh.with_inserted(&inserted).map_err(flat)?;
-    let [a, b] = [0, 1].map(|i| format!("{} vertices of '{}'", counts[i], names[i]));
+    let [a, b] = [0, 1].map(|i| format!("{} of '{}'", counted(counts[i], "vertex"), names[i]));
     let text =
         format!("contact {}: along its direction, {a} and {b} were inserted into the other side", contact.name());
     notes.push(Note { weakens_guarantee: false, text });

@@ -10,8 +10,7 @@ use super::boxes::{BoxTree, around};
 use super::error::at;
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation};
-use crate::scene::Note;
-use crate::scene::{Contact, ContactSides, Scene};
+use crate::scene::{Contact, ContactSides, Note, Scene, counted};
 use crate::vector::distance;
 
 /// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
@@ -156,7 +155,9 @@ fn match_vertices(
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
-        .map(|(from, into)| format!("{} vertices of '{}' inserted into '{}'", counts[from], names[from], names[into]))
+        .map(|(from, into)| {
+            format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
+        })
         .collect();
     notes.push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
     if moved > ROUND_OFF * size {
@@ -205,7 +206,7 @@ fn insert_breaks(
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {
         if count > 0 {
-            let text = format!("contact {}: {count} vertices inserted where {place}", contact.name());
+            let text = format!("contact {}: {} inserted where {place}", contact.name(), counted(count, "vertex"));
             notes.push(Note { weakens_guarantee: false, text });
         }
     }

@@ -92,7 +92,7 @@ fn break_points_of_the_gap_become_vertices() {
     let raw = both(grid("a", [0.0; 2], [1.0; 2], [2, 2]), grid("b", [1.0, 0.0], [2.0, 1.0], [2, 2]));
     let (mesh, notes) = glued(tilted(raw), &meet(gap.clone()));
     assert_eq!(mesh.boundary("b_left").len(), 3);
-    assert!(notes[0].text.contains("1 vertices inserted where the gap bends"));
+    assert!(notes[0].text.contains("1 vertex inserted where the gap bends"));
     let problem = Problem::new(meet(gap.clone()), mesh, notes).expect("a good problem");
     assert!(problem.notes.iter().all(|n| !n.weakens_guarantee));
 

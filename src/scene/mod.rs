@@ -30,6 +30,7 @@ pub use error::{Fault, SceneError};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
+pub(crate) use source::counted;
 pub(crate) use validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.

@@ -174,7 +174,10 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
     let (equilibrium, notes) = if impossible.is_empty() {
         let mut notes = both_ways;
         if notes.len() > MOST_NOTES {
-            let more = format!("{} more rigid motions are free in the same way.", notes.len() - MOST_NOTES);
+            let more = match notes.len() - MOST_NOTES {
+                1 => "One more rigid motion is free in the same way.".to_string(),
+                more => format!("{more} more rigid motions are free in the same way."),
+            };
             notes.truncate(MOST_NOTES);
             notes.push(more);
         }

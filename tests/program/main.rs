@@ -18,6 +18,8 @@ mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+#[path = "../support/pages.rs"]
+mod pages;
 mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
@@ -25,4 +27,8 @@ mod quantities;
 mod random;
 mod schemas;
 mod stability;
+mod stale;
 mod statics;
+#[path = "../support/validate.rs"]
+mod validate;
+mod words;

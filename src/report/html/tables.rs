@@ -162,7 +162,7 @@ fn solvers(report: &Report) -> Markup {
                     tbody { @for primal in &report.primal { tr {
                         td.long { (clean(&primal.name)) }
                         td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
-                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) }
+                        td.n { (primal.unknowns.map_or("–".to_string(), grouped)) } td.n { (primal.iterations.map_or("–".to_string(), grouped)) }
                         td { @if primal.admissible { "yes" } @else { "no" } }
                         td.n { (primal.relative_error_bound.map_or("–".to_string(), percent)) }
                         td.n { (optional(primal.seconds.get("total").copied(), 3)) }
