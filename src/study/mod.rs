@@ -21,6 +21,7 @@ mod provenance;
 mod rounds;
 mod sharpen;
 mod stage;
+mod stop;
 mod trend;
 #[cfg(test)]
 mod trend_tests;
