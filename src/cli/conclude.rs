@@ -101,6 +101,7 @@ impl Session {
                 diagnosis,
                 is_claimed,
                 failure,
+                advice: run.advice,
             },
             &fields,
         );
@@ -144,7 +145,7 @@ impl Session {
                 say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
-                say::line(&format!("  worth a look: {}", remark.name));
+                say::line(&format!("  worth a look: {}: {}", remark.name, told(remark)));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {

@@ -46,6 +46,8 @@ pub struct DualRun {
     pub history: Vec<HistoryRow>,
     /// Why refinement stopped before the tolerance was reached.
     pub stopped: Option<String>,
+    /// What to do about that.
+    pub advice: Option<&'static str>,
 }
 
 impl Session {
@@ -120,6 +122,7 @@ impl Session {
                     certified,
                     history: Vec::new(),
                     stopped: None,
+                    advice: None,
                 })
             }
             true => {
@@ -141,8 +144,9 @@ impl Session {
                     }
                     self.progress.phase(text);
                 };
-                study::adapt(problem, method.as_ref(), &options, &goal, told)
-                    .map(|Adapted { certified, history, stopped }| DualRun { certified, history, stopped })
+                study::adapt(problem, method.as_ref(), &options, &goal, told).map(
+                    |Adapted { certified, history, stopped, advice }| DualRun { certified, history, stopped, advice },
+                )
             }
         };
         let mut run = run.map_err(|error| self.refuse(error, folder))?;

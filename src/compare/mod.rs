@@ -7,8 +7,10 @@ mod coefficients;
 mod contact;
 mod energy;
 mod forces;
+mod mean;
 mod nodal;
 mod outcome;
+mod peak;
 mod piece;
 pub mod pressure;
 mod resultant;
@@ -19,6 +21,7 @@ mod tolerance;
 pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
+pub use mean::MeanPressure;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use pressure::weighted_reactions;
 pub use solution::{Extent, Numbering, Solution};
@@ -110,7 +113,8 @@ pub fn compare(
     }
     comparison.checks.extend(energy::degree_order(problem, &scales, &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);
-    let sides = contact::Sides { problem, scales: &scales, dual, best };
+    let gap = (upper - bracket.lower()).max(0.0);
+    let sides = contact::Sides { problem, scales: &scales, dual, gap, best };
     let (contacts, checks) = sides.compare(&comparison.judged);
     comparison.stress = best.map(|b| stress::compare(problem, dual, bracket.complementary.strain, b));
     comparison.contacts = contacts;

@@ -20,6 +20,7 @@ mod hanging;
 mod insert;
 pub(crate) mod labels;
 pub(crate) mod meshio;
+mod nearby;
 mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;

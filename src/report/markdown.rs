@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
-use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from, worth_a_look};
+use super::words::{accuracy, basis_word, failing, headline, mean_in_words, status_symbol, upper_from, worth_a_look};
 use super::{Report, Status};
 use crate::cause::told;
 use crate::scene::counted;
@@ -193,6 +193,13 @@ fn contacts(text: &mut String, report: &Report) {
             percent(contact.open_fraction),
             contact.pressure_l2_difference.map_or("–".to_string(), percent)
         );
+    }
+    text.push('\n');
+    for contact in &report.contact {
+        if let Some(mean) = &contact.pressure_mean {
+            let words = mean_in_words(mean, report.is_guaranteed());
+            let _ = writeln!(text, "- `{}`: {words}", code(&contact.name));
+        }
     }
     text.push('\n');
 }

@@ -22,6 +22,7 @@ mod quantity_checks;
 mod rounds;
 mod sharpen;
 mod stage;
+mod stop;
 mod trend;
 #[cfg(test)]
 mod trend_tests;

@@ -31,6 +31,7 @@ mod lame;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;
+mod mean_pressure;
 mod mesh_files;
 mod methods_on_cases;
 mod own_element;
@@ -41,6 +42,7 @@ mod paper_reactions;
 mod paper_theorems;
 mod pressure_at_ends;
 mod quantities;
+mod refinement_ends;
 mod rings;
 mod rounding;
 mod scene_schema;
