@@ -32,6 +32,7 @@ mod lame;
 mod malformed;
 mod malformed_scenes;
 mod mesh_files;
+mod mesh_selection;
 mod methods_on_cases;
 mod own_element;
 mod paper_block;
