@@ -48,21 +48,19 @@ fn shape(raw: &RawMesh) -> (Vec<String>, Vec<String>) {
     (triangles, segments)
 }
 
-const BLOCKS: [&str; 6] = [
+const BLOCKS: [&str; 5] = [
     "two_blocks_41.msh",
     "two_blocks_41_binary.msh",
     "two_blocks_22.msh",
     "two_blocks_22_binary.msh",
     "two_blocks_40.msh",
-    "two_blocks_40_binary.msh",
 ];
-const SHARED: [&str; 6] = [
+const SHARED: [&str; 5] = [
     "shared_curve_41.msh",
     "shared_curve_41_binary.msh",
     "shared_curve_22.msh",
     "shared_curve_22_binary.msh",
     "shared_curve_40.msh",
-    "shared_curve_40_binary.msh",
 ];
 
 #[test]
