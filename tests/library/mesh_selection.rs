@@ -128,6 +128,8 @@ fn node_sets_and_surfaces_of_a_deck_are_boundaries_by_name() {
     assert!(edges(&problem, "top").iter().flatten().all(|p| p[1] == 1.0));
     let by_set = scene(ONE, "boundaries = [{ name = \"foot\", set = \"last\" }]", FOOT).replace("m.msh", "m.inp");
     assert_eq!(edges(&folder.load(&by_set).expect("a problem"), "foot").len(), 3, "the outline of the second cell");
+    let by_name = scene(ONE, "", "supports = [{ on = \"last\", type = \"clamped\" }]").replace("m.msh", "m.inp");
+    assert_eq!(edges(&folder.load(&by_name).expect("a problem"), "last").len(), 3, "the same without a table");
 }
 
 #[test]

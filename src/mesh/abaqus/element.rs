@@ -7,7 +7,7 @@ use super::Kind;
 pub(super) enum Family {
     /// A cell of the mesh, with so many nodes.
     Plane(Kind, usize),
-    /// No part of the mesh: lines, springs, masses, connectors, rigid surfaces.
+    /// No part of the mesh: springs, masses, connectors.
     Idle,
     /// A cell in space.
     Space,
@@ -17,9 +17,11 @@ pub(super) enum Family {
 
 const PLANE: [&str; 12] = ["CPEG", "CPE", "CPS", "CGAX", "CAX", "DC2D", "DCAX", "M3D", "STRI", "SC", "S", "WARP2D"];
 const SPACE: [&str; 5] = ["C3D", "DC3D", "AC3D", "CIN3D", "EC3D"];
-const IDLE: [&str; 24] = [
-    "SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "GAPUNI", "B2", "B3", "PIPE", "T2D", "T3D", "R2D2", "R3D",
-    "RAX2", "SAX", "MAX", "SFM", "DCOUP", "UNI", "DISTC", "ITS", "RB", "U",
+/// Trusses, beams, shells of revolution, rigid and surface lines, with the number of their nodes behind.
+const LINE: [&str; 14] =
+    ["B2", "B3", "PIPE2", "PIPE3", "T2D", "T3D", "R2D", "RAX", "SAX", "MAX", "SFMAX", "RB2D", "RB3D", "F2D"];
+const IDLE: [&str; 14] = [
+    "SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "R3D", "SFM3D", "DCOUP", "UNI", "DISTC", "ITS", "ELBOW", "U",
 ];
 
 /// The family of elements called `name`.
@@ -30,6 +32,19 @@ pub(super) fn family(name: &str) -> Family {
     }
     if IDLE.iter().any(|prefix| name.starts_with(prefix)) {
         return Family::Idle;
+    }
+    if let Some(rest) = LINE.iter().find_map(|prefix| name.strip_prefix(prefix)) {
+        // SAX1 has two nodes and SAX2 three; all others have their number.
+        let order = name.starts_with("SAX") || name.starts_with("MAX") || name.starts_with("SFMAX");
+        return match rest.chars().next() {
+            Some('1') => Family::Plane(Kind::Line, 2),
+            Some('2') => Family::Plane(
+                Kind::Line,
+                if order || name.starts_with('B') || name.starts_with("PIPE") { 3 } else { 2 },
+            ),
+            Some('3') => Family::Plane(Kind::Line, 3),
+            _ => Family::Idle,
+        };
     }
     let rest = PLANE.iter().find_map(|prefix| {
         let rest = name.strip_prefix(prefix)?;
@@ -64,7 +79,14 @@ mod tests {
             }
         }
         assert_eq!(family("C3D8R"), Family::Space);
-        for name in ["SPRING1", "B21", "T2D2", "MASS", "CONN2D2", "R2D2", "GAPUNI"] {
+        for (names, nodes) in
+            [("B21 B21H B31 T2D2 T3D2 R2D2 RAX2 SAX1 MAX1 PIPE21", 2), ("B22 B32 B32R T3D3 T2D3 SAX2", 3)]
+        {
+            for name in names.split(' ') {
+                assert_eq!(family(name), Family::Plane(Kind::Line, nodes), "{name}");
+            }
+        }
+        for name in ["SPRING1", "MASS", "CONN2D2", "GAPUNI", "R3D4"] {
             assert_eq!(family(name), Family::Idle, "{name}");
         }
         for name in ["", "CPE", "CPX4", "CPE7"] {

@@ -6,7 +6,7 @@ mod element;
 #[cfg(test)]
 mod tests;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -108,7 +108,7 @@ impl Reader {
                 let mut tags = numbers(keyword, &part.node_sets, moved)?;
                 if let Some(elements) = named("ELSET") {
                     let of_set = find(&part.element_sets, elements).cloned().unwrap_or_default();
-                    let of_set: std::collections::HashSet<u64> = of_set.into_iter().collect();
+                    let of_set: HashSet<u64> = of_set.into_iter().collect();
                     tags.extend(part.elements.iter().filter(|(_, tag, _)| of_set.contains(tag)).flat_map(|e| &e.2));
                 }
                 of(&mut part.node_sets, set).extend(tags);
@@ -302,7 +302,7 @@ impl Part {
     }
 
     fn content(self, file: &Path) -> Result<Content, MeshError> {
-        if self.elements.is_empty() {
+        if self.elements.iter().all(|(kind, _, _)| *kind == Kind::Line) {
             return Err(MeshError::file(file, "the deck has no plane element", "write nodes and elements into it"));
         }
         let mut sets_of: HashMap<u64, Vec<i32>> = HashMap::new();
@@ -316,10 +316,19 @@ impl Part {
                 }
             }
         }
+        let cells = self.elements.iter().filter(|(kind, _, _)| *kind != Kind::Line);
         let corners: HashMap<u64, (Kind, Vec<u64>)> =
-            self.elements.iter().map(|(kind, tag, nodes)| (*tag, (*kind, nodes[..kind.corners()].to_vec()))).collect();
+            cells.map(|(kind, tag, nodes)| (*tag, (*kind, nodes[..kind.corners()].to_vec()))).collect();
         let mut lists: HashMap<Vec<i32>, Rc<[i32]>> = HashMap::new();
-        for (kind, tag, nodes) in self.elements {
+        let edges: HashSet<[u64; 2]> = corners.values().flat_map(|(_, nodes)| sides_of(nodes)).collect();
+        for (kind, tag, mut nodes) in self.elements {
+            if kind == Kind::Line {
+                middle_last(&mut nodes, &content.nodes);
+                // A truss or beam beside the cells is no boundary of theirs.
+                if !edges.contains(&sorted([nodes[0], nodes[1]])) {
+                    continue;
+                }
+            }
             let sets = sets_of.get(&tag).cloned().unwrap_or_default();
             let physical = Rc::clone(lists.entry(sets).or_insert_with_key(|sets| sets.as_slice().into()));
             content.elements.push(Element { kind, tag, nodes, physical, entity: None });
@@ -339,4 +348,23 @@ impl Part {
             .collect();
         Ok(content)
     }
+}
+
+fn sorted([a, b]: [u64; 2]) -> [u64; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The sides between these corners, each with its smaller number first.
+fn sides_of(corners: &[u64]) -> impl Iterator<Item = [u64; 2]> {
+    (0..corners.len()).map(|i| sorted([corners[i], corners[(i + 1) % corners.len()]]))
+}
+
+/// Puts the node between the two ends of a second-order line last: writers differ in its place.
+fn middle_last(nodes: &mut [u64], points: &HashMap<u64, [f64; 3]>) {
+    let known: Vec<[f64; 3]> = nodes.iter().filter_map(|tag| points.get(tag).copied()).collect();
+    let ([_, _, _], [p, q, r]) = (&*nodes, known.as_slice()) else { return };
+    let far = |a: &[f64; 3], b: &[f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let lengths = [far(q, r), far(p, r), far(p, q)];
+    let middle = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(2);
+    nodes[middle..].rotate_left(1);
 }
