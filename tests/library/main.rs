@@ -33,6 +33,7 @@ mod malformed;
 mod malformed_scenes;
 mod mean_pressure;
 mod mesh_files;
+mod mesh_selection;
 mod methods_on_cases;
 mod own_element;
 mod paper_block;
