@@ -1,6 +1,6 @@
 //! What a mesh file contains, whatever its format, and how it becomes a [`RawMesh`].
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -36,6 +36,19 @@ impl Kind {
     /// Number of sides, each of which may have a node in its middle.
     fn sides(self) -> usize {
         if self == Kind::Line { 1 } else { self.corners() }
+    }
+
+    /// The name of a cell of this shape with so many nodes.
+    pub fn told(self, nodes: usize) -> String {
+        let shape = match self {
+            Kind::Line => "line",
+            Kind::Triangle => "triangle",
+            Kind::Quadrilateral => "quadrilateral",
+        };
+        match nodes == self.corners() {
+            true => shape.to_string(),
+            false => format!("{shape} with {nodes} nodes"),
+        }
     }
 
     /// Whether a cell of this shape may have so many nodes: its corners, those with mid-nodes, and the quadrilateral with
@@ -170,11 +183,21 @@ impl Content {
         if used.all(|p| (p[2] - first).abs() <= ROUND_OFF * size) { first } else { 0.0 }
     }
 
+    /// How many cells of each kind there are.
+    fn kinds(&self) -> BTreeMap<String, usize> {
+        let mut kinds = BTreeMap::new();
+        for element in &self.elements {
+            *kinds.entry(element.kind.told(element.nodes.len())).or_default() += 1;
+        }
+        kinds
+    }
+
     fn sets(&self, index: &HashMap<u64, usize>) -> Sets {
         let known = |tags: &Vec<u64>| tags.iter().filter_map(|tag| index.get(tag).copied()).collect();
         let side = |[a, b]: &[u64; 2]| Some([*index.get(a)?, *index.get(b)?]);
         Sets {
             numbers: self.numbers.as_ref().unwrap_or(&self.names).clone(),
+            kinds: self.kinds(),
             entities: Vec::new(),
             nodes: self.node_sets.iter().map(|(name, tags)| (name.clone(), known(tags))).collect(),
             surfaces: self

@@ -20,6 +20,7 @@ pub mod gmsh;
 mod halves;
 mod hanging;
 mod insert;
+pub mod inventory;
 pub(crate) mod labels;
 pub(crate) mod meshio;
 mod nearby;

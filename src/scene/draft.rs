@@ -215,7 +215,19 @@ impl Deref for Scene {
     }
 }
 
-pub(super) fn quoted(text: &str) -> String {
+/// A key of a table as TOML writes it.
+pub(crate) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { basic(name) }
+}
+
+/// A string on one line, with escapes; JSON's are TOML's.
+fn basic(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// A string as TOML writes it.
+pub(crate) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 

@@ -27,6 +27,7 @@ use std::path::PathBuf;
 
 pub use circle::Circle;
 pub use draft::Draft;
+pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
