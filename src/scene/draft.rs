@@ -12,7 +12,7 @@ use toml::Value;
 use super::selection::written;
 use super::{
     Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
+    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
     Traction,
 };
 
@@ -89,6 +89,14 @@ impl Draft {
         )?;
         match &self.mesh {
             MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
+            MeshSource::Parts(parts) => {
+                let part = |Part { file, prefix, scale, translate }: &Part| {
+                    let (file, prefix) = (quoted(&file.to_string_lossy()), quoted(prefix));
+                    let (scale, translate) = (number(*scale), list(translate));
+                    format!("{{ file = {file}, prefix = {prefix}, scale = {scale}, translate = {translate} }}")
+                };
+                writeln!(text, "mesh.parts = [{}]", parts.iter().map(part).collect::<Vec<_>>().join(", "))?;
+            }
             MeshSource::Geometry { size: Some(size), .. } => writeln!(text, "geometry.size = {}", number(*size))?,
             MeshSource::Geometry { .. } => (),
         }

@@ -73,7 +73,9 @@ pub(super) fn divide(raw: &RawMesh, triangles: &[[usize; 3]]) -> (Vec<Region>, V
 /// are no others.
 fn partition(groups: &[(Region, Members)], among: std::ops::Range<usize>, all: usize) -> Option<Vec<usize>> {
     let mut order: Vec<usize> = among.collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(groups[i].1.len()));
+    // Names such as Surface1 are a program's, others their author's.
+    let generated = |name: &str| name.ends_with(|c: char| c.is_ascii_digit());
+    order.sort_by_key(|&i| (std::cmp::Reverse(groups[i].1.len()), generated(&groups[i].0.name)));
     let parts = order.iter().copied().filter(|&i| groups[i].1.len() < all);
     let mut taken: HashSet<usize> = HashSet::new();
     let mut chosen = Vec::new();

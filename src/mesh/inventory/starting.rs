@@ -29,7 +29,8 @@ fn write(text: &mut String, inventory: &Inventory, mesh: &str, title: &str) -> s
     for region in &inventory.bodies {
         let lines = inventory.body_lines(region).join("\n");
         let what = counted(region.triangles, "triangle");
-        writeln!(text, "\n# {what}, area {:.4e}\n{lines}", region.area)?;
+        let area: f64 = format!("{:.4e}", region.area).parse().unwrap_or(region.area);
+        writeln!(text, "\n# {what}, area {area}\n{lines}")?;
         writeln!(text, "young = 1.0 # example\npoisson = 0.3 # example")?;
     }
     let mut usable: Vec<&str> = Vec::new();
