@@ -84,6 +84,8 @@ pub(super) struct Content {
     /// Coordinates by node tag.
     pub nodes: HashMap<u64, [f64; 3]>,
     pub elements: Vec<Element>,
+    /// Cells that this program has no use for.
+    pub solids: Vec<Solids>,
     /// Node tags by the name of their set.
     pub node_sets: Vec<(String, Vec<u64>)>,
     /// Sides of cells by the name of their surface: pairs of node tags.
@@ -93,7 +95,6 @@ pub(super) struct Content {
 /// Shape and number of nodes of a Gmsh element type; shape `None` is a point, which is ignored.
 pub(super) fn element_type(number: i32) -> Result<(Option<Kind>, usize), (String, &'static str)> {
     const PLANE: &str = "mesh with triangles or quadrilaterals of first or second order";
-    const FLAT: &str = "this program is plane: save the surfaces only";
     let unusable = |what: &str, remedy| Err((format!("element type {number}, {what}, cannot be used"), remedy));
     match number {
         1 => Ok((Some(Kind::Line), 2)),
@@ -104,15 +105,80 @@ pub(super) fn element_type(number: i32) -> Result<(Option<Kind>, usize), (String
         10 => Ok((Some(Kind::Quadrilateral), 9)),
         15 => Ok((None, 1)),
         16 => Ok((Some(Kind::Quadrilateral), 8)),
-        4..=7 | 11..=14 | 17..=19 | 29..=31 => unusable("a cell in space", FLAT),
         20..=28 => unusable("a cell of third or higher order", PLANE),
         _ => unusable("unknown", PLANE),
     }
 }
 
+/// Name and number of nodes of a Gmsh element type in space.
+pub(super) fn solid_type(number: i32) -> Option<(&'static str, usize)> {
+    Some(match number {
+        4 => ("tetrahedron", 4),
+        5 => ("hexahedron", 8),
+        6 => ("prism", 6),
+        7 => ("pyramid", 5),
+        11 => ("tetrahedron with 10 nodes", 10),
+        12 => ("hexahedron with 27 nodes", 27),
+        13 => ("prism with 18 nodes", 18),
+        14 => ("pyramid with 14 nodes", 14),
+        17 => ("hexahedron with 20 nodes", 20),
+        18 => ("prism with 15 nodes", 15),
+        19 => ("pyramid with 13 nodes", 13),
+        29 => ("tetrahedron with 20 nodes", 20),
+        30 => ("tetrahedron with 35 nodes", 35),
+        31 => ("tetrahedron with 56 nodes", 56),
+        _ => return None,
+    })
+}
+
+/// Cells in space of one kind.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Solids {
+    kind: &'static str,
+    count: usize,
+    /// Their nodes.
+    nodes: HashSet<u64>,
+}
+
 impl Content {
+    /// Counts a cell in space, which is told about and not used.
+    pub fn solid(&mut self, kind: &'static str, nodes: &[u64]) {
+        if self.solids.iter().all(|solids| solids.kind != kind) {
+            self.solids.push(Solids { kind, count: 0, nodes: HashSet::new() });
+        }
+        if let Some(solids) = self.solids.iter_mut().find(|solids| solids.kind == kind) {
+            solids.count += 1;
+            solids.nodes.extend(nodes);
+        }
+    }
+
+    /// Refuses a file with cells in space, and says how many there are and where.
+    fn no_solids(&self, file: &Path) -> Result<(), MeshError> {
+        if self.solids.is_empty() {
+            return Ok(());
+        }
+        let told = self.solids.iter().map(|solids| {
+            let mut extent = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+            for p in solids.nodes.iter().filter_map(|tag| self.nodes.get(tag)) {
+                for c in 0..3 {
+                    extent[0][c] = extent[0][c].min(p[c]);
+                    extent[1][c] = extent[1][c].max(p[c]);
+                }
+            }
+            let [[a, b, c], [x, y, z]] = extent;
+            let place = if a <= x { format!(" between ({a}, {b}, {c}) and ({x}, {y}, {z})") } else { String::new() };
+            format!("{} × {}{place}", solids.count, solids.kind)
+        });
+        let told = told.collect::<Vec<_>>().join(", ");
+        let plane: Vec<String> = self.kinds().into_iter().map(|(kind, n)| format!("{n} × {kind}")).collect();
+        let beside = if plane.is_empty() { String::new() } else { format!("; beside them {}", plane.join(", ")) };
+        let remedy = "this program is plane: save the surfaces of one plane only";
+        Err(MeshError::file(file, format!("it has cells in space: {told}{beside}"), remedy))
+    }
+
     /// Triangles and named segments in the plane; quadrilaterals are cut in two, and the chord of a curved side stands for it.
     pub fn into_raw(self, file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
+        self.no_solids(file)?;
         let mut order: Vec<u64> = self.nodes.keys().copied().collect();
         order.sort_unstable();
         let index: HashMap<u64, usize> = order.iter().enumerate().map(|(i, tag)| (*tag, i)).collect();
@@ -133,7 +199,9 @@ impl Content {
                 };
                 nodes.push(node);
             }
-            plane(file, element.tag, &nodes, &position, height)?;
+            if !is_plane(&nodes, &position, height) {
+                return Err(self.out_of_plane(file, &index, &position, height));
+            }
             let corners = element.kind.corners();
             if nodes.len() > corners {
                 counts.second_order(element.kind, &nodes, &raw.points);
@@ -190,6 +258,32 @@ impl Content {
             *kinds.entry(element.kind.told(element.nodes.len())).or_default() += 1;
         }
         kinds
+    }
+
+    /// Says which elements have nodes outside the plane, how many they are, and how far it goes.
+    fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], height: f64) -> MeshError {
+        let (mut count, mut first, mut low, mut high) = (0_usize, None, height, height);
+        for element in &self.elements {
+            let nodes: Vec<usize> = element.nodes.iter().filter_map(|tag| index.get(tag).copied()).collect();
+            let heights = nodes.iter().map(|&n| position[n][2]);
+            (low, high) = heights.fold((low, high), |(low, high), z| (low.min(z), high.max(z)));
+            if is_plane(&nodes, position, height) {
+                continue;
+            }
+            count += 1;
+            let farthest = |a: &&usize, b: &&usize| {
+                (position[**a][2] - height).abs().total_cmp(&(position[**b][2] - height).abs())
+            };
+            let place = nodes.iter().max_by(farthest).map_or([0.0; 3], |&n| position[n]);
+            first.get_or_insert((element.tag, place));
+        }
+        let (tag, [x, y, z]) = first.unwrap_or_default();
+        let what = format!(
+            "element {tag} has a node at ({x}, {y}, {z}), outside the plane z = {height}; so have {count} of {} elements, and z \
+             goes from {low} to {high}",
+            self.elements.len()
+        );
+        MeshError::file(file, what, "put the geometry into one plane, z = 0")
     }
 
     fn sets(&self, index: &HashMap<u64, usize>) -> Sets {
@@ -299,14 +393,7 @@ impl Counts {
     }
 }
 
-fn plane(file: &Path, tag: u64, nodes: &[usize], position: &[[f64; 3]], height: f64) -> Result<(), MeshError> {
-    for &node in nodes {
-        let [x, y, z] = position[node];
-        let size = nodes.iter().flat_map(|&n| position[n]).map(f64::abs).fold(0.0, f64::max);
-        if (z - height).abs() > ROUND_OFF * size {
-            let what = format!("element {tag} has a node at ({x}, {y}, {z}), outside the plane z = {height}");
-            return Err(MeshError::file(file, what, "put the geometry into one plane, z = 0"));
-        }
-    }
-    Ok(())
+fn is_plane(nodes: &[usize], position: &[[f64; 3]], height: f64) -> bool {
+    let size = nodes.iter().flat_map(|&n| position[n]).map(f64::abs).fold(0.0, f64::max);
+    nodes.iter().all(|&n| (position[n][2] - height).abs() <= ROUND_OFF * size)
 }
