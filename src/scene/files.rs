@@ -29,17 +29,19 @@ impl Part {
 
 pub(super) fn files(mesh: &At<Table<RawMesh>>, source: &Source) -> Result<MeshSource, SceneError> {
     let Table(raw) = &mesh.value;
-    let one_of = |both| Fault::OneOf { table: "[mesh]".into(), first: "`file`", second: "[[mesh.parts]]", both };
+    let both = Fault::OneOf { table: "[mesh]".into(), first: "`file`", second: "[[mesh.parts]]", both: true };
     let folder = source.path.parent().unwrap_or(Path::new(""));
     match (&raw.file, raw.parts.as_slice()) {
         (Some(file), []) => {
             let file = source.name(file, ("[mesh]", "file"), "name the mesh file, relative to the scene")?;
             Ok(MeshSource::File(folder.join(file)))
         }
-        (Some(file), [first, ..]) => {
-            Err(source.error(file.span(), one_of(true)).with_related(first.span(), "the other one"))
+        (Some(file), [first, ..]) => Err(source.error(file.span(), both).with_related(first.span(), "the other one")),
+        (None, []) => {
+            let remedy = "name the mesh file, relative to the scene; several files go into [[mesh.parts]]".into();
+            let fault = Fault::MissingKey { key: "file".into(), table: "[mesh]".into(), remedy };
+            Err(source.error(mesh.span(), fault))
         }
-        (None, []) => Err(source.error(mesh.span(), one_of(false))),
         (None, parts) => {
             let each = parts.iter().enumerate();
             let part = |(i, raw): (usize, &At<Table<RawPart>>)| part(&raw.value.0, i + 1, folder, source);

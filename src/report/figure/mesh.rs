@@ -5,11 +5,11 @@ use std::fmt::Write;
 
 use super::outline::View;
 use super::svg::{Anchor, Svg, look, px};
-use crate::mesh::inventory::{Inventory, Piece};
+use crate::mesh::inventory::{Curve, Inventory, Piece};
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 640.0;
-const MARGIN: f64 = 70.0;
+const MARGIN: f64 = 130.0;
 /// Triangles beyond which their edges would be a grey area, and a large file.
 const MOST_DRAWN: usize = 20_000;
 /// Labels beyond which they would cover each other.
@@ -60,9 +60,13 @@ fn cells(svg: &mut Svg, inventory: &Inventory, view: &View) {
     }
 }
 
-/// The name of a piece, outside its middle edge.
+/// The name of a piece, that of the file where it has one, outside its middle edge.
 fn label(svg: &mut Svg, inventory: &Inventory, piece: &Piece, view: &View) {
     let Some(edge) = piece.edges.get(piece.edges.len() / 2) else { return };
+    let [from, to] = *edge;
+    let has = |curve: &&Curve| curve.on_outline.iter().any(|e| *e == [from, to] || *e == [to, from]);
+    let of_file = inventory.boundaries.iter().rfind(|curve| piece.named && has(curve));
+    let name = of_file.map_or(&piece.name, |curve| &curve.name);
     let [a, b] = edge.map(|v| view.at(inventory.points[v]));
     let length = (b[0] - a[0]).hypot(b[1] - a[1]).max(1e-9);
     // On the page y points down, and the body is on the left of its edges.
@@ -73,5 +77,5 @@ fn label(svg: &mut Svg, inventory: &Inventory, piece: &Piece, view: &View) {
         x if x < -0.4 => Anchor::End,
         _ => Anchor::Middle,
     };
-    svg.text(&format!("{} {}", look::INK, look::HALO), at, anchor, &piece.name);
+    svg.text(&format!("{} {}", look::INK, look::HALO), at, anchor, name);
 }

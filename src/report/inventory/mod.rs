@@ -45,7 +45,7 @@ pub fn text(inventory: &Inventory) -> Vec<String> {
 /// The groups of edges of a file, with what their members are.
 fn curves(inventory: &Inventory) -> [(&'static str, &[Curve], &'static str); 4] {
     [
-        ("boundaries that the file names", &inventory.boundaries, "edge"),
+        ("boundaries by name", &inventory.boundaries, "edge"),
         ("surfaces, which are boundaries by their names", &inventory.surfaces, "side"),
         ("node sets, which are boundaries by their names", &inventory.node_sets, "node"),
         ("curves by tag", &inventory.entities, "edge"),

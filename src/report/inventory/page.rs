@@ -22,7 +22,7 @@ pub fn page(inventory: &Inventory, scene: &str) -> String {
         }
         main {
             section #drawing { h2 { "Drawing" } figure.plot { (PreEscaped(mesh::mesh(inventory))) }
-                p { "Broken lines lie between two bodies. Names on the outline are proposals; the tables below have the lines that make them." }
+                p { "Broken lines lie between two bodies. Names on the outline are those of the file, and proposals where it has none; the tables below have the lines that make them." }
             }
             (table("bodies", "Bodies", inventory.bodies.iter().map(|r| (told(r), inventory.body_lines(r)))))
             (table("groups", "Other groups of cells", inventory.groups.iter().map(|r| (told(r), vec![r.key()]))))
