@@ -32,6 +32,7 @@ mod quadrilateral;
 mod quarter;
 mod select;
 pub(crate) mod sets;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;

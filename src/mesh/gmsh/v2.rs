@@ -2,7 +2,8 @@
 
 use super::cursor::{Cursor, Encoding};
 use crate::mesh::MeshError;
-use crate::mesh::content::{Content, Element, element_type, solid_type};
+use crate::mesh::content::{Content, Element, element_type};
+use crate::mesh::solids::solid_type;
 
 pub(super) fn nodes(cursor: &mut Cursor, content: &mut Content) -> Result<(), MeshError> {
     let count = text_count(cursor)?;

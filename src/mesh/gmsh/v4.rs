@@ -5,7 +5,8 @@ use std::rc::Rc;
 use super::Minor;
 use super::cursor::Cursor;
 use crate::mesh::MeshError;
-use crate::mesh::content::{Content, Element, element_type, solid_type};
+use crate::mesh::content::{Content, Element, element_type};
+use crate::mesh::solids::solid_type;
 
 pub(super) fn entities(cursor: &mut Cursor, content: &mut Content, minor: Minor) -> Result<(), MeshError> {
     let counts = [cursor.size()?, cursor.size()?, cursor.size()?, cursor.size()?];
