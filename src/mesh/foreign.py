@@ -1,17 +1,33 @@
-"""Writes a mesh file as JSON: points, cells with their group names, and node sets. Needs meshio, or Gmsh for what meshio does not read."""
-
-import json
-import sys
+"""Writes a mesh file as JSON: points, cells with their group names, and node sets. What has no reader beside this needs meshio, or Gmsh for what
+meshio does not read."""
 
 SHAPES = {"line": "line", "line3": "line", "triangle": "triangle", "triangle6": "triangle",
           "quad": "quadrilateral", "quad8": "quadrilateral", "quad9": "quadrilateral"}
+SOLIDS = {"tetra": "tetrahedron", "tetra10": "tetrahedron with 10 nodes", "hexahedron": "hexahedron", "hexahedron20": "hexahedron with 20 nodes",
+          "hexahedron27": "hexahedron with 27 nodes", "wedge": "prism", "wedge15": "prism with 15 nodes", "pyramid": "pyramid",
+          "pyramid13": "pyramid with 13 nodes"}
 # By Gmsh's number of the element type.
 GMSH_SHAPES = {1: ("line", 2), 8: ("line", 3), 2: ("triangle", 3), 9: ("triangle", 6),
                3: ("quadrilateral", 4), 16: ("quadrilateral", 8), 10: ("quadrilateral", 9)}
 # The integers that group cells, by the name each format gives them.
 GROUPING = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to_read", "su2:tag", "cell_ids", "GroupIds"]
+# Words in what other programs call such integers, and numbers that are something else.
+TELLING = ["physical", "material", "entity", "entities", "geometryid", "region", "domain", "subdomain", "boundar", "marker", "label", "group", "tag", "block", "part", "zone"]
+NO_GROUPS = {"gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType", "partition", "rank", "GlobalElementId", "GlobalCellIds", "ids", "vtkIdFilter_Ids"}
 # Suffixes that meshio does not know and Gmsh reads.
-ONLY_GMSH = {".unv", ".geo", ".rmed", ".diff", ".p3d", ".neu"}
+ONLY_GMSH = {".geo", ".diff", ".p3d", ".neu"}
+
+
+def whole_numbers(blocks):
+    """Integers of the cells, block by block, also where they are written as reals; nothing where they are no numbers of groups."""
+    found = []
+    for block in blocks:
+        if block.ndim == 2 and block.shape[1] == 1:
+            block = block[:, 0]
+        if block.ndim != 1 or block.dtype.kind not in "iuf" or (block.dtype.kind == "f" and not (block == block.round()).all()) or (abs(block) >= 2**31).any():
+            return None
+        found.append([int(x) for x in block])
+    return found
 
 
 def from_meshio(source):
@@ -19,9 +35,13 @@ def from_meshio(source):
     import meshio
 
     mesh = meshio.read(source)
-    whole = [name for name, blocks in mesh.cell_data.items() if all(b.dtype.kind in "iu" and b.ndim == 1 for b in blocks)]
-    whole = [name for name in whole if name not in ("gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType")]
-    chosen = next((name for name in GROUPING if name in whole), whole[0] if len(whole) == 1 else None)
+    blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
+    whole = [name for name, found in blocks.items() if found is not None]
+    # Of several numbers, those that the format has for groups, then those that are called so, then the only ones that differ.
+    told = [name for name in whole if any(word in name.lower() for word in TELLING)]
+    differ = [name for name in whole if len({int(x) for block in blocks[name] for x in block}) > 1]
+    chosen = next((found[0] for found in ([n for n in GROUPING if n in whole], told, differ if len(differ) == 1 else [], whole if len(whole) == 1 else []) if found), None)
+    numbers_of = blocks.get(chosen)
     names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
     families = getattr(mesh, "cell_tags", {}) or {}
 
@@ -33,9 +53,12 @@ def from_meshio(source):
                 for cell in sets[block]:
                     result[int(cell)].append(name)
         if chosen is not None:
-            for found, tag in zip(result, mesh.cell_data[chosen][block]):
+            for found, tag in zip(result, numbers_of[block]):
                 tag = int(tag)
-                more = families.get(tag) or [names.get((1 if shape == "line" else 2, tag), str(tag) if tag else None)]
+                dimension = 1 if shape == "line" else 2
+                if tag and (dimension, tag) not in names and tag not in families and shape in SHAPES.values():
+                    names[dimension, tag] = str(tag)
+                more = families.get(tag) or [names.get((dimension, tag))]
                 if not found:
                     found.extend(name for name in more if name is not None)
         return result
@@ -47,8 +70,8 @@ def from_meshio(source):
             continue
         kept = shape in SHAPES.values()
         blocks.append({
-            "shape": shape,
-            "nodes": block.data.tolist() if kept else [],
+            "shape": SOLIDS.get(shape, shape),
+            "nodes": block.data.tolist() if kept or shape in SOLIDS else [],
             "groups": groups(number, shape) if kept else [],
         })
     sets = {name: [int(node) for node in nodes] for name, nodes in mesh.point_sets.items()}
@@ -100,7 +123,10 @@ def from_gmsh(source):
 
 def main():
     source, target = sys.argv[1:]
-    if any(source.lower().endswith(suffix) for suffix in ONLY_GMSH):
+    reader = own_reader(source)
+    if reader is not None:
+        found = read_own(source, reader).mesh()
+    elif any(source.lower().endswith(suffix) for suffix in ONLY_GMSH):
         try:
             found = from_gmsh(source)
         except ModuleNotFoundError:

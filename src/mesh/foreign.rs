@@ -1,4 +1,4 @@
-//! Every format but Gmsh's, through meshio, in a Python process of its own.
+//! Every format but Gmsh's and Abaqus's, in a Python process of its own: by the readers beside this, or through meshio.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -8,10 +8,19 @@ use std::time::Duration;
 use serde::Deserialize;
 
 use super::content::{Content, Element, Kind};
+use super::solids::solid_kind;
 use super::{MeshError, RawMesh, meshio};
 use crate::scene::Note;
 
-const SCRIPT: &str = include_str!("foreign.py");
+const SCRIPT: &str = concat!(
+    include_str!("readers/found.py"),
+    include_str!("readers/unv.py"),
+    include_str!("readers/text.py"),
+    include_str!("readers/exodus.py"),
+    include_str!("readers/med.py"),
+    include_str!("readers/choose.py"),
+    include_str!("foreign.py")
+);
 const INSTEAD: &str = "convert it to Gmsh's format (.msh)";
 
 #[derive(Deserialize)]
@@ -75,6 +84,11 @@ pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError
             "line" => Kind::Line,
             "triangle" => Kind::Triangle,
             "quadrilateral" => Kind::Quadrilateral,
+            other if solid_kind(other).is_some() => {
+                let kind = solid_kind(other).unwrap_or_default();
+                block.nodes.iter().for_each(|nodes| content.solid(kind, nodes));
+                continue;
+            }
             other => {
                 let what = format!("it has cells of the kind '{other}'");
                 let remedy =

@@ -11,6 +11,9 @@ const NO_MESHIO: i32 = 44;
 /// The same where meshio itself lacks a package for this format; the last line names it.
 const NO_PACKAGE: i32 = 45;
 
+/// The same where a reader of this program finds that the file does not follow its format; the last line says how.
+const NOT_ITS_FORMAT: i32 = 46;
+
 /// How long meshio may read one file where nobody says otherwise.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -52,12 +55,18 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
             Outcome::Exit(status) if status.code() == Some(NO_PACKAGE) => {
                 let name = ended.log.iter().map(|line| line.trim()).rfind(|l| !l.is_empty()).unwrap_or("it needs");
                 let what = format!(
-                    "meshio needs the Python package {name} for this format, and {} lacks it",
+                    "this format is read with the Python package {name}, and {} lacks it",
                     interpreter.display()
                 );
                 let remedy =
                     format!("install it (pip install {name}, or apt-get install python3-{name}), or {instead}");
                 return Err(failure(what, remedy));
+            }
+            Outcome::Exit(status) if status.code() == Some(NOT_ITS_FORMAT) => {
+                return Err(failure(
+                    reason(ended.log.iter().map(String::as_str)),
+                    format!("check the file, or {instead}"),
+                ));
             }
             Outcome::Exit(_) | Outcome::Lost(_) => {
                 let end = reason(ended.log.iter().map(String::as_str));

@@ -27,6 +27,11 @@ pub(super) fn solid_type(number: i32) -> Option<(&'static str, usize)> {
     })
 }
 
+/// The name of a kind of cells in space, where it is one that is known.
+pub(super) fn solid_kind(name: &str) -> Option<&'static str> {
+    (0..32).filter_map(solid_type).map(|(kind, _)| kind).find(|kind| *kind == name)
+}
+
 /// Cells in space of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Solids {

@@ -33,6 +33,7 @@ mod malformed;
 mod malformed_scenes;
 mod mean_pressure;
 mod mesh_files;
+mod mesh_formats;
 mod mesh_inventory;
 mod mesh_parts;
 mod mesh_selection;

@@ -1,0 +1,41 @@
+"""Which reader a file asks for."""
+
+READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, ".e": read_exodus, ".exo": read_exodus, ".ex2": read_exodus, ".exii": read_exodus,
+           ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem}
+
+
+def own_reader(source):
+    """The reader of this program for a file, by its name and its first line, or none."""
+    low = source.lower()
+    if os.path.isdir(source) or os.path.basename(low) in ("mesh.header", "mesh.nodes", "mesh.elements", "mesh.boundary"):
+        return read_elmer
+    for suffix, reader in READERS.items():
+        if low.endswith(suffix):
+            return reader
+    with open(source, "rb") as file:
+        head = file.read(4000).decode("latin-1")
+    if re.search(r"^\s*BEGIN POINTS LIST", head, re.MULTILINE):
+        return read_getfem
+    lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    first = lines[0] if lines else ""
+    if re.fullmatch(r"\d+\s+\d+\s+\d+", first):
+        return read_freefem
+    if re.match(r'mesh\b.*elemtype', first, re.IGNORECASE):
+        return read_gid
+    if first == "mesh3d":
+        return read_ngsolve
+    return None
+
+
+def read_own(source, reader):
+    """What the reader finds; what it cannot read ends with code 46 and a message."""
+    try:
+        found = reader(source)
+        found.mesh()
+        return found
+    except Unreadable as error:
+        reason = str(error)
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, EOFError, OSError) as error:
+        reason = f"it does not follow its format ({type(error).__name__}: {error})"
+    print(reason.replace("\n", " "), file=sys.stderr)
+    sys.exit(46)

@@ -1,0 +1,105 @@
+"""What a reader of its own collects. Nothing here needs more than Python; a package that a format needs is named with code 45."""
+
+import gzip
+import os
+import sys
+
+# Cells by shape and number of nodes, in Gmsh's order: corners, middles of sides, centre.
+PLANE = {("line", 2), ("line", 3), ("triangle", 3), ("triangle", 6), ("quadrilateral", 4), ("quadrilateral", 8), ("quadrilateral", 9)}
+SIDES = {"triangle": [(0, 1), (1, 2), (2, 0)], "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)]}
+
+
+class Unreadable(Exception):
+    """A file that does not follow its format."""
+
+
+class Found:
+    """Points by tag, cells with their groups, and sets of nodes."""
+
+    def __init__(self, program):
+        self.program = program
+        self.points = []
+        self.index = {}
+        self.cells = []  # Shape, tags of nodes, list of groups.
+        self.by_tag = {}
+        self.node_sets = {}
+        self.numbers = {}  # Name by dimension and number.
+        self.fields = {}  # Rows by point, by name.
+
+    def point(self, tag, coordinates):
+        self.index[tag] = len(self.points)
+        self.points.append([float(x) for x in coordinates])
+
+    def cell(self, shape, nodes, groups=(), tag=None):
+        if tag is not None:
+            self.by_tag[tag] = len(self.cells)
+        self.cells.append((shape, list(nodes), list(groups)))
+
+    def number(self, dimension, number, names):
+        """The name of a number, by itself where it has none."""
+        name = names.get(number) or str(number)
+        self.numbers[dimension, number] = name
+        return name
+
+    def group(self, tag, name):
+        """Puts a cell into a group."""
+        at = self.by_tag.get(tag)
+        if at is not None and name not in self.cells[at][2]:
+            self.cells[at][2].append(name)
+
+    def side(self, tag, side, name):
+        """Puts the side of a cell into a group, as a line."""
+        if tag not in self.by_tag:
+            raise Unreadable(f"group '{name}' has a side of cell {tag}, which is not among its cells")
+        shape, nodes, _ = self.cells[self.by_tag[tag]]
+        sides = SIDES.get(shape, [])
+        if 0 <= side < len(sides):
+            self.cell("line", [nodes[i] for i in sides[side]], [name])
+
+    def place(self, tag):
+        if tag not in self.index:
+            raise Unreadable(f"a cell uses node {tag}, which is not among its nodes")
+        return self.index[tag]
+
+    def blocks(self):
+        """The cells in runs of one shape."""
+        blocks = []
+        for shape, nodes, groups in self.cells:
+            kept = (shape, len(nodes)) in PLANE
+            name = shape if kept or shape not in ("line", *SIDES) else f"{shape} with {len(nodes)} nodes"
+            nodes = [self.place(tag) for tag in nodes]
+            if not blocks or blocks[-1]["shape"] != name:
+                blocks.append({"shape": name, "nodes": [], "groups": []})
+            blocks[-1]["nodes"].append(nodes)
+            blocks[-1]["groups"].append(groups)
+        return blocks
+
+    def mesh(self):
+        if not self.points:
+            raise Unreadable("there is no node in it")
+        if all(shape == "line" for shape, _, _ in self.cells):
+            raise Unreadable("there is no cell in it")
+        sets = {name: [self.index[tag] for tag in tags if tag in self.index] for name, tags in self.node_sets.items()}
+        numbers = [[*key, name] for key, name in self.numbers.items() if abs(key[1]) < 2**31]
+        return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers}
+
+
+def lines_of(source):
+    """The lines of a text file, which may be compressed."""
+    opened = gzip.open if source.lower().endswith(".gz") else open
+    with opened(source, "rb") as file:
+        return file.read().decode("latin-1").splitlines()
+
+
+def package(name):
+    """Imports a package, or ends with its name."""
+    try:
+        return __import__(name)
+    except ImportError:
+        print(name, file=sys.stderr)
+        sys.exit(45)
+
+
+def real(text):
+    """A number, with Fortran's exponent too."""
+    return float(text.upper().replace("D", "E"))
