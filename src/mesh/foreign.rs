@@ -18,6 +18,7 @@ const SCRIPT: &str = concat!(
     include_str!("readers/text.py"),
     include_str!("readers/exodus.py"),
     include_str!("readers/med.py"),
+    include_str!("readers/frd.py"),
     include_str!("readers/choose.py"),
     include_str!("foreign.py")
 );

@@ -237,7 +237,7 @@ fn a_file_that_cannot_be_used_is_refused_in_one_message() {
     std::fs::write(folder.path().join("field.vtk"), plain.vtk()).expect("writable");
     refused(folder.path(), &["--displacement", "nowhere.vtu"], &["nowhere.vtu", "cannot be opened"]);
     std::fs::write(folder.path().join("job.frd"), "    1C\n").expect("writable");
-    refused(folder.path(), &["--displacement", "job.frd"], &["job.frd", "OUTPUT=2D", "ccx2paraview"]);
+    refused(folder.path(), &["--displacement", "job.frd"], &["job.frd", "no block of nodes", "*NODE FILE"]);
     refused(folder.path(), &["--displacement", "."], &["this is a directory"]);
     refused(folder.path(), &["--displacement", "field.vtk", "--field", "w"], &["no point data 'w'", "displacement"]);
     refused(folder.path(), &["--displacement", "field.vtk", "--refine", "1"], &["--refine", "--tolerance"]);

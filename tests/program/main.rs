@@ -1,5 +1,6 @@
 //! The program, called as a user calls it, without FEniCSx but where a test says so.
 
+mod calculix_results;
 mod certify;
 mod chart;
 mod ci;

@@ -1,7 +1,7 @@
 """Which reader a file asks for."""
 
 READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, ".e": read_exodus, ".exo": read_exodus, ".ex2": read_exodus, ".exii": read_exodus,
-           ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem}
+           ".frd": read_frd, ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem}
 
 
 def own_reader(source):

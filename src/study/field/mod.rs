@@ -14,7 +14,18 @@ use crate::compare::Candidate;
 use crate::mesh::meshio;
 use crate::problem::{Note, Problem};
 
-const SCRIPT: &str = include_str!("read.py");
+const SCRIPT: &str = concat!(
+    include_str!("../../mesh/readers/found.py"),
+    include_str!("../../mesh/readers/unv.py"),
+    include_str!("../../mesh/readers/text.py"),
+    include_str!("../../mesh/readers/exodus.py"),
+    include_str!("../../mesh/readers/med.py"),
+    include_str!("../../mesh/readers/frd.py"),
+    include_str!("../../mesh/readers/dat.py"),
+    include_str!("../../mesh/readers/choose.py"),
+    include_str!("own.py"),
+    include_str!("read.py")
+);
 const INSTEAD: &str = "write it as VTU, with triangles and the displacement as point data";
 /// What programs call a displacement, in lower case.
 const USUAL: [&str; 3] = ["displacement", "u", "disp"];

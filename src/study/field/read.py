@@ -52,6 +52,9 @@ def given(mesh):
 
 def read():
     """Points, cell blocks, point data, and whether it is a file of this program; of a time series the last step."""
+    own = own_fields(source)
+    if own is not None:
+        return own
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -68,8 +71,6 @@ def read():
                 missing(lacking)
             except Exception:
                 pass
-        if source.lower().endswith(".frd"):
-            sys.exit("the results of CalculiX are none of its formats: have them written with OUTPUT=2D, and into VTU by ccx2paraview")
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
     return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
