@@ -136,3 +136,34 @@ fn results_without_displacements_are_refused() {
         certified(folder.path(), "cut.frd", &FRD[..cut], 2, &["cut.frd"]);
     }
 }
+
+#[test]
+fn points_that_are_displaced_are_moved_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("job.toml"), SCENE).expect("writable");
+    std::fs::write(folder.path().join("p.inp"), DECK).expect("writable");
+    let (nodes, rest) = FRD.split_once(" -3\n").expect("a block of nodes");
+    let row = |line: &str| -> [f64; 2] { [13, 25].map(|at| line[at..at + 12].trim().parse().expect("a number")) };
+    let values: Vec<[f64; 2]> = rest
+        .lines()
+        .skip_while(|line| !line.contains("DISP"))
+        .filter(|line| line.starts_with(" -1"))
+        .map(row)
+        .collect();
+    let moved = |factor: f64| {
+        let mut values = values.iter();
+        let move_line = |line: &str| match line.starts_with(" -1") {
+            true => {
+                let ([x, y], u) = (row(line), values.next().expect("a value"));
+                format!("{}{:>12.6}{:>12.6} 0.00000E+00\n", &line[..13], x + factor * u[0], y + factor * u[1])
+            }
+            false => format!("{line}\n"),
+        };
+        nodes.lines().map(move_line).collect::<String>() + " -3\n" + rest
+    };
+    certified(folder.path(), "p.frd", &moved(1.0), 0, &[]);
+    let report = std::fs::read_to_string(folder.path().join("out/job/report.html")).expect("a report");
+    assert!(report.contains("The points of p.frd are displaced"), "no note");
+    // A multiple of the displacement explains nothing.
+    certified(folder.path(), "p.frd", &moved(2.0), 2, &["p.frd"]);
+}

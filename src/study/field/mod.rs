@@ -1,6 +1,7 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
 mod digits;
+mod displaced;
 mod matching;
 
 use std::collections::BTreeMap;
@@ -267,9 +268,9 @@ impl ForeignField {
     /// # Errors
     /// As [`Self::candidate`].
     pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Vec<Note>), FieldError> {
-        let matched = matching::onto(self, problem)?;
+        let (matched, displaced) = displaced::onto(self, problem)?;
         let note = |text: String| Note { weakens_guarantee: false, text };
-        let mut notes = Vec::new();
+        let mut notes: Vec<Note> = displaced.into_iter().collect();
         if matched.inserted > 0 {
             notes.push(note(format!(
                 "{} vertices of the scene's mesh, put into its edges where contacts and gaps ask for them, are no points of {}: its \
