@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::glue::glue;
+use super::glue::{Glued, glue};
 use super::testing::*;
 use super::{RawMesh, Triangulation};
 use crate::problem::{Note, Problem};
@@ -21,7 +21,7 @@ fn tilted(mut raw: RawMesh) -> RawMesh {
 fn glued(raw: RawMesh, scene: &Scene) -> (Triangulation, Vec<Note>) {
     let (mesh, _) = Triangulation::new(raw, scene).expect("a good mesh");
     let (area, topology) = (total_area(&mesh), euler(&mesh));
-    let (mesh, notes) = glue(mesh, scene).expect("sides that coincide");
+    let Glued { mesh, notes, .. } = glue(mesh, scene).expect("sides that coincide");
     assert_consistent(&mesh);
     assert!((total_area(&mesh) / area - 1.0).abs() < 1e-12);
     assert_eq!(euler(&mesh), topology);
@@ -80,7 +80,7 @@ fn round_off_is_removed_and_more_is_reported() {
     for (shift, reported) in [(1e-13, false), (1e-8, true)] {
         let raw = both(grid("a", [0.0; 2], [1.0; 2], [2, 2]), grid("b", [1.0 + shift, shift], [2.0, 1.0], [2, 4]));
         let (mesh, _) = Triangulation::new(raw, &meet(Gap::Constant(0.0))).expect("a good mesh");
-        let (mesh, notes) = glue(mesh, &meet(Gap::Constant(0.0))).expect("sides that coincide");
+        let Glued { mesh, notes, .. } = glue(mesh, &meet(Gap::Constant(0.0))).expect("sides that coincide");
         assert_eq!(side(&mesh, "a_right", false), side(&mesh, "b_left", true));
         assert_eq!(notes.iter().any(|n| n.weakens_guarantee && n.text.contains("1.4e-8")), reported);
     }
@@ -99,7 +99,7 @@ fn break_points_of_the_gap_become_vertices() {
     let mut rigid = scene(&["a"]);
     rigid.draft.contacts.push(Contact::new(ContactSides::Rigid("a_right".into()), gap));
     let (mesh, _) = Triangulation::new(grid("a", [0.0; 2], [1.0; 2], [2, 2]), &rigid).expect("a good mesh");
-    let (mesh, _) = glue(mesh, &rigid).expect("nothing to match");
+    let Glued { mesh, .. } = glue(mesh, &rigid).expect("nothing to match");
     assert_consistent(&mesh);
     assert_eq!(mesh.boundary("a_right").len(), 3);
 }
