@@ -173,7 +173,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         answers,
         seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
         components,
-        diagnosis: diagnoses(&certified.problem, &comparison),
+        diagnosis: diagnoses(&certified.problem, &comparison, &certified.bracket),
         failure: failure.as_ref().map(ToString::to_string),
         baseline,
         ..Particulars::default()

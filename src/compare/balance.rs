@@ -39,6 +39,10 @@ pub struct Balance {
     pub left: f64,
     /// The same for the loads, plus √(2·½a(u,u)): what `left` is relative to.
     pub scale: f64,
+    /// The same for the loads alone.
+    pub load: f64,
+    /// The same for all that supports and contacts have to carry.
+    pub supported: f64,
     /// The same for what rounding of the displacements can leave.
     pub rounding: f64,
     /// By how much rounding of the displacements can have moved an energy that is added up from nodal forces.
@@ -102,9 +106,12 @@ impl Balance {
             unbalanced.push(ends.chain(inside).map(nodal).sum::<f64>());
             carried.push(first().map(|v| forces.left[v][0].hypot(forces.left[v][1])).sum::<f64>());
         }
+        let load = forces.energy_size(|i| forces.load[i][0].hypot(forces.load[i][1]));
         Ok(Balance {
             left: forces.energy_size(nodal),
-            scale: forces.energy_size(|i| forces.load[i][0].hypot(forces.load[i][1])) + (2.0 * strain).sqrt(),
+            load,
+            supported: forces.energy_size(|i| forces.left[i][0].hypot(forces.left[i][1])),
+            scale: load + (2.0 * strain).sqrt(),
             rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::balance::Balance;
+use super::ceiling::{Extent, MISTAKE, PART};
 use super::solution::Numbering;
 use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
 use crate::dual::DualSolution;
@@ -98,17 +99,24 @@ pub struct Judged {
     pub admissible: UpperBound,
     /// How well it balances the loads in its own space, where it is meant to be a solution.
     pub balance: Option<Balance>,
+    /// How many times as large as any solution can be the field is; 1 where it is not larger.
+    pub larger: f64,
 }
 
 /// Solvers leave supports and contact to their own accuracy; a field within this of an admissible one is one.
 pub const ADMISSIBLE: f64 = 1e-9;
 
 impl Judged {
-    /// Evaluates a candidate.
+    /// Evaluates a candidate; `extent` says how large a solution can be.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
-    pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
+    pub fn new(
+        problem: &Problem,
+        dual: &DualSolution,
+        candidate: Candidate,
+        extent: Extent,
+    ) -> Result<Self, NoUpperBound> {
         let (mended, violation) = candidate.nearest_admissible(problem)?;
         let field = match &candidate.higher {
             Some(plain) => plain.split(&problem.mesh),
@@ -119,6 +127,7 @@ impl Judged {
         Ok(Judged {
             admissible: UpperBound::new(problem, dual, mended),
             balance: balance.transpose()?,
+            larger: extent.larger(candidate.largest()),
             field,
             violation,
             candidate,
@@ -127,7 +136,7 @@ impl Judged {
 
     /// Whether the field as delivered is admissible to the accuracy of a solver.
     pub fn is_admissible(&self) -> bool {
-        self.violation.largest() <= ADMISSIBLE
+        self.violation.largest() <= ADMISSIBLE.min(PART * MISTAKE / self.larger)
     }
 
     /// Guaranteed relative energy-norm error of the stress of the admissible field.

@@ -43,7 +43,9 @@ pub fn resultant_check(
              the support and what through the contact is not the same question for the two models: theory sets no bound.",
         ),
     };
-    Check::with_difference(&name, size, primal[0].hypot(primal[1]), difference, allowed, basis, why)
+    let found = primal[0].hypot(primal[1]);
+    let made = |allowed| Check::with_difference(&name, size, found, difference, allowed, basis, why);
+    sides.of_reaction(best, index, allowed).check_of_large(made)
 }
 
 /// ‖e(w)‖ for a continuous piecewise linear w that is a unit translation along the difference of the resultants on the

@@ -12,7 +12,7 @@ use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
-use crate::scene::{Load, MeshSource, Normals, Scene, SupportKind};
+use crate::scene::{Draft, Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
@@ -67,6 +67,16 @@ impl Problem {
         };
         problem.notes.push(Note { weakens_guarantee: false, text });
         Ok(problem)
+    }
+
+    /// The problem on its mesh before contact cut it, without its contacts; `None` where contact changed nothing.
+    ///
+    /// # Errors
+    /// None that [`Problem::new`] did not have.
+    pub fn before_contact(&self) -> Result<Option<Problem>, ProblemError> {
+        let Some(uncut) = &self.uncut else { return Ok(None) };
+        let draft = Draft { contacts: Vec::new(), ..(*self.scene).clone() };
+        Problem::new(Scene::unchecked(draft), uncut.mesh.clone(), Vec::new()).map(Some)
     }
 
     /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was

@@ -1,7 +1,7 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
-use crate::compare::{Allowances, Basis, Check, Comparison, Extent, Judged, Solution};
+use crate::compare::{Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution};
 use crate::diagnose::{Diagnosis, Energies, diagnose};
 use crate::problem::{Problem, Scales};
 
@@ -25,7 +25,8 @@ const NO_SOLUTION: f64 = 1.0;
 /// # Errors
 /// [`NoUpperBound`] where supports contradict each other.
 pub fn claim(problem: &Problem, judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?.within(extent(bracket));
+    let solution =
+        Solution::new(problem, &judged.candidate, judged.field.potential.strain)?.within(Extent::of(bracket));
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
@@ -34,13 +35,22 @@ pub fn claim(problem: &Problem, judged: &Judged, bracket: &Bracket, allow: &Allo
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
 }
 
-/// How large a solution can be.
-fn extent(bracket: &Bracket) -> Extent {
-    let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
-        let field = &free.displacement;
-        (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
-    });
-    Extent { strain: bracket.complementary.strain, displacement }
+/// The same for the solution of a method whose contact sides have different vertices: `own` is it on the triangles of its file,
+/// those of `before`, from which `problem` was made. Nothing is fitted to it.
+///
+/// # Errors
+/// As [`claim`].
+pub fn claim_before_contact(
+    problem: &Problem,
+    (before, own): (&Problem, &Candidate),
+    judged: &Judged,
+    bracket: &Bracket,
+    allow: &Allowances,
+) -> Result<Claim, NoUpperBound> {
+    let solution = Solution::new(before, own, judged.field.potential.strain)?.within(Extent::of(bracket));
+    let solution = Nonmatching::new(solution, problem);
+    let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
+    Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle() })
 }
 
 /// Whether the sharpest `bracket` of a run leaves a field the name of a solution at all: its guaranteed error is below 100 %.
@@ -60,8 +70,8 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
 }
 
 /// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
-/// nodal forces the hypotheses are fitted to.
-pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
+/// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
+pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());
@@ -70,6 +80,7 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
     };
     let explained = |judged: &Judged| {
         let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?;
+        let solution = solution.within(Extent::of(bracket));
         diagnose(&solution, energies(problem, judged))
     };
     comparison.judged.iter().filter(wrong).filter_map(explained).collect()

@@ -17,10 +17,12 @@ mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+mod own_mesh;
 mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
 mod schemas;
+mod spoiled;
 mod stability;

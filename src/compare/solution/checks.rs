@@ -1,8 +1,8 @@
 //! The checks of a field that claims to be a discrete solution.
 
-use super::digits::Allowance;
 use super::{SOLVER, Site, Solution};
 use crate::bounds::Hold;
+use crate::compare::ceiling::Allowance;
 use crate::compare::{Allowances, Basis, Check};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::Scales;
@@ -84,7 +84,7 @@ impl Solution<'_> {
     }
 
     /// `length` relative to the largest displacement, or to what the problem allows where the field is larger.
-    fn relative(&self, length: f64) -> f64 {
+    pub(super) fn relative(&self, length: f64) -> f64 {
         if self.reference > 0.0 { length / self.reference } else { length }
     }
 
@@ -138,7 +138,8 @@ impl Solution<'_> {
         // What contact does on a penetration has a check of its own.
         let distance = |(site, excess): (&Site, &f64)| site.gap + excess.max(0.0);
         let distances = self.sites.list.iter().zip(&self.excess).map(distance);
-        let gaps: f64 = distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum();
+        let gaps: f64 =
+            distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum::<f64>() + self.on_gaps;
         let (left, right) = (2.0 * self.strain, work + supports - gaps);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
         self.with_digits(self.of_forces(), |part| {
@@ -179,7 +180,7 @@ impl Solution<'_> {
         if self.is_pushed() {
             return [(0.0, String::new()), (0.0, String::new())];
         }
-        let total = self.applied().max(self.carried(interface));
+        let total = self.applied().max(self.larger * self.carried(interface));
         let share = |force: f64| if total > 0.0 { force / total } else { force };
         let rounding = self.of_displacements(1.0);
         let open = -2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference;
@@ -198,7 +199,7 @@ impl Solution<'_> {
     }
 
     /// A check of `value` ≤ `allowance`.
-    fn claimed(&self, name: &str, value: f64, allowance: Allowance, why: String) -> Check {
+    pub(super) fn claimed(&self, name: &str, value: f64, allowance: Allowance, why: String) -> Check {
         let made = |allowed| Check::at_most(name, value, 0.0, allowed, Basis::Claimed, why.as_str());
         self.with_digits(allowance, made)
     }

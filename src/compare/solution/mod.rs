@@ -8,9 +8,10 @@
 
 mod checks;
 mod digits;
+mod nonmatching;
 mod sites;
 
-pub use digits::Extent;
+pub use nonmatching::Nonmatching;
 pub use sites::{Site, Sites, Span};
 
 use super::balance::Balance;
@@ -83,6 +84,10 @@ pub struct Solution<'a> {
     pub largest: f64,
     /// What displacements are relative to: the largest one, or what the problem allows where the field is larger.
     pub reference: f64,
+    /// What contact does on gaps beside what acts at [`Self::sites`].
+    on_gaps: f64,
+    /// By what forces of the field are multiplied so that they are those of a solution at most.
+    larger: f64,
     /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
     ceiling: f64,
     /// What the closed Bernstein coefficients, pushing alone, leave over: relative to `scale`.
@@ -121,6 +126,8 @@ impl<'a> Solution<'a> {
             strain,
             largest: candidate.largest(),
             reference: candidate.largest(),
+            on_gaps: 0.0,
+            larger: 1.0,
             ceiling: f64::INFINITY,
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
             rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
@@ -199,11 +206,11 @@ impl<'a> Solution<'a> {
         sites.filter(|(s, _)| s.interface == interface).map(|(_, f)| f.abs()).sum()
     }
 
-    /// What forces are relative to: the loads, and what supports carry.
+    /// What forces are relative to: the loads, and what supports carry, as far as a solution can ask for it.
     pub fn applied(&self) -> f64 {
         let size = |f: [f64; 2]| f[0].hypot(f[1]);
         let loads: f64 = self.forces.load.iter().map(|f| size(*f)).sum();
-        loads.max((0..self.rest.len()).map(|n| size(self.supported(n))).sum())
+        loads.max(self.larger * (0..self.rest.len()).map(|n| size(self.supported(n))).sum::<f64>())
     }
 }
 
