@@ -52,5 +52,6 @@ pub(crate) fn pressed_square() -> Problem {
         interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair] }],
         notes: Vec::new(),
         refinement: crate::problem::Refinement::default(),
+        uncut: None,
     }
 }

@@ -1,6 +1,7 @@
 //! From scene and mesh to a [`Problem`].
 
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::contact::{gap_note, pair_up};
@@ -10,7 +11,7 @@ use super::{Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
-use crate::mesh::{self, Curved, Triangulation};
+use crate::mesh::{self, Curved, Loaded, Triangulation};
 use crate::scene::{Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
@@ -38,8 +39,8 @@ impl Problem {
     /// # Errors
     /// As [`Problem::load`].
     pub fn load_within(scene: Scene, limit: Duration) -> Result<Problem, ProblemError> {
-        let (scene, mesh, notes) = mesh::load(scene, limit)?;
-        Problem::new(scene, mesh, notes)
+        let Loaded { scene, mesh, notes, uncut } = mesh::load(scene, limit)?;
+        Ok(Problem { uncut: uncut.map(Arc::new), ..Problem::new(scene, mesh, notes)? })
     }
 
     /// The problem to refine to a tolerance, by a `load` that the caller has: on the coarsest mesh that represents `scene`,
@@ -133,7 +134,7 @@ impl Problem {
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement })
+        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement, uncut: None })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.

@@ -15,8 +15,10 @@ pub use direction::Direction;
 pub use error::ProblemError;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
+use std::sync::Arc;
+
 use crate::element::Compliance;
-use crate::mesh::Triangulation;
+use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::{Body, Scene};
 
@@ -35,6 +37,8 @@ pub struct Problem {
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
     pub refinement: Refinement,
+    /// The mesh as it was read or made, where contacts changed it; none of a mesh that was refined.
+    pub uncut: Option<Arc<Uncut>>,
 }
 
 impl Problem {

@@ -157,6 +157,7 @@ fn two_blocks(n: usize) -> Problem {
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
         notes,
         refinement: crate::problem::Refinement::default(),
+        uncut: None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rectangular bodies on grids, put together in memory.
 
-use crate::mesh::{RawMesh, Triangulation, glue};
+use crate::mesh::glue::{self, Glued};
+use crate::mesh::{RawMesh, Triangulation};
 use crate::problem::Problem;
 use crate::scene::{
     Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind,
@@ -163,7 +164,7 @@ impl Sketch {
         // Its triangles are no file's and no polygons'.
         let scene = Scene::unchecked(self.scene);
         let (mesh, mut notes) = Triangulation::new(self.raw, &scene).map_err(|e| e.to_string())?;
-        let (mesh, more) = glue::glue(mesh, &scene).map_err(|e| e.to_string())?;
+        let Glued { mesh, notes: more, .. } = glue::glue(mesh, &scene).map_err(|e| e.to_string())?;
         notes.extend(more);
         Problem::new(scene, mesh, notes).map_err(|e| e.to_string())
     }

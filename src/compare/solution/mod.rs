@@ -31,6 +31,8 @@ pub struct Numbering {
     pub triangles: Vec<Option<usize>>,
     /// Where a field comes in several files: of each the name and its first point and triangle.
     pub files: Vec<(String, [usize; 2])>,
+    /// Whether the file has the triangles of [`Problem::uncut`], from before contact cut some of them.
+    pub uncut: bool,
 }
 
 impl Numbering {

@@ -210,7 +210,7 @@ impl Build {
         let source = MeshSource::File("test.msh".into());
         let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };
         let scene = Scene::unchecked(draft);
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
     }
 }
 

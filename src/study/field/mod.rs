@@ -2,6 +2,7 @@
 
 mod digits;
 mod matching;
+mod places;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -219,7 +219,7 @@ impl Setup {
         let scene = Scene::new(draft).expect("a valid scene");
         let (triangles, body) = triangles.into_iter().unzip();
         let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
     }
 }
 

@@ -72,6 +72,7 @@ impl Cut {
             interfaces: problem.interfaces.iter().map(of).collect(),
             notes: Vec::new(),
             refinement: problem.refinement,
+            uncut: None,
         }
     }
 

@@ -54,6 +54,7 @@ impl Part {
             interfaces: read_contacts(&mut from)?,
             notes: Vec::new(),
             refinement: Refinement::default(),
+            uncut: None,
         };
         let holds = Holds { vertices: read_holds(&mut from)?, edges: read_holds(&mut from)? };
         let mut stress = StressField::of_degrees(from.indices()?);
