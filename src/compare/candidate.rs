@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::solution::Numbering;
-use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
+use crate::bounds::{Bracket, Cell, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement};
 use crate::problem::Problem;
@@ -26,6 +26,8 @@ pub struct Candidate {
     pub middle: Vec<[f64; 2]>,
     /// The whole of a displacement of degree 3 or more, which these values do not determine.
     pub higher: Option<PlainDisplacement>,
+    /// Its quadrilaterals, on which it is no polynomial of the triangles; `higher` then stands for it there.
+    pub cells: Vec<Cell>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
     /// ½a(u_h, u_h) as the program reports it.
@@ -114,15 +116,15 @@ impl Judged {
             Some(plain) => plain.split(&problem.mesh),
             None => Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle),
         };
-        let field = UpperBound::new(problem, dual, field);
+        let cells = &candidate.cells;
+        let (field, admissible) = if cells.is_empty() {
+            (UpperBound::new(problem, dual, field), UpperBound::new(problem, dual, mended))
+        } else {
+            let admissible = UpperBound::of_mended_cells(problem, dual, cells, (&field, mended));
+            (UpperBound::of_cells(problem, dual, cells, field), admissible)
+        };
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
-        Ok(Judged {
-            admissible: UpperBound::new(problem, dual, mended),
-            balance: balance.transpose()?,
-            field,
-            violation,
-            candidate,
-        })
+        Ok(Judged { admissible, balance: balance.transpose()?, field, violation, candidate })
     }
 
     /// Whether the field as delivered is admissible to the accuracy of a solver.

@@ -26,7 +26,7 @@ mod nearby;
 mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;
-mod quadrilateral;
+pub(crate) mod quadrilateral;
 mod quarter;
 mod select;
 pub(crate) mod sets;

@@ -1,0 +1,174 @@
+"""Writes displacement fields of quadrilaterals and six-node triangles by scikit-fem: `quadrilaterals.py FOLDER SEED CELLS NAME...`.
+
+CELLS is Q4, Q8, Q9 or T6. The body is [0, 2] x [0, 1] on a mesh distorted at random by SEED (0: of parallelograms); plane strain,
+E = 1, nu = 0.3, a weight and a traction on its top. NAME is `clamped` (at x = 0 and there alone) or `foot` (rollers at x = 0, a rigid
+obstacle below it), or after a colon one of the mistakes of `MISTAKES`. Each file NAME.vtu has the mesh too. Prints as JSON the energy
+of each field by a rule of high order, and that of a finer solution.
+"""
+
+import json
+import pathlib
+import sys
+
+import meshio
+import numpy as np
+import skfem
+from skfem.helpers import ddot, dot, sym_grad
+
+YOUNG, POISSON = 1.0, 0.3
+WEIGHT = np.array([0.02, -0.05])
+TOP = np.array([[0.03, -0.10], [0.01, 0.12]])  # at x = 0, and its slope along x
+ELEMENTS = {"Q4": skfem.ElementQuad1, "Q8": skfem.ElementQuadS2, "Q9": skfem.ElementQuad2, "T6": skfem.ElementTriP2}
+SHAPES = {"Q4": "quad", "Q8": "quad8", "Q9": "quad9", "T6": "triangle6"}
+FULL = {"Q4": 3, "Q8": 5, "Q9": 5, "T6": 4}
+REDUCED = {"Q4": 1, "Q8": 3, "Q9": 3, "T6": 1}
+MISTAKES = {
+    "young": {"young": 1.05},
+    "poisson": {"poisson": 0.35},
+    "load": {"top": 1.1},
+    "weightless": {"weight": 0.0},
+    "lumped": {"lumped": True},
+    "reduced": {"reduced": True},
+    "selective": {"selective": True},
+    "value": {"value": 0.01},
+    "axes": {"axes": True},
+    "exact": {"order": 20},
+}
+
+
+def mesh(cells, seed, n):
+    """Distorted inside, and along its sides."""
+    grid = skfem.MeshQuad.init_tensor(np.linspace(0, 2, 2 * n + 1), np.linspace(0, 1, n + 1))
+    p = grid.p.copy()
+    if seed == 0:
+        p = np.array([p[0] + 0.3 * p[1], p[1]])
+        p[0] -= 0.3 * p[1]
+        p = np.array([p[0] + 0.08 * np.sin(0 * p[1]), p[1]])
+    else:
+        random = np.random.default_rng(seed)
+        move = random.uniform(-0.3 / n, 0.3 / n, p.shape)
+        for c, ends in ((0, (0, 2)), (1, (0, 1))):
+            at_end = np.isin(p[c], ends)
+            move[c, at_end] = 0.0
+        p = p + move
+    grid = skfem.MeshQuad(p, grid.t)
+    return grid.to_meshtri() if cells == "T6" else grid
+
+
+class Body:
+    def __init__(self, cells, grid, young=1.0, poisson=POISSON, top=1.0, weight=1.0, lumped=False, reduced=False,
+                 selective=False, value=0.0, axes=False, order=None):
+        element = skfem.ElementVector(ELEMENTS[cells]())
+        order = order or (REDUCED if reduced else FULL)[cells]
+        self.cells, self.grid, self.value, self.axes = cells, grid, value, axes
+        self.basis = skfem.Basis(grid, element, intorder=order)
+        lame = poisson * young * YOUNG / ((1 + poisson) * (1 - 2 * poisson))
+        shear = young * YOUNG / (2 * (1 + poisson))
+
+        def stiffness(volume, deviator):
+            @skfem.BilinearForm
+            def form(u, v, w):
+                e, d = sym_grad(u), sym_grad(v)
+                return volume * lame * (e[0, 0] + e[1, 1]) * (d[0, 0] + d[1, 1]) + deviator * 2 * shear * ddot(e, d)
+            return form
+
+        @skfem.LinearForm
+        def body(v, w):
+            return weight * (WEIGHT[0] * v[0] + WEIGHT[1] * v[1])
+
+        @skfem.LinearForm
+        def traction(v, w):
+            p = [TOP[0][c] + TOP[1][c] * w.x[0] for c in range(2)]
+            return top * (p[0] * v[0] + p[1] * v[1])
+
+        self.form, self.loads = stiffness(1, 1), (body, traction)
+        if selective:
+            soft = skfem.Basis(grid, element, intorder=REDUCED[cells])
+            self.k = stiffness(1, 0).assemble(soft) + stiffness(0, 1).assemble(self.basis)
+        else:
+            self.k = self.form.assemble(self.basis)
+        high = skfem.Basis(grid, element, intorder=max(order, FULL[cells]))
+        above = skfem.FacetBasis(grid, element, facets=grid.facets_satisfying(lambda x: x[1] > 1 - 1e-9), intorder=6)
+        self.f = body.assemble(high) + traction.assemble(above)
+        self.above = above
+        if lumped:
+            at = self.basis.nodal_dofs[:, np.unique(grid.facets[:, above.find])]
+            total = traction.assemble(above)
+            self.f -= total
+            for c in range(2):
+                self.f[at[c]] += total[self.basis.nodal_dofs[c]].sum() / at.shape[1] if at.size else 0.0
+
+    def dofs(self, where):
+        return self.basis.get_dofs(where)
+
+    def solve(self, name):
+        left = self.dofs(lambda x: x[0] < 1e-9)
+        u = np.zeros(self.basis.N)
+        if name == "clamped":
+            u = skfem.solve(*skfem.condense(self.k, self.f, D=left))
+        else:
+            held = left.all("u^1")
+            foot = self.dofs(lambda x: x[1] < 1e-9).all("u^2")
+            active = np.ones(len(foot), bool)
+            for _ in range(50):
+                u = skfem.solve(*skfem.condense(self.k, self.f, D=np.concatenate([held, foot[active]])))
+                reaction = (self.k @ u - self.f)[foot]
+                now = np.where(active, reaction > 0, u[foot] < 0)
+                if (now == active).all():
+                    break
+                active = now
+            else:
+                raise SystemExit("no contact state")
+        if self.value:
+            at = self.basis.nodal_dofs[0, np.argmin(np.linalg.norm(self.grid.p - [[1.1], [0.5]], axis=0))]
+            u[at] += self.value * np.abs(u).max()
+        return u
+
+    def energy(self, u):
+        """By a rule of high order."""
+        fine = skfem.Basis(self.grid, self.basis.elem, intorder=8 if self.cells == "T6" else 24)
+        k, f = self.form.assemble(fine), self.loads[0].assemble(fine) + self.loads[1].assemble(self.above)
+        return 0.5 * u @ (k @ u) - f @ u
+
+    def write(self, file, u):
+        b, grid = self.basis, self.grid
+        dofs, points, cells = [b.nodal_dofs], [grid.p], [grid.t]
+        count = grid.p.shape[1]
+        if self.cells != "Q4":
+            dofs.append(b.facet_dofs)
+            points.append(grid.p[:, grid.facets].mean(axis=1))
+            cells.append(grid.t2f + count)
+            count += grid.facets.shape[1]
+        if self.cells == "Q9":
+            dofs.append(b.interior_dofs)
+            points.append(grid.p[:, grid.t].mean(axis=1))
+            cells.append(np.arange(grid.t.shape[1])[None, :] + count)
+        values = u[np.concatenate(dofs, axis=1)].T
+        if self.axes:
+            values = values[:, ::-1]
+        points = np.concatenate(points, axis=1).T
+        flat = np.zeros((len(points), 1))
+        out = meshio.Mesh(np.hstack([points, flat]), [(SHAPES[self.cells], np.concatenate(cells).T)],
+                          point_data={"u": np.hstack([values, flat])})
+        meshio.write(file, out)
+
+
+def main():
+    folder, seed, cells, *names = sys.argv[1:]
+    n = 4
+    grid = mesh(cells, int(seed), n)
+    fine = None
+    told = {}
+    for name in names:
+        scene, _, mistake = name.partition(":")
+        made = Body(cells, grid, **MISTAKES.get(mistake, {}))
+        u = made.solve(scene)
+        made.write(str(pathlib.Path(folder, f"{name.replace(':', '_')}.vtu")), u)
+        told[name] = {"energy": made.energy(u)}
+        if not mistake:
+            fine = Body("Q9", mesh("Q9", 0, 6 * n))
+            told[name]["finer"] = fine.energy(fine.solve(scene))
+    print(json.dumps(told))
+
+
+main()
