@@ -268,7 +268,9 @@ fn values_held(
 
 /// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.
 fn refuse_inserted(candidate: &Candidate, field: &ForeignField) -> Result<(), CliError> {
-    let nodes = candidate.vertex.len() + if candidate.degree == 2 { candidate.middle.len() } else { 0 };
+    let whole = !candidate.cells.is_empty() && candidate.cells.iter().all(|cell| !cell.nodes.is_empty());
+    let inside = candidate.degree == 2 && !whole;
+    let nodes = candidate.vertex.len() + if inside { candidate.middle.len() } else { 0 };
     let known = candidate.numbering.iter().flat_map(|n| &n.nodes).take(nodes).all(Option::is_some);
     if known {
         return Ok(());

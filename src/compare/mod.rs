@@ -2,6 +2,7 @@
 
 mod balance;
 mod candidate;
+pub mod cells;
 mod check;
 mod coefficients;
 mod contact;

@@ -26,7 +26,7 @@ MISTAKES = {
     "young": {"young": 1.05},
     "poisson": {"poisson": 0.35},
     "load": {"top": 1.1},
-    "weightless": {"weight": 0.0},
+    "weight": {"weight": 0.5},
     "lumped": {"lumped": True},
     "reduced": {"reduced": True},
     "selective": {"selective": True},
@@ -59,7 +59,7 @@ class Body:
     def __init__(self, cells, grid, young=1.0, poisson=POISSON, top=1.0, weight=1.0, lumped=False, reduced=False,
                  selective=False, value=0.0, axes=False, order=None):
         element = skfem.ElementVector(ELEMENTS[cells]())
-        order = order or (REDUCED if reduced else FULL)[cells]
+        order = order if order and cells != "T6" else (REDUCED if reduced else FULL)[cells]
         self.cells, self.grid, self.value, self.axes = cells, grid, value, axes
         self.basis = skfem.Basis(grid, element, intorder=order)
         lame = poisson * young * YOUNG / ((1 + poisson) * (1 - 2 * poisson))
