@@ -42,6 +42,7 @@ mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
 mod pressure_at_ends;
+mod quadrilaterals;
 mod quantities;
 mod refinement_ends;
 mod rings;

@@ -1,6 +1,7 @@
 //! The quadrilaterals of a field on the mesh of a scene: the triangles that make each of them up, and the field on it.
 
-use super::matching::{Curved, mean};
+use super::curved::Curved;
+use super::matching::mean;
 use super::places::Place;
 use super::{FieldError, ForeignField, Part};
 use crate::bounds::Cell;

@@ -8,7 +8,8 @@
 //! not in the file is then a part of one that is, whose polynomial it has.
 
 use super::cells::{Quadrilaterals, polynomials, quadrilaterals};
-use super::places::{AT_CORNER, Place, Places, barycentric, places, round_off, tolerance_of, turned};
+use super::curved::Curved;
+use super::places::{AT_CORNER, Place, Places, barycentric, places, round_off, turned};
 use super::{FieldError, ForeignField};
 use crate::bounds::Cell;
 use crate::compare::Numbering;
@@ -21,9 +22,6 @@ use crate::vector::distance;
 
 /// Difference between two values of one point, in parts of the largest displacement, that counts as round-off.
 const JUMP: f64 = 1e-6;
-/// Part of its side by which a node between two corners may be beside the middle.
-const FARTHEST: f64 = 0.25;
-
 /// Values on the vertices and edges of a mesh.
 pub(super) struct Matched {
     pub degree: usize,
@@ -41,48 +39,6 @@ pub(super) struct Matched {
     pub cells: Vec<Cell>,
     /// What stands for the field on triangles, where there are quadrilaterals.
     pub higher: Option<PlainDisplacement>,
-}
-
-/// Nodes beside the places that straight sides have them at.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Curved {
-    /// How many.
-    pub nodes: usize,
-    /// The largest distance, and the length of the side there.
-    pub off: f64,
-    /// The length of that side.
-    pub length: f64,
-}
-
-impl Curved {
-    /// Counts a node at `point`, which a side of this length would have at `straight`.
-    ///
-    /// # Errors
-    /// It is so far away that the nodes of the cell are in another order.
-    pub fn note(
-        &mut self,
-        field: &ForeignField,
-        point: [f64; 2],
-        straight: [f64; 2],
-        length: f64,
-    ) -> Result<(), FieldError> {
-        let off = distance(point, straight);
-        if off > FARTHEST * length {
-            let what = format!(
-                "the node ({}, {}) is far from the middle of the two corners that it should be between",
-                point[0], point[1]
-            );
-            let remedy = "write the nodes of a cell in the order of VTK: corners, the middles of the sides from corner to corner, centre";
-            return Err(field.fault(what, remedy));
-        }
-        if off > tolerance_of(field, length) {
-            self.nodes += 1;
-            if off > self.off {
-                (self.off, self.length) = (off, length);
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Brings `field` onto the mesh of `problem`.
@@ -160,7 +116,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         }
     }
     let degree = if quadratic { 2 } else { 1 };
-    let curved = Some(curved).filter(|curved| curved.nodes > 0);
+    let curved = Some(curved).filter(|curved| curved.off > 0.0);
     Ok(Matched { degree, vertex, middle, numbering, inserted, off, curved, cells: cells.list, higher })
 }
 

@@ -1,6 +1,7 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
 mod cells;
+mod curved;
 mod digits;
 mod matching;
 mod places;
@@ -15,8 +16,6 @@ use super::provenance::hash;
 use crate::compare::Candidate;
 use crate::mesh::meshio;
 use crate::problem::{Note, Problem};
-use crate::scene::counted;
-use matching::Curved;
 
 const SCRIPT: &str = include_str!("read.py");
 const INSTEAD: &str = "write it as VTU, with triangles or quadrilaterals and the displacement as point data";
@@ -300,7 +299,7 @@ impl ForeignField {
                 off / self.far
             ))
         }));
-        notes.extend(matched.curved.map(|curved| note_of_curved(&self.name(), curved)));
+        notes.extend(matched.curved.map(|curved| curved.told(&self.name())));
         let nodes = match &matched.higher {
             None => matched.vertex.len() + if matched.degree == 2 { matched.middle.len() } else { 0 },
             Some(_) => matched.numbering.nodes.iter().flatten().count(),
@@ -330,17 +329,6 @@ impl ForeignField {
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {
         FieldError { file: self.file.clone(), what, remedy: remedy.into() }
     }
-}
-
-fn note_of_curved(name: &str, curved: Curved) -> Note {
-    let text = format!(
-        "{} of {name} are not where straight sides have them, up to {:.2e} off ({:.2} % of the side). The values were taken over node by \
-         node on straight sides: the bounds are those of that field.",
-        counted(curved.nodes, "mid-node"),
-        curved.off,
-        100.0 * curved.off / curved.length
-    );
-    Note { weakens_guarantee: true, text }
 }
 
 type Chosen<'a> = (&'a str, &'a Data);
