@@ -21,6 +21,7 @@ mod memory;
 #[path = "../support/pages.rs"]
 mod pages;
 mod printed;
+mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
