@@ -76,7 +76,7 @@ fn scene(name: &str) -> String {
     let boundaries =
         line("left", "[[0, 0], [0, 1]]") + &line("top", "[[0, 1], [2, 1]]") + &line("foot", "[[0, 0], [2, 0]]");
     format!(
-        "[model]\nkinematics = \"plane-strain\"\n[mesh]\nfile = \"{name}.vtu\"\n[bodies.block]\nyoung = 1.0\npoisson = 0.3\n\
+        "[model]\nkinematics = \"plane-strain\"\n[mesh]\nfile = \"mesh.msh\"\n[bodies.block]\nyoung = 1.0\npoisson = 0.3\n\
          body_force = [0.02, -0.05]\n{boundaries}[[tractions]]\non = \"top\"\nvalue = [0.03, -0.10]\n\
          gradient = [[0.01, 0.0], [0.12, 0.0]]\n[[supports]]\non = \"left\"\ntype = \"{support}\"\n{contact}"
     )
@@ -119,7 +119,6 @@ fn solutions_on_quadrilaterals_pass_and_every_mistake_is_named() {
             scope.spawn(move || {
                 let folder = tempfile::tempdir().expect("a folder");
                 let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
-                // The scenes take their meshes from the files of the right fields.
                 if made(folder.path(), cells, 7, &names).is_none() {
                     return;
                 }

@@ -2,7 +2,7 @@
 
 CELLS is Q4, Q8, Q9 or T6. The body is [0, 2] x [0, 1] on a mesh distorted at random by SEED (0: of rectangles); plane strain,
 E = 1, nu = 0.3, a weight and a traction on its top. NAME is `clamped` (at x = 0 and there alone) or `foot` (rollers at x = 0, a rigid
-obstacle below it), or after a colon one of the mistakes of `MISTAKES`. Each file NAME.vtu has the mesh too. Prints as JSON the energy
+obstacle below it), or after a colon one of the mistakes of `MISTAKES`. The mesh is mesh.msh. Prints as JSON the energy
 of each field by a rule of high order; `SCENE:finer` writes nothing and has the energy of a solution on a finer mesh.
 """
 
@@ -14,7 +14,7 @@ import meshio
 import numpy as np
 import scipy.sparse
 import skfem
-from skfem.helpers import ddot, dot, sym_grad
+from skfem.helpers import ddot, sym_grad
 
 YOUNG, POISSON = 1.0, 0.3
 WEIGHT = np.array([0.02, -0.05])
@@ -207,6 +207,8 @@ class Body:
         out = meshio.Mesh(np.hstack([points, flat]), [(SHAPES[self.cells], np.concatenate(cells).T)],
                           point_data={"u": np.hstack([values, flat])})
         meshio.write(file, out)
+        out.point_data = {}
+        meshio.write(str(pathlib.Path(file).parent / "mesh.msh"), out, file_format="gmsh22", binary=False)
 
 
 def main():
