@@ -2,6 +2,7 @@
 
 mod at_rest;
 mod bracket;
+mod cells;
 mod counted;
 pub mod energy;
 mod gap;
@@ -17,6 +18,7 @@ pub mod upper;
 
 pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound, work_of_remainders};
+pub use cells::{Cell, Enclosed, strain_energy, strain_energy_by};
 pub use energy::{Complementary, Potential, complementary, potential, support_work, work, work_of};
 pub use gap::{LocalGap, local_gap};
 pub use jump::{openings, side_coefficients};

@@ -165,10 +165,10 @@ fn held(
         let check = study::error_check(judged, &sharpest.bracket, &allow);
         comparison.checks.push(check);
     }
-    let answers = session.answers(sharpest, &args.solve);
+    let answers = session.sharpest_answers(run, sharpened.as_ref(), &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     let meant = if args.solution { Meant::Discrete } else { Meant::Exact };
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, meant, &allow));
+    comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, meant, &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
@@ -280,7 +280,9 @@ fn before_contact(
 
 /// On a mesh into whose edges contacts have put vertices a field on larger triangles is no discrete solution.
 fn refuse_inserted(candidate: &Candidate, field: &ForeignField) -> Result<(), CliError> {
-    let nodes = candidate.vertex.len() + if candidate.degree == 2 { candidate.middle.len() } else { 0 };
+    let whole = !candidate.cells.is_empty() && candidate.cells.iter().all(|cell| !cell.nodes.is_empty());
+    let inside = candidate.degree == 2 && !whole;
+    let nodes = candidate.vertex.len() + if inside { candidate.middle.len() } else { 0 };
     let known = candidate.numbering.iter().flat_map(|n| &n.nodes).take(nodes).all(Option::is_some);
     if known {
         return Ok(());

@@ -79,11 +79,26 @@ impl Balance {
             Some(field) => NodalForces::of_coefficients(problem, field),
             None => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
         };
+        Self::of_forces(problem, candidate, strain, &forces)
+    }
+
+    /// The same with the nodal forces of the candidate in its own space.
+    ///
+    /// # Errors
+    /// As [`Balance::new`].
+    pub fn of_forces(
+        problem: &Problem,
+        candidate: &Candidate,
+        strain: f64,
+        forces: &NodalForces,
+    ) -> Result<Self, NoUpperBound> {
+        // What stands for quadrilaterals is no displacement of the model.
+        let higher = candidate.higher.as_ref().filter(|_| candidate.cells.is_empty());
         let holds = holds(problem)?;
         let nodes = higher::nodes(problem, candidate.degree);
         let mut rest = forces.unsupported(&holds, &nodes);
         let solution = Solution { problem, candidate, holds: &holds };
-        match &candidate.higher {
+        match higher {
             Some(field) => solution.take_inside(field, &mut rest),
             None => solution.take_middles(&mut rest),
         }
@@ -92,7 +107,7 @@ impl Balance {
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
         let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
-        let value = |i: usize| candidate.higher.as_ref().map_or_else(|| solution.value(i), |field| field.values()[i]);
+        let value = |i: usize| higher.map_or_else(|| solution.value(i), |field| field.values()[i]);
         let (mut reactions, mut reaction_rounding) = (Vec::new(), Vec::new());
         let (mut carried, mut unbalanced) = (Vec::new(), Vec::new());
         for (index, interface) in problem.interfaces.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
 use super::solution::Numbering;
-use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
+use crate::bounds::{Bracket, Cell, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement};
 use crate::problem::Problem;
@@ -27,6 +27,8 @@ pub struct Candidate {
     pub middle: Vec<[f64; 2]>,
     /// The whole of a displacement of degree 3 or more, which these values do not determine.
     pub higher: Option<PlainDisplacement>,
+    /// Its quadrilaterals, on which it is no polynomial of the triangles; `higher` then stands for it there.
+    pub cells: Vec<Cell>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
     /// ½a(u_h, u_h) as the program reports it.
@@ -35,10 +37,10 @@ pub struct Candidate {
     pub is_solution: bool,
     /// Contact reactions, interface by interface.
     pub reactions: Option<Vec<Reactions>>,
-    /// Nonlinear iterations.
-    pub iterations: usize,
-    /// Unknowns.
-    pub unknowns: usize,
+    /// Nonlinear iterations, where the program tells them.
+    pub iterations: Option<usize>,
+    /// Unknowns, where the program tells them.
+    pub unknowns: Option<usize>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
     /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.
@@ -122,16 +124,16 @@ impl Judged {
             Some(plain) => plain.split(&problem.mesh),
             None => Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle),
         };
-        let field = UpperBound::new(problem, dual, field);
+        let cells = &candidate.cells;
+        let (field, admissible) = if cells.is_empty() {
+            (UpperBound::new(problem, dual, field), UpperBound::new(problem, dual, mended))
+        } else {
+            let admissible = UpperBound::of_mended_cells(problem, dual, cells, (&field, mended));
+            (UpperBound::of_cells(problem, dual, cells, field), admissible)
+        };
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
-        Ok(Judged {
-            admissible: UpperBound::new(problem, dual, mended),
-            balance: balance.transpose()?,
-            larger: extent.larger(candidate.largest()),
-            field,
-            violation,
-            candidate,
-        })
+        let larger = extent.larger(candidate.largest());
+        Ok(Judged { admissible, balance: balance.transpose()?, larger, field, violation, candidate })
     }
 
     /// Whether the field as delivered is admissible to the accuracy of a solver.

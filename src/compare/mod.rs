@@ -3,13 +3,16 @@
 mod balance;
 mod candidate;
 mod ceiling;
+pub mod cells;
 mod check;
 mod coefficients;
 mod contact;
 mod energy;
 mod forces;
+mod mean;
 mod nodal;
 mod outcome;
+mod peak;
 mod piece;
 pub mod pressure;
 mod resultant;
@@ -21,7 +24,9 @@ pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use ceiling::Extent;
 pub use check::{Basis, Check};
+pub use mean::MeanPressure;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
+pub use pressure::weighted_reactions;
 pub use solution::{Nonmatching, Numbering, Solution};
 pub use stress::{primal_means, von_mises, von_mises_map};
 pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
@@ -114,7 +119,8 @@ pub fn compare(
     }
     comparison.checks.extend(energy::degree_order(problem, (&scales, &ceilings), &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);
-    let sides = contact::Sides { problem, scales: &scales, ceilings: &ceilings, dual, best };
+    let gap = (upper - bracket.lower()).max(0.0);
+    let sides = contact::Sides { problem, scales: &scales, ceilings: &ceilings, dual, gap, best };
     let (contacts, checks) = sides.compare(&comparison.judged);
     comparison.stress = best.map(|b| stress::compare(problem, dual, bracket.complementary.strain, b));
     comparison.contacts = contacts;

@@ -25,6 +25,8 @@ use crate::vector::dot;
 /// Mean pressures at a vertex of Γ_K, weighted by its hat function.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodalPressure {
+    /// The vertex, of the first side.
+    pub vertex: usize,
     /// ∫ φ ds.
     pub weight: f64,
     /// ∫ (−t) φ n·n̂ / ∫ φ of the dual solution.
@@ -112,6 +114,7 @@ pub fn nodal_pressures(
             let [weight, pressure] = sums[&v];
             let [work, size] = works.get(&v).copied().unwrap_or_default();
             NodalPressure {
+                vertex: v,
                 weight,
                 dual: pressure / weight,
                 primal: force[&v] / (thickness * weight),

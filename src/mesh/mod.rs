@@ -4,10 +4,12 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+mod abaqus;
 pub(crate) mod along;
 pub mod bisect;
 mod boxes;
 mod cells;
+mod content;
 pub(crate) mod error;
 mod file;
 pub mod foreign;
@@ -20,10 +22,13 @@ mod hanging;
 mod insert;
 pub(crate) mod labels;
 pub(crate) mod meshio;
+mod nearby;
 mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;
+pub(crate) mod quadrilateral;
 mod quarter;
+mod select;
 pub(crate) mod sets;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -33,6 +38,7 @@ mod topology_tests;
 mod uncut;
 
 pub use error::MeshError;
+pub use select::Sets;
 pub use uncut::Uncut;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
@@ -78,8 +84,9 @@ pub struct Loaded {
 pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
         MeshSource::File(path) => {
-            let (mut raw, notes) = file::read(path, limit)?;
+            let (mut raw, mut notes) = file::read(path, limit)?;
             raw.shift(scene.origin);
+            select::select(&mut raw, &scene, &mut notes)?;
             let (scene, middle) = scene.about_middle(raw.points.iter());
             raw.shift(middle);
             (scene, (raw, notes))
@@ -87,8 +94,9 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
         MeshSource::Geometry { polygons, .. } => {
             let corners: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
             let (scene, _) = scene.about_middle(corners.iter());
-            let made = polygons::mesh(&scene)?;
-            (scene, made)
+            let (mut raw, mut notes) = polygons::mesh(&scene)?;
+            select::select(&mut raw, &scene, &mut notes)?;
+            (scene, (raw, notes))
         }
     };
     let (mesh, more) = Triangulation::new(raw, &scene)?;
@@ -111,6 +119,8 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// What else the file groups.
+    pub sets: Sets,
 }
 
 /// Cells that all carry the same names, listed once: those of an entity that is in many physical groups.

@@ -80,7 +80,7 @@ pub(super) fn pair_up(
 }
 
 /// A remark when the gap bends inside an edge, or when the mesh begins to see the kinks of a table that stands for a curve.
-fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
+pub(super) fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
     let Gap::Table(rows) = &contact.gap else { return None };
     let close = same(links);
     let inside = |s: f64| links.iter().any(|link| s - link.arc[0] > close && link.arc[1] - s > close);

@@ -128,14 +128,18 @@ impl Functional {
     /// The signs that the value cannot have, negative and positive: contact does not pull, so that a force of it alone whose weight
     /// does not change its sign has one sign too.
     pub fn cannot_be(&self) -> [bool; 2] {
-        let load = &self.load;
-        let other = !load.tractions.is_empty() || !load.strains.is_empty() || load.force.iter().any(|f| *f != [0.0; 2]);
-        if other || self.constant != 0.0 {
+        if !self.is_of_contact_alone() || self.constant != 0.0 {
             return [false; 2];
         }
         // t ≤ 0.
-        let all = |sign: f64| load.weights.iter().flatten().all(|w| sign * w >= 0.0);
+        let all = |sign: f64| self.load.weights.iter().flatten().all(|w| sign * w >= 0.0);
         [all(-1.0), all(1.0)]
+    }
+
+    /// Whether nothing but the normal traction of contacts, and what is known, enters.
+    pub fn is_of_contact_alone(&self) -> bool {
+        let load = &self.load;
+        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(|f| *f == [0.0; 2])
     }
 
     fn empty(problem: &Problem, kind: Kind) -> Self {

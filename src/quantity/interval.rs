@@ -81,6 +81,24 @@ impl Interval {
         outside(self.ends, self.rounding, x)
     }
 
+    /// What this interval and one from sharper stresses tell together of one value, with the shares of this one.
+    pub fn and(self, sharper: &Interval) -> Self {
+        let both =
+            |[a, b]: [f64; 2], [c, d]: [f64; 2]| if a.max(c) <= b.min(d) { [a.max(c), b.min(d)] } else { [c, d] };
+        let ends = both(self.ends, sharper.ends);
+        let value = if sharper.value.is_nan() { self.value } else { sharper.value };
+        let reason = |k: usize| if ends[k].is_finite() { None } else { sharper.reasons[k].clone() };
+        Interval {
+            ends,
+            first_order: both(self.first_order, sharper.first_order),
+            value: value.max(ends[0]).min(ends[1]),
+            exact_by_statics: self.exact_by_statics || sharper.exact_by_statics,
+            rounding: self.rounding.max(sharper.rounding),
+            reasons: [reason(0), reason(1)],
+            shares: self.shares,
+        }
+    }
+
     /// Half of the width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])

@@ -42,6 +42,7 @@ impl Scene {
                 *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
             }
         }
+        self.draft.boundaries.iter_mut().for_each(|boundary| boundary.edges.shift(middle));
         self.draft.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
         self.draft.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
         (self, middle)

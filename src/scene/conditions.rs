@@ -7,7 +7,9 @@ use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::raw::{At, RawContact, RawCurve, RawGap, RawScene, RawSupport, RawTraction, Table};
 use super::source::{Source, counted};
-use super::{Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction};
+use super::{
+    Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
+};
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
 
@@ -19,8 +21,13 @@ pub(super) struct Conditions {
 }
 
 /// Checks the three lists, in the order of the file within each.
-pub(super) fn conditions(raw: &RawScene, mesh: &MeshSource, source: &Source) -> Result<Conditions, SceneError> {
-    let mut taken = Taken::new(mesh, source);
+/// `known` has the names of the edges, sorted; `None` where only a mesh file knows them.
+pub(super) fn conditions(
+    raw: &RawScene,
+    known: Option<Vec<String>>,
+    source: &Source,
+) -> Result<Conditions, SceneError> {
+    let mut taken = Taken { source, known, by: HashMap::new() };
     let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
     let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
     let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
@@ -35,12 +42,13 @@ fn each<R, T>(
     list.iter().enumerate().map(|(i, raw)| check(raw, &format!("[[{key}]] number {}", i + 1))).collect()
 }
 
-/// The names of the polygon edges, sorted; `None` where only a mesh file knows them.
-pub(super) fn edge_names(mesh: &MeshSource) -> Option<Vec<String>> {
+/// The names of polygon edges and of `boundaries`, sorted; `None` where only a mesh file knows them.
+pub(super) fn edge_names(mesh: &MeshSource, boundaries: &[Boundary]) -> Option<Vec<String>> {
     match mesh {
         MeshSource::File(_) => None,
         MeshSource::Geometry { polygons, .. } => {
-            Some(names(polygons.iter().flat_map(|p| p.edges.iter().map(String::as_str))))
+            let edges = polygons.iter().flat_map(|p| &p.edges);
+            Some(names(edges.chain(boundaries.iter().map(|boundary| &boundary.name)).map(String::as_str)))
         }
     }
 }
@@ -53,11 +61,7 @@ struct Taken<'a> {
     by: HashMap<String, (String, Range<usize>)>,
 }
 
-impl<'a> Taken<'a> {
-    fn new(mesh: &MeshSource, source: &'a Source<'a>) -> Self {
-        Self { source, known: edge_names(mesh), by: HashMap::new() }
-    }
-
+impl Taken<'_> {
     /// The name, if it exists and is free; from now on it belongs to `table`.
     fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
         let on = self.source.name(name, (table, key), NAME_A_BOUNDARY)?;

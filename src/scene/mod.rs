@@ -18,6 +18,7 @@ pub(crate) mod polygon;
 mod quantity;
 mod raw;
 mod read;
+mod selection;
 mod source;
 pub(crate) mod text;
 mod validate;
@@ -30,6 +31,8 @@ pub use error::{Fault, SceneError};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
+pub use selection::{BodyCells, Boundary, Edges, Group};
+pub(crate) use source::counted;
 pub(crate) use validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.

@@ -94,6 +94,9 @@ pub(super) struct RawScene {
     /// One table per body, by its name.
     #[schemars(extend("minProperties" = 1))]
     pub bodies: BTreeMap<At<String>, At<Table<RawBody>>>,
+    /// Names for parts of the outline that the mesh leaves without.
+    #[serde(default)]
+    pub boundaries: Vec<At<Table<RawBoundary>>>,
     /// Boundaries that are held.
     #[serde(default)]
     pub supports: Vec<At<Table<RawSupport>>>,
@@ -126,7 +129,7 @@ pub(super) struct RawModel {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Mesh")]
 pub(super) struct RawMesh {
-    /// Path relative to the scene. Gmsh MSH 2.2 and 4.1 are read natively, anything else through meshio.
+    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 are read natively, anything else through meshio.
     #[schemars(length(min = 1))]
     pub file: At<String>,
 }
@@ -188,6 +191,60 @@ pub(super) struct RawBody {
     /// Constant force per volume, none where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
     pub body_force: Option<Pair>,
+    /// Its cells are those of this physical group of the mesh file, or of this elementary entity where there is no such group.
+    pub tag: Option<At<i32>>,
+    /// Its cells are those of this set of the mesh file.
+    #[schemars(length(min = 1))]
+    pub set: Option<At<String>>,
+}
+
+/// A name for edges of the outline; tables of one name are one boundary.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(
+    rename = "Boundary",
+    extend("oneOf" = [{"required": ["line"]}, {"required": ["box"]}, {"required": ["circle"]}, {"required": ["normal"]},
+                      {"required": ["set"]}, {"required": ["tag"]}])
+)]
+pub(super) struct RawBoundary {
+    /// The name that conditions use.
+    #[schemars(length(min = 1))]
+    pub name: At<String>,
+    /// The body on whose outline the edges lie.
+    pub body: Option<At<String>>,
+    /// The edges on this segment.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub line: Option<At<Vec<Pair>>>,
+    /// The edges inside the box with these opposite corners.
+    #[serde(rename = "box")]
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub inside: Option<At<Vec<Pair>>>,
+    /// The edges whose ends lie on this circle.
+    pub circle: Option<At<Table<RawBoundaryCircle>>>,
+    /// The edges whose outward normal is within `angle` of this direction.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub normal: Option<Pair>,
+    /// Degrees, 30 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 180))]
+    pub angle: Option<At<f64>>,
+    /// The edges of this node, element or surface set of the mesh file.
+    #[schemars(length(min = 1))]
+    pub set: Option<At<String>>,
+    /// The edges of this physical group of the mesh file, or of this elementary entity where there is no such group.
+    pub tag: Option<At<i32>>,
+}
+
+/// A circle on which edges lie.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "BoundaryCircle")]
+pub(super) struct RawBoundaryCircle {
+    /// Its centre.
+    #[schemars(with = "[f64; 2]")]
+    pub centre: Pair,
+    /// Its radius.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: At<f64>,
 }
 
 /// A boundary that is held.

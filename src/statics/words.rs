@@ -158,6 +158,21 @@ pub(super) fn free_both_ways(components: &Components, moving: &[Moving]) -> Stri
     )
 }
 
+/// The same for a motion that only contacts with a gap would hinder: those of these `names`.
+pub(super) fn free_while_open(components: &Components, moving: &[Moving], names: &[String]) -> String {
+    let all: Vec<_> =
+        moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();
+    let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+    let (contacts, stay, gaps) =
+        if names.len() == 1 { ("contact", "stays", "its gap lets") } else { ("contacts", "stay", "their gaps let") };
+    format!(
+        "While {contacts} {} {stay} open, nothing hinders this motion either way, and the loads do no work on it: {}. The stress is \
+         unique, the displacement only up to this motion, as far as {gaps} it.",
+        list(&quoted),
+        all.join(", ")
+    )
+}
+
 /// The same for a motion that is free in one direction only.
 pub(super) fn free_one_way(components: &Components, moving: &[Moving], loaded: bool) -> String {
     let all: Vec<_> =

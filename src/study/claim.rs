@@ -1,7 +1,7 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
-use crate::compare::{Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution};
+use crate::compare::{Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells};
 use crate::diagnose::{Diagnosis, Energies, diagnose};
 use crate::problem::{Problem, Scales};
 
@@ -31,7 +31,7 @@ pub fn claim(problem: &Problem, judged: &Judged, bracket: &Bracket, allow: &Allo
     let diagnosis = checks
         .iter()
         .any(|c| (!c.passed && c.value.is_some()) || c.excused)
-        .then(|| diagnose(&solution, energies(problem, judged)));
+        .then(|| explained(problem, judged, &solution, bracket));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
 }
 
@@ -51,6 +51,23 @@ pub fn claim_before_contact(
     let solution = Nonmatching::new(solution, problem);
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle() })
+}
+
+/// What explains a field best: on quadrilaterals by whichever rule its program may have used.
+fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracket: &Bracket) -> Option<Diagnosis> {
+    let energies = energies(problem, judged);
+    let own = diagnose(solution, energies);
+    let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
+    if is_explained(&own) {
+        return own;
+    }
+    let strain = judged.field.potential.strain;
+    let others = cells::rules(&judged.candidate).into_iter().filter(|points| *points != solution.points);
+    let by = |points| {
+        let other = Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(bracket));
+        diagnose(&other, energies).map(Some).filter(is_explained)
+    };
+    others.into_iter().find_map(by).unwrap_or(own)
 }
 
 /// Whether the sharpest `bracket` of a run leaves a field the name of a solution at all: its guaranteed error is below 100 %.
@@ -93,7 +110,8 @@ fn energies(problem: &Problem, judged: &Judged) -> Energies {
     let lifted =
         || lifted_within(problem, &candidate.vertex, &candidate.middle, candidate.degree.min(2)).ok().flatten();
     // What is admissible already is changed by nothing.
-    let lifted = if judged.is_admissible() { None } else { lifted() };
+    // A field on quadrilaterals is changed in no space of triangles.
+    let lifted = if judged.is_admissible() || !candidate.cells.is_empty() { None } else { lifted() };
     Energies {
         own: own.total(),
         admissible: lifted.map(|field| potential(problem, &field).total()),

@@ -53,6 +53,7 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
         vertex,
         middle,
         higher,
+        cells: Vec::new(),
         reported: solution.energy,
         reported_strain: solution.strain_energy,
         is_solution: true,

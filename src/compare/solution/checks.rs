@@ -51,8 +51,10 @@ impl Solution<'_> {
             ),
             false => String::new(),
         };
+        let rule =
+            self.points.map_or(String::new(), |n| format!(", integrated with {n} × {n} points in each quadrilateral"));
         let what = format!(
-            "The stresses of a discrete solution balance the loads on every basis function of degree {}, together with forces of \
+            "The stresses of a discrete solution balance the loads on every basis function of degree {}{rule}, together with forces of \
              supports and along contacts: what is left of the nodal forces, relative to all of them.{places}{digits}",
             self.candidate.degree
         );

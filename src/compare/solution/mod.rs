@@ -16,6 +16,7 @@ pub use sites::{Site, Sites, Span};
 
 use super::balance::Balance;
 use super::candidate::Candidate;
+use super::cells;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::problem::{Problem, ROUND_OFF};
@@ -66,6 +67,8 @@ pub struct Solution<'a> {
     pub candidate: &'a Candidate,
     /// Nodal forces: what stresses ask for, less the loads.
     pub forces: NodalForces,
+    /// Points in each direction of the rule on quadrilaterals, where there are such.
+    pub points: Option<usize>,
     /// What supports and contacts cannot take of them, node by node.
     pub rest: Vec<[f64; 2]>,
     /// What supports hold at vertices, then at edge midpoints.
@@ -102,17 +105,34 @@ impl<'a> Solution<'a> {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
-        let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
+        let made = |points| Self::by_rule(problem, candidate, strain, points);
+        let tried = cells::rules(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
+        let best = tried.into_iter().min_by(|a, b| a.residual().total_cmp(&b.residual()));
+        best.map_or_else(|| made(None), Ok)
+    }
+
+    /// The same by one of the rules that the program may have used on quadrilaterals.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other.
+    pub fn by_rule(
+        problem: &'a Problem,
+        candidate: &'a Candidate,
+        strain: f64,
+        points: Option<usize>,
+    ) -> Result<Self, NoUpperBound> {
         let holds = holds(problem)?;
         let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
         let nodes = Nodes::new(problem.mesh.points.len(), inside);
         let sites = Sites::new(problem, candidate.degree, &holds);
+        let forces = NodalForces::by_rule(problem, candidate, points);
+        let strain = if points.is_some() { 0.5 * forces.energy(candidate) } else { strain };
         let mut rest = forces.unsupported(&holds, &nodes);
         let pressing = sites.pressing(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);
         let excess = sites.list.iter().map(|site| site.excess(value)).collect();
-        let balance = Balance::new(problem, candidate, strain)?;
+        let balance = Balance::of_forces(problem, candidate, strain, &forces)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
         Ok(Solution {
@@ -132,6 +152,7 @@ impl<'a> Solution<'a> {
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
             rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
             sites,
+            points,
             forces,
         })
     }

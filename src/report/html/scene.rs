@@ -90,6 +90,8 @@ fn counts(report: &Report, problem: &Problem) -> Markup {
             ", " (grouped(dual.unknowns)) " unknowns in stresses of degree " (dual.degree_min)
             @if dual.degree_max > dual.degree_min { " to " (dual.degree_max) }
         }
-        @for primal in &report.primal { ", " (grouped(primal.unknowns)) " in " (clean(&primal.name)) }
+        @for primal in &report.primal { @if let Some(unknowns) = primal.unknowns {
+            ", " (grouped(unknowns)) " in " (clean(&primal.name))
+        } }
     }
 }

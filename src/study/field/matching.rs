@@ -7,9 +7,14 @@
 //! Contacts put vertices of one side and kinks of the gap into the edges of a mesh, and cut the triangles there. A triangle that is
 //! not in the file is then a part of one that is, whose polynomial it has.
 
-use super::places::{Place, Places, barycentric, places, round_off, tolerance};
+use super::cells::{Quadrilaterals, polynomials, quadrilaterals};
+use super::curved::Curved;
+use super::places::{AT_CORNER, Place, Places, barycentric, places, round_off, turned};
 use super::{FieldError, ForeignField};
+use crate::bounds::Cell;
 use crate::compare::Numbering;
+use crate::compare::solution::place;
+use crate::element::{PlainDisplacement, Quadrilateral};
 use crate::mesh::error::at;
 use crate::problem::Problem;
 use crate::scene::Scene;
@@ -17,9 +22,6 @@ use crate::vector::distance;
 
 /// Difference between two values of one point, in parts of the largest displacement, that counts as round-off.
 const JUMP: f64 = 1e-6;
-/// A barycentric coordinate this close to one is at the corner.
-const AT_CORNER: f64 = 1e-6;
-
 /// Values on the vertices and edges of a mesh.
 pub(super) struct Matched {
     pub degree: usize,
@@ -31,21 +33,33 @@ pub(super) struct Matched {
     pub inserted: usize,
     /// How far a point of the file is from its vertex at most, where that is more than round-off.
     pub off: Option<f64>,
+    /// Mid-nodes and centres that are not where straight sides have them.
+    pub curved: Option<Curved>,
+    /// The quadrilaterals.
+    pub cells: Vec<Cell>,
+    /// What stands for the field on triangles, where there are quadrilaterals.
+    pub higher: Option<PlainDisplacement>,
 }
 
 /// Brings `field` onto the mesh of `problem`.
 pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, FieldError> {
     let moved = field.about(problem.scene.origin);
     let field = moved.as_ref().unwrap_or(field);
-    let Places { triangles, uncut } = places(field, problem)?;
-    let mesh = &problem.mesh;
-    let number = |place: &Place| match place {
-        Place::Same(number, _) | Place::Part { number, .. } => Some(*number),
+    // Whoever made the mesh of the scene may have cut quadrilaterals along their other diagonals.
+    let found = places(field, problem).map(|places| (places, None));
+    let other = |fault: FieldError| {
+        let turned = turned(field, problem).ok_or_else(|| fault.clone())?;
+        let places = places(&turned, problem).map_err(|_| fault)?;
+        Ok((places, Some(turned)))
     };
-    let quadratic = triangles.iter().filter_map(number).any(|number| field.triangles[number].len() == 6);
+    let (Places { triangles, uncut }, turned) = found.or_else(other)?;
+    let field = turned.as_ref().unwrap_or(field);
+    let mesh = &problem.mesh;
+    let cell = |place: &Place| field.triangles[place.number()].cell;
+    let quadratic = triangles.iter().any(|place| field.cells[cell(place)].len() > 4);
     let numbering = Numbering {
         nodes: vec![None; mesh.points.len() + mesh.edges.len()],
-        triangles: triangles.iter().map(number).collect(),
+        triangles: triangles.iter().map(|place| Some(cell(place))).collect(),
         files: field.files.clone(),
         uncut,
     };
@@ -57,23 +71,53 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         middle: vec![None; mesh.edges.len()],
         numbering,
         off: None,
+        curved: Curved::default(),
     };
+    let cells = quadrilaterals(field, problem, &triangles, |node| carried.value(node))?;
+    carried.curved = cells.curved;
+    let whole = |t: usize| cells.of[t].is_none();
     for (t, place) in triangles.iter().enumerate() {
-        if let Place::Same(number, order) = place {
-            carried.whole(t, *number, order)?;
+        match place {
+            Place::Same(number, order) if whole(t) => carried.whole(t, *number, order)?,
+            _ => {}
         }
     }
     for (t, place) in triangles.iter().enumerate() {
-        if let Place::Part { number, corners, vertices } = place {
-            carried.part(t, *number, corners, vertices.as_ref())?;
+        match place {
+            Place::Part { number, corners, vertices } if whole(t) => {
+                carried.part(t, *number, corners, vertices.as_ref())?;
+            }
+            _ => {}
         }
     }
-    let Carried { vertex, middle, numbering, off, .. } = carried;
+    for (t, place) in triangles.iter().enumerate() {
+        if let Some(own) = cells.of[t] {
+            carried.in_quadrilateral(t, place, &cells.list[own].field)?;
+        }
+    }
+    carried.number_inside(&cells);
+    let Carried { vertex, middle, numbering, off, curved, .. } = carried;
     let inserted = numbering.nodes[..mesh.points.len()].iter().filter(|n| n.is_none()).count();
     // Every triangle has a place, and every vertex and edge a triangle.
-    let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect();
+    let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect::<Vec<_>>();
+    let (vertex, mut middle) = (all(vertex), all(middle));
+    let value = |t: usize, point: [f64; 2]| match cells.of[t] {
+        Some(own) => cells.list[own].field.value(cells.list[own].field.place(point)),
+        None => {
+            let [a, b, c] = mesh.triangle_edges[t].map(|e| middle[e]);
+            let corners = mesh.triangles[t].map(|v| vertex[v]);
+            interpolated(&[&corners[..], &[c, a, b]].concat(), barycentric(&mesh.corners(t), point))
+        }
+    };
+    let higher = polynomials(problem, &cells.list, quadratic, &vertex, value);
+    for cell in &cells.list {
+        if let (9, Some(centre)) = (cell.field.nodes(), cell.nodes.get(8)) {
+            middle[centre - mesh.points.len()] = cell.field.values()[8];
+        }
+    }
     let degree = if quadratic { 2 } else { 1 };
-    Ok(Matched { degree, vertex: all(vertex), middle: all(middle), numbering, inserted, off })
+    let curved = Some(curved).filter(|curved| curved.off > 0.0);
+    Ok(Matched { degree, vertex, middle, numbering, inserted, off, curved, cells: cells.list, higher })
 }
 
 /// What has been found so far.
@@ -86,9 +130,52 @@ struct Carried<'a> {
     middle: Vec<Option<[f64; 2]>>,
     numbering: Numbering,
     off: Option<f64>,
+    curved: Curved,
 }
 
 impl Carried<'_> {
+    /// Triangle `t` of the mesh is, or is a part of, a quadrilateral with this field.
+    fn in_quadrilateral(&mut self, t: usize, place: &Place, own: &Quadrilateral) -> Result<(), FieldError> {
+        let (field, mesh) = (self.field, &self.problem.mesh);
+        let known = place.known(field, self.problem, t);
+        let corners = mesh.corners(t);
+        let before = |v: usize| self.problem.uncut.as_ref().and_then(|uncut| uncut.mesh.points.get(v).copied());
+        for i in 0..3 {
+            let v = mesh.triangles[t][i];
+            match known.iter().find(|(_, vertex)| *vertex == v) {
+                Some(&(node, _)) => {
+                    self.put_vertex(v, self.value(node)?)?;
+                    self.numbering.nodes[v].get_or_insert(node);
+                    let away = distance(field.points[node], before(v).unwrap_or(corners[i]));
+                    if away > round_off(field, &corners) && self.off.is_none_or(|most| most < away) {
+                        self.off = Some(away);
+                    }
+                }
+                None => self.put_vertex(v, own.value(own.place(corners[i])))?,
+            }
+            let halfway = mean(corners[(i + 1) % 3], corners[(i + 2) % 3]);
+            self.put_middle(mesh.triangle_edges[t][i], own.value(own.place(halfway)))?;
+        }
+        Ok(())
+    }
+
+    /// Numbers the nodes of quadrilaterals that are no vertices.
+    fn number_inside(&mut self, cells: &Quadrilaterals) {
+        for (cell, number) in cells.list.iter().zip(&cells.numbers) {
+            let nodes = &self.field.cells[*number];
+            for &node in cell.nodes.iter().skip(4) {
+                let [x, y] = place(self.problem, node);
+                let near = |n: &&usize| distance(self.field.points[**n], [x, y]);
+                // A node between two corners is nearest to its own side, and the centre is the last.
+                let own = match cell.nodes.get(8) {
+                    Some(centre) if *centre == node => nodes.last(),
+                    _ => nodes[4..].iter().take(4).min_by(|a, b| near(a).total_cmp(&near(b))),
+                };
+                self.numbering.nodes[node] = self.numbering.nodes[node].or(own.copied());
+            }
+        }
+    }
+
     /// Triangle `t` of the mesh is triangle `number` of the file.
     fn whole(&mut self, t: usize, number: usize, order: &[usize; 3]) -> Result<(), FieldError> {
         let (field, problem) = (self.field, self.problem);
@@ -96,7 +183,7 @@ impl Carried<'_> {
         // Contact has not moved these.
         let points = problem.uncut.as_ref().map_or(&mesh.points, |uncut| &uncut.mesh.points);
         let place = |v: usize| points.get(v).copied().unwrap_or(mesh.points[v]);
-        let (nodes, corners) = (&field.triangles[number], mesh.triangles[t].map(place));
+        let (nodes, corners) = (&field.triangles[number].nodes, mesh.triangles[t].map(place));
         for i in 0..3 {
             let (v, node) = (mesh.triangles[t][i], nodes[order[i]]);
             self.put_vertex(v, self.value(node)?)?;
@@ -109,11 +196,8 @@ impl Carried<'_> {
             let edge = mesh.triangle_edges[t][i];
             let between = match nodes.get(middle_node(order[j], order[k])) {
                 Some(&node) => {
-                    if distance(field.points[node], mean(corners[j], corners[k])) > tolerance(field, &corners) {
-                        let place = at(&problem.scene, field.points[node]);
-                        let what = format!("triangle {} is curved: its mid-node {place} is not halfway", number + 1);
-                        return Err(field.fault(what, "write the field on straight triangles"));
-                    }
+                    let straight = mean(corners[j], corners[k]);
+                    self.curved.note(field, field.points[node], straight, distance(corners[j], corners[k]))?;
                     self.numbering.nodes[mesh.points.len() + edge].get_or_insert(node);
                     self.value(node)?
                 }
@@ -132,7 +216,7 @@ impl Carried<'_> {
         corners: &[[f64; 2]; 3],
         vertices: Option<&[usize; 3]>,
     ) -> Result<(), FieldError> {
-        let (nodes, mesh) = (&self.field.triangles[number], &self.problem.mesh);
+        let (nodes, mesh) = (&self.field.triangles[number].nodes, &self.problem.mesh);
         let values: Vec<[f64; 2]> = nodes.iter().map(|node| self.value(*node)).collect::<Result<_, _>>()?;
         let own = mesh.corners(t);
         let within = |p: [f64; 2]| interpolated(&values, barycentric(corners, p));
@@ -185,7 +269,7 @@ fn jump(field: &ForeignField, scene: &Scene, point: [f64; 2]) -> FieldError {
     field.fault(what, "only a continuous field has an energy: write it in a continuous space")
 }
 
-fn mean(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn mean(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }
 

@@ -19,6 +19,8 @@ const ROUNDED: f64 = 1e-5;
 const DISTORTED: f64 = 0.02;
 /// Barycentric coordinates this far below zero are inside.
 const INSIDE: f64 = 1e-6;
+/// A barycentric coordinate this close to one is at the corner.
+pub(super) const AT_CORNER: f64 = 1e-6;
 /// Part of a triangle that its parts may leave open or fill twice, by rounding.
 const UNFILLED: f64 = 1e-3;
 /// Pairs of triangles that are tried when parents are looked for.
@@ -40,6 +42,29 @@ pub(super) enum Place {
         /// The vertices of the mesh that they are, where the mesh knows.
         vertices: Option<[usize; 3]>,
     },
+}
+
+impl Place {
+    /// The number of the triangle of the file.
+    pub fn number(&self) -> usize {
+        match self {
+            Place::Same(number, _) | Place::Part { number, .. } => *number,
+        }
+    }
+
+    /// Corners of the triangle of the file that are vertices of the mesh, as far as triangle `t` of the mesh says: (node, vertex).
+    pub fn known(&self, field: &ForeignField, problem: &Problem, t: usize) -> Vec<(usize, usize)> {
+        let (mesh, nodes) = (&problem.mesh, &field.triangles[self.number()].nodes);
+        let own = mesh.triangles[t];
+        match self {
+            Place::Same(_, order) => (0..3).map(|i| (nodes[order[i]], own[i])).collect(),
+            Place::Part { vertices: Some(vertices), .. } => (0..3).map(|i| (nodes[i], vertices[i])).collect(),
+            Place::Part { corners, .. } => {
+                let at = |v: usize| barycentric(corners, mesh.points[v]).iter().position(|l| *l > 1.0 - AT_CORNER);
+                own.iter().filter_map(|v| Some((nodes[at(*v)?], *v))).collect()
+            }
+        }
+    }
 }
 
 /// Where all triangles of a mesh are in a file.
@@ -144,8 +169,9 @@ fn partners(
             continue;
         };
         if let Some((other, _)) = found[t] {
-            let what = format!("{} is there twice, as triangle {} too", describe(scene, number, corners), other + 1);
-            return Err(field.fault(what, "write every triangle once"));
+            let first = field.triangles[other].cell + 1;
+            let what = format!("{} is there twice, as cell {first} too", describe(field, scene, number));
+            return Err(field.fault(what, "write every cell once"));
         }
         found[t] = Some((number, permutation));
     }
@@ -161,7 +187,7 @@ enum Lost {
 fn lost(field: &ForeignField, mesh: &Triangulation, scene: &Scene, gone: Lost) -> FieldError {
     let what = match gone {
         Lost::Field(number) => {
-            format!("{} is not in the mesh of the scene", describe(scene, number, corners(field, number)))
+            format!("{} is not in the mesh of the scene", describe(field, scene, number))
         }
         Lost::Mesh(t) => {
             let corners = mesh.corners(t).map(|p| at(scene, p)).join(", ");
@@ -224,12 +250,21 @@ fn same_corners(wanted: &[[f64; 2]; 3], found: &[[f64; 2]; 3], close: f64) -> Op
 
 /// Within what distance points of a triangle are one: that of a writer that rounds coordinates to few digits.
 pub(super) fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
-    round_off(field, corners).max((ROUNDED * field.far).min(DISTORTED * longest(corners)))
+    tolerance_of(field, longest(corners))
+}
+
+/// The same for cells with edges of this length.
+pub(super) fn tolerance_of(field: &ForeignField, length: f64) -> f64 {
+    round_off_of(field, length).max((ROUNDED * field.far).min(DISTORTED * length))
 }
 
 /// Within what distance they are one but for round-off, in single precision where the file is.
 pub(super) fn round_off(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
-    CLOSE * longest(corners) + if field.single { f64::from(f32::EPSILON) * field.far } else { 0.0 }
+    round_off_of(field, longest(corners))
+}
+
+fn round_off_of(field: &ForeignField, length: f64) -> f64 {
+    CLOSE * length + if field.single { f64::from(f32::EPSILON) * field.far } else { 0.0 }
 }
 
 fn longest(corners: &[[f64; 2]; 3]) -> f64 {
@@ -240,11 +275,34 @@ fn centroid(corners: &[[f64; 2]; 3]) -> [f64; 2] {
     [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0)
 }
 
-fn describe(scene: &Scene, number: usize, corners: [[f64; 2]; 3]) -> String {
-    format!("triangle {} with the corners {}", number + 1, corners.map(|p| at(scene, p)).join(", "))
+/// A cell by its number and corners.
+fn describe(field: &ForeignField, scene: &Scene, number: usize) -> String {
+    let cell = field.triangles[number].cell;
+    let nodes = &field.cells[cell];
+    let (kind, count) = if [3, 6].contains(&nodes.len()) { ("triangle", 3) } else { ("quadrilateral", 4) };
+    let corners: Vec<String> = nodes[..count].iter().map(|n| at(scene, field.points[*n])).collect();
+    format!("{kind} {} with the corners {}", cell + 1, corners.join(", "))
+}
+
+/// The field with those of its quadrilaterals cut along the other diagonal whose triangles are not in the mesh of `problem`; `None`
+/// where there are none.
+pub(super) fn turned(field: &ForeignField, problem: &Problem) -> Option<ForeignField> {
+    let mesh = problem.uncut.as_deref().map_or(&problem.mesh, |uncut| &uncut.mesh);
+    let (_, strays) = partners(field, mesh, &problem.scene, tolerance).ok()?;
+    let mut turned = field.clone();
+    for pair in strays.windows(2).filter(|pair| field.triangles[pair[0]].cell == field.triangles[pair[1]].cell) {
+        let [a, b, c, d] = *field.cells[field.triangles[pair[0]].cell].get(..4)? else { return None };
+        let first = &field.triangles[pair[0]].nodes;
+        let other =
+            if first.contains(&a) && first.contains(&c) { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] };
+        for (number, nodes) in pair.iter().zip(other) {
+            turned.triangles[*number].nodes = nodes.to_vec();
+        }
+    }
+    (turned != *field).then_some(turned)
 }
 
 /// The corners of a triangle of a field.
 fn corners(field: &ForeignField, number: usize) -> [[f64; 2]; 3] {
-    [0, 1, 2].map(|i| field.points[field.triangles[number][i]])
+    [0, 1, 2].map(|i| field.points[field.triangles[number].nodes[i]])
 }
