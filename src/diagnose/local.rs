@@ -186,6 +186,10 @@ impl<'a> Places<'a> {
         let problem = self.space.problem();
         let numbering = self.space.solution.candidate.numbering.as_ref();
         let corners = problem.mesh.triangles[t].map(|v| self.space.solution.named(v)).join(", ");
+        if let Some(cell) = self.space.cell(t) {
+            let corners = cell.nodes.iter().take(4).map(|v| self.space.solution.named(*v)).collect::<Vec<_>>();
+            return format!("the quadrilateral with the corners {}", corners.join(", "));
+        }
         match numbering.and_then(|n| n.triangle(t)) {
             Some(triangle) => format!("{triangle} (corners: {corners})"),
             None => format!("the triangle with the corners {corners}"),

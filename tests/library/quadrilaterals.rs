@@ -94,6 +94,27 @@ fn energies_by_few_and_many_points_differ_by_no_more_than_the_proven_error() {
     assert!(bounded > tried / 2, "{bounded} of {tried}");
 }
 
+/// With a corner of nearly 180 degrees, a side of nearly no length, and values that overflow.
+#[test]
+fn quadrilaterals_that_are_nearly_none_cost_no_more_than_others() {
+    let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
+    let values = [[0.1, 0.2], [-0.3, 0.5], [0.4, 0.1], [0.0, -0.2]];
+    for small in [1e-2, 1e-5, 1e-8] {
+        for corners in [
+            [[0.0, 0.0], [1.0, 0.0], [0.5 + small, 0.5 + small], [0.0, 1.0]],
+            [[0.0, 0.0], [small, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            [[0.0, 0.0], [1.0, 0.0], [1.0, small], [0.0, small]],
+        ] {
+            let cell = Quadrilateral::new(corners, &values).expect("convex");
+            let found = strain_energy(&cell, &material);
+            assert!(found.error <= 1e-12 * found.sensitivity, "{found:?} of {corners:?}");
+        }
+    }
+    let huge =
+        Quadrilateral::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.1, 1.0]], &values.map(|u| u.map(|x| 1e300 * x)));
+    assert!(!strain_energy(&huge.expect("convex"), &material).value.is_finite());
+}
+
 #[test]
 fn energies_are_those_of_other_quadrature() {
     let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);

@@ -1,4 +1,4 @@
-//! `certify` on fields of scikit-fem on quadrilaterals and six-node triangles, distorted at random: right ones, also on contact, and
+//! `certify` on fields of scikit-fem and CalculiX on quadrilaterals and six-node triangles, distorted at random: right ones, also on contact, and
 //! with one mistake each.
 
 use std::path::{Path, PathBuf};
@@ -25,6 +25,8 @@ const FIELDS: [Fields; 4] = [
             ("foot:bbar", Some(("integration/b-bar", None))),
             ("foot:incompatible", Some(("integration/incompatible", None))),
             ("foot:hourglass", Some(("integration/hourglass", Some(0.2)))),
+            ("clamped:CPE4", None),
+            ("clamped:CPE4R", Some(("integration/hourglass", None))),
         ],
     ),
     (
@@ -38,6 +40,8 @@ const FIELDS: [Fields; 4] = [
             ("foot:reduced", Some(("integration/reduced", None))),
             ("foot:axes", Some(("displacement/axes", None))),
             ("foot:young", Some(("loads", Some(1.0 / 1.05)))),
+            ("clamped:CPE8", None),
+            ("clamped:CPE8R", Some(("integration/reduced", None))),
         ],
     ),
     (
@@ -62,6 +66,7 @@ const FIELDS: [Fields; 4] = [
             ("foot:value", Some(("value", None))),
             ("foot:load", Some(("load/top", Some(1.1)))),
             ("foot:axes", Some(("displacement/axes", None))),
+            ("clamped:CPE6", None),
         ],
     ),
 ];
@@ -118,7 +123,9 @@ fn solutions_on_quadrilaterals_pass_and_every_mistake_is_named() {
         for (cells, fields) in FIELDS {
             scope.spawn(move || {
                 let folder = tempfile::tempdir().expect("a folder");
-                let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
+                let has_calculix = Command::new("ccx").arg("-v").output().is_ok();
+                let fields = fields.iter().filter(|(name, _)| has_calculix || !name.contains(":CP"));
+                let names: Vec<&str> = fields.clone().map(|(name, _)| *name).collect();
                 if made(folder.path(), cells, 7, &names).is_none() {
                     return;
                 }

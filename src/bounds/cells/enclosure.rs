@@ -7,15 +7,15 @@
 //!
 //! where |f| ≤ M on the Bernstein ellipse of parameter ρ and its inside (from |a_k| ≤ 2Mρ^(−k) for the Chebyshev coefficients, of
 //! which those from 2n on count), along ξ and along η. On the ellipse |T_k| ≤ (ρ^k + ρ^(−k))/2 bounds N, and |d| is least at
-//! an end of the larger axis. Where d is nearly zero at a corner, the square is cut into four.
+//! an end of the larger axis. Where d is nearly zero at a corner or along a side, the square is cut in two across the direction that errs most.
 
 use crate::element::quadrature::segment_rule;
 use crate::element::{Compliance, Quadrilateral};
 
-/// Numbers of points that are tried, and cuts into four of the square.
+/// Numbers of points that are tried, and how often a part of the square is cut in two.
 const FEWEST: usize = 3;
 const MOST: usize = 16;
-const CUTS: usize = 12;
+const CUTS: usize = 80;
 /// Part of the energy at which its error is small enough.
 const ENOUGH: f64 = 1e-15;
 /// Ellipses that are tried for each rule, up to a parameter beyond which nothing is gained.
@@ -47,20 +47,27 @@ impl Enclosed {
 #[derive(Clone, Copy)]
 struct Part {
     centre: [f64; 2],
-    half: f64,
+    half: [f64; 2],
 }
 
-const WHOLE: Part = Part { centre: [0.0; 2], half: 1.0 };
+const WHOLE: Part = Part { centre: [0.0; 2], half: [1.0; 2] };
 
 impl Part {
     fn at(&self, s: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|c| self.centre[c] + self.half * s[c])
+        [0, 1].map(|c| self.centre[c] + self.half[c] * s[c])
     }
 
-    fn quarters(&self) -> [Part; 4] {
-        let half = 0.5 * self.half;
-        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|s| Part { centre: [0, 1].map(|c| self.centre[c] + half * s[c]), half })
+    fn halves(&self, direction: usize) -> [Part; 2] {
+        [-1.0, 1.0].map(|side| {
+            let mut part = *self;
+            part.half[direction] *= 0.5;
+            part.centre[direction] += side * part.half[direction];
+            part
+        })
+    }
+
+    fn area(&self) -> f64 {
+        self.half[0] * self.half[1]
     }
 }
 
@@ -80,16 +87,14 @@ fn part_energy(cell: &Quadrilateral, material: &Compliance, part: Part, cuts: us
     let rough = by_rule(cell, material, part, FEWEST);
     let enough = ENOUGH * rough.sensitivity;
     let points = (FEWEST..=MOST).find(|points| bound.error(*points) <= enough);
-    match points {
-        None if cuts > 0 => {
-            let quarters = part.quarters().map(|quarter| part_energy(cell, material, quarter, cuts - 1));
-            quarters.into_iter().fold(Enclosed::default(), Enclosed::and)
-        }
-        _ => {
-            let points = points.unwrap_or(MOST);
-            Enclosed { error: bound.error(points), ..by_rule(cell, material, part, points) }
-        }
+    // Where numbers overflow no rule helps.
+    if points.is_none() && cuts > 0 && enough.is_finite() {
+        let worse = bound.worse();
+        let [one, other] = part.halves(worse).map(|half| part_energy(cell, material, half, cuts - 1));
+        return one.and(other);
     }
+    let points = points.unwrap_or(MOST);
+    Enclosed { error: bound.error(points), ..by_rule(cell, material, part, points) }
 }
 
 fn by_rule(cell: &Quadrilateral, material: &Compliance, part: Part, points: usize) -> Enclosed {
@@ -98,7 +103,7 @@ fn by_rule(cell: &Quadrilateral, material: &Compliance, part: Part, points: usiz
     for (s, v) in rule {
         for (t, w) in rule {
             let at = cell.at(part.at([2.0 * s - 1.0, 2.0 * t - 1.0]));
-            let weight = 4.0 * part.half * part.half * v * w / at.determinant;
+            let weight = 4.0 * part.area() * v * w / at.determinant;
             let stress = material.stress(at.strain);
             sum.value += 0.5 * weight * material.strain_product(at.strain, at.strain);
             sum.sensitivity += weight * stress.iter().map(|s| s.abs()).sum::<f64>() * at.spread;
@@ -131,14 +136,22 @@ impl Bound {
         });
         let [d0, d1, d2] = cell.determinant();
         let [x, y] = part.centre;
-        let determinant = [d0 + d1 * x + d2 * y, d1 * part.half, d2 * part.half];
-        Bound { moduli, strain, determinant, area: part.half * part.half }
+        let determinant = [d0 + d1 * x + d2 * y, d1 * part.half[0], d2 * part.half[1]];
+        Bound { moduli, strain, determinant, area: part.area() }
     }
 
     /// By how much a rule with so many points in each direction can be off.
     fn error(&self, points: usize) -> f64 {
         // Of the other direction the rule has weights that add up to two, and so has the integral.
         2.0 * self.area * (self.along(0, points) + self.along(1, points))
+    }
+
+    /// The direction along which the rule errs most; where neither is bounded, the one along which the determinant changes most.
+    fn worse(&self) -> usize {
+        let errors = [0, 1].map(|direction| self.along(direction, MOST));
+        let changes = [self.determinant[1].abs(), self.determinant[2].abs()];
+        let [one, other] = if errors.iter().all(|e| e.is_infinite()) { changes } else { errors };
+        usize::from(other > one)
     }
 
     /// The least bound along one direction, over ellipses.

@@ -2,13 +2,15 @@
 
 CELLS is Q4, Q8, Q9 or T6. The body is [0, 2] x [0, 1] on a mesh distorted at random by SEED (0: of rectangles); plane strain,
 E = 1, nu = 0.3, a weight and a traction on its top. NAME is `clamped` (at x = 0 and there alone) or `foot` (rollers at x = 0, a rigid
-obstacle below it), or after a colon one of the mistakes of `MISTAKES`. The mesh is mesh.msh. Prints as JSON the energy
+obstacle below it), or after a colon one of the mistakes of `MISTAKES`, or for `clamped` an element of CalculiX. The mesh is mesh.msh. Prints as JSON the energy
 of each field by a rule of high order; `SCENE:finer` writes nothing and has the energy of a solution on a finer mesh.
 """
 
 import json
 import pathlib
+import subprocess
 import sys
+import tempfile
 
 import meshio
 import numpy as np
@@ -186,7 +188,8 @@ class Body:
         k, f = self.form.assemble(fine), self.loads[0].assemble(fine) + self.loads[1].assemble(self.above)
         return 0.5 * u @ (k @ u) - f @ u
 
-    def write(self, file, u):
+    def nodes(self):
+        """Points, cells, and the numbers of their two displacements."""
         b, grid = self.basis, self.grid
         dofs, points, cells = [b.nodal_dofs], [grid.p], [grid.t]
         count = grid.p.shape[1]
@@ -199,12 +202,40 @@ class Body:
             dofs.append(b.interior_dofs)
             points.append(grid.p[:, grid.t].mean(axis=1))
             cells.append(np.arange(grid.t.shape[1])[None, :] + count)
-        values = u[np.concatenate(dofs, axis=1)].T
+        return np.concatenate(points, axis=1).T, np.concatenate(cells).T, np.concatenate(dofs, axis=1)
+
+    def calculix(self, kind):
+        """The displacements of CalculiX, clamped at x = 0, under the nodal forces of this model."""
+        points, cells, dofs = self.nodes()
+        corners = 3 if self.cells == "T6" else 4
+        order = {4: [0, 3, 2, 1], 8: [0, 3, 2, 1, 7, 6, 5, 4], 6: [0, 2, 1, 5, 4, 3]}[cells.shape[1]]
+        rows = ["*NODE, NSET=ALL", *(f"{i + 1}, {x:.13e}, {y:.13e}, 0" for i, (x, y) in enumerate(points))]
+        rows.append(f"*ELEMENT, TYPE={kind}, ELSET=ALL")
+        for i, cell in enumerate(cells):
+            x, y = points[cell[:corners]].T
+            counter_clockwise = x @ np.roll(y, -1) > y @ np.roll(x, -1)
+            rows.append(", ".join(str(n) for n in [i + 1, *((cell if counter_clockwise else cell[order]) + 1)]))
+        rows += ["*MATERIAL, NAME=M", "*ELASTIC", f"{YOUNG}, {POISSON}", "*SOLID SECTION, ELSET=ALL, MATERIAL=M", "1.0"]
+        rows += ["*BOUNDARY", *(f"{i + 1}, 1, 2" for i, (x, _) in enumerate(points) if x < 1e-9), "*STEP", "*STATIC", "*CLOAD"]
+        rows += [f"{i + 1}, {c + 1}, {self.f[dofs[c, i]]:.13e}" for i in range(len(points)) for c in range(2)]
+        rows += ["*NODE PRINT, NSET=ALL", "U", "*END STEP", ""]
+        u = np.zeros(self.basis.N)
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "job.inp").write_text("\n".join(rows), encoding="utf-8")
+            subprocess.run(["ccx", "job"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            for line in pathlib.Path(folder, "job.dat").read_text(encoding="utf-8").splitlines():
+                words = line.split()
+                if len(words) == 4 and words[0].isdigit():
+                    u[dofs[:, int(words[0]) - 1]] = [float(word) for word in words[1:3]]
+        return u
+
+    def write(self, file, u):
+        points, cells, dofs = self.nodes()
+        values = u[dofs].T
         if self.axes:
             values = values[:, ::-1]
-        points = np.concatenate(points, axis=1).T
         flat = np.zeros((len(points), 1))
-        out = meshio.Mesh(np.hstack([points, flat]), [(SHAPES[self.cells], np.concatenate(cells).T)],
+        out = meshio.Mesh(np.hstack([points, flat]), [(SHAPES[self.cells], cells)],
                           point_data={"u": np.hstack([values, flat])})
         meshio.write(file, out)
         out.point_data = {}
@@ -223,7 +254,7 @@ def main():
             told[name] = made.energy(made.solve(scene))
             continue
         made = Body(cells, grid, **MISTAKES.get(mistake, {}))
-        u = made.solve(scene)
+        u = made.calculix(mistake) if mistake.startswith("CP") else made.solve(scene)
         made.write(str(pathlib.Path(folder, f"{name.replace(':', '_')}.vtu")), u)
         told[name] = made.energy(u)
     print(json.dumps(told))
