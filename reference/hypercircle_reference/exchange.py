@@ -69,7 +69,8 @@ class Problem:
     clamped_edges: np.ndarray
     clamped_values: np.ndarray
     roller_edges: np.ndarray
-    roller_normals: np.ndarray
+    roller_directions: np.ndarray
+    roller_values: np.ndarray
     traction_edges: np.ndarray
     traction_values: np.ndarray
     contacts: list[Contact]
@@ -115,8 +116,8 @@ def parse_problem(data: dict) -> Problem:
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
     pins = _records(data, "pins")
-    normals = _column(roller, "roller", "normal", (2,))
-    _check_unit(normals, "roller", "normal")
+    along = _column(roller, "roller", "normal", (2,))
+    _check_unit(along, "roller", "normal")
     directions = _column(pins, "pins", "direction", (2,))
     _check_unit(directions, "pins", "direction")
     return Problem(
@@ -129,9 +130,10 @@ def parse_problem(data: dict) -> Problem:
         edges=edges,
         triangle_edges=triangle_edges,
         clamped_edges=_index_column(clamped, "clamped", "edge", (), len(edges)),
-        clamped_values=_column(clamped, "clamped", "displacement", (2,)),
+        clamped_values=_column([_at_both_ends(entry) for entry in clamped], "clamped", "displacement", (2, 2)),
         roller_edges=_index_column(roller, "roller", "edge", (), len(edges)),
-        roller_normals=normals,
+        roller_directions=along,
+        roller_values=_column([{"displacement": 0.0, **entry} for entry in roller], "roller", "displacement", ()),
         traction_edges=_index_column(tractions, "tractions", "edge", (), len(edges)),
         traction_values=_column(tractions, "tractions", "values", (2, 2)),
         contacts=[
@@ -251,6 +253,13 @@ def _scalar(data, key, where) -> float:
 
 def _indices(data, key, shape, count):
     return _in_range(_as_array(_get(data, key), key, shape, "i"), key, count, 0)
+
+
+def _at_both_ends(clamped: dict) -> dict:
+    """A clamped edge with its displacement at both ends, where the file has one vector for the whole edge."""
+    value = clamped.get("displacement")
+    constant = isinstance(value, list) and not any(isinstance(entry, list) for entry in value)
+    return {**clamped, "displacement": [value, value]} if constant else clamped
 
 
 def _column(entries, where, key, shape):

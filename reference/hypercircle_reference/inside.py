@@ -12,11 +12,15 @@ from .lattice import Lattice, bernstein
 
 def inside_supports(problem: Problem, lattice: Lattice, builder: Builder, done: np.ndarray) -> None:
     clamped = lattice.inside_edges(problem.clamped_edges)
-    builder.offset[2 * clamped[..., None] + AXIS] = problem.clamped_values[:, None]
+    steps = (np.arange(1, lattice.degree) / lattice.degree)[:, None]
+    first, last = problem.clamped_values[:, None, 0], problem.clamped_values[:, None, 1]
+    builder.offset[2 * clamped[..., None] + AXIS] = first + steps * (last - first)
     done[clamped] = True
     roller = lattice.inside_edges(problem.roller_edges)
     columns = builder.new_columns(np.full(roller.size, np.inf)).reshape(roller.shape)
-    builder.add(2 * roller[..., None] + AXIS, columns[..., None], _tangent(problem.roller_normals)[:, None])
+    builder.add(2 * roller[..., None] + AXIS, columns[..., None], _tangent(problem.roller_directions)[:, None])
+    along = problem.roller_values[:, None] * problem.roller_directions
+    builder.offset[2 * roller[..., None] + AXIS] = along[:, None]
     done[roller] = True
 
 

@@ -9,7 +9,7 @@ use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 
 /// Complementary energy of a stress field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,14 +107,15 @@ fn support_work_of(problem: &Problem, stress: &StressField, counted: Counted<'_>
     let mesh = &problem.mesh;
     let mut work = Sum::default();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Clamped(u0) = condition
+        if let Some(ends) = condition.prescribed().filter(|ends| *ends != [[0.0; 2]; 2])
             && counted.boundary_edge(mesh, e)
         {
             let (length, _) = mesh.edge_frame(e);
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
             let tractions = stress.edge_traction(&problem.mesh, e, 0, degree);
-            for t in &tractions {
-                work.extend([0, 1].map(|c| length / tractions.len() as f64 * (t[c] * u0[c])));
+            let u0 = side::linear_moments(ends, length, degree);
+            for (t, u0) in tractions.iter().zip(u0) {
+                work.extend([0, 1].map(|c| t[c] * u0[c]));
             }
         }
     }

@@ -48,13 +48,22 @@ struct BodyEntry<'a> {
 #[derive(Serialize)]
 struct ClampedEntry {
     edge: usize,
-    displacement: [f64; 2],
+    displacement: Prescribed,
+}
+
+/// The same at both ends of an edge, or one value each.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Prescribed {
+    Constant([f64; 2]),
+    Linear([[f64; 2]; 2]),
 }
 
 #[derive(Serialize)]
 struct RollerEntry {
     edge: usize,
     normal: [f64; 2],
+    displacement: f64,
 }
 
 #[derive(Serialize)]
@@ -91,8 +100,14 @@ impl<'a> ProblemFile<'a> {
         let (mut clamped, mut roller, mut tractions) = (Vec::new(), Vec::new(), Vec::new());
         for (edge, condition) in problem.conditions.iter().enumerate() {
             match *condition {
-                Condition::Clamped(displacement) => clamped.push(ClampedEntry { edge, displacement }),
-                Condition::Roller => roller.push(RollerEntry { edge, normal: mesh.edge_frame(edge).1 }),
+                Condition::Clamped(ends) => {
+                    let displacement =
+                        if ends[0] == ends[1] { Prescribed::Constant(ends[0]) } else { Prescribed::Linear(ends) };
+                    clamped.push(ClampedEntry { edge, displacement });
+                }
+                Condition::Roller { direction, displacement } => {
+                    roller.push(RollerEntry { edge, normal: direction, displacement });
+                }
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
@@ -266,11 +281,11 @@ mod tests {
     #[test]
     fn conditions_become_entries_and_free_edges_none() {
         let mut problem = pressed_square();
-        problem.conditions[3] = Condition::Clamped([0.25, -0.5]);
+        problem.conditions[3] = Condition::Clamped([[0.25, -0.5]; 2]);
         let file = written(&problem, &[Pin { vertex: 2, direction: [0.0, 1.0] }]);
         assert_eq!(file["format"], "hypercircle-exchange");
         assert_eq!(file["kinematics"], "plane-stress");
-        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0]}]));
+        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0], "displacement": 0.0}]));
         assert_eq!(file["clamped"], json!([{"edge": 3, "displacement": [0.25, -0.5]}]));
         assert_eq!(file["tractions"], json!([{"edge": 4, "values": [[2.0, 0.0], [2.0, 0.0]]}]));
         assert_eq!(file["contacts"][0]["name"], "right|rigid");

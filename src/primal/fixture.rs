@@ -43,7 +43,7 @@ pub(crate) fn pressed_square() -> Problem {
         }),
         mesh,
         conditions: vec![
-            Condition::Roller,
+            Condition::Roller { direction: [0.0, -1.0], displacement: 0.0 },
             Condition::Contact { interface: 0, pair: 0, side: 0 },
             Condition::Interior,
             Condition::Traction([[0.0, 0.0]; 2]),

@@ -190,9 +190,9 @@ fn condition(mesh: &Triangulation, e: usize) -> Condition {
     } else if both(0, 0.0) {
         Condition::Traction([p, q].map(|x| [4.0 - 7.0 * x[1], 0.0]))
     } else if both(0, 2.0) {
-        Condition::Clamped([0.0, 0.0])
+        Condition::Clamped([[0.0; 2]; 2])
     } else if left && both(1, 0.0) {
-        Condition::Roller
+        Condition::Roller { direction: [0.0, -1.0], displacement: 0.0 }
     } else {
         Condition::Traction([[0.0; 2]; 2])
     }

@@ -11,7 +11,7 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
+    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
     MeshSource, Normals, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
     Traction,
 };
@@ -245,16 +245,26 @@ fn support(Support { on, kind }: &Support) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
-            format!("on = {on}, type = \"clamped\", displacement = {}", list(displacement))
+            format!("on = {on}, type = \"clamped\", displacement = {}", affine(displacement))
         }
-        SupportKind::Roller => format!("on = {on}, type = \"roller\""),
+        SupportKind::Roller { direction, displacement } => {
+            let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+            format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
+        }
+    }
+}
+
+fn affine(Affine { value, gradient }: &Affine) -> String {
+    match *gradient == [[0.0; 2]; 2] {
+        true => list(value),
+        false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
     }
 }
 
 fn traction(Traction { on, load }: &Traction) -> String {
     let on = quoted(on);
     match load {
-        Load::Affine { value, gradient } => {
+        Load::Affine(Affine { value, gradient }) => {
             format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),

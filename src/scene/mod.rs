@@ -139,11 +139,45 @@ pub struct Support {
 pub enum SupportKind {
     /// u = displacement.
     Clamped {
-        /// u0, constant along the boundary.
-        displacement: [f64; 2],
+        /// u0.
+        displacement: Affine,
     },
-    /// u_n = 0, T_t = 0.
-    Roller,
+    /// One component of u is prescribed, and there is no traction across it.
+    Roller {
+        /// Unit vector; the outward normal where it is `None`.
+        direction: Option<[f64; 2]>,
+        /// The prescribed component.
+        displacement: f64,
+    },
+}
+
+impl SupportKind {
+    /// Clamped where it is.
+    pub const CLAMPED: Self =
+        SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
+    /// Rollers along the boundary.
+    pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
+}
+
+/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Affine {
+    /// Its value at the origin.
+    pub value: [f64; 2],
+    /// Its gradient.
+    pub gradient: [[f64; 2]; 2],
+}
+
+impl Affine {
+    /// The same everywhere.
+    pub fn constant(value: [f64; 2]) -> Self {
+        Affine { value, gradient: [[0.0; 2]; 2] }
+    }
+
+    /// Its value at `point`.
+    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
+    }
 }
 
 /// A loaded boundary.
@@ -158,13 +192,8 @@ pub struct Traction {
 /// Load on Γ_τ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// P(x) = value + gradient · x (gradient\[i\]\[j\] = ∂P_i/∂x_j).
-    Affine {
-        /// P at the origin.
-        value: [f64; 2],
-        /// Constant gradient of P.
-        gradient: [[f64; 2]; 2],
-    },
+    /// P(x).
+    Affine(Affine),
     /// P = −pressure · n with the outward normal n.
     Pressure(f64),
 }

@@ -41,6 +41,7 @@ mod paper_objects;
 mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
+mod prescribed;
 mod pressure_at_ends;
 mod quantities;
 mod refinement_ends;

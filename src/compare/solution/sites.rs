@@ -174,7 +174,8 @@ impl Group {
 }
 
 fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
-    let all: Vec<&Hold> = holds.vertices.iter().chain(&holds.edges).collect();
+    let middles = (0..holds.edges.len()).map(|e| holds.middle(e));
+    let all: Vec<Hold> = holds.vertices.iter().copied().chain(middles).collect();
     let mut sets = DisjointSets::new(all.len());
     for site in list {
         if let Some(second) = site.second {
