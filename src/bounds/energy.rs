@@ -9,7 +9,7 @@ use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
     let mut gap = Sum::default();
     for (_, pair) in problem.pairs().enumerate().filter(|(p, _)| counted.pair(*p)) {
         let t = contact_traction(problem, stress, pair);
-        gap.add(pair.length * side::integral(&t, &pair.gap));
+        gap.add(pair.length * side::integral(&t, &pair.gap_polynomial()));
     }
     let t = problem.scene.thickness;
     Complementary {
@@ -96,6 +96,20 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
         magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
         sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
     }
+}
+
+/// What the pressures of `stress` do at most on the part of the gaps that lies above their polynomials, thickness included.
+pub fn work_of_excess(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> f64 {
+    let curved = problem.pairs().enumerate().filter(|(p, pair)| pair.bow.excess() > 0.0 && counted.pair(*p));
+    let work = curved.map(|(_, pair)| excess_work(pair, &contact_traction(problem, stress, pair)));
+    problem.scene.thickness * work.sum::<f64>()
+}
+
+/// ∫ |t| (g − P) ds at most, for a traction by its coefficients, per unit thickness.
+pub fn excess_work(pair: &ContactPair, t: &[f64]) -> f64 {
+    let largest: Vec<f64> = t.iter().map(|t| t.abs()).collect();
+    // Like 4 t (1 − t): the two agree at the ends.
+    pair.length * pair.bow.excess() * side::integral(&largest, &[0.0, 2.0, 0.0])
 }
 
 /// ∫_{Γu} T·u0 of a stress, per unit thickness.

@@ -155,7 +155,7 @@ impl Measured<'_> {
             }
         }
         let openings = along.along(&own, opposite.as_deref(), pair.direction.shares);
-        let gaps = side::moments(&pair.gap, t.len() - 1);
+        let gaps = pair.gap_moments(t.len() - 1);
         for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
             found.tension = found.tension.max(self.relative.of(*t, a));
             found.work += t.max(0.0) * (opening + pair.length * gap);

@@ -132,7 +132,8 @@ fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &
 
 /// ∫ g B_k of each jump.
 pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
-    jump_moments(problem, unknowns, problem.pairs().map(|pair| &pair.gap[..]))
+    let gaps: Vec<Vec<f64>> = problem.pairs().map(ContactPair::gap_polynomial).collect();
+    jump_moments(problem, unknowns, gaps.iter().map(Vec::as_slice))
 }
 
 /// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{HIGHEST_DEGREE, PrimalError, PrimalSolution};
 use crate::element::plain::inner_len;
-use crate::problem::{Condition, Pin, Problem};
+use crate::problem::{Condition, ContactPair, Pin, Problem};
 
 /// Name of the file the model reads.
 pub const PROBLEM_FILE: &str = "problem.json";
@@ -86,6 +86,8 @@ struct PairEntry {
     normal: [f64; 2],
     direction: [[f64; 2]; 2],
     gap: [f64; 2],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    gap_below: Vec<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -152,6 +154,7 @@ impl<'a> ProblemFile<'a> {
                             normal: pair.normal,
                             direction: pair.direction.ends,
                             gap: pair.gap,
+                            gap_below: gap_below(pair),
                         })
                         .collect(),
                 })
@@ -159,6 +162,13 @@ impl<'a> ProblemFile<'a> {
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),
         }
     }
+}
+
+/// Coefficients of degree 2, 3, … of polynomials that lie nowhere above a curved gap, the last of them the gap itself; none
+/// of one that is linear.
+fn gap_below(pair: &ContactPair) -> Vec<Vec<f64>> {
+    let degrees = if pair.bow.is_none() { 0 } else { usize::from(HIGHEST_DEGREE) };
+    (2..2 + degrees).map(|degree| pair.gap_below(degree)).collect()
 }
 
 /// Write `problem.json` into `folder`, which is made where it does not exist. Results of an earlier run are removed.

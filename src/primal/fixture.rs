@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// The unit square, pressure 2 on its left, a rigid wall on its right, rollers below; E = 1, ν = 0, thickness ½.
@@ -34,6 +34,7 @@ pub(crate) fn pressed_square() -> Problem {
         length: 1.0,
         arc: [0.0, 1.0],
         gap: [0.0, 0.0],
+        bow: Bow::default(),
     };
     Problem {
         scene: Scene::unchecked(Draft {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
-use super::contact::{gap_note, pair_up};
+use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::{Condition, Note, Problem, ProblemError, Refinement};
@@ -107,8 +107,6 @@ impl Problem {
         let mut interfaces = Vec::with_capacity(scene.contacts.len());
         let mut remarks = Vec::new();
         for (interface, contact) in scene.contacts.iter().enumerate() {
-            let of_the_mesh_before = gap_note(contact);
-            notes.retain(|note| !note.text.starts_with(&of_the_mesh_before));
             let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
             if let Some(coarser) = coarser.filter(|coarser| coarser.refinement == Refinement::KeepsEdges) {
                 keep_gap(&mut matched.pairs, coarser, interface);
@@ -168,7 +166,7 @@ impl Problem {
 
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
     pub fn is_cone(&self) -> bool {
-        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2]);
+        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none());
         no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 

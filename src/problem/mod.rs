@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod bow;
 mod build;
 mod contact;
 mod curves;
@@ -11,6 +12,7 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
@@ -141,8 +143,10 @@ pub struct ContactPair {
     pub length: f64,
     /// Arc length of the two ends.
     pub arc: [f64; 2],
-    /// Gap g at the two ends; linear between.
+    /// Gap g at the two ends.
     pub gap: [f64; 2],
+    /// How far it lies below its chord between them.
+    pub bow: Bow,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

@@ -87,6 +87,9 @@ fn interface_entry<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Boun
         entry.set_item("direction", pair.direction.ends)?;
         entry.set_item("length", pair.length)?;
         entry.set_item("gap", pair.gap)?;
+        if !pair.bow.is_none() {
+            entry.set_item("gap_polynomial", pair.gap_polynomial())?;
+        }
         pairs.append(entry)?;
     }
     let out = PyDict::new(py);

@@ -8,9 +8,9 @@
 
 use std::collections::BTreeSet;
 
-use super::lift::{jumps, lift};
+use super::lift::lift;
 use super::region::{Cut, cut, twice_area};
-use crate::bounds::{holds_at, work};
+use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};

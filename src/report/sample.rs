@@ -8,7 +8,7 @@ use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Note, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
 
 /// Something to make a dossier from.
@@ -216,6 +216,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         length: h,
         arc: [k as f64 * h, (k + 1) as f64 * h],
         gap: [0.0; 2],
+        bow: Bow::default(),
     }
 }
 

@@ -262,7 +262,7 @@ pub enum Gap {
     /// first in (x, y) order; all around a body anticlockwise, from its first vertex in that order. Constant beyond the
     /// first and the last entry.
     Table(Vec<[f64; 2]>),
-    /// The distance of a circle that touches at an arc length, taken at the vertices of each mesh and linear between.
+    /// The distance of a circle that touches at an arc length; from where it turns away by 45° on, that of its tangent.
     Circle(Touching),
     /// The same with a parabola.
     Parabola(Touching),
@@ -293,13 +293,30 @@ impl Gap {
                     g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
                 }
             }
-            Gap::Circle(Touching { radius, at }) => {
-                let x = (s - at).abs();
-                // Without loss of digits near the point that touches; beyond the circle there is nothing to touch.
-                if x < *radius { x * x / (radius + (radius * radius - x * x).sqrt()) } else { x }
-            }
+            Gap::Circle(circle) => circle.distance(s - circle.at),
             Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
         }
+    }
+}
+
+impl Touching {
+    /// How far from where it touches a circle is taken as round: the tangent there leaves the side at 45°.
+    pub fn round(&self) -> f64 {
+        self.radius * std::f64::consts::FRAC_1_SQRT_2
+    }
+
+    /// The distance of a circle from the side, at `x` along it from where it touches.
+    fn distance(&self, x: f64) -> f64 {
+        let Touching { radius, .. } = self;
+        let round = x.abs().min(self.round());
+        // Without loss of digits near the point that touches.
+        round * round / (radius + (radius * radius - round * round).sqrt()) + (x.abs() - round)
+    }
+
+    /// The slope of that distance.
+    pub fn slope(&self, x: f64) -> f64 {
+        let round = x.abs().min(self.round());
+        (round / ((self.radius - round) * (self.radius + round)).sqrt()).copysign(x)
     }
 }
 

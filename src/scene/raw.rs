@@ -374,7 +374,7 @@ pub(super) enum RawGap {
     Curve(RawCurve),
 }
 
-/// The distance of a curve, taken anew at the vertices of each mesh.
+/// The distance of a curve, between vertices too; a circle goes on as its tangent from 45° on.
 #[derive(Debug, Clone, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "GapCurve", extend("oneOf" = [{"required": ["circle"]}, {"required": ["parabola"]}]))]

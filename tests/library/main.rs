@@ -22,6 +22,7 @@ mod element_properties;
 mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
+mod gap_curves;
 mod inner_segments;
 mod intervals;
 mod invariance;

@@ -113,7 +113,7 @@ impl Sites {
                     first: vertices + own,
                     second: pair.edges[1].map(|e| vertices + e),
                     normal: pair.direction.at(0.5),
-                    gap: 0.5 * (pair.gap[0] + pair.gap[1]),
+                    gap: pair.gap_at(0.5),
                     weight: 4.0 * part,
                     turned,
                 });

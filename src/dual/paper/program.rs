@@ -73,10 +73,8 @@ impl Program {
         let rows = constraints.d.stack(&constraints.e);
         let mut g = auxiliary.excess.clone();
         g.extend(&auxiliary.normal_traction);
-        let gap_moments = problem
-            .pairs()
-            .flat_map(|p| [0, 1].map(|end| p.length * (2.0 * p.gap[end] + p.gap[1 - end]) / 6.0))
-            .collect();
+        let gap_moments =
+            problem.pairs().flat_map(|p| p.gap_moments(1).into_iter().map(|moment| p.length * moment)).collect();
         let scales = Scales::new(problem);
         let b = Vec::new();
         let mut program = Program { blocks, constraints, dependences, auxiliary, b, rows, g, scales, gap_moments };

@@ -1,7 +1,7 @@
 //! Scenes put together by hand.
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 use std::collections::HashMap;
 
@@ -195,7 +195,17 @@ impl Build {
                     });
                     let (edges, second) = ([Some(e), partner.map(|p| p.0)], partner.map(|p| p.1));
                     let direction = Direction::constant(normal);
-                    ContactPair { edges, first, second, normal, direction, length, arc: first.map(key), gap: [0.0; 2] }
+                    ContactPair {
+                        edges,
+                        first,
+                        second,
+                        normal,
+                        direction,
+                        length,
+                        arc: first.map(key),
+                        gap: [0.0; 2],
+                        bow: Bow::default(),
+                    }
                 })
                 .collect();
             pairs.sort_by(|p, q| p.arc[0].total_cmp(&q.arc[0]));

@@ -7,7 +7,7 @@ pub mod blocks;
 use std::collections::HashMap;
 
 use hypercircle::mesh::{Edge, Triangulation};
-use hypercircle::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use hypercircle::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// What holds on a named side.
@@ -211,6 +211,7 @@ impl Setup {
                     length,
                     arc: [arc, arc + length],
                     gap: [gap(arc), gap(arc + length)],
+                    bow: Bow::default(),
                 });
                 arc += length;
             }

@@ -10,7 +10,7 @@ use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
 use crate::element::{SideValues, StressField};
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem, Refinement};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 impl Part {
@@ -203,16 +203,17 @@ fn write_contacts(out: &mut Writer<impl Write>, interfaces: &[Interface]) -> io:
     let second = |pair: &ContactPair| [0, 1].map(|end| pair.second.map(|second| second[end]));
     out.some_indices(pairs().flat_map(|p| p.edges.into_iter().chain(p.first.map(Some)).chain(second(p))))?;
     let direction = |p: &ContactPair| p.direction.ends.into_iter().flatten().chain(p.direction.shares);
-    let numbers =
-        |p: &ContactPair| p.normal.into_iter().chain(direction(p)).chain([p.length]).chain(p.arc).chain(p.gap);
+    let numbers = |p: &ContactPair| {
+        p.normal.into_iter().chain(direction(p)).chain([p.length]).chain(p.arc).chain(p.gap).chain(p.bow.numbers())
+    };
     out.numbers(pairs().flat_map(|p| numbers(p).collect::<Vec<_>>()))
 }
 
 fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
     let counts = from.indices()?;
     let (places, numbers) = (grouped(&from.some_indices()?)?, from.vectors()?);
-    let of = |([e, f, a, b, c, d], numbers): ([Option<usize>; 6], [f64; 13])| {
-        let [x, y, m, n, o, p, own, other, length, begin, end, g, h] = numbers;
+    let of = |([e, f, a, b, c, d], numbers): ([Option<usize>; 6], [f64; 13 + Bow::NUMBERS])| {
+        let [x, y, m, n, o, p, own, other, length, begin, end, g, h, bow @ ..] = numbers;
         Some(ContactPair {
             edges: [e, f],
             first: [a?, b?],
@@ -222,6 +223,7 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
             length,
             arc: [begin, end],
             gap: [g, h],
+            bow: Bow::from_numbers(bow)?,
         })
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();
