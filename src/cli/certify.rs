@@ -172,10 +172,10 @@ fn held(
         let check = study::error_check(judged, &sharpest.bracket, &allow);
         comparison.checks.push(check);
     }
-    let answers = session.answers(sharpest, &args.solve);
+    let answers = session.sharpest_answers(run, sharpened.as_ref(), &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     let meant = if args.solution { Meant::Discrete } else { Meant::Exact };
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, meant, &allow));
+    comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, meant, &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;

@@ -101,6 +101,7 @@ impl Session {
                 diagnosis,
                 is_claimed,
                 failure,
+                advice: run.advice,
             },
             &fields,
         );
@@ -144,7 +145,7 @@ impl Session {
                 say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
-                say::line(&format!("  worth a look: {}", remark.name));
+                say::line(&format!("  worth a look: {}: {}", remark.name, told(remark)));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {
@@ -183,7 +184,8 @@ fn sharpened_note(finer: &Certified, stopped: Option<String>) -> Note {
     let triangles = finer.problem.mesh.triangles.len();
     let how = format!(
         "The bracket of the mesh as given could not tell two models apart. The stress side alone was refined to {triangles} \
-         triangles; the energy bounds are from there, contacts and stresses are compared on the mesh as given."
+         triangles; the energy bounds and the intervals of quantities are from there, contacts and stresses are compared on the \
+         mesh as given."
     );
     Note { weakens_guarantee: false, text: stopped.map_or(how.clone(), |reason| format!("{how} {reason}")) }
 }

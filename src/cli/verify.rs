@@ -154,12 +154,6 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    let answers = session.answers(certified, &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Discrete, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
-    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
-    comparison.checks.extend(against);
     let (sharpened, enough) = match comparison.judged.is_empty() {
         true => (None, None),
         false => {
@@ -167,6 +161,14 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
             (sharpened, Some(enough))
         }
     };
+    let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+    let answers = session.sharpest_answers(&run, sharpened.as_ref(), &args.solve);
+    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    let of_models = quantity_checks(certified, &sharpest.bracket, &answers, &comparison, Meant::Discrete, &allow);
+    comparison.checks.extend(of_models);
+    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
+    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
+    comparison.checks.extend(against);
     let particulars = Particulars {
         sharpened,
         enough,

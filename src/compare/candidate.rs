@@ -34,10 +34,10 @@ pub struct Candidate {
     pub is_solution: bool,
     /// Contact reactions, interface by interface.
     pub reactions: Option<Vec<Reactions>>,
-    /// Nonlinear iterations.
-    pub iterations: usize,
-    /// Unknowns.
-    pub unknowns: usize,
+    /// Nonlinear iterations, where the program tells them.
+    pub iterations: Option<usize>,
+    /// Unknowns, where the program tells them.
+    pub unknowns: Option<usize>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
     /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.

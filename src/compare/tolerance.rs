@@ -1,11 +1,12 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
 /// The tolerances this program chose, by the last part of the check name. What exceeds them is a remark.
-pub const CHOSEN: [(&str, f64, &str); 6] = [
+pub const CHOSEN: [(&str, f64, &str); 7] = [
     ("sharpness", SHARP, "a bracket wider than this could not tell two models apart"),
     ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
     ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
     ("pressure-max", 0.35, "where no reactions are given, nothing bounds a maximum"),
+    ("peak-pressure", 1.5, "times what the bracket explains of means: nothing bounds the pressure at a point"),
     ("resultant", 0.05, "where supports hold every vertex of a contact, nothing bounds the force at its ends"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
 ];
@@ -23,7 +24,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 27] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -38,6 +39,7 @@ const NAMES: [&str; 26] = [
     "primal/reactions/{field}",
     "stress/difference/{field}",
     "contact/{contact}/open-length",
+    "contact/{contact}/peak-pressure",
     "contact/{contact}/pressure-l2",
     "contact/{contact}/pressure-max",
     "contact/{contact}/reactions",

@@ -8,18 +8,10 @@ use std::collections::HashMap;
 use super::along::match_along;
 use super::boxes::{BoxTree, around};
 use super::error::at;
+use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation};
-use crate::scene::Note;
-use crate::scene::{Contact, ContactSides, Scene};
-use crate::vector::distance;
-
-/// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
-/// lies on it.
-const CLOSE: f64 = 1e-6;
-
-/// Part of the size of the mesh that counts as round-off; mesh generators compute points on curves to about 1e-12.
-const ROUND_OFF: f64 = 1e-10;
+use crate::scene::{Contact, ContactSides, Note, Scene, counted};
 
 /// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
 ///
@@ -27,82 +19,24 @@ const ROUND_OFF: f64 = 1e-10;
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
 pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
     let mut notes = Vec::new();
+    let (along, others): (Vec<usize>, Vec<usize>) =
+        (0..scene.contacts.len()).partition(|&index| scene.contacts[index].direction.is_some());
+    // What the other side gets of them is put there with its vertices.
+    for index in along {
+        mesh = insert_breaks(mesh, scene, index, &mut notes)?;
+    }
     snap(&mut mesh, scene, &mut notes);
-    for (index, contact) in scene.contacts.iter().enumerate() {
+    for contact in &scene.contacts {
         let ContactSides::Between(names) = &contact.sides else { continue };
         mesh = match contact.direction {
             None => match_vertices(mesh, scene, contact, names, &mut notes)?,
-            Some(direction) => {
-                mesh = insert_breaks(mesh, scene, index, &mut notes)?;
-                match_along(mesh, scene, contact, names, direction, &mut notes)?
-            }
+            Some(direction) => match_along(mesh, scene, contact, names, direction, &mut notes)?,
         };
     }
-    for index in (0..scene.contacts.len()).filter(|&index| scene.contacts[index].direction.is_none()) {
+    for index in others {
         mesh = insert_breaks(mesh, scene, index, &mut notes)?;
     }
     Ok((mesh, notes))
-}
-
-/// Largest extent of the mesh.
-fn extent(mesh: &Triangulation) -> f64 {
-    let [lower, upper] = around(&mesh.points, 0.0);
-    (upper[0] - lower[0]).max(upper[1] - lower[1])
-}
-
-/// The vertices of a side, each with the length of its shortest edge there.
-fn side_vertices(mesh: &Triangulation, name: &str) -> Vec<(usize, f64)> {
-    let mut shortest: HashMap<usize, f64> = HashMap::new();
-    for e in mesh.boundary(name) {
-        let length = mesh.edge_frame(e).0;
-        for v in mesh.edges[e].vertices {
-            shortest.entry(v).and_modify(|l| *l = l.min(length)).or_insert(length);
-        }
-    }
-    let mut vertices: Vec<_> = shortest.into_iter().collect();
-    vertices.sort_unstable_by_key(|v| v.0);
-    vertices
-}
-
-/// Gives vertices of facing sides that are equal up to round-off the same coordinates, those of the lowest index. All
-/// contacts at once, because a vertex may belong to several.
-fn snap(mesh: &mut Triangulation, scene: &Scene, notes: &mut Vec<Note>) {
-    let mut leader: Vec<usize> = (0..mesh.points.len()).collect();
-    let find = |leader: &[usize], mut v: usize| {
-        while leader[v] != v {
-            v = leader[v];
-        }
-        v
-    };
-    for contact in &scene.contacts {
-        let (ContactSides::Between(names), None) = (&contact.sides, contact.direction) else { continue };
-        let [first, second] = [0, 1].map(|i| side_vertices(mesh, &names[i]));
-        if second.is_empty() {
-            continue;
-        }
-        let tree = BoxTree::new(second.iter().map(|(v, _)| [mesh.points[*v]; 2]).collect());
-        for (v, length) in first {
-            for i in tree.meeting(&around(&[mesh.points[v]], CLOSE * length)) {
-                let (w, other) = second[i];
-                if distance(mesh.points[v], mesh.points[w]) <= CLOSE * length.min(other) {
-                    let (a, b) = (find(&leader, v), find(&leader, w));
-                    leader[a.max(b)] = a.min(b);
-                }
-            }
-        }
-    }
-    let mut moved = 0.0_f64;
-    for v in 0..leader.len() {
-        let target = mesh.points[find(&leader, v)];
-        moved = moved.max(distance(mesh.points[v], target));
-        mesh.points[v] = target;
-    }
-    if moved > ROUND_OFF * extent(mesh) {
-        notes.push(Note {
-            weakens_guarantee: true,
-            text: format!("contact sides coincide only up to {moved:.1e}: vertices were moved by that much to match"),
-        });
-    }
 }
 
 /// Puts the vertices of each side into the edges of the other.
@@ -123,8 +57,8 @@ fn match_vertices(
         let tree = BoxTree::new(edges.iter().map(|&e| around(&ends(e), margin(e))).collect());
         let present: Vec<_> = edges.iter().flat_map(|&e| ends(e).map(key)).collect();
         let present: std::collections::HashSet<_> = present.into_iter().collect();
-        for (v, _) in side_vertices(&mesh, &names[from]) {
-            let p = mesh.points[v];
+        for v in side_vertices(&mesh, &names[from]) {
+            let p = mesh.points[v.vertex];
             if present.contains(&key(p)) {
                 continue;
             }
@@ -156,7 +90,9 @@ fn match_vertices(
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
-        .map(|(from, into)| format!("{} vertices of '{}' inserted into '{}'", counts[from], names[from], names[into]))
+        .map(|(from, into)| {
+            format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
+        })
         .collect();
     notes.push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
     if moved > ROUND_OFF * size {
@@ -205,17 +141,9 @@ fn insert_breaks(
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {
         if count > 0 {
-            let text = format!("contact {}: {count} vertices inserted where {place}", contact.name());
+            let text = format!("contact {}: {} inserted where {place}", contact.name(), counted(count, "vertex"));
             notes.push(Note { weakens_guarantee: false, text });
         }
     }
     Ok(mesh)
-}
-
-/// Distance of `p` from a segment.
-fn distance_to(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
-    let d = [b[0] - a[0], b[1] - a[1]];
-    let along = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-    let t = along.clamp(0.0, 1.0);
-    distance(p, [a[0] + t * d[0], a[1] + t * d[1]])
 }

@@ -4,10 +4,12 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+mod abaqus;
 pub(crate) mod along;
 pub mod bisect;
 mod boxes;
 mod cells;
+mod content;
 pub(crate) mod error;
 mod file;
 pub mod foreign;
@@ -20,10 +22,13 @@ mod hanging;
 mod insert;
 pub(crate) mod labels;
 pub(crate) mod meshio;
+mod nearby;
 mod overlap;
 pub mod polygons;
 pub(crate) mod polyline;
+mod quadrilateral;
 mod quarter;
+mod select;
 pub(crate) mod sets;
 #[cfg(test)]
 pub(crate) mod testing;
@@ -32,6 +37,7 @@ mod topology;
 mod topology_tests;
 
 pub use error::MeshError;
+pub use select::Sets;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
@@ -60,8 +66,9 @@ pub fn expected_triangles(scene: &Scene) -> Option<f64> {
 pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<Note>), MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
         MeshSource::File(path) => {
-            let (mut raw, notes) = file::read(path, limit)?;
+            let (mut raw, mut notes) = file::read(path, limit)?;
             raw.shift(scene.origin);
+            select::select(&mut raw, &scene, &mut notes)?;
             let (scene, middle) = scene.about_middle(raw.points.iter());
             raw.shift(middle);
             (scene, (raw, notes))
@@ -69,8 +76,9 @@ pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<
         MeshSource::Geometry { polygons, .. } => {
             let corners: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
             let (scene, _) = scene.about_middle(corners.iter());
-            let made = polygons::mesh(&scene)?;
-            (scene, made)
+            let (mut raw, mut notes) = polygons::mesh(&scene)?;
+            select::select(&mut raw, &scene, &mut notes)?;
+            (scene, (raw, notes))
         }
     };
     let (mesh, more) = Triangulation::new(raw, &scene)?;
@@ -93,6 +101,8 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// What else the file groups.
+    pub sets: Sets,
 }
 
 /// Cells that all carry the same names, listed once: those of an entity that is in many physical groups.

@@ -179,15 +179,15 @@ pub struct PrimalSolution {
     /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
     #[serde(default)]
     pub energy_rounding: Option<f64>,
-    /// Sets of closed contacts that were tried; 1 for a problem without contact.
+    /// Sets of closed contacts that were tried; 1 for a problem without contact, `None` where the solver does not tell.
     #[serde(default)]
-    pub iterations: usize,
+    pub iterations: Option<usize>,
     /// The solver's reason for stopping; positive.
     #[serde(default)]
     pub converged_reason: i32,
-    /// Unknowns left after supports are eliminated.
+    /// Unknowns left after supports are eliminated; `None` where the solver does not tell.
     #[serde(default)]
-    pub unknowns: usize,
+    pub unknowns: Option<usize>,
     /// Whether the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
     #[serde(default)]
     pub admissible: Option<bool>,

@@ -189,10 +189,10 @@ pub struct PrimalSummary {
     pub admissible: bool,
     /// Guaranteed relative energy-norm error of its stress, √((𝓛(u_h) + Π(λ_h)) / 𝒮(λ_h)).
     pub relative_error_bound: Option<f64>,
-    /// Nonlinear iterations.
-    pub iterations: usize,
-    /// Unknowns.
-    pub unknowns: usize,
+    /// Nonlinear iterations, where the program tells them.
+    pub iterations: Option<usize>,
+    /// Unknowns, where the program tells them.
+    pub unknowns: Option<usize>,
     /// Seconds by phase, as reported by the program; `total` is always there.
     pub seconds: std::collections::BTreeMap<String, f64>,
 }

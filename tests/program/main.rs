@@ -12,11 +12,14 @@ mod element;
 mod fields;
 mod hostile;
 mod jobs;
+mod labels;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+#[path = "../support/pages.rs"]
+mod pages;
 mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
@@ -24,3 +27,8 @@ mod quantities;
 mod random;
 mod schemas;
 mod stability;
+mod stale;
+mod statics;
+#[path = "../support/validate.rs"]
+mod validate;
+mod words;

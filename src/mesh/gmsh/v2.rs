@@ -1,8 +1,8 @@
-//! `$Nodes` and `$Elements` of MSH 2.2. The counts are text in binary files too.
+//! `$Nodes` and `$Elements` of MSH 2. The counts are text in binary files too.
 
-use super::content::{Content, Element, element_type};
 use super::cursor::{Cursor, Encoding};
 use crate::mesh::MeshError;
+use crate::mesh::content::{Content, Element, element_type};
 
 pub(super) fn nodes(cursor: &mut Cursor, content: &mut Content) -> Result<(), MeshError> {
     let count = text_count(cursor)?;
@@ -33,17 +33,19 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
                 Some(tag) => tag,
                 None => tag(cursor)?,
             };
-            let mut physical = 0;
+            let (mut physical, mut entity) = (0, None);
             for i in 0..tags {
                 let value = cursor.int()?;
-                if i == 0 {
-                    physical = value;
+                match i {
+                    0 => physical = value,
+                    1 => entity = Some(value),
+                    _ => {}
                 }
             }
             let nodes = (0..node_count).map(|_| tag(cursor)).collect::<Result<Vec<_>, _>>()?;
             if let Some(kind) = kind {
                 let physical = if physical == 0 { Vec::new() } else { vec![physical.saturating_abs()] };
-                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical: physical.into() });
+                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical: physical.into(), entity });
             }
         }
         left -= run;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
-use crate::report::words::upper_from;
+use crate::report::words::{mean_in_words, upper_from};
 use crate::report::{DualSummary, Energy, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
@@ -121,6 +121,12 @@ fn contacts(report: &Report) -> Markup {
                 } }
             }
         }))
+        @if report.contact.iter().any(|contact| contact.pressure_mean.is_some()) {
+            p { "A largest pressure is the value at one point, which no energy bounds; a mean around that point is bounded:" }
+            ul { @for contact in &report.contact { @if let Some(mean) = &contact.pressure_mean {
+                li { code { (clean(&contact.name)) } ": " (mean_in_words(mean, report.is_guaranteed())) }
+            } } }
+        }
     }
 }
 
@@ -162,7 +168,7 @@ fn solvers(report: &Report) -> Markup {
                     tbody { @for primal in &report.primal { tr {
                         td.long { (clean(&primal.name)) }
                         td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
-                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) }
+                        td.n { (primal.unknowns.map_or("–".to_string(), grouped)) } td.n { (primal.iterations.map_or("–".to_string(), grouped)) }
                         td { @if primal.admissible { "yes" } @else { "no" } }
                         td.n { (primal.relative_error_bound.map_or("–".to_string(), percent)) }
                         td.n { (optional(primal.seconds.get("total").copied(), 3)) }

@@ -8,6 +8,7 @@ mod discs;
 mod exact;
 mod failures;
 mod half_planes;
+mod near_vertices;
 mod own_solver;
 mod repeatable;
 mod run;
