@@ -28,7 +28,7 @@ pub use untold::untold;
 /// Of |K − R|², what an explanation may leave.
 const LEFT: f64 = 1e-8;
 /// Part of the difference below which the nearest mistake is not named.
-const WORTH_NAMING: f64 = 0.5;
+const WORTH_NAMING: f64 = 0.9;
 /// The cause where none is found.
 const UNEXPLAINED: &str = "unexplained";
 
@@ -155,12 +155,17 @@ fn explaining(view: &View, k: usize) -> Vec<(Trial, f64)> {
     trials(e, r).into_iter().filter_map(with_left).collect()
 }
 
-/// What comes nearest where nothing explains the difference, if it explains half of it.
+/// What comes nearest where nothing explains the difference, if it explains most of it.
 fn nearest(view: &View, prefix: &str) -> Diagnosis {
     let (e, r) = (&view.element, &view.references[0]);
     let all = trials(e, r);
-    let best = all.iter().min_by(|a, b| left(view, r, a).total_cmp(&left(view, r, b)));
-    let explained = best.map_or(0.0, |t| (1.0 - left(view, r, t)).max(0.0));
+    // Nor is a small matrix explained by a factor near zero: most of K itself, too, has to be met.
+    let whole = (&e.matrix - &r.matrix).norm_squared().min(e.matrix.norm_squared());
+    let missed = |t: &Trial| (&e.matrix - &t.matrix).norm_squared() / whole;
+    // What has many numbers of its own comes near to anything.
+    let few = all.iter().filter(|t| !["material", "weights"].contains(&t.cause));
+    let best = few.min_by(|a, b| missed(a).total_cmp(&missed(b)));
+    let explained = best.map_or(0.0, |t| (1.0 - missed(t)).max(0.0));
     let none = format!("None of {} mistakes explains the difference", all.len());
     let sentence = match best {
         _ if e.is_consistent() => format!(
@@ -188,7 +193,7 @@ fn trials(e: &DisplacementElement, r: &Reference) -> Vec<Trial> {
     trials.extend(enhanced::trials(e, r));
     let scaled: Vec<Trial> = trials.iter().filter_map(|t| with_factor(k, t)).collect();
     trials.extend(scaled);
-    trials.extend(material::fitted_hooke(k, r));
+    trials.extend(material::fitted_hooke(k, e.precision, r));
     trials.extend(numbering::entries(e, &r.matrix));
     if !r.is_isoparametric() {
         trials.iter_mut().for_each(|t| t.sentence += &format!(" (of the {})", r.words()));

@@ -6,7 +6,7 @@ use super::{Reference, Trial, fit};
 use crate::report::number::significant;
 use crate::scene::Kinematics;
 use crate::workbench::displacement::{DisplacementElement, material_words};
-use crate::workbench::formulas::Variant;
+use crate::workbench::formulas::{Family, Variant};
 use crate::workbench::material::Material;
 
 /// How near a factor must be to one with a reason for that to be told.
@@ -92,7 +92,7 @@ fn factor_words(e: &DisplacementElement, r: &Reference, factor: f64) -> String {
 }
 
 /// Any Hooke's law: K is linear in its entries.
-pub(super) fn fitted_hooke(k: &DMatrix<f64>, r: &Reference) -> Option<Trial> {
+pub(super) fn fitted_hooke(k: &DMatrix<f64>, precision: f64, r: &Reference) -> Option<Trial> {
     if !r.is_isoparametric() {
         return None;
     }
@@ -106,6 +106,11 @@ pub(super) fn fitted_hooke(k: &DMatrix<f64>, r: &Reference) -> Option<Trial> {
     let found = fit::nearest(k, &columns);
     let d = Matrix3::from_fn(|i, j| found[3 * i + j]);
     let matrix = r.variant(&d, Variant::Right).ok()?;
+    // On a linear triangle whatever leaves rigid motions without forces is some Hooke's law; one that couples stretch and shear says nothing there.
+    let coupling = [(0, 2), (1, 2), (2, 0), (2, 1)].iter().map(|&at| d[at].abs()).fold(0.0, f64::max);
+    if r.family == Family::P1 && coupling > 1e-6_f64.max(30.0 * precision) * d.amax() {
+        return None;
+    }
     let sentence = match material_words(&d) {
         Some(words) => format!("the material is another one: {words}"),
         None => {

@@ -15,7 +15,7 @@ pub fn untold(e: &DisplacementElement) -> Option<String> {
     }
     let always = "A matrix of one shape cannot tell whether its formula is right on other shapes, sizes and directions, in other materials and on \
                   meshes: a right matrix is no right formula";
-    let list = Reference::of(e).map(|r| unseen(e, &r)).unwrap_or_default();
+    let list = Reference::all(e).map(|all| unseen(e, &all[0])).unwrap_or_default();
     let here = match list.as_slice() {
         [] => String::new(),
         list => format!(". On this shape it cannot tell {}", list.join("; ")),
@@ -59,12 +59,10 @@ fn unseen(e: &DisplacementElement, r: &Reference) -> Vec<String> {
             push(is_alike, "incompatible modes without Taylor's correction from those with it".into());
         }
     }
-    if r.is_isoparametric() {
-        push(is_same(Variant::Transposed), "J from its transpose".into());
-        push(coordinates(&r.family.nodes()), "the element's coordinates from those of the reference element".into());
-        let swapped: Vec<[f64; 2]> = r.nodes.iter().map(|[x, y]| [*y, *x]).collect();
-        push(coordinates(&swapped), "x from y of the nodes".into());
-    }
+    push(is_same(Variant::Transposed), "J from its transpose".into());
+    push(coordinates(&r.family.nodes()), "the element's coordinates from those of the reference element".into());
+    let swapped: Vec<[f64; 2]> = r.nodes.iter().map(|[x, y]| [*y, *x]).collect();
+    push(coordinates(&swapped), "x from y of the nodes".into());
     let first = [r.nodes[0], r.nodes[1]];
     push((first[1][1] - first[0][1]).abs() <= 1e-4 * e.outline.size, "local axes that are not rotated back".into());
     match e.material {
