@@ -47,7 +47,7 @@ fn each<R, T>(
 /// The names of polygon edges and of `boundaries`, sorted; `None` where only a mesh file knows them.
 pub(super) fn edge_names(mesh: &MeshSource, boundaries: &[Boundary]) -> Option<Vec<String>> {
     match mesh {
-        MeshSource::File(_) => None,
+        MeshSource::File(_) | MeshSource::Parts(_) => None,
         MeshSource::Geometry { polygons, .. } => {
             let edges = polygons.iter().flat_map(|p| &p.edges);
             Some(names(edges.chain(boundaries.iter().map(|boundary| &boundary.name)).map(String::as_str)))

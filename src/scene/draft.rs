@@ -12,7 +12,7 @@ use toml::Value;
 use super::selection::written;
 use super::{
     Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
+    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
     Traction,
 };
 
@@ -89,6 +89,14 @@ impl Draft {
         )?;
         match &self.mesh {
             MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
+            MeshSource::Parts(parts) => {
+                let part = |Part { file, prefix, scale, translate }: &Part| {
+                    let (file, prefix) = (quoted(&file.to_string_lossy()), quoted(prefix));
+                    let (scale, translate) = (number(*scale), list(translate));
+                    format!("{{ file = {file}, prefix = {prefix}, scale = {scale}, translate = {translate} }}")
+                };
+                writeln!(text, "mesh.parts = [{}]", parts.iter().map(part).collect::<Vec<_>>().join(", "))?;
+            }
             MeshSource::Geometry { size: Some(size), .. } => writeln!(text, "geometry.size = {}", number(*size))?,
             MeshSource::Geometry { .. } => (),
         }
@@ -215,7 +223,19 @@ impl Deref for Scene {
     }
 }
 
-pub(super) fn quoted(text: &str) -> String {
+/// A key of a table as TOML writes it.
+pub(crate) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { basic(name) }
+}
+
+/// A string on one line, with escapes; JSON's are TOML's.
+fn basic(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// A string as TOML writes it.
+pub(crate) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 

@@ -11,6 +11,7 @@ mod conditions;
 mod draft;
 pub mod error;
 mod fault;
+mod files;
 mod geometry;
 mod nearest;
 mod parse;
@@ -27,7 +28,9 @@ use std::path::PathBuf;
 
 pub use circle::Circle;
 pub use draft::Draft;
+pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
+pub use files::Part;
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
@@ -81,6 +84,8 @@ impl Kinematics {
 pub enum MeshSource {
     /// A mesh file, path already resolved against the scene's folder.
     File(PathBuf),
+    /// Several mesh files that together are the mesh.
+    Parts(Vec<Part>),
     /// Polygons, meshed by the program.
     Geometry {
         /// Target edge length; `None` asks for the coarsest mesh that represents geometry and data.

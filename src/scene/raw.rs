@@ -124,14 +124,36 @@ pub(super) struct RawModel {
     pub thickness: Option<At<f64>>,
 }
 
-/// A mesh file: a physical surface is a body, a physical curve a boundary, both matched by name.
+/// A mesh file or several: a physical surface is a body, a physical curve a boundary, both matched by name.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Mesh")]
+#[schemars(rename = "Mesh", extend("oneOf" = [{"required": ["file"]}, {"required": ["parts"]}]))]
 pub(super) struct RawMesh {
-    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 are read natively, anything else through meshio.
+    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 and decks of Abaqus and CalculiX are read natively, anything else through meshio.
+    #[schemars(length(min = 1))]
+    pub file: Option<At<String>>,
+    /// Several files in place of `file`.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub parts: Vec<At<Table<RawPart>>>,
+}
+
+/// One of several mesh files.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "MeshPart")]
+pub(super) struct RawPart {
+    /// Path relative to the scene.
     #[schemars(length(min = 1))]
     pub file: At<String>,
+    /// Stands before every name of this file; cells that it leaves without a name are called by the prefix, less a separator at its end.
+    pub prefix: Option<At<String>>,
+    /// Factor on the coordinates of the file, 1 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub scale: Option<At<f64>>,
+    /// Added to the coordinates after scaling, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub translate: Option<Pair>,
 }
 
 /// Polygons to be meshed by the program.

@@ -34,6 +34,8 @@ mod malformed;
 mod malformed_scenes;
 mod mean_pressure;
 mod mesh_files;
+mod mesh_inventory;
+mod mesh_parts;
 mod mesh_selection;
 mod methods_on_cases;
 mod own_element;
