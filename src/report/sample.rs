@@ -177,7 +177,7 @@ fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>)
         }));
     }
     let names = ["left_load", "wall", "floor <a&b>"].map(String::from).to_vec();
-    Triangulation { points, triangles, body, edges, triangle_edges, names }
+    Triangulation { points, triangles, body, edges, triangle_edges, names, cells: crate::mesh::FileCells::default() }
 }
 
 fn condition(mesh: &Triangulation, e: usize) -> Condition {

@@ -56,9 +56,18 @@ pub fn deformed(
     }
     if mesh.triangles.len() <= MESH_SHOWN {
         let mut d = String::new();
-        for t in 0..mesh.triangles.len() {
-            d.push_str(&polyline(&[0, 1, 2].map(|k| view.at(moved(t, k, field)))));
+        let corner = |t: usize, v: usize| mesh.triangles[t].iter().position(|w| *w == v).unwrap_or(0);
+        let mut cell = |corners: &[(usize, usize)]| {
+            let points: Vec<[f64; 2]> = corners.iter().map(|(t, k)| view.at(moved(*t, *k, field))).collect();
+            d.push_str(&polyline(&points));
             d.push('z');
+        };
+        for quadrilateral in mesh.quadrilaterals() {
+            let ([a, b, c, e], [t, u]) = (quadrilateral.corners, quadrilateral.triangles);
+            cell(&[(t, corner(t, a)), (t, corner(t, b)), (u, corner(u, c)), (t, corner(t, e))]);
+        }
+        for t in mesh.lone_triangles() {
+            cell(&[0, 1, 2].map(|k| (t, k)));
         }
         svg.path(look::MESH, r#"stroke-width="0.6""#, &d);
     }
