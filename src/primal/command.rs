@@ -9,7 +9,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::exchange::{PROBLEM_FILE, solution_file};
-use super::{HIGHEST_DEGREE, PrimalError};
+use super::{HIGHEST_DEGREE, PrimalError, Space};
 use crate::process::{Outcome, Scratch, package, python, supervise, words};
 
 /// What stands for the exchange file in a command.
@@ -87,7 +87,9 @@ impl SolverCommand {
             Outcome::Exit(_) if self.is_told_degrees() => Ok(degrees.to_vec()),
             Outcome::Exit(_) => {
                 let found: Vec<u8> = (1..=HIGHEST_DEGREE)
-                    .filter(|degree| fs::exists(folder.join(solution_file(*degree))).unwrap_or(true))
+                    .filter(|degree| {
+                        fs::exists(folder.join(solution_file(Space::on_triangles(*degree)))).unwrap_or(true)
+                    })
                     .collect();
                 if found.is_empty() { Err(PrimalError::NoResult { of: of(), log }) } else { Ok(found) }
             }

@@ -6,16 +6,20 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{HIGHEST_DEGREE, PrimalError, PrimalSolution};
+use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
 use crate::element::plain::inner_len;
+use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, Pin, Problem};
+
+/// The largest Gauss rule in each direction of a quadrilateral.
+const MOST_GAUSS_POINTS: usize = 20;
 
 /// Name of the file the model reads.
 pub const PROBLEM_FILE: &str = "problem.json";
 
-/// Name of the file the model writes for `degree`.
-pub fn solution_file(degree: u8) -> String {
-    format!("primal-P{degree}.json")
+/// Name of the file the model writes for `space`.
+pub fn solution_file(space: Space) -> String {
+    format!("primal-{space}.json")
 }
 
 #[derive(Serialize)]
@@ -30,6 +34,8 @@ struct ProblemFile<'a> {
     body: &'a [usize],
     edges: Vec<[usize; 2]>,
     triangle_edges: &'a [[usize; 3]],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    quadrilaterals: Vec<QuadrilateralEntry>,
     clamped: Vec<ClampedEntry>,
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
@@ -43,6 +49,12 @@ struct BodyEntry<'a> {
     young: f64,
     poisson: f64,
     body_force: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct QuadrilateralEntry {
+    corners: [usize; 4],
+    triangles: [usize; 2],
 }
 
 #[derive(Serialize)]
@@ -119,6 +131,10 @@ impl<'a> ProblemFile<'a> {
             body: &mesh.body,
             edges: mesh.edges.iter().map(|edge| edge.vertices).collect(),
             triangle_edges: &mesh.triangle_edges,
+            quadrilaterals: mesh
+                .quadrilaterals()
+                .map(|Quadrilateral { corners, triangles, .. }| QuadrilateralEntry { corners, triangles })
+                .collect(),
             clamped,
             roller,
             tractions,
@@ -150,10 +166,12 @@ impl<'a> ProblemFile<'a> {
 pub fn write_problem(problem: &Problem, pins: &[Pin], folder: &Path) -> Result<(), PrimalError> {
     let in_folder = |source| PrimalError::Io { path: folder.to_owned(), source };
     fs::create_dir_all(folder).map_err(in_folder)?;
-    for degree in 1..=HIGHEST_DEGREE {
-        match fs::remove_file(folder.join(solution_file(degree))) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(in_folder(error)),
-            _ => {}
+    for cells in [Cells::Triangles, Cells::Quadrilaterals] {
+        for degree in 1..=HIGHEST_DEGREE {
+            match fs::remove_file(folder.join(solution_file(Space { cells, degree }))) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(in_folder(error)),
+                _ => {}
+            }
         }
     }
     let path = folder.join(PROBLEM_FILE);
@@ -171,22 +189,22 @@ struct SolutionFile {
     solution: PrimalSolution,
 }
 
-/// Read the result for `degree` from `folder` and check that it fits `problem`.
-pub fn read_solution(folder: &Path, degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
-    let file = solution_file(degree);
+/// Read the result for `space` from `folder` and check that it fits `problem`.
+pub fn read_solution(folder: &Path, space: Space, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let file = solution_file(space);
     let text = fs::read(folder.join(&file)).map_err(|error| {
         let reason = format!("it cannot be read ({error})");
         PrimalError::BadResult { file, reason }
     })?;
-    parse_solution(&text, degree, problem)
+    parse_solution(&text, space, problem)
 }
 
-/// The result for `degree` from the content of its file, once it was seen to fit `problem`.
+/// The result for `space` from the content of its file, once it was seen to fit `problem`.
 ///
 /// # Errors
 /// [`PrimalError::BadResult`].
-pub fn parse_solution(text: &[u8], degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
-    let bad = |reason: String| PrimalError::BadResult { file: solution_file(degree), reason };
+pub fn parse_solution(text: &[u8], space: Space, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let bad = |reason: String| PrimalError::BadResult { file: solution_file(space), reason };
     let found: SolutionFile = serde_json::from_slice(text).map_err(|error| bad(error.to_string()))?;
     if (found.format.as_str(), found.version) != ("hypercircle-primal", 1) {
         return Err(bad(format!(
@@ -194,11 +212,17 @@ pub fn parse_solution(text: &[u8], degree: u8, problem: &Problem) -> Result<Prim
             found.format, found.version
         )));
     }
-    check(&found.solution, degree, problem).map_err(bad)?;
+    check(&found.solution, space, problem).map_err(bad)?;
     Ok(found.solution)
 }
 
-fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(), String> {
+fn check(solution: &PrimalSolution, Space { cells, degree }: Space, problem: &Problem) -> Result<(), String> {
+    if solution.cells != cells {
+        return Err(format!("its cells are {}", solution.cells.name()));
+    }
+    if cells == Cells::Quadrilaterals && !solution.gauss_points.is_some_and(|n| (1..=MOST_GAUSS_POINTS).contains(&n)) {
+        return Err(format!("gauss_points, from 1 to {MOST_GAUSS_POINTS}, is missing"));
+    }
     if solution.degree != degree {
         return Err(format!("it holds degree {}, not {degree}", solution.degree));
     }
@@ -324,19 +348,25 @@ mod tests {
         }
         let mut other = problem.clone();
         other.mesh.points.push([5.0, 5.0]);
-        assert!(matches!(read_solution(folder.path(), 2, &other), Err(PrimalError::BadResult { .. })));
-        let path = folder.path().join(solution_file(1));
+        assert!(matches!(
+            read_solution(folder.path(), Space::on_triangles(2), &other),
+            Err(PrimalError::BadResult { .. })
+        ));
+        let path = folder.path().join(solution_file(Space::on_triangles(1)));
         let mut told: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
         assert!(told["energy_rounding"].as_f64().unwrap() < 1e-12);
         told["energy_rounding"] = json!(-1.0);
         fs::write(&path, told.to_string()).unwrap();
-        let refused = read_solution(folder.path(), 1, &problem).unwrap_err().to_string();
+        let refused = read_solution(folder.path(), Space::on_triangles(1), &problem).unwrap_err().to_string();
         assert!(refused.contains("energy_rounding is -1"), "{refused}");
         told.as_object_mut().unwrap().remove("energy_rounding");
         fs::write(&path, told.to_string()).unwrap();
-        assert_eq!(read_solution(folder.path(), 1, &problem).unwrap().energy_rounding, None);
+        assert_eq!(read_solution(folder.path(), Space::on_triangles(1), &problem).unwrap().energy_rounding, None);
         let mut other = problem;
         other.interfaces[0].name = "left|rigid".to_owned();
-        assert!(matches!(read_solution(folder.path(), 1, &other), Err(PrimalError::BadResult { .. })));
+        assert!(matches!(
+            read_solution(folder.path(), Space::on_triangles(1), &other),
+            Err(PrimalError::BadResult { .. })
+        ));
     }
 }
