@@ -160,6 +160,13 @@ fn two_blocks(n: usize) -> Problem {
     }
 }
 
+/// The halves of the squares become those of quadrilaterals of a mesh file.
+pub(crate) fn with_quadrilaterals(mesh: &mut Triangulation) {
+    let corners: Vec<[usize; 4]> =
+        mesh.triangles.chunks(2).map(|half| [half[0][0], half[0][1], half[1][1], half[1][2]]).collect();
+    mesh.cells = crate::mesh::FileCells::find(&corners, &mesh.triangles);
+}
+
 fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>) -> Triangulation {
     let mut edges: Vec<Edge> = Vec::new();
     let mut index = BTreeMap::new();

@@ -198,7 +198,7 @@ fn curved_outline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+    use crate::report::sample::{Sample, Verdict, assert_well_formed, with_quadrilaterals};
 
     #[test]
     fn both_sides_of_a_contact_are_marked() {
@@ -209,6 +209,23 @@ mod tests {
         let text = deformed(&sample.problem, "<free>", fields[0], &fields, &drawn, &[]);
         assert_well_formed(&text);
         assert_eq!(text.matches("class=\"contact\"").count(), 2);
+    }
+
+    #[test]
+    fn quadrilaterals_are_drawn_without_their_diagonals() {
+        let mut sample = Sample::new(3, Verdict::Agree);
+        let drawn = |sample: &Sample| {
+            let dossier = sample.dossier();
+            let fields: Vec<&Displacement> = dossier.displacements.iter().map(|d| d.1).collect();
+            let drawn = Drawn::of(&sample.problem, &fields);
+            let text = deformed(&sample.problem, "free", fields[0], &fields, &drawn, &[]);
+            assert_well_formed(&text);
+            text.matches('z').count()
+        };
+        let triangles = drawn(&sample);
+        with_quadrilaterals(&mut sample.problem.mesh);
+        assert_eq!(sample.problem.mesh.cells.len(), 18);
+        assert_eq!(triangles - drawn(&sample), 18);
     }
 
     #[test]
