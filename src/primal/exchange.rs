@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
+use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, Pin, Problem};
@@ -220,6 +221,11 @@ fn check(solution: &PrimalSolution, Space { cells, degree }: Space, problem: &Pr
     if solution.cells != cells {
         return Err(format!("its cells are {}", solution.cells.name()));
     }
+    if cells == Cells::Quadrilaterals && !(usize::from(degree) <= HIGHEST && can_carry(&problem.mesh)) {
+        return Err(format!(
+            "on quadrilaterals a result has a degree of at most {HIGHEST}, on a mesh file of convex quadrilaterals alone"
+        ));
+    }
     if cells == Cells::Quadrilaterals && !solution.gauss_points.is_some_and(|n| (1..=MOST_GAUSS_POINTS).contains(&n)) {
         return Err(format!("gauss_points, from 1 to {MOST_GAUSS_POINTS}, is missing"));
     }
@@ -303,6 +309,10 @@ mod tests {
         assert_eq!(file["edges"][2], json!([2, 0]));
         assert_eq!(file["pins"], json!([{"vertex": 2, "direction": [0.0, 1.0]}]));
         assert_eq!(written(&pressed_square(), &[])["tractions"].as_array().unwrap().len(), 1);
+        assert_eq!(file["quadrilaterals"], Value::Null);
+        problem.mesh.cells = crate::mesh::FileCells::find(&[[0, 1, 2, 3]], &problem.mesh.triangles);
+        let cell = json!([{"corners": [1, 2, 3, 0], "triangles": [0, 1]}]);
+        assert_eq!(written(&problem, &[])["quadrilaterals"], cell);
     }
 
     #[test]

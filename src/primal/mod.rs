@@ -33,7 +33,7 @@ pub const HIGHEST_DEGREE: u8 = crate::element::displacement::MOST as u8;
 pub struct Options {
     /// Polynomial degrees, each from 1 to [`HIGHEST_DEGREE`], each solved once. A program that is not told them solves its own.
     pub degrees: Vec<u8>,
-    /// Which cells they are solved on; a program solves on triangles.
+    /// Which cells they are solved on; a program chooses for itself.
     pub cells: WantedCells,
     /// A solver to run in the place of FEniCSx; ranks, planted bugs, nodal contact and the interpreter are not for it.
     pub program: Option<SolverCommand>,
@@ -281,10 +281,10 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
         return spaces.iter().map(|&space| exchange::read_solution(folder, space, problem)).collect();
     };
     let started = Instant::now();
-    let degrees = program.run(folder, &options.degrees, options.timeout)?;
-    let share = started.elapsed().as_secs_f64() / degrees.len() as f64;
-    let named = |degree: &u8| {
-        let mut solution = exchange::read_solution(folder, Space::on_triangles(*degree), problem)?;
+    let spaces = program.run(folder, &options.degrees, options.timeout)?;
+    let share = started.elapsed().as_secs_f64() / spaces.len() as f64;
+    let named = |space: &Space| {
+        let mut solution = exchange::read_solution(folder, *space, problem)?;
         if solution.solver.is_empty() {
             solution.solver = program.name();
         }
@@ -293,5 +293,5 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
         }
         Ok(solution)
     };
-    degrees.iter().map(named).collect()
+    spaces.iter().map(named).collect()
 }

@@ -148,3 +148,18 @@ fn a_wrong_model_on_quadrilaterals_is_found() {
         }
     }
 }
+
+/// A solver of the user's own may have displacements on quadrilaterals too.
+#[test]
+fn a_solver_of_ones_own_may_use_the_quadrilaterals() {
+    if !with_reference() {
+        return;
+    }
+    let python = std::env::var("HYPERCIRCLE_PYTHON").unwrap_or("/usr/bin/python3".to_owned());
+    let command = format!("{python} -m hypercircle_reference {{problem}} --out {{out}} --quadrilaterals 1 --degree 1");
+    let packages = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("reference");
+    let run = Run::with("verify", &case(SCENE), &["--reference", &command], &[("PYTHONPATH", &packages)]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let on = |name: &str, cells: &str| (format!("FEniCSx {name}"), cells.to_owned());
+    assert_eq!(models(&run.report()), [on("P1", "triangles"), on("Q1", "quadrilaterals")]);
+}
