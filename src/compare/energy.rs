@@ -187,9 +187,12 @@ pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], brack
             ),
         )
     };
+    // Drawn back between its vertices, a Q1 field is none of Q2.
+    let nested = |letter: char, low: &Judged| letter == 'P' || !linear_where_contact_turns(problem, low);
     let of_letter = |letter: char| {
         let solutions = solutions(letter);
-        let rising = solutions.windows(2).filter(|pair| pair[0].candidate.degree < pair[1].candidate.degree);
+        let rises = |pair: &&[&Judged]| pair[0].candidate.degree < pair[1].candidate.degree;
+        let rising = solutions.windows(2).filter(rises).filter(|pair| nested(letter, pair[0]));
         rising.map(|pair| check(letter, pair)).collect::<Vec<Check>>()
     };
     ['P', 'Q'].into_iter().flat_map(of_letter).collect()

@@ -28,7 +28,7 @@ impl QuadrilateralSolution {
     }
 }
 
-/// Points in each direction for products of strains of [`hat_strains`], exact on parallelograms.
+/// Points in each direction for products of strains of degree 1, exact on parallelograms.
 const POINTS: usize = 3;
 
 /// ‖e(w)‖², per thickness, of the displacement of degree 1 on quadrilaterals with the values `w` at the vertices; all

@@ -143,11 +143,14 @@ impl Triangulation {
         for [t, u] in &self.cells.pairs {
             first[*t.max(u)] = *t.min(u);
         }
-        let mut number = vec![0; first.len()];
-        let mut next = 0;
-        for t in 0..first.len() {
-            number[t] = if first[t] == t { next } else { number[first[t]] };
-            next += usize::from(first[t] == t);
+        let (mut number, mut next) = (Vec::with_capacity(first.len()), 0);
+        for (t, &first) in first.iter().enumerate() {
+            if first == t {
+                number.push(next);
+                next += 1;
+            } else {
+                number.push(number[first]);
+            }
         }
         number
     }
