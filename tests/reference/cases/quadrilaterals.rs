@@ -149,6 +149,30 @@ fn a_wrong_model_on_quadrilaterals_is_found() {
     }
 }
 
+/// The contact becomes an arc, along which its direction turns.
+#[test]
+fn quadrilaterals_along_an_arc_agree() {
+    if !with_reference() {
+        return;
+    }
+    let bent = |[x, y]: [f64; 2]| {
+        let bow = 0.1 - (2.0 - (4.0 - (y - 0.5) * (y - 0.5)).sqrt());
+        [if x <= 1.0 { x * (1.0 + bow) } else { x + (2.0 - x) * bow }, y]
+    };
+    let (_folder, scene) = on_another_mesh(|line| vec![line.to_owned()], bent);
+    let text = std::fs::read_to_string(&scene).expect("the scene").replace("-7.0", "-1.0");
+    std::fs::write(&scene, text).expect("written");
+    let run = Run::new("verify", &scene, &[]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let report = run.report();
+    assert!(report.notes().contains("stand for a curve"), "{}", report.notes());
+    // Q1 is bounded at the vertices, and what is left of it between them is no Q2 displacement.
+    assert_eq!(models(&report).len(), 2);
+    assert!(!report.0["checks"].to_string().contains("q1-above-q2"));
+    let wrong = Run::new("verify", &scene, &["--sabotage", "drop-row"]);
+    assert_eq!(wrong.code, Some(1), "{}{}", wrong.stdout, wrong.stderr);
+}
+
 /// A solver of the user's own may have displacements on quadrilaterals too.
 #[test]
 fn a_solver_of_ones_own_may_use_the_quadrilaterals() {
