@@ -101,6 +101,8 @@ fn distorted_quadrilaterals_have_an_energy_and_bound_nothing() {
     assert_eq!(report.0["energy"]["upper_from"], "free");
     assert_eq!(report.0["energy"]["guaranteed"], true);
     assert!(report.notes().contains("are no parallelograms"), "{}", report.notes());
+    let page = run.file("report.html");
+    assert!(page.contains("is that of a quadrature") && !page.contains("admissible: an upper bound"));
     for model in report.0["primal"].as_array().expect("models") {
         assert_eq!((&model["admissible"], &model["relative_error_bound"]), (&Value::Bool(true), &Value::Null));
         // Above the exact energy, within what the coarser one has.
