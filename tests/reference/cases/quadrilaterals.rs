@@ -94,6 +94,10 @@ fn distorted_quadrilaterals_have_an_energy_and_bound_nothing() {
         return;
     }
     let (_folder, scene) = on_another_mesh(|line| vec![line.to_owned()], shaken);
+    let quantities = "\n[[quantities]]\nname = \"seat\"\nforce = \"left_face|right_face\"\n\
+        [[quantities]]\nname = \"foot\"\nmoment = \"left_bottom\"\nabout = [0.3, 0.0]\n";
+    let text = std::fs::read_to_string(&scene).expect("the scene") + quantities;
+    std::fs::write(&scene, text).expect("written");
     let run = Run::new("verify", &scene, &["--allow", "q1-above-q2=1e-9"]);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     let report = run.report();
@@ -101,6 +105,12 @@ fn distorted_quadrilaterals_have_an_energy_and_bound_nothing() {
     assert_eq!(report.0["energy"]["upper_from"], "free");
     assert_eq!(report.0["energy"]["guaranteed"], true);
     assert!(report.notes().contains("are no parallelograms"), "{}", report.notes());
+    // Forces of a contact are those of the reactions; of a support they come from stresses, and the report says so.
+    let values = |k: usize| report.0["quantities"][k]["primal"].as_array().expect("models").clone();
+    for model in values(0) {
+        assert!((model["value"].as_f64().expect("a value") - 0.5).abs() < 1e-9 && model["inside"] == true, "{model}");
+    }
+    assert!(values(1).iter().all(|model| model["reason"].as_str().is_some_and(|why| why.contains("of its stresses"))));
     let page = run.file("report.html");
     assert!(page.contains("is that of a quadrature") && !page.contains("admissible: an upper bound"));
     for model in report.0["primal"].as_array().expect("models") {
