@@ -142,6 +142,13 @@ pub fn primal_checks(
         "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
          √(2·gap).",
     ));
+    if !judged.candidate.is_polynomial() {
+        let of_another = ["energy/lower-below/", "energy/gap-two-ways/", "stress/difference/"];
+        let meant = checks.iter_mut().filter(|check| of_another.iter().any(|start| check.name.starts_with(start)));
+        meant.for_each(|check| {
+            check.why.push_str(" Of the polynomials on triangles that have the values of this field.")
+        });
+    }
     checks
 }
 
