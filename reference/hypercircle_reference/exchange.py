@@ -79,7 +79,11 @@ class Contact:
 
 @dataclass(frozen=True)
 class Problem:
-    """What ``problem.json`` says, checked; index arrays are int64, everything else float64."""
+    """What ``problem.json`` says, checked; index arrays are int64, everything else float64.
+
+    ``quadrilaterals`` (m, 4) are the vertices of those cells, and ``halves`` (m, 2) the triangles at the first and at the third of
+    them.
+    """
 
     kinematics: str
     thickness: float
@@ -89,6 +93,8 @@ class Problem:
     body: np.ndarray
     edges: np.ndarray
     triangle_edges: np.ndarray
+    quadrilaterals: np.ndarray
+    halves: np.ndarray
     clamped_edges: np.ndarray
     clamped_values: np.ndarray
     roller_edges: np.ndarray
@@ -135,6 +141,11 @@ def parse_problem(data: dict) -> Problem:
     body = _indices(data, "body", (len(triangles),), len(bodies))
     _check_mesh(points, triangles, edges, triangle_edges)
 
+    cells = _records(data, "quadrilaterals") if "quadrilaterals" in data else []
+    quadrilaterals = _index_column(cells, "quadrilaterals", "corners", (4,), len(points))
+    halves = _index_column(cells, "quadrilaterals", "triangles", (2,), len(triangles))
+    _check_halves(quadrilaterals, halves, triangles)
+
     clamped = _records(data, "clamped")
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
@@ -152,6 +163,8 @@ def parse_problem(data: dict) -> Problem:
         body=body,
         edges=edges,
         triangle_edges=triangle_edges,
+        quadrilaterals=quadrilaterals,
+        halves=halves,
         clamped_edges=_index_column(clamped, "clamped", "edge", (), len(edges)),
         clamped_values=_column([_at_both_ends(entry) for entry in clamped], "clamped", "displacement", (2, 2)),
         roller_edges=_index_column(roller, "roller", "edge", (), len(edges)),
@@ -240,6 +253,14 @@ def _check_mesh(points, triangles, edges, triangle_edges) -> None:
         wrong = np.any(np.sort(edges[triangle_edges[:, i]], axis=1) != expected, axis=1)
         if wrong.any():
             raise BadExchange(f"triangle_edges[{np.argmax(wrong)}][{i}] is not the edge opposite vertex {i}")
+
+
+def _check_halves(quadrilaterals, halves, triangles) -> None:
+    for half, corners in enumerate(((0, 1, 3), (2, 3, 1))):
+        expected = np.sort(quadrilaterals[:, corners], axis=1)
+        wrong = np.any(np.sort(triangles[halves[:, half]], axis=1) != expected, axis=1)
+        if wrong.any():
+            raise BadExchange(f"quadrilaterals[{np.argmax(wrong)}].triangles[{half}] is not the half at corner {2 * half}")
 
 
 def _check_unit(vectors: np.ndarray, where: str, key: str) -> None:

@@ -55,7 +55,7 @@ pub fn primal_checks(
     judged: &Judged,
 ) -> Vec<Check> {
     let who = judged.candidate.name.as_str();
-    let own = judged.field.potential;
+    let own = judged.own;
     let scale = bracket.complementary.strain.max(own.magnitude);
     let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
@@ -142,6 +142,13 @@ pub fn primal_checks(
         "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
          √(2·gap).",
     ));
+    if !judged.candidate.is_polynomial() {
+        let of_another = ["energy/lower-below/", "energy/gap-two-ways/", "stress/difference/"];
+        let meant = checks.iter_mut().filter(|check| of_another.iter().any(|start| check.name.starts_with(start)));
+        meant.for_each(|check| {
+            check.why.push_str(" Of the polynomials on triangles that have the values of this field.")
+        });
+    }
     checks
 }
 
@@ -165,25 +172,39 @@ fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
         && (problem.contact_turns() || problem.pairs().any(|pair| !pair.bow.is_none()))
 }
 
-/// The larger space has the smaller energy: one check for each degree and the next.
+/// The larger space has the smaller energy: one check for each degree and the next on the same cells.
 pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], bracket: &Bracket) -> Vec<Check> {
-    let mut solutions: Vec<&Judged> = judged.iter().filter(|j| j.candidate.is_solution).collect();
-    solutions.sort_by_key(|j| j.candidate.degree);
-    let check = |pair: &[&Judged]| {
+    let solutions = |letter: char| {
+        let of = |j: &&Judged| j.candidate.is_solution && j.candidate.letter() == letter;
+        let mut solutions: Vec<&Judged> = judged.iter().filter(of).collect();
+        solutions.sort_by_key(|j| j.candidate.degree);
+        solutions
+    };
+    let check = |letter: char, pair: &[&Judged]| {
         let [low, high] = [pair[0], pair[1]];
         let [p, q] = [low, high].map(|j| j.candidate.degree);
-        let magnitude = low.field.potential.magnitude.max(high.field.potential.magnitude);
+        let magnitude = low.own.magnitude.max(high.own.magnitude);
         let scale = bracket.complementary.strain.max(magnitude);
         Check::at_most(
-            &name_of_order(p, q),
-            high.field.potential.total(),
-            if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.field.potential.total() },
+            &name_of_order(letter, p, q),
+            high.own.total(),
+            if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.own.total() },
             SOLVER * scale + energy_rounding(scales, low) + energy_rounding(scales, high),
             Basis::RoundOff,
-            format!("Every admissible P{p} field is an admissible P{q} field, so the P{q} minimum cannot be higher."),
+            format!(
+                "Every admissible {letter}{p} field is an admissible {letter}{q} field, so the {letter}{q} minimum cannot be higher."
+            ),
         )
     };
-    solutions.windows(2).filter(|pair| pair[0].candidate.degree < pair[1].candidate.degree).map(check).collect()
+    // Drawn back between its vertices, a Q1 field is none of Q2.
+    let nested = |letter: char, low: &Judged| letter == 'P' || !linear_where_jumps_bend(problem, low);
+    let of_letter = |letter: char| {
+        let solutions = solutions(letter);
+        let rises = |pair: &&[&Judged]| pair[0].candidate.degree < pair[1].candidate.degree;
+        let rising = solutions.windows(2).filter(rises).filter(|pair| nested(letter, pair[0]));
+        rising.map(|pair| check(letter, pair)).collect::<Vec<Check>>()
+    };
+    ['P', 'Q'].into_iter().flat_map(of_letter).collect()
 }
 
 /// Whether a bracket can tell two models apart.

@@ -98,7 +98,7 @@ impl NodalForces {
         }
     }
 
-    fn add_tractions(&mut self, problem: &Problem, degree: usize) {
+    pub(super) fn add_tractions(&mut self, problem: &Problem, degree: usize) {
         let mesh = &problem.mesh;
         for (e, condition) in problem.conditions.iter().enumerate() {
             let Condition::Traction([pa, pb]) = condition else { continue };

@@ -12,6 +12,7 @@ mod cells;
 mod content;
 pub(crate) mod error;
 mod file;
+pub mod file_cells;
 pub mod foreign;
 pub mod glue;
 #[cfg(test)]
@@ -40,6 +41,7 @@ mod topology;
 mod topology_tests;
 
 pub use error::MeshError;
+pub use file_cells::{FileCells, Quadrilateral};
 pub use select::Sets;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
@@ -108,6 +110,8 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// The corners of the quadrilaterals of which some of the triangles are halves.
+    pub quadrilaterals: Vec<[usize; 4]>,
     /// What else the file groups.
     pub sets: Sets,
 }
@@ -191,6 +195,8 @@ pub struct Triangulation {
     pub triangle_edges: Vec<[usize; 3]>,
     /// Boundary names.
     pub names: Vec<String>,
+    /// Which triangles are halves of a quadrilateral of the mesh file.
+    pub cells: FileCells,
 }
 
 impl Triangulation {

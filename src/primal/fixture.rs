@@ -24,6 +24,7 @@ pub(crate) fn pressed_square() -> Problem {
         ],
         triangle_edges: vec![[1, 2, 0], [3, 4, 2]],
         names: Vec::new(),
+        cells: crate::mesh::FileCells::default(),
     };
     let pair = ContactPair {
         edges: [Some(1), None],

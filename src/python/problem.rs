@@ -17,6 +17,9 @@ pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'
     out.set_item("thickness", scene.thickness)?;
     out.set_item("bodies", list(py, &scene.bodies, body_entry)?)?;
     out.set_item("points", numbers(mesh.points.iter().map(|p| scene.as_written(*p)).collect())?)?;
+    let quadrilaterals: Vec<[usize; 4]> = mesh.quadrilaterals().map(|cell| cell.corners).collect();
+    let quadrilaterals = indices(quadrilaterals.into_pyobject(py)?.into_any())?.call_method1("reshape", (-1, 4))?;
+    out.set_item("quadrilaterals", quadrilaterals)?;
     out.set_item("triangles", indices(mesh.triangles.into_pyobject(py)?)?)?;
     out.set_item("body", indices(mesh.body.into_pyobject(py)?)?)?;
     let names: Vec<Option<&str>> =

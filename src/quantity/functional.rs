@@ -30,6 +30,11 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether it is what contacts or supports carry.
+    pub fn is_carried(self) -> bool {
+        matches!(self, Kind::Force | Kind::Moment)
+    }
+
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {

@@ -160,6 +160,13 @@ fn two_blocks(n: usize) -> Problem {
     }
 }
 
+/// The halves of the squares become those of quadrilaterals of a mesh file.
+pub(crate) fn with_quadrilaterals(mesh: &mut Triangulation) {
+    let corners: Vec<[usize; 4]> =
+        mesh.triangles.chunks(2).map(|half| [half[0][0], half[0][1], half[1][1], half[1][2]]).collect();
+    mesh.cells = crate::mesh::FileCells::find(&corners, &mesh.triangles);
+}
+
 fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>) -> Triangulation {
     let mut edges: Vec<Edge> = Vec::new();
     let mut index = BTreeMap::new();
@@ -177,7 +184,7 @@ fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>)
         }));
     }
     let names = ["left_load", "wall", "floor <a&b>"].map(String::from).to_vec();
-    Triangulation { points, triangles, body, edges, triangle_edges, names }
+    Triangulation { points, triangles, body, edges, triangle_edges, names, cells: crate::mesh::FileCells::default() }
 }
 
 fn condition(mesh: &Triangulation, e: usize) -> Condition {

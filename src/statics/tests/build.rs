@@ -138,6 +138,7 @@ impl Build {
             edges,
             triangle_edges,
             names: Vec::new(),
+            cells: crate::mesh::FileCells::default(),
         };
         let boundary = |body: usize, line: [Point; 2]| -> Vec<usize> {
             let on = |e: &usize| {

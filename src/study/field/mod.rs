@@ -284,6 +284,7 @@ impl ForeignField {
             vertex: matched.vertex,
             middle: matched.middle,
             higher: None,
+            on_quadrilaterals: None,
             reported: None,
             reported_strain: None,
             is_solution: false,

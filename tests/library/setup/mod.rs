@@ -221,7 +221,15 @@ impl Setup {
         let draft = Draft { bodies, ..Draft::new("test", kinematics, MeshSource::File("made".into())) };
         let scene = Scene::new(draft).expect("a valid scene");
         let (triangles, body) = triangles.into_iter().unzip();
-        let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };
+        let mesh = Triangulation {
+            points,
+            triangles,
+            body,
+            edges,
+            triangle_edges,
+            names: Vec::new(),
+            cells: Default::default(),
+        };
         Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
     }
 }

@@ -9,7 +9,7 @@ use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
 use crate::element::{SideValues, StressField};
-use crate::mesh::{Edge, Triangulation};
+use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
@@ -169,6 +169,7 @@ fn read_mesh(from: &mut Reader<impl Read>) -> io::Result<Triangulation> {
         edges: edges.map(|(vertices, triangles)| Edge { vertices, triangles, name: None }).collect(),
         triangle_edges: from.tuples()?,
         names: Vec::new(),
+        cells: FileCells::default(),
     })
 }
 
