@@ -140,8 +140,8 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
         ],
         (Kind::Equilibrium, "untried") => [
-            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 alone.",
-            "Run degrees 1 and 2 of the same solver beside it: what is wrong with those is named.",
+            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 on triangles alone.",
+            "Run degrees 1 and 2 of the same solver on triangles beside it (of FEniCSx: --primal-cells triangles): what is wrong with those is named.",
         ],
         (Kind::Equilibrium, _) => [
             "The displacement minimises another energy than that of the scene, or the solver stopped early. No single mistake that is looked for explains it.",

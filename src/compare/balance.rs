@@ -75,9 +75,10 @@ impl Balance {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &Problem, candidate: &Candidate, strain: f64) -> Result<Self, NoUpperBound> {
-        let forces = match &candidate.higher {
-            Some(field) => NodalForces::of_coefficients(problem, field),
-            None => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
+        let forces = match (&candidate.on_quadrilaterals, &candidate.higher) {
+            (Some(own), _) => own.forces(problem).0,
+            (None, Some(field)) => NodalForces::of_coefficients(problem, field),
+            (None, None) => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
         };
         Self::of_forces(problem, candidate, strain, &forces)
     }
@@ -98,16 +99,20 @@ impl Balance {
         let nodes = higher::nodes(problem, candidate.degree);
         let mut rest = forces.unsupported(&holds, &nodes);
         let solution = Solution { problem, candidate, holds: &holds };
-        match higher {
-            Some(field) => solution.take_inside(field, &mut rest),
-            None => solution.take_middles(&mut rest),
+        match (&candidate.on_quadrilaterals, higher) {
+            (None, Some(field)) => solution.take_inside(field, &mut rest),
+            _ => solution.take_middles(&mut rest),
         }
         let at_vertices = rest.clone();
         solution.take_vertices(&mut rest);
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
         let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
-        let value = |i: usize| higher.map_or_else(|| solution.value(i), |field| field.values()[i]);
+        let value = |i: usize| match (&candidate.on_quadrilaterals, higher) {
+            (Some(own), _) => own.field.values()[i],
+            (None, Some(field)) => field.values()[i],
+            (None, None) => solution.value(i),
+        };
         let (mut reactions, mut reaction_rounding) = (Vec::new(), Vec::new());
         let (mut carried, mut unbalanced) = (Vec::new(), Vec::new());
         for (index, interface) in problem.interfaces.iter().enumerate() {
@@ -176,7 +181,7 @@ impl Solution<'_> {
             let middles = pair.edges.map(|e| e.map(|e| vertices + e));
             let Some(own) = middles[0] else { continue };
             let b1 = 2.0 * jump(self.value(own), middles[1].map(|m| self.value(m))) - 0.5 * (end(0) + end(1));
-            if b1 < 0.5 * (pair.gap[0] + pair.gap[1]) - within {
+            if b1 < pair.gap_below(2)[1] - within {
                 continue;
             }
             let pull = match middles[1] {

@@ -134,7 +134,9 @@ impl Sides<'_> {
         if !best.candidate.is_solution {
             return checks;
         }
-        let nodes = reactions.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
+        // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
+        let bounded = reactions.filter(|_| best.candidate.is_polynomial());
+        let nodes = bounded.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
         let means = nodes.as_deref().and_then(nodal::difference);
         let floor = self.no_pressure().max(SEEN * self.scales.data.stress);
         let peaks = Peaks::new(problem, interface, nodes.as_deref().unwrap_or_default(), [own, &pieces]);

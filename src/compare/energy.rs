@@ -59,14 +59,14 @@ pub fn primal_checks(
     judged: &Judged,
 ) -> Vec<Check> {
     let who = judged.candidate.name.as_str();
-    let own = judged.field.potential;
+    let own = judged.own;
     let (strain, scale) = (bracket.complementary.strain, bracket.complementary.strain.max(own.magnitude));
     let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
     let name = format!("admissible/{who}");
     let Violation { support, penetration, at_vertices } = judged.violation;
-    // Where the direction of contact turns the jump of a P1 field is quadratic, and its minimiser bounds the vertices alone.
-    let at_vertices_alone = linear_where_contact_turns(problem, judged);
+    // Where the direction of contact turns or the gap is a curve, the minimiser of P1 bounds the jump at vertices alone.
+    let at_vertices_alone = linear_where_jumps_bend(problem, judged);
     let (depth, where_to) = match at_vertices_alone {
         true => {
             (at_vertices, format!("at vertices (by {at_vertices:.1e}; by {penetration:.1e} between them, drawn back)"))
@@ -130,6 +130,13 @@ pub fn primal_checks(
     let differs = |slack| Check::at_most(&name, (2.0 * difference).sqrt(), 0.0, apart(slack), Basis::Guaranteed, why);
     let slack = [strain, scale].map(|scale| IDENTITY * scale + scales.round_off.energy);
     checks.push(of_energy(ceilings, slack[0], slack[1]).check_of_large(differs));
+    if !judged.candidate.is_polynomial() {
+        let of_another = ["energy/lower-below/", "energy/gap-two-ways/", "stress/difference/"];
+        let meant = checks.iter_mut().filter(|check| of_another.iter().any(|start| check.name.starts_with(start)));
+        meant.for_each(|check| {
+            check.why.push_str(" Of the polynomials on triangles that have the values of this field.")
+        });
+    }
     checks
 }
 
@@ -159,36 +166,49 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }
 
-/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges.
-fn linear_where_contact_turns(problem: &Problem, judged: &Judged) -> bool {
-    judged.candidate.is_solution && judged.candidate.degree == 1 && problem.contact_turns()
+/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
+fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
+    judged.candidate.is_solution
+        && judged.candidate.degree == 1
+        && (problem.contact_turns() || problem.pairs().any(|pair| !pair.bow.is_none()))
 }
 
-/// The larger space has the smaller energy: one check for each degree and the next.
+/// The larger space has the smaller energy: one check for each degree and the next on the same cells.
 pub fn degree_order(
     problem: &Problem,
     (scales, ceilings): (&Scales, &Ceilings),
     judged: &[Judged],
     bracket: &Bracket,
 ) -> Vec<Check> {
-    let mut solutions: Vec<&Judged> = judged.iter().filter(|j| j.candidate.is_solution).collect();
-    solutions.sort_by_key(|j| j.candidate.degree);
-    let check = |pair: &[&Judged]| {
+    let solutions = |letter: char| {
+        let of = |j: &&Judged| j.candidate.is_solution && j.candidate.letter() == letter;
+        let mut solutions: Vec<&Judged> = judged.iter().filter(of).collect();
+        solutions.sort_by_key(|j| j.candidate.degree);
+        solutions
+    };
+    let check = |letter: char, pair: &[&Judged]| {
         let [low, high] = [pair[0], pair[1]];
         let [p, q] = [low, high].map(|j| j.candidate.degree);
-        let magnitude = low.field.potential.magnitude.max(high.field.potential.magnitude);
+        let magnitude = low.own.magnitude.max(high.own.magnitude);
         let strain = bracket.complementary.strain;
-        let (lower, rounding) =
-            (high.field.potential.total(), energy_rounding(scales, low) + energy_rounding(scales, high));
-        let upper =
-            if linear_where_contact_turns(problem, low) { low.admissible.upper() } else { low.field.potential.total() };
-        let why =
-            format!("Every admissible P{p} field is an admissible P{q} field, so the P{q} minimum cannot be higher.");
-        let name = name_of_order(p, q);
+        let (lower, rounding) = (high.own.total(), energy_rounding(scales, low) + energy_rounding(scales, high));
+        let upper = if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.own.total() };
+        let why = format!(
+            "Every admissible {letter}{p} field is an admissible {letter}{q} field, so the {letter}{q} minimum cannot be higher."
+        );
+        let name = name_of_order(letter, p, q);
         let ordered = |allowed| Check::at_most(&name, lower, upper, allowed, Basis::RoundOff, why.as_str());
         of_energy(ceilings, SOLVER * strain, SOLVER * strain.max(magnitude) + rounding).check_of_large(ordered)
     };
-    solutions.windows(2).filter(|pair| pair[0].candidate.degree < pair[1].candidate.degree).map(check).collect()
+    // Drawn back between its vertices, a Q1 field is none of Q2.
+    let nested = |letter: char, low: &Judged| letter == 'P' || !linear_where_jumps_bend(problem, low);
+    let of_letter = |letter: char| {
+        let solutions = solutions(letter);
+        let rises = |pair: &&[&Judged]| pair[0].candidate.degree < pair[1].candidate.degree;
+        let rising = solutions.windows(2).filter(rises).filter(|pair| nested(letter, pair[0]));
+        rising.map(|pair| check(letter, pair)).collect::<Vec<Check>>()
+    };
+    ['P', 'Q'].into_iter().flat_map(of_letter).collect()
 }
 
 /// Whether a bracket can tell two models apart.

@@ -9,6 +9,7 @@
 //!
 //! where T holds the traction coefficients of the modes (theory in `docs/theory.md`).
 
+pub mod bilinear;
 mod block;
 mod compliance;
 pub mod congruent;
@@ -18,6 +19,7 @@ mod field;
 mod frame;
 pub mod geometry;
 mod interpolate;
+pub mod on_quadrilaterals;
 pub mod plain;
 pub mod quadrature;
 pub mod quadrilateral;
@@ -38,6 +40,7 @@ pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use on_quadrilaterals::OnQuadrilaterals;
 pub use plain::PlainDisplacement;
 pub use quadrilateral::Quadrilateral;
 pub use samples::Samples;

@@ -62,7 +62,11 @@ impl Triangulation {
                 *other = triangles.len() - 1;
             }
         }
-        Ok(Triangulation::connect(points, triangles, body, self.names.clone(), &label))
+        let same = |t: usize| (triangles[t] == self.triangles[t]).then_some(t);
+        let cells = self.cells.kept(same);
+        let mut mesh = Triangulation::connect(points, triangles, body, self.names.clone(), &label);
+        mesh.cells = cells;
+        Ok(mesh)
     }
 }
 

@@ -12,6 +12,7 @@ mod cells;
 mod content;
 pub(crate) mod error;
 mod file;
+pub mod file_cells;
 pub mod foreign;
 pub mod glue;
 #[cfg(test)]
@@ -20,16 +21,19 @@ pub mod gmsh;
 mod halves;
 mod hanging;
 mod insert;
+pub mod inventory;
 pub(crate) mod labels;
 pub(crate) mod meshio;
 mod nearby;
 mod overlap;
+mod parts;
 pub mod polygons;
 pub(crate) mod polyline;
 pub(crate) mod quadrilateral;
 mod quarter;
 mod select;
 pub(crate) mod sets;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;
@@ -38,6 +42,7 @@ mod topology_tests;
 mod uncut;
 
 pub use error::MeshError;
+pub use file_cells::{FileCells, Quadrilateral};
 pub use select::Sets;
 pub use uncut::Uncut;
 
@@ -58,7 +63,7 @@ use crate::scene::{MeshSource, Scene};
 pub fn expected_triangles(scene: &Scene) -> Option<f64> {
     match &scene.mesh {
         MeshSource::Geometry { size, polygons } => Some(polygons::expected_triangles(polygons, *size)),
-        MeshSource::File(_) => None,
+        MeshSource::File(_) | MeshSource::Parts(_) => None,
     }
 }
 
@@ -83,8 +88,12 @@ pub struct Loaded {
 /// [`MeshError`] says what is wrong, where, and what to do.
 pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
-        MeshSource::File(path) => {
-            let (mut raw, mut notes) = file::read(path, limit)?;
+        MeshSource::File(_) | MeshSource::Parts(_) => {
+            let (mut raw, mut notes) = match &scene.mesh {
+                MeshSource::Parts(parts) => parts::read(parts, &scene, limit)?,
+                MeshSource::File(path) => file::read(path, limit)?,
+                MeshSource::Geometry { .. } => Default::default(),
+            };
             raw.shift(scene.origin);
             select::select(&mut raw, &scene, &mut notes)?;
             let (scene, middle) = scene.about_middle(raw.points.iter());
@@ -119,6 +128,8 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// The corners of the quadrilaterals of which some of the triangles are halves.
+    pub quadrilaterals: Vec<[usize; 4]>,
     /// What else the file groups.
     pub sets: Sets,
 }
@@ -202,6 +213,8 @@ pub struct Triangulation {
     pub triangle_edges: Vec<[usize; 3]>,
     /// Boundary names.
     pub names: Vec<String>,
+    /// Which triangles are halves of a quadrilateral of the mesh file.
+    pub cells: FileCells,
 }
 
 impl Triangulation {

@@ -313,6 +313,7 @@ impl ForeignField {
             middle: matched.middle,
             higher: matched.higher,
             cells: matched.cells,
+            on_quadrilaterals: None,
             reported: None,
             reported_strain: None,
             is_solution: false,
