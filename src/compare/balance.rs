@@ -169,7 +169,7 @@ impl Solution<'_> {
             let middles = pair.edges.map(|e| e.map(|e| vertices + e));
             let Some(own) = middles[0] else { continue };
             let b1 = 2.0 * jump(self.value(own), middles[1].map(|m| self.value(m))) - 0.5 * (end(0) + end(1));
-            if b1 < 0.5 * (pair.gap[0] + pair.gap[1]) - within {
+            if b1 < pair.gap_below(2)[1] - within {
                 continue;
             }
             let pull = match middles[1] {

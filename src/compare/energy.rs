@@ -61,8 +61,8 @@ pub fn primal_checks(
     let mut checks = Vec::new();
     let name = format!("admissible/{who}");
     let Violation { support, penetration, at_vertices } = judged.violation;
-    // Where the direction of contact turns the jump of a P1 field is quadratic, and its minimiser bounds the vertices alone.
-    let at_vertices_alone = linear_where_contact_turns(problem, judged);
+    // Where the direction of contact turns or the gap is a curve, the minimiser of P1 bounds the jump at vertices alone.
+    let at_vertices_alone = linear_where_jumps_bend(problem, judged);
     let (depth, where_to) = match at_vertices_alone {
         true => {
             (at_vertices, format!("at vertices (by {at_vertices:.1e}; by {penetration:.1e} between them, drawn back)"))
@@ -158,9 +158,11 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }
 
-/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges.
-fn linear_where_contact_turns(problem: &Problem, judged: &Judged) -> bool {
-    judged.candidate.is_solution && judged.candidate.degree == 1 && problem.contact_turns()
+/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
+fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
+    judged.candidate.is_solution
+        && judged.candidate.degree == 1
+        && (problem.contact_turns() || problem.pairs().any(|pair| !pair.bow.is_none()))
 }
 
 /// The larger space has the smaller energy: one check for each degree and the next.
@@ -175,7 +177,7 @@ pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], brack
         Check::at_most(
             &name_of_order(p, q),
             high.field.potential.total(),
-            if linear_where_contact_turns(problem, low) { low.admissible.upper() } else { low.field.potential.total() },
+            if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.field.potential.total() },
             SOLVER * scale + energy_rounding(scales, low) + energy_rounding(scales, high),
             Basis::RoundOff,
             format!("Every admissible P{p} field is an admissible P{q} field, so the P{q} minimum cannot be higher."),

@@ -140,7 +140,7 @@ impl NodalForces {
 
     /// What supports cannot take of `left`, whose nodes on vertices and edges are `nodes`.
     pub fn unsupported(&self, holds: &Holds, nodes: &Nodes) -> Vec<[f64; 2]> {
-        let all = holds.of_nodes(nodes).chain(std::iter::repeat(&Hold::Free));
+        let all = holds.of_nodes(nodes).chain(std::iter::repeat(Hold::Free));
         self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()
     }
 }

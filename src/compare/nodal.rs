@@ -162,12 +162,13 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
     for (e, condition) in problem.conditions.iter().enumerate() {
         for v in problem.mesh.edges[e].vertices {
             let Some(&n) = normals.get(&v) else { continue };
-            let across = || dot(n, problem.mesh.edge_frame(e).1).abs() > ALIGNED;
+            let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
                 Condition::Clamped(_) => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
-                Condition::Roller | Condition::Contact { .. } => across(),
+                Condition::Roller { direction, .. } => across(*direction),
+                Condition::Contact { .. } => across(problem.mesh.edge_frame(e).1),
             };
             if stops {
                 held.insert(v);

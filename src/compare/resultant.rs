@@ -110,11 +110,10 @@ fn translation_norm(
     let mut w: Vec<[f64; 2]> = components.of_vertex.iter().map(|&c| if c == piece { d } else { [0.0; 2] }).collect();
     let on_contact: std::collections::HashSet<usize> = interface.pairs.iter().flat_map(|p| p.first).collect();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let (_, n) = mesh.edge_frame(e);
         for v in mesh.edges[e].vertices {
             let held = match condition {
                 Condition::Clamped(_) => [0.0; 2],
-                Condition::Roller => along(w[v], n),
+                Condition::Roller { direction, .. } => along(w[v], *direction),
                 // Other contacts of the piece must not be moved in their normal direction.
                 Condition::Contact { interface, pair, .. } if *interface != index => {
                     along(w[v], direction_at(&problem.interfaces[*interface].pairs[*pair], v))
@@ -132,10 +131,9 @@ fn translation_norm(
     }
     // Where two conditions meet, what one of them takes of w another may have needed.
     let kept = |(e, condition): (usize, &Condition)| {
-        let (_, n) = mesh.edge_frame(e);
         mesh.edges[e].vertices.iter().all(|v| match condition {
             Condition::Clamped(_) => w[*v] == [0.0; 2],
-            Condition::Roller => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
+            Condition::Roller { direction: n, .. } => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
             Condition::Contact { interface, pair, .. } if *interface != index => {
                 let n = direction_at(&problem.interfaces[*interface].pairs[*pair], *v);
                 (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9

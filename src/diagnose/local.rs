@@ -170,7 +170,7 @@ impl<'a> Places<'a> {
             edges.iter().flat_map(|e| mesh.edges[*e].vertices.into_iter().chain([vertices + e])).collect();
         let left = self.without(nodes.into_iter().filter(|n| *n < self.space.count()));
         let (key, sentence) = match edges.first().map(|e| self.space.problem().conditions[*e]) {
-            Some(Condition::Roller) => {
+            Some(Condition::Roller { .. }) => {
                 ("clamped", format!("{name} is held along the boundary too, where the scene lets it slide"))
             }
             Some(Condition::Traction(_)) => (

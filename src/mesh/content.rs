@@ -1,10 +1,11 @@
 //! What a mesh file contains, whatever its format, and how it becomes a [`RawMesh`].
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
 use super::select::{Cells, Entity, Sets};
+use super::solids::Solids;
 use super::{MeshError, RawMesh, Shared, quadrilateral};
 use crate::scene::Note;
 
@@ -36,6 +37,19 @@ impl Kind {
     /// Number of sides, each of which may have a node in its middle.
     fn sides(self) -> usize {
         if self == Kind::Line { 1 } else { self.corners() }
+    }
+
+    /// The name of a cell of this shape with so many nodes.
+    pub fn told(self, nodes: usize) -> String {
+        let shape = match self {
+            Kind::Line => "line",
+            Kind::Triangle => "triangle",
+            Kind::Quadrilateral => "quadrilateral",
+        };
+        match nodes == self.corners() {
+            true => shape.to_string(),
+            false => format!("{shape} with {nodes} nodes"),
+        }
     }
 
     /// Whether a cell of this shape may have so many nodes: its corners, those with mid-nodes, and the quadrilateral with
@@ -71,6 +85,8 @@ pub(super) struct Content {
     /// Coordinates by node tag.
     pub nodes: HashMap<u64, [f64; 3]>,
     pub elements: Vec<Element>,
+    /// Cells that this program has no use for.
+    pub solids: Vec<Solids>,
     /// Node tags by the name of their set.
     pub node_sets: Vec<(String, Vec<u64>)>,
     /// Sides of cells by the name of their surface: pairs of node tags.
@@ -80,7 +96,6 @@ pub(super) struct Content {
 /// Shape and number of nodes of a Gmsh element type; shape `None` is a point, which is ignored.
 pub(super) fn element_type(number: i32) -> Result<(Option<Kind>, usize), (String, &'static str)> {
     const PLANE: &str = "mesh with triangles or quadrilaterals of first or second order";
-    const FLAT: &str = "this program is plane: save the surfaces only";
     let unusable = |what: &str, remedy| Err((format!("element type {number}, {what}, cannot be used"), remedy));
     match number {
         1 => Ok((Some(Kind::Line), 2)),
@@ -91,7 +106,6 @@ pub(super) fn element_type(number: i32) -> Result<(Option<Kind>, usize), (String
         10 => Ok((Some(Kind::Quadrilateral), 9)),
         15 => Ok((None, 1)),
         16 => Ok((Some(Kind::Quadrilateral), 8)),
-        4..=7 | 11..=14 | 17..=19 | 29..=31 => unusable("a cell in space", FLAT),
         20..=28 => unusable("a cell of third or higher order", PLANE),
         _ => unusable("unknown", PLANE),
     }
@@ -100,6 +114,7 @@ pub(super) fn element_type(number: i32) -> Result<(Option<Kind>, usize), (String
 impl Content {
     /// Triangles and named segments in the plane; quadrilaterals are cut in two, and the chord of a curved side stands for it.
     pub fn into_raw(self, file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
+        self.no_solids(file)?;
         let mut order: Vec<u64> = self.nodes.keys().copied().collect();
         order.sort_unstable();
         let index: HashMap<u64, usize> = order.iter().enumerate().map(|(i, tag)| (*tag, i)).collect();
@@ -120,7 +135,9 @@ impl Content {
                 };
                 nodes.push(node);
             }
-            plane(file, element.tag, &nodes, &position, height)?;
+            if !is_plane(&nodes, &position, height) {
+                return Err(self.out_of_plane(file, &index, &position, height));
+            }
             let corners = element.kind.corners();
             if nodes.len() > corners {
                 counts.second_order(element.kind, &nodes, &raw.points);
@@ -170,11 +187,47 @@ impl Content {
         if used.all(|p| (p[2] - first).abs() <= ROUND_OFF * size) { first } else { 0.0 }
     }
 
+    /// How many cells of each kind there are.
+    pub fn kinds(&self) -> BTreeMap<String, usize> {
+        let mut kinds = BTreeMap::new();
+        for element in &self.elements {
+            *kinds.entry(element.kind.told(element.nodes.len())).or_default() += 1;
+        }
+        kinds
+    }
+
+    /// Says which elements have nodes outside the plane, how many they are, and how far it goes.
+    fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], height: f64) -> MeshError {
+        let (mut count, mut first, mut low, mut high) = (0_usize, None, height, height);
+        for element in &self.elements {
+            let nodes: Vec<usize> = element.nodes.iter().filter_map(|tag| index.get(tag).copied()).collect();
+            let heights = nodes.iter().map(|&n| position[n][2]);
+            (low, high) = heights.fold((low, high), |(low, high), z| (low.min(z), high.max(z)));
+            if is_plane(&nodes, position, height) {
+                continue;
+            }
+            count += 1;
+            let farthest = |a: &&usize, b: &&usize| {
+                (position[**a][2] - height).abs().total_cmp(&(position[**b][2] - height).abs())
+            };
+            let place = nodes.iter().max_by(farthest).map_or([0.0; 3], |&n| position[n]);
+            first.get_or_insert((element.tag, place));
+        }
+        let (tag, [x, y, z]) = first.unwrap_or_default();
+        let what = format!(
+            "element {tag} has a node at ({x}, {y}, {z}), outside the plane z = {height}; so have {count} of {} elements, and z \
+             goes from {low} to {high}",
+            self.elements.len()
+        );
+        MeshError::file(file, what, "put the geometry into one plane, z = 0")
+    }
+
     fn sets(&self, index: &HashMap<u64, usize>) -> Sets {
         let known = |tags: &Vec<u64>| tags.iter().filter_map(|tag| index.get(tag).copied()).collect();
         let side = |[a, b]: &[u64; 2]| Some([*index.get(a)?, *index.get(b)?]);
         Sets {
             numbers: self.numbers.as_ref().unwrap_or(&self.names).clone(),
+            kinds: self.kinds(),
             entities: Vec::new(),
             nodes: self.node_sets.iter().map(|(name, tags)| (name.clone(), known(tags))).collect(),
             surfaces: self
@@ -276,14 +329,7 @@ impl Counts {
     }
 }
 
-fn plane(file: &Path, tag: u64, nodes: &[usize], position: &[[f64; 3]], height: f64) -> Result<(), MeshError> {
-    for &node in nodes {
-        let [x, y, z] = position[node];
-        let size = nodes.iter().flat_map(|&n| position[n]).map(f64::abs).fold(0.0, f64::max);
-        if (z - height).abs() > ROUND_OFF * size {
-            let what = format!("element {tag} has a node at ({x}, {y}, {z}), outside the plane z = {height}");
-            return Err(MeshError::file(file, what, "put the geometry into one plane, z = 0"));
-        }
-    }
-    Ok(())
+fn is_plane(nodes: &[usize], position: &[[f64; 3]], height: f64) -> bool {
+    let size = nodes.iter().flat_map(|&n| position[n]).map(f64::abs).fold(0.0, f64::max);
+    nodes.iter().all(|&n| (position[n][2] - height).abs() <= ROUND_OFF * size)
 }

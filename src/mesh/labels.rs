@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::error::{MeshError, at};
+use super::error::{MeshError, at, shown_by};
 use super::halves::HalfEdges;
 use super::{Map, RawMesh, cells::Cells};
 use crate::scene::Note;
@@ -211,6 +211,7 @@ fn check_names(labels: &Labels, used: &[&str], scene: &Scene) -> Result<(), Mesh
                     .to_string(),
                 _ => format!("the boundaries are {}{}", existing.join(", "), suggestion(name, &existing)),
             };
+            let remedy = format!("{remedy}{}", shown_by(scene));
             let conditions = scene.boundary_names_used();
             let by_quantity = !conditions.iter().any(|(n, by)| n == name && !matches!(by, BoundaryUse::Quantity(_)));
             let bodies: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
@@ -244,10 +245,11 @@ fn note_idle(mut idle: Vec<&str>, scene: &Scene, notes: &mut Vec<Note>) {
     }
     idle.sort_unstable();
     idle.dedup();
-    notes.extend(idle.into_iter().map(|name| Note {
-        weakens_guarantee: false,
-        text: format!("the scene does not mention the physical curve '{name}': it is free of traction"),
-    }));
+    let text = |name: &str| match scene.boundaries.iter().any(|boundary| boundary.name == name) {
+        true => format!("no condition uses the boundary '{name}': it is free of traction"),
+        false => format!("the scene does not mention the physical curve '{name}': it is free of traction"),
+    };
+    notes.extend(idle.into_iter().map(|name| Note { weakens_guarantee: false, text: text(name) }));
 }
 
 /// `; did you mean 'x'?` when one of `names` is close to `name`.

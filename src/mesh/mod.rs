@@ -20,16 +20,19 @@ pub mod gmsh;
 mod halves;
 mod hanging;
 mod insert;
+pub mod inventory;
 pub(crate) mod labels;
 pub(crate) mod meshio;
 mod nearby;
 mod overlap;
+mod parts;
 pub mod polygons;
 pub(crate) mod polyline;
 pub(crate) mod quadrilateral;
 mod quarter;
 mod select;
 pub(crate) mod sets;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;
@@ -58,7 +61,7 @@ use crate::scene::{MeshSource, Scene};
 pub fn expected_triangles(scene: &Scene) -> Option<f64> {
     match &scene.mesh {
         MeshSource::Geometry { size, polygons } => Some(polygons::expected_triangles(polygons, *size)),
-        MeshSource::File(_) => None,
+        MeshSource::File(_) | MeshSource::Parts(_) => None,
     }
 }
 
@@ -83,8 +86,12 @@ pub struct Loaded {
 /// [`MeshError`] says what is wrong, where, and what to do.
 pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
-        MeshSource::File(path) => {
-            let (mut raw, mut notes) = file::read(path, limit)?;
+        MeshSource::File(_) | MeshSource::Parts(_) => {
+            let (mut raw, mut notes) = match &scene.mesh {
+                MeshSource::Parts(parts) => parts::read(parts, &scene, limit)?,
+                MeshSource::File(path) => file::read(path, limit)?,
+                MeshSource::Geometry { .. } => Default::default(),
+            };
             raw.shift(scene.origin);
             select::select(&mut raw, &scene, &mut notes)?;
             let (scene, middle) = scene.about_middle(raw.points.iter());

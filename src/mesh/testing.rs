@@ -17,7 +17,7 @@ pub(crate) fn scene(bodies: &[&str]) -> Scene {
 }
 
 pub(crate) fn clamp(mut scene: Scene, on: &str) -> Scene {
-    scene.draft.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });
+    scene.draft.supports.push(Support { on: on.into(), kind: SupportKind::CLAMPED });
     scene
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{HIGHEST_DEGREE, PrimalError, PrimalSolution};
 use crate::element::plain::inner_len;
-use crate::problem::{Condition, Pin, Problem};
+use crate::problem::{Condition, ContactPair, Pin, Problem};
 
 /// Name of the file the model reads.
 pub const PROBLEM_FILE: &str = "problem.json";
@@ -48,13 +48,22 @@ struct BodyEntry<'a> {
 #[derive(Serialize)]
 struct ClampedEntry {
     edge: usize,
-    displacement: [f64; 2],
+    displacement: Prescribed,
+}
+
+/// The same at both ends of an edge, or one value each.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Prescribed {
+    Constant([f64; 2]),
+    Linear([[f64; 2]; 2]),
 }
 
 #[derive(Serialize)]
 struct RollerEntry {
     edge: usize,
     normal: [f64; 2],
+    displacement: f64,
 }
 
 #[derive(Serialize)]
@@ -77,6 +86,8 @@ struct PairEntry {
     normal: [f64; 2],
     direction: [[f64; 2]; 2],
     gap: [f64; 2],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    gap_below: Vec<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -91,8 +102,14 @@ impl<'a> ProblemFile<'a> {
         let (mut clamped, mut roller, mut tractions) = (Vec::new(), Vec::new(), Vec::new());
         for (edge, condition) in problem.conditions.iter().enumerate() {
             match *condition {
-                Condition::Clamped(displacement) => clamped.push(ClampedEntry { edge, displacement }),
-                Condition::Roller => roller.push(RollerEntry { edge, normal: mesh.edge_frame(edge).1 }),
+                Condition::Clamped(ends) => {
+                    let displacement =
+                        if ends[0] == ends[1] { Prescribed::Constant(ends[0]) } else { Prescribed::Linear(ends) };
+                    clamped.push(ClampedEntry { edge, displacement });
+                }
+                Condition::Roller { direction, displacement } => {
+                    roller.push(RollerEntry { edge, normal: direction, displacement });
+                }
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
@@ -137,6 +154,7 @@ impl<'a> ProblemFile<'a> {
                             normal: pair.normal,
                             direction: pair.direction.ends,
                             gap: pair.gap,
+                            gap_below: gap_below(pair),
                         })
                         .collect(),
                 })
@@ -144,6 +162,13 @@ impl<'a> ProblemFile<'a> {
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),
         }
     }
+}
+
+/// Coefficients of degree 2, 3, … of polynomials that lie nowhere above a curved gap, the last of them the gap itself; none
+/// of one that is linear.
+fn gap_below(pair: &ContactPair) -> Vec<Vec<f64>> {
+    let degrees = if pair.bow.is_none() { 0 } else { usize::from(HIGHEST_DEGREE) };
+    (2..2 + degrees).map(|degree| pair.gap_below(degree)).collect()
 }
 
 /// Write `problem.json` into `folder`, which is made where it does not exist. Results of an earlier run are removed.
@@ -266,11 +291,11 @@ mod tests {
     #[test]
     fn conditions_become_entries_and_free_edges_none() {
         let mut problem = pressed_square();
-        problem.conditions[3] = Condition::Clamped([0.25, -0.5]);
+        problem.conditions[3] = Condition::Clamped([[0.25, -0.5]; 2]);
         let file = written(&problem, &[Pin { vertex: 2, direction: [0.0, 1.0] }]);
         assert_eq!(file["format"], "hypercircle-exchange");
         assert_eq!(file["kinematics"], "plane-stress");
-        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0]}]));
+        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0], "displacement": 0.0}]));
         assert_eq!(file["clamped"], json!([{"edge": 3, "displacement": [0.25, -0.5]}]));
         assert_eq!(file["tractions"], json!([{"edge": 4, "values": [[2.0, 0.0], [2.0, 0.0]]}]));
         assert_eq!(file["contacts"][0]["name"], "right|rigid");

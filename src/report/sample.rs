@@ -8,7 +8,7 @@ use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Note, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
 
 /// Something to make a dossier from.
@@ -191,9 +191,9 @@ fn condition(mesh: &Triangulation, e: usize) -> Condition {
     } else if both(0, 0.0) {
         Condition::Traction([p, q].map(|x| [4.0 - 7.0 * x[1], 0.0]))
     } else if both(0, 2.0) {
-        Condition::Clamped([0.0, 0.0])
+        Condition::Clamped([[0.0; 2]; 2])
     } else if left && both(1, 0.0) {
-        Condition::Roller
+        Condition::Roller { direction: [0.0, -1.0], displacement: 0.0 }
     } else {
         Condition::Traction([[0.0; 2]; 2])
     }
@@ -217,6 +217,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         length: h,
         arc: [k as f64 * h, (k + 1) as f64 * h],
         gap: [0.0; 2],
+        bow: Bow::default(),
     }
 }
 

@@ -11,8 +11,8 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
+    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
+    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
     Traction,
 };
 
@@ -89,6 +89,14 @@ impl Draft {
         )?;
         match &self.mesh {
             MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
+            MeshSource::Parts(parts) => {
+                let part = |Part { file, prefix, scale, translate }: &Part| {
+                    let (file, prefix) = (quoted(&file.to_string_lossy()), quoted(prefix));
+                    let (scale, translate) = (number(*scale), list(translate));
+                    format!("{{ file = {file}, prefix = {prefix}, scale = {scale}, translate = {translate} }}")
+                };
+                writeln!(text, "mesh.parts = [{}]", parts.iter().map(part).collect::<Vec<_>>().join(", "))?;
+            }
             MeshSource::Geometry { size: Some(size), .. } => writeln!(text, "geometry.size = {}", number(*size))?,
             MeshSource::Geometry { .. } => (),
         }
@@ -215,7 +223,19 @@ impl Deref for Scene {
     }
 }
 
-pub(super) fn quoted(text: &str) -> String {
+/// A key of a table as TOML writes it.
+pub(crate) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { basic(name) }
+}
+
+/// A string on one line, with escapes; JSON's are TOML's.
+fn basic(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// A string as TOML writes it.
+pub(crate) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 
@@ -245,16 +265,26 @@ fn support(Support { on, kind }: &Support) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
-            format!("on = {on}, type = \"clamped\", displacement = {}", list(displacement))
+            format!("on = {on}, type = \"clamped\", displacement = {}", affine(displacement))
         }
-        SupportKind::Roller => format!("on = {on}, type = \"roller\""),
+        SupportKind::Roller { direction, displacement } => {
+            let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+            format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
+        }
+    }
+}
+
+fn affine(Affine { value, gradient }: &Affine) -> String {
+    match *gradient == [[0.0; 2]; 2] {
+        true => list(value),
+        false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
     }
 }
 
 fn traction(Traction { on, load }: &Traction) -> String {
     let on = quoted(on);
     match load {
-        Load::Affine { value, gradient } => {
+        Load::Affine(Affine { value, gradient }) => {
             format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),

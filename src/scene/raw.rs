@@ -124,14 +124,36 @@ pub(super) struct RawModel {
     pub thickness: Option<At<f64>>,
 }
 
-/// A mesh file: a physical surface is a body, a physical curve a boundary, both matched by name.
+/// A mesh file or several: a physical surface is a body, a physical curve a boundary, both matched by name.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Mesh")]
+#[schemars(rename = "Mesh", extend("oneOf" = [{"required": ["file"]}, {"required": ["parts"]}]))]
 pub(super) struct RawMesh {
-    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 are read natively, anything else through meshio.
+    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 and decks of Abaqus and CalculiX are read natively, anything else through meshio.
+    #[schemars(length(min = 1))]
+    pub file: Option<At<String>>,
+    /// Several files in place of `file`.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub parts: Vec<At<Table<RawPart>>>,
+}
+
+/// One of several mesh files.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "MeshPart")]
+pub(super) struct RawPart {
+    /// Path relative to the scene.
     #[schemars(length(min = 1))]
     pub file: At<String>,
+    /// Stands before every name of this file; cells that it leaves without a name are called by the prefix, less a separator at its end.
+    pub prefix: Option<At<String>>,
+    /// Factor on the coordinates of the file, 1 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub scale: Option<At<f64>>,
+    /// Added to the coordinates after scaling, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub translate: Option<Pair>,
 }
 
 /// Polygons to be meshed by the program.
@@ -255,13 +277,70 @@ pub(super) struct RawSupport {
     /// The boundary.
     #[schemars(length(min = 1))]
     pub on: At<String>,
-    /// `clamped`: u = displacement. `roller`: no normal displacement, no tangential traction.
+    /// `clamped`: u = displacement. `roller`: one component of u is prescribed, mostly the normal one at zero, and there is no traction across it.
     #[serde(rename = "type")]
     #[schemars(extend("enum" = ["clamped", "roller"]))]
     pub kind: At<String>,
-    /// Prescribed displacement of a clamped boundary, zero where it is missing.
+    /// What is prescribed, zero where it is missing: the displacement of a clamped boundary, the component that a roller holds.
+    pub displacement: Option<At<RawDisplacement>>,
+    /// The component that a roller holds, without traction across it; the outward normal where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
-    pub displacement: Option<Pair>,
+    pub direction: Option<Pair>,
+}
+
+/// A number on rollers; on clamped boundaries a vector, or value + gradient · x.
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Displacement")]
+pub(super) enum RawDisplacement {
+    /// One component.
+    Component(f64),
+    /// The same along the boundary.
+    Constant(#[schemars(with = "[f64; 2]")] Vec<f64>),
+    /// Affine in x.
+    Affine(RawAffine),
+}
+
+/// value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Affine")]
+pub(super) struct RawAffine {
+    /// The value at the origin, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub value: Option<Pair>,
+    /// Rows of the gradient.
+    #[schemars(with = "[[f64; 2]; 2]")]
+    pub gradient: At<Vec<Pair>>,
+}
+
+impl<'de> Deserialize<'de> for RawDisplacement {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrVector;
+        impl<'de> Visitor<'de> for NumberOrVector {
+            type Value = RawDisplacement;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number for rollers, or [x, y], or { value = [x, y], gradient = [[a, b], [c, d]] }")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawDisplacement, A::Error> {
+                RawAffine::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(RawDisplacement::Affine)
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<RawDisplacement, A::Error> {
+                let mut vector = Vec::new();
+                while let Some(entry) = entries.next_element()? {
+                    vector.push(entry);
+                }
+                Ok(RawDisplacement::Constant(vector))
+            }
+        }
+        deserializer.deserialize_any(NumberOrVector)
+    }
 }
 
 /// A boundary that is loaded, by `value` (with or without `gradient`) or by `pressure`.
@@ -317,7 +396,7 @@ pub(super) enum RawGap {
     Curve(RawCurve),
 }
 
-/// The distance of a curve, taken anew at the vertices of each mesh.
+/// The distance of a curve, between vertices too; a circle goes on as its tangent from 45° on.
 #[derive(Debug, Clone, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "GapCurve", extend("oneOf" = [{"required": ["circle"]}, {"required": ["parabola"]}]))]

@@ -7,7 +7,7 @@ use super::error::{Fault, SceneError};
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
-use super::{Body, BodyCells, Draft, Kinematics, MeshSource, Scene, geometry, selection};
+use super::{Body, BodyCells, Draft, Kinematics, MeshSource, Scene, files, geometry, selection};
 
 /// Checks the whole scene; the first fault found is the error.
 pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, SceneError> {
@@ -123,11 +123,7 @@ fn mesh(raw: &RawScene, bodies: &[Body], source: &Source) -> Result<MeshSource, 
             Err(source.error(late, one_of(true)).with_related(early, "the other one"))
         }
         (None, None) => Err(source.error(0..0, one_of(false))),
-        (Some(mesh), None) => {
-            let Table(raw) = &mesh.value;
-            let file = source.name(&raw.file, ("[mesh]", "file"), "name the mesh file, relative to the scene")?;
-            Ok(MeshSource::File(source.path.parent().unwrap_or(Path::new("")).join(file)))
-        }
+        (Some(mesh), None) => files::files(mesh, source),
         (None, Some(geometry)) => geometry::geometry(geometry, raw, bodies, source),
     }
 }

@@ -18,6 +18,7 @@ mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+mod mesh;
 #[path = "../support/pages.rs"]
 mod pages;
 mod printed;

@@ -131,7 +131,7 @@ impl Solution<'_> {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let nodes = 0..self.rest.len();
         let work: f64 = nodes.clone().map(|n| dot(self.forces.load[n], self.candidate.value(n))).sum();
-        let prescribed = |n: usize| match *self.hold(n) {
+        let prescribed = |n: usize| match self.hold(n) {
             Hold::Free => [0.0; 2],
             Hold::Line { normal, value } => normal.map(|x| value * x),
             Hold::Fixed(value) => value,

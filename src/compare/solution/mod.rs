@@ -192,9 +192,9 @@ impl<'a> Solution<'a> {
     }
 
     /// The hold of a node.
-    pub fn hold(&self, node: usize) -> &Hold {
+    pub fn hold(&self, node: usize) -> Hold {
         let vertices = self.holds.vertices.len();
-        if node < vertices { &self.holds.vertices[node] } else { &self.holds.edges[node - vertices] }
+        if node < vertices { self.holds.vertices[node] } else { self.holds.middle(node - vertices) }
     }
 
     /// Where a node is.

@@ -145,7 +145,13 @@ impl Reader {
             Family::Plane(kind, count) => (kind, count),
             Family::Idle => return Ok(()),
             Family::Space => {
-                let what = format!("elements {name} are cells in space");
+                let numbers: usize = keyword.lines.iter().map(|line| line.fields.len()).sum();
+                let nodes = name.to_ascii_uppercase().split_once("3D").and_then(|(_, rest)| {
+                    let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+                    rest[..digits].parse::<usize>().ok().filter(|n| *n > 0 && *n < 100)
+                });
+                let count = nodes.map_or(String::new(), |nodes| format!(", {} of them here", numbers / (nodes + 1)));
+                let what = format!("elements {name} are cells in space{count}");
                 return Err(keyword.fault(what, "this program is plane: write CPE, CPS or CAX elements"));
             }
             Family::Unknown => {

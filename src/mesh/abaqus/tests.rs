@@ -60,6 +60,8 @@ fn what_is_wrong_is_told_with_its_line() {
     refused("1, 2\n*NODE\n", &["line 1", "before the first keyword"]);
     refused("*NODE\n1, a, 0\n", &["line 2", "'a'", "number"]);
     refused("*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D8\n1, 1\n", &["line 3", "C3D8", "in space"]);
+    let solids = "*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 1, 1, 1\n2, 1, 1, 1, 1\n";
+    refused(solids, &["line 3", "C3D4", "2 of them here"]);
     refused("*NODE\n1, 0, 0\n*ELEMENT, TYPE=XY3\n1, 1\n", &["line 3", "XY3", "not known"]);
     refused("*NODE\n1, 0, 0\n*ELEMENT, TYPE=CPE4\n1, 1, 1, 1\n", &["line 4", "3 nodes, not 4"]);
     refused("*NODE\n1, 0, 0\n2, 1, 0\n*ELEMENT, TYPE=CPE3\n1, 1, 2, 5\n", &["element 1", "node 5"]);

@@ -176,7 +176,7 @@ fn files_that_are_refused() {
         quads.replace("1 3 2", "1 21 2").as_bytes(),
         &["$Elements, line 9", "third or higher order", "first or second"],
     );
-    refuse(quads.replace("1 3 2", "1 4 2").as_bytes(), &["a cell in space", "save the surfaces only"]);
+    refuse(quads.replace("1 3 2", "1 4 2").as_bytes(), &["cells in space: 1 × tetrahedron", "save the surfaces"]);
     let binary = fixture(BLOCKS[1]);
     refuse(&binary[..binary.len() / 2], &["byte ", "truncated"]);
     refuse(&fixture(BLOCKS[3])[..1500], &["byte ", "truncated"]);

@@ -6,6 +6,7 @@ use super::Minor;
 use super::cursor::Cursor;
 use crate::mesh::MeshError;
 use crate::mesh::content::{Content, Element, element_type};
+use crate::mesh::solids::solid_type;
 
 pub(super) fn entities(cursor: &mut Cursor, content: &mut Content, minor: Minor) -> Result<(), MeshError> {
     let counts = [cursor.size()?, cursor.size()?, cursor.size()?, cursor.size()?];
@@ -69,13 +70,21 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content, minor: Minor)
     let mut read = 0_u64;
     for _ in 0..blocks {
         let (dimension, entity) = entity(cursor, minor)?;
-        let (kind, node_count) = element_type(cursor.int()?).map_err(|(what, remedy)| cursor.fault(what, remedy))?;
+        let code = cursor.int()?;
+        let solid = solid_type(code);
+        let (kind, node_count) = match solid {
+            Some((_, nodes)) => (None, nodes),
+            None => element_type(code).map_err(|(what, remedy)| cursor.fault(what, remedy))?,
+        };
         let count = cursor.size()?;
         let physical = content.entities.get(&(dimension, entity)).cloned().unwrap_or_else(|| [].into());
         let read_number = |cursor: &mut Cursor| if minor == Minor::Zero { number(cursor) } else { cursor.size() };
         for _ in 0..count {
             let tag = read_number(cursor)?;
             let nodes = (0..node_count).map(|_| read_number(cursor)).collect::<Result<Vec<_>, _>>()?;
+            if let Some((name, _)) = solid {
+                content.solid(name, &nodes);
+            }
             if let Some(kind) = kind {
                 content.elements.push(Element {
                     kind,

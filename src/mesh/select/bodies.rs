@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::{list, named_cells, sorted};
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, shown_by};
 use crate::mesh::labels::suggestion;
 use crate::mesh::{Map, RawMesh};
 use crate::scene::{Group, Note, Scene};
@@ -35,7 +35,7 @@ pub(super) fn chosen(raw: &mut RawMesh, scene: &Scene) -> Result<(), MeshError> 
                 Group::Tag(tag) => (format!("tag {tag}"), format!("tags {}", list(&raw.sets.tags(2)))),
             };
             let what = format!("body '{body}' of the scene is the cells of {kind}, and no cell is in it");
-            return Err(MeshError::cells(scene, what, format!("the file has the {there}")));
+            return Err(MeshError::cells(scene, what, format!("the file has the {there}{}", shown_by(scene))));
         }
         for cell in cells {
             if let Some(other) = body_of.insert(sorted(cell), chosen.body).filter(|other| *other != chosen.body) {

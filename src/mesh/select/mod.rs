@@ -3,7 +3,7 @@
 mod bodies;
 mod outline;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use outline::Outline;
 
@@ -43,6 +43,8 @@ pub struct Entity {
 /// What a file groups beside its named cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sets {
+    /// Kinds of cells with their numbers.
+    pub kinds: BTreeMap<String, usize>,
     /// Names of physical groups by dimension and number.
     pub numbers: HashMap<(i32, i32), String>,
     /// Cells by elementary entity.
@@ -129,8 +131,8 @@ fn sets_by_name(raw: &RawMesh, scene: &Scene) -> Vec<Boundary> {
     names.into_iter().map(set).collect()
 }
 
-/// Cells with every name of theirs.
-fn named_cells(raw: &RawMesh) -> impl Iterator<Item = ([usize; 3], &str)> {
+/// Cells with every name of theirs, one at a time.
+pub(super) fn named_cells(raw: &RawMesh) -> impl Iterator<Item = ([usize; 3], &str)> {
     let shared = raw
         .shared
         .iter()
@@ -138,7 +140,7 @@ fn named_cells(raw: &RawMesh) -> impl Iterator<Item = ([usize; 3], &str)> {
     raw.triangles.iter().map(|(cell, name)| (*cell, name.as_str())).chain(shared)
 }
 
-fn sorted(mut cell: [usize; 3]) -> [usize; 3] {
+pub(super) fn sorted(mut cell: [usize; 3]) -> [usize; 3] {
     cell.sort_unstable();
     cell
 }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::{list, named_cells, sorted};
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, shown_by};
 use crate::mesh::labels::{Pair, pair, suggestion};
 use crate::mesh::{Map, RawMesh};
 use crate::scene::{Boundary, Edges, Group, Scene};
@@ -179,13 +179,19 @@ impl<'a> Outline<'a> {
                 names.extend(self.groups.iter().map(|(_, n)| n.as_str()).filter(|n| !n.is_empty()));
                 names.sort_unstable();
                 names.dedup();
-                let remedy = format!("the file has the sets {}{}", list(&names), suggestion(&name, &names));
+                let remedy = format!(
+                    "the file has the sets {}{}{}",
+                    list(&names),
+                    suggestion(&name, &names),
+                    shown_by(self.scene)
+                );
                 let what = format!("is the set '{name}', of which no edge lies on the outline");
                 Err(MeshError::boundary(self.scene, &boundary.name, what, remedy))
             }
             (true, Group::Tag(tag)) => {
                 let what = format!("is the entity {tag}, of which no edge lies on the outline");
-                let remedy = format!("the file has curves with the tags {}", list(&sets.tags(1)));
+                let remedy =
+                    format!("the file has curves with the tags {}{}", list(&sets.tags(1)), shown_by(self.scene));
                 Err(MeshError::boundary(self.scene, &boundary.name, what, remedy))
             }
         }
@@ -216,6 +222,7 @@ impl<'a> Outline<'a> {
             ),
             false => "the mesh has no such outline".to_string(),
         };
+        let remedy = format!("{remedy}{}", shown_by(self.scene));
         MeshError::boundary(self.scene, &boundary.name, what, remedy)
     }
 }
