@@ -114,13 +114,16 @@ fn change(space: &Space<'_>, made: &dyn Fn(&On<'_>) -> Vec<[f64; 2]>) -> Vec<f64
     })
 }
 
+/// Gradients of the nodes' functions, strain, weight times determinant, and place.
+type AtPoint = (Vec<[f64; 2]>, [f64; 3], f64, [f64; 2]);
+
 impl On<'_> {
     fn forces(&self, points: usize, stress: impl Fn(Moduli, [f64; 3]) -> [f64; 3]) -> Vec<[f64; 2]> {
         cells::forces(self.cell, &self.values, points, |e| stress(self.moduli, e))
     }
 
     /// Σ over the points of a rule: the gradients of the nodes' functions, the strain, and the weight times the determinant.
-    fn at_points(&self, points: usize) -> Vec<(Vec<[f64; 2]>, [f64; 3], f64, [f64; 2])> {
+    fn at_points(&self, points: usize) -> Vec<AtPoint> {
         let of = |(at, weight): ([f64; 2], f64)| {
             let (gradients, determinant) = self.cell.gradients(at);
             let gradients: Vec<[f64; 2]> = gradients.into_iter().map(|g| g.map(|g| g / determinant)).collect();

@@ -58,7 +58,7 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
     }
     let changed = mesh.points != before.points;
     let Record { notes, parent } = record;
-    Ok(Glued { mesh, notes, uncut: changed.then(|| Uncut { mesh: before, parent }) })
+    Ok(Glued { mesh, notes, uncut: changed.then_some(Uncut { mesh: before, parent }) })
 }
 
 /// Puts the vertices of each side into the edges of the other.

@@ -108,15 +108,16 @@ pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
             return Some(Diagnosis { cause: trial.cause.into(), explained, sentence });
         }
     }
-    if !is_given_right && views.len() > 1 {
-        if let Some((trial, explained)) = common(&[&views[0]], 0) {
-            let sentence = format!(
-                "On the nodes given the difference is explained to {} by this, and on other shapes it is not: {}.",
-                percent(explained),
-                trial.sentence
-            );
-            return Some(Diagnosis { cause: trial.cause.into(), explained, sentence });
-        }
+    if !is_given_right
+        && views.len() > 1
+        && let Some((trial, explained)) = common(&[&views[0]], 0)
+    {
+        let sentence = format!(
+            "On the nodes given the difference is explained to {} by this, and on other shapes it is not: {}.",
+            percent(explained),
+            trial.sentence
+        );
+        return Some(Diagnosis { cause: trial.cause.into(), explained, sentence });
     }
     let worst = views.iter().find(|v| !v.is(0))?;
     Some(nearest(worst, prefix))
@@ -150,7 +151,7 @@ fn explaining(view: &View, k: usize) -> Vec<(Trial, f64)> {
     let enough = LEFT.max(digits / (&e.matrix - &r.matrix).norm_squared());
     let with_left = |t: Trial| {
         let left = left(view, r, &t);
-        (left <= enough).then(|| (t, 1.0 - left))
+        (left <= enough).then_some((t, 1.0 - left))
     };
     trials(e, r).into_iter().filter_map(with_left).collect()
 }
