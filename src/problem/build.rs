@@ -121,8 +121,11 @@ impl Problem {
             let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
             if let Some(coarser) = coarser.filter(|coarser| coarser.refinement == Refinement::KeepsEdges) {
                 keep_gap(&mut matched.pairs, coarser, interface);
+                if contact.obstacle.is_some() {
+                    inherit(&mut matched.pairs, &mesh.points, coarser, interface);
+                }
             }
-            if contact.normals == Normals::Smooth && contact.direction.is_none() {
+            if contact.normals == Normals::Smooth && contact.direction.is_none() && contact.obstacle.is_none() {
                 match coarser {
                     None => smooth(&mut matched.pairs),
                     Some(coarser) => inherit(&mut matched.pairs, &mesh.points, coarser, interface),

@@ -47,6 +47,7 @@ impl Scene {
                 move_origin(displacement, middle);
             }
         }
+        self.draft.contacts.iter_mut().flat_map(|c| &mut c.obstacle).for_each(|obstacle| obstacle.shift(middle));
         self.draft.boundaries.iter_mut().for_each(|boundary| boundary.edges.shift(middle));
         self.draft.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
         self.draft.origin = [0, 1].map(|c| self.origin[c] + middle[c]);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::error::{Fault, SceneError};
 use super::fault::names;
+use super::obstacle::obstacle;
 use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
@@ -222,8 +223,9 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
             ContactSides::Between([taken.claim(first, table, "between")?, taken.claim(second, table, "between")?])
         }
     };
+    let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    Ok(Contact { normals: normals(contact, table, source)?, direction, ..Contact::new(sides, gap) })
+    Ok(Contact { normals: normals(contact, table, source)?, direction, obstacle, ..Contact::new(sides, gap) })
 }
 
 /// A unit vector for a contact between two sides.

@@ -12,8 +12,8 @@ use toml::Value;
 use super::selection::written;
 use super::{
     Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
-    Traction,
+    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
+    Target, Touching, Traction,
 };
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -291,7 +291,7 @@ fn traction(Traction { on, load }: &Traction) -> String {
     }
 }
 
-fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
+fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> String {
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
@@ -307,6 +307,16 @@ fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    if let Some(Obstacle { shape, moved }) = obstacle {
+        let shape = match shape {
+            Shape::Line(ends) => format!("line = {}", rows(ends)),
+            Shape::Circle { centre, radius, inside } => {
+                let side = if *inside { "inside" } else { "outside" };
+                format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
+            }
+        };
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
+    }
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 

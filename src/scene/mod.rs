@@ -14,6 +14,7 @@ mod fault;
 mod files;
 mod geometry;
 mod nearest;
+mod obstacle;
 mod parse;
 pub(crate) mod polygon;
 mod quantity;
@@ -31,6 +32,7 @@ pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use files::Part;
+pub use obstacle::{Obstacle, Shape};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
@@ -214,6 +216,8 @@ pub struct Contact {
     pub normals: Normals,
     /// Unit vector along which sides that need not coincide are matched, and contact acts.
     pub direction: Option<[f64; 2]>,
+    /// A rigid obstacle that is not of the shape of the boundary.
+    pub obstacle: Option<Obstacle>,
 }
 
 /// Where the directions of contact come from.
@@ -238,7 +242,7 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None }
+        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.

@@ -380,6 +380,40 @@ pub(super) struct RawContact {
     /// and contact acts along it.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,
+    /// A rigid obstacle with a place of its own, which the boundary `on` may touch, or overlap at the start.
+    pub obstacle: Option<At<Table<RawObstacle>>>,
+    /// By how much the obstacle moves.
+    #[serde(rename = "move")]
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub moved: Option<Pair>,
+}
+
+/// A rigid obstacle: a straight line or a circle.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Obstacle", extend("oneOf" = [{"required": ["line"]}, {"required": ["circle"]}]))]
+pub(super) struct RawObstacle {
+    /// Two points of the line, the body on its left.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub line: Option<At<Vec<Pair>>>,
+    /// A circle.
+    pub circle: Option<At<Table<RawObstacleCircle>>>,
+}
+
+/// A circle and the side on which the body is.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ObstacleCircle")]
+pub(super) struct RawObstacleCircle {
+    /// Its centre.
+    #[schemars(with = "[f64; 2]")]
+    pub centre: Pair,
+    /// Its radius.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: At<f64>,
+    /// Where the body is, `outside` where it is missing.
+    #[schemars(extend("enum" = ["outside", "inside"]))]
+    pub side: Option<At<String>>,
 }
 
 /// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in

@@ -38,6 +38,7 @@ mod mesh_inventory;
 mod mesh_parts;
 mod mesh_selection;
 mod methods_on_cases;
+mod obstacles;
 mod own_element;
 mod paper_block;
 mod paper_objects;

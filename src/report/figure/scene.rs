@@ -106,7 +106,7 @@ fn obstacle(problem: &Problem, interface: &Interface, view: &View, factor: f64) 
     for pair in &interface.pairs {
         let mut ends = [0, 1].map(|k| {
             let p = problem.mesh.points[pair.first[k]];
-            view.at([0, 1].map(|c| p[c] + factor * pair.gap[k] * pair.normal[c]))
+            view.at([0, 1].map(|c| p[c] + factor * pair.gap[k] * pair.direction.unit(k)[c]))
         });
         // n' is outward: turn the pair round where walking along it would have the body on the right.
         let tangent = [0, 1].map(|c| problem.mesh.points[pair.first[1]][c] - problem.mesh.points[pair.first[0]][c]);

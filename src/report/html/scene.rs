@@ -82,6 +82,7 @@ fn contacts(problem: &Problem) -> Markup {
         ul { @for (contact, interface) in problem.scene.contacts.iter().zip(&problem.interfaces) { li {
             bdi { code { (clean(&interface.name)) } } ": " (grouped(interface.pairs.len())) (if interface.pairs.len() == 1 { " pair" } else { " pairs" }) " of edges, gap "
             @match &contact.gap {
+                _ if contact.obstacle.is_some() => { "to an obstacle with a place of its own" }
                 Gap::Constant(g) => (significant(*g, 5)),
                 Gap::Table(rows) => { "from a table of " (rows.len()) " rows" }
                 Gap::Circle(touching) => { "of a circle of radius " (significant(touching.radius, 5)) }
