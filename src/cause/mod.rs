@@ -110,7 +110,7 @@ fn not_made(check: &Check) -> Cause {
         sentence: format!("{} was not made: {}", check.name, check.why),
         place: None,
         suggests: "Nothing is known of what this check asks, so it does not count as passed.".to_string(),
-        remedy: "Remove the reason that is given, and run the scene again.".to_string(),
+        remedy: "Mend what stood in its way, as the sentence above says, and run the scene again.".to_string(),
         checks: vec![check.name.clone()],
     }
 }

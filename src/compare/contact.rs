@@ -1,6 +1,7 @@
 //! Contact checks, interface by interface.
 
 use super::candidate::Judged;
+use super::ceiling::{Allowance, Ceilings};
 use super::mean;
 use super::nodal::{self, NodalDifference, nodal_pressures};
 use super::outcome::{ContactSummary, Profile, TwoSides};
@@ -36,6 +37,8 @@ pub struct Sides<'a> {
     pub problem: &'a Problem,
     /// What is round-off.
     pub scales: &'a Scales,
+    /// What tolerances may be at most.
+    pub ceilings: &'a Ceilings,
     /// λ_h.
     pub dual: &'a DualSolution,
     /// Between the lower bound and the best upper one.
@@ -131,7 +134,9 @@ impl Sides<'_> {
         if !best.candidate.is_solution {
             return checks;
         }
-        let nodes = reactions.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
+        // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
+        let bounded = reactions.filter(|_| best.candidate.is_polynomial());
+        let nodes = bounded.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
         let means = nodes.as_deref().and_then(nodal::difference);
         let floor = self.no_pressure().max(SEEN * self.scales.data.stress);
         let peaks = Peaks::new(problem, interface, nodes.as_deref().unwrap_or_default(), [own, &pieces]);
@@ -184,6 +189,12 @@ impl Sides<'_> {
         REACTION * carried + of_displacements.unwrap_or(0.0) + self.scales.round_off.force
     }
 
+    /// `all` that a force of interface `index` may be off by, of which the displacements of `best` have their part.
+    pub fn of_reaction(&self, best: &Judged, index: usize, all: f64) -> Allowance {
+        let digits = best.balance.as_ref().map_or(0.0, |balance| balance.reaction_tolerance(index));
+        Allowance { exact: all - digits, digits, ceiling: self.ceilings.force }
+    }
+
     /// A force known to round-off is a pressure known to round-off over the length it acts on.
     fn pressure_round_off(&self, best: &Judged, (index, interface): (usize, &Interface)) -> f64 {
         let shortest = interface.pairs.iter().map(|p| p.length).fold(f64::INFINITY, f64::min);
@@ -199,16 +210,13 @@ impl Sides<'_> {
         unexplained: f64,
     ) -> Check {
         let misreported = best.balance.as_ref().and_then(|b| b.reactions.get(index)).copied().unwrap_or(0.0);
-        Check::at_most(
-            &format!("contact/{}/reactions", interface.name),
-            misreported.max(self.problem.scene.thickness * unexplained),
-            0.0,
-            self.reaction_round_off(best, (index, interface), own),
-            Basis::RoundOff,
-            "Every reaction that the displacement model reports is what its stresses ask for at this vertex, their sum is \
+        let name = format!("contact/{}/reactions", interface.name);
+        let value = misreported.max(self.problem.scene.thickness * unexplained);
+        let why = "Every reaction that the displacement model reports is what its stresses ask for at this vertex, their sum is \
              the reported resultant, and each differs from the dual force at its vertex by exactly the work of \
-             λ_h − σ(u_h) on moving this vertex alone; the largest remainder.",
-        )
+             λ_h − σ(u_h) on moving this vertex alone; the largest remainder.";
+        self.of_reaction(best, index, self.reaction_round_off(best, (index, interface), own))
+            .check_of_large(|allowed| Check::at_most(&name, value, 0.0, allowed, Basis::RoundOff, why))
     }
 
     /// Pressures averaged at each vertex of Γ_K, which differ only as far as the stresses next to it do.

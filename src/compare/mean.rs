@@ -96,12 +96,13 @@ impl<'a> Weight<'a> {
             }
         }
         for (e, condition) in problem.conditions.iter().enumerate() {
-            let across = || dot(n, mesh.edge_frame(e).1).abs() > ALIGNED;
+            let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
                 Condition::Clamped(_) => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
-                Condition::Roller | Condition::Contact { .. } => across(),
+                Condition::Roller { direction, .. } => across(*direction),
+                Condition::Contact { .. } => across(mesh.edge_frame(e).1),
             };
             if stops {
                 mesh.edges[e].vertices.iter().for_each(|v| at[*v] = 0.0);

@@ -55,7 +55,7 @@ const NAMES: [&str; 27] = [
 ];
 
 /// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end
-/// with their degree, as `FEniCSx P2` does, are also held against each other.
+/// with their degree, as `FEniCSx P2` and `FEniCSx Q2` do, are also held against each other.
 pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
     let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
         values.iter().map(|value| template.replace(key, value)).collect()
@@ -65,14 +65,19 @@ pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
         name if name.contains("{contact}") => with(name, "{contact}", contacts),
         name => vec![name.to_string()],
     });
-    let degree = |field: &String| field.rsplit_once(" P").and_then(|(_, k)| k.parse::<usize>().ok());
-    let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
-    all.chain(degrees.windows(2).map(|pair| name_of_order(pair[0], pair[1]))).collect()
+    let orders = ['P', 'Q'].into_iter().flat_map(|letter| {
+        let degree = |field: &String| field.rsplit_once(&format!(" {letter}")).and_then(|(_, k)| k.parse().ok());
+        let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
+        degrees.windows(2).map(|pair| name_of_order(letter, pair[0], pair[1])).collect::<Vec<String>>()
+    });
+    all.chain(orders).collect()
 }
 
-/// The name of the check that holds the energies of two displacement solutions of degrees p < q against each other.
-pub fn name_of_order(p: usize, q: usize) -> String {
-    format!("energy/p{p}-above-p{q}")
+/// The name of the check that holds the energies of two displacement solutions of degrees p < q, both P or both Q, against each
+/// other.
+pub fn name_of_order(letter: char, p: usize, q: usize) -> String {
+    let letter = letter.to_ascii_lowercase();
+    format!("energy/{letter}{p}-above-{letter}{q}")
 }
 
 /// Allowed values from the command line, by check name.

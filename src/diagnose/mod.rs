@@ -9,6 +9,7 @@
 
 mod contact;
 mod fit;
+mod integration;
 mod loads;
 mod local;
 mod material;
@@ -141,6 +142,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         let mut trials = values::trials(&space);
         trials.extend(material::trials(&space));
         trials.extend(local::trials(&space));
+        trials.extend(integration::trials(&space));
         trials.extend(contact::trials(&space));
         let mut terms = Terms::new(&space);
         material::terms(&space, &mut terms);

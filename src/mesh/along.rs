@@ -5,6 +5,7 @@
 //! then cover the same intervals, and forces along the direction act at equal projected positions.
 
 use super::error::at;
+use super::glue::Record;
 use super::polyline::SAME;
 use super::{MeshError, Triangulation};
 use crate::scene::{Contact, Note, Scene, counted};
@@ -74,7 +75,7 @@ pub(super) fn match_along(
     contact: &Contact,
     names: &[String; 2],
     given: [f64; 2],
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let d = outward(&mesh, [&names[0], &names[1]], given);
     // Both sides are seen along d, so that positions agree.
@@ -124,11 +125,11 @@ pub(super) fn match_along(
         let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
         MeshError::contact(scene, contact.name(), what, "mesh both sides with about the same edge lengths")
     };
-    let mesh = mesh.with_inserted(&inserted).map_err(flat)?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(flat)?;
     let [a, b] = [0, 1].map(|i| format!("{} of '{}'", counted(counts[i], "vertex"), names[i]));
     let text =
         format!("contact {}: along its direction, {a} and {b} were inserted into the other side", contact.name());
-    notes.push(Note { weakens_guarantee: false, text });
+    record.notes.push(Note { weakens_guarantee: false, text });
     Ok(mesh)
 }
 

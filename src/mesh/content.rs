@@ -143,6 +143,9 @@ impl Content {
                 counts.second_order(element.kind, &nodes, &raw.points);
             }
             let cells = cut(file, element, &nodes[..corners], &raw.points, &mut counts)?;
+            if let ([a, b, c, d], [_, _]) = (&nodes[..corners], cells.triangles.as_slice()) {
+                raw.quadrilaterals.push([*a, *b, *c, *d]);
+            }
             let dimension = element.kind.dimension();
             if let Some(tag) = element.entity {
                 if entity != Some((dimension, tag)) {

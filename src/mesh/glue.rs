@@ -10,33 +10,55 @@ use super::boxes::{BoxTree, around};
 use super::error::at;
 use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
-use super::{MeshError, Triangulation};
+use super::{MeshError, Triangulation, Uncut};
 use crate::scene::{Contact, ContactSides, Note, Scene, counted};
+
+/// A mesh whose contact sides match.
+#[derive(Debug, Clone)]
+pub struct Glued {
+    /// The mesh.
+    pub mesh: Triangulation,
+    /// What was done to make sides match.
+    pub notes: Vec<Note>,
+    /// The mesh before; `None` where nothing was done to it.
+    pub uncut: Option<Uncut>,
+}
+
+/// What is done to a mesh.
+pub(super) struct Record {
+    /// In words.
+    pub notes: Vec<Note>,
+    /// Of every triangle, the one before that it was cut out of.
+    pub parent: Vec<usize>,
+}
 
 /// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
 ///
 /// # Errors
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
-pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
-    let mut notes = Vec::new();
+pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
+    let mut record = Record { notes: Vec::new(), parent: (0..before.triangles.len()).collect() };
+    let mut mesh = before.clone();
     let (along, others): (Vec<usize>, Vec<usize>) =
         (0..scene.contacts.len()).partition(|&index| scene.contacts[index].direction.is_some());
     // What the other side gets of them is put there with its vertices.
     for index in along {
-        mesh = insert_breaks(mesh, scene, index, &mut notes)?;
+        mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
-    snap(&mut mesh, scene, &mut notes);
+    snap(&mut mesh, scene, &mut record.notes);
     for contact in &scene.contacts {
         let ContactSides::Between(names) = &contact.sides else { continue };
         mesh = match contact.direction {
-            None => match_vertices(mesh, scene, contact, names, &mut notes)?,
-            Some(direction) => match_along(mesh, scene, contact, names, direction, &mut notes)?,
+            None => match_vertices(mesh, scene, contact, names, &mut record)?,
+            Some(direction) => match_along(mesh, scene, contact, names, direction, &mut record)?,
         };
     }
     for index in others {
-        mesh = insert_breaks(mesh, scene, index, &mut notes)?;
+        mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
-    Ok((mesh, notes))
+    let changed = mesh.points != before.points;
+    let Record { notes, parent } = record;
+    Ok(Glued { mesh, notes, uncut: changed.then_some(Uncut { mesh: before, parent }) })
 }
 
 /// Puts the vertices of each side into the edges of the other.
@@ -45,7 +67,7 @@ fn match_vertices(
     scene: &Scene,
     contact: &Contact,
     names: &[String; 2],
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
@@ -86,7 +108,7 @@ fn match_vertices(
         return Ok(mesh);
     }
     let size = extent(&mesh);
-    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
@@ -94,9 +116,11 @@ fn match_vertices(
             format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
         })
         .collect();
-    notes.push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
+    record
+        .notes
+        .push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
     if moved > ROUND_OFF * size {
-        notes.push(Note {
+        record.notes.push(Note {
             weakens_guarantee: true,
             text: format!("contact {}: the sides deviate by {moved:.1e} and were made to coincide", contact.name()),
         });
@@ -115,7 +139,7 @@ fn insert_breaks(
     mesh: Triangulation,
     scene: &Scene,
     index: usize,
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let (contact, breaks) = (&scene.contacts[index], scene.contact_breaks(index));
     if breaks.is_empty() {
@@ -136,13 +160,13 @@ fn insert_breaks(
         let opposite = |i: usize| facing.get(&[key(side[i][1]), key(side[i][0])]);
         inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
     }
-    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
     let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {
         if count > 0 {
             let text = format!("contact {}: {} inserted where {place}", contact.name(), counted(count, "vertex"));
-            notes.push(Note { weakens_guarantee: false, text });
+            record.notes.push(Note { weakens_guarantee: false, text });
         }
     }
     Ok(mesh)

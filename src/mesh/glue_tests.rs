@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::glue::glue;
+use super::glue::{Glued, glue};
 use super::testing::*;
 use super::{RawMesh, Triangulation};
 use crate::problem::{Note, Problem};
@@ -21,7 +21,7 @@ fn tilted(mut raw: RawMesh) -> RawMesh {
 fn glued(raw: RawMesh, scene: &Scene) -> (Triangulation, Vec<Note>) {
     let (mesh, _) = Triangulation::new(raw, scene).expect("a good mesh");
     let (area, topology) = (total_area(&mesh), euler(&mesh));
-    let (mesh, notes) = glue(mesh, scene).expect("sides that coincide");
+    let Glued { mesh, notes, .. } = glue(mesh, scene).expect("sides that coincide");
     assert_consistent(&mesh);
     assert!((total_area(&mesh) / area - 1.0).abs() < 1e-12);
     assert_eq!(euler(&mesh), topology);
@@ -80,7 +80,7 @@ fn round_off_is_removed_and_more_is_reported() {
     for (shift, reported) in [(1e-13, false), (1e-8, true)] {
         let raw = both(grid("a", [0.0; 2], [1.0; 2], [2, 2]), grid("b", [1.0 + shift, shift], [2.0, 1.0], [2, 4]));
         let (mesh, _) = Triangulation::new(raw, &meet(Gap::Constant(0.0))).expect("a good mesh");
-        let (mesh, notes) = glue(mesh, &meet(Gap::Constant(0.0))).expect("sides that coincide");
+        let Glued { mesh, notes, .. } = glue(mesh, &meet(Gap::Constant(0.0))).expect("sides that coincide");
         assert_eq!(side(&mesh, "a_right", false), side(&mesh, "b_left", true));
         assert_eq!(notes.iter().any(|n| n.weakens_guarantee && n.text.contains("1.4e-8")), reported);
     }
@@ -99,7 +99,7 @@ fn break_points_of_the_gap_become_vertices() {
     let mut rigid = scene(&["a"]);
     rigid.draft.contacts.push(Contact::new(ContactSides::Rigid("a_right".into()), gap));
     let (mesh, _) = Triangulation::new(grid("a", [0.0; 2], [1.0; 2], [2, 2]), &rigid).expect("a good mesh");
-    let (mesh, _) = glue(mesh, &rigid).expect("nothing to match");
+    let Glued { mesh, .. } = glue(mesh, &rigid).expect("nothing to match");
     assert_consistent(&mesh);
     assert_eq!(mesh.boundary("a_right").len(), 3);
 }
@@ -185,7 +185,7 @@ proptest! {
         let scene = across_strips(along.then_some(down));
         let (mesh, _) = Triangulation::new(raw, &scene).expect("a good mesh");
         let (area, before) = (total_area(&mesh), smallest_angle(&mesh));
-        let (mesh, notes) = glue(mesh, &scene).expect("sides that coincide");
+        let Glued { mesh, notes, .. } = glue(mesh, &scene).expect("sides that coincide");
         assert_consistent(&mesh);
         prop_assert!((total_area(&mesh) / area - 1.0).abs() < 1e-12);
         let shortest = (0..mesh.edges.len()).map(|e| mesh.edge_frame(e).0).fold(f64::INFINITY, f64::min);
@@ -208,7 +208,7 @@ fn a_vertex_beside_the_end_of_a_long_edge_stays_paired() {
         for direction in [None, Some([0.0, -1.0])] {
             let scene = across_strips(direction);
             let (mesh, _) = Triangulation::new(strips(&lower, &upper), &scene).expect("a good mesh");
-            let (mesh, _) = glue(mesh, &scene).expect("sides that coincide");
+            let Glued { mesh, .. } = glue(mesh, &scene).expect("sides that coincide");
             assert!((paired(&scene, &mesh) - 1.0).abs() < 1e-9, "{off:e} {direction:?}: a pair is missing");
             let shortest = (0..mesh.edges.len()).map(|e| mesh.edge_frame(e).0).fold(f64::INFINITY, f64::min);
             assert!(shortest > 9e-4, "{off:e} {direction:?}: {shortest:e}");
@@ -222,7 +222,7 @@ fn an_end_of_contact_that_is_moved_costs_the_guarantee() {
     for (upper, weakens) in [([1e-8, 0.5, 1.0], true), ([0.0, 0.5 + 1e-8, 1.0], false)] {
         let scene = across_strips(Some([0.0, -1.0]));
         let (mesh, _) = Triangulation::new(strips(&lower, &upper), &scene).expect("a good mesh");
-        let (mesh, notes) = glue(mesh, &scene).expect("sides that coincide");
+        let Glued { mesh, notes, .. } = glue(mesh, &scene).expect("sides that coincide");
         assert_eq!(mesh.triangles.len(), 8, "nothing is inserted");
         assert_eq!(notes.len(), 1, "{notes:?}");
         assert!(notes[0].text.starts_with("contact sides coincide only up to 1.0e-8: "), "{}", notes[0].text);

@@ -12,6 +12,7 @@ mod cells;
 mod content;
 pub(crate) mod error;
 mod file;
+pub mod file_cells;
 pub mod foreign;
 pub mod glue;
 #[cfg(test)]
@@ -28,7 +29,7 @@ mod overlap;
 mod parts;
 pub mod polygons;
 pub(crate) mod polyline;
-mod quadrilateral;
+pub(crate) mod quadrilateral;
 mod quarter;
 mod select;
 pub(crate) mod sets;
@@ -38,14 +39,20 @@ pub(crate) mod testing;
 mod topology;
 #[cfg(test)]
 mod topology_tests;
+mod uncut;
 
 pub use error::MeshError;
+pub use file_cells::{FileCells, Quadrilateral};
 pub use select::Sets;
+pub use uncut::Uncut;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
 use std::time::Duration;
+
+use glue::Glued;
+
 /// The circles of the edges that stand for an arc, by edge; refining puts new vertices on them.
 pub type Curved = Map<usize, crate::scene::Circle>;
 
@@ -60,13 +67,26 @@ pub fn expected_triangles(scene: &Scene) -> Option<f64> {
     }
 }
 
+/// A scene with its mesh.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// The scene, its coordinates counted as those of the mesh.
+    pub scene: Scene,
+    /// The mesh, with contact sides that match.
+    pub mesh: Triangulation,
+    /// How it was made.
+    pub notes: Vec<Note>,
+    /// The mesh before contact sides were made to match; `None` where they did already.
+    pub uncut: Option<Uncut>,
+}
+
 /// Reads or makes the mesh of `scene`, checks it, and makes contact sides match. The mesh counts its coordinates from a
 /// point in its middle where it lies far from (0, 0), and so does the scene that comes with it. A program that helps to read
 /// a file is given at most `limit`.
 ///
 /// # Errors
 /// [`MeshError`] says what is wrong, where, and what to do.
-pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<Note>), MeshError> {
+pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
         MeshSource::File(_) | MeshSource::Parts(_) => {
             let (mut raw, mut notes) = match &scene.mesh {
@@ -90,11 +110,11 @@ pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<
     };
     let (mesh, more) = Triangulation::new(raw, &scene)?;
     notes.extend(more);
-    let (mesh, more) = glue::glue(mesh, &scene)?;
+    let Glued { mesh, notes: more, uncut } = glue::glue(mesh, &scene)?;
     notes.extend(more);
     let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     notes.extend(scene.coarseness(size));
-    Ok((scene, mesh, notes))
+    Ok(Loaded { scene, mesh, notes, uncut })
 }
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
@@ -108,6 +128,8 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// The corners of the quadrilaterals of which some of the triangles are halves.
+    pub quadrilaterals: Vec<[usize; 4]>,
     /// What else the file groups.
     pub sets: Sets,
 }
@@ -191,6 +213,8 @@ pub struct Triangulation {
     pub triangle_edges: Vec<[usize; 3]>,
     /// Boundary names.
     pub names: Vec<String>,
+    /// Which triangles are halves of a quadrilateral of the mesh file.
+    pub cells: FileCells,
 }
 
 impl Triangulation {

@@ -131,10 +131,11 @@ impl Names {
 /// Adds the cells of `part`, which keep vertices of their own.
 fn append(whole: &mut RawMesh, part: RawMesh) {
     let first = whole.points.len();
-    let RawMesh { points, triangles, segments, shared, sets } = part;
+    let RawMesh { points, triangles, segments, shared, sets, quadrilaterals } = part;
     whole.points.extend(points);
     let cell = |cell: [usize; 3]| cell.map(|v| v + first);
     let edge = |edge: [usize; 2]| edge.map(|v| v + first);
+    whole.quadrilaterals.extend(quadrilaterals.into_iter().map(|corners| corners.map(|v| v + first)));
     whole.triangles.extend(triangles.into_iter().map(|(t, name)| (cell(t), name)));
     whole.segments.extend(segments.into_iter().map(|(s, name)| (edge(s), name)));
     whole.shared.extend(shared.into_iter().map(|mut list| {

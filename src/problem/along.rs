@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-use super::contact::{interpolated_gap, unresolved_gap};
-use super::{ContactPair, Direction, Interface, Note, ProblemError};
+use super::contact::unresolved_gap;
+use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::along::{Facing, facing, outward, turned};
 use crate::mesh::error::at;
@@ -79,6 +79,7 @@ pub(super) fn pair_along(
             length: covered,
             arc: link.arc,
             gap,
+            bow: Bow::of(&contact.gap, link.arc),
         });
     }
     if pairs.is_empty() {
@@ -87,7 +88,6 @@ pub(super) fn pair_along(
     }
     let facing: Vec<Link> = links.iter().filter(|link| matched.contains_key(&edges[link.edge])).copied().collect();
     notes.extend(unresolved_gap(contact, &facing));
-    notes.extend(interpolated_gap(contact, &pairs));
     notes.extend(oblique(contact, &pairs, d));
     Ok(Interface { name: contact.name(), pairs })
 }

@@ -3,11 +3,14 @@
 use std::collections::HashMap;
 
 use super::along::pair_along;
-use super::{ContactPair, Direction, Interface, Note, ProblemError};
+use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::mesh::polyline::{Link, chain, key, same};
-use crate::scene::{Contact, ContactSides, Gap, Scene, Touching};
+use crate::scene::{Contact, ContactSides, Gap, Obstacle, Scene};
+
+/// Cosine of the angle between the direction to an obstacle and a normal below which an edge does not face it.
+const GRAZING: f64 = 0.05;
 
 /// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::glue`].
 pub(super) fn pair_up(
@@ -41,6 +44,7 @@ pub(super) fn pair_up(
     let (breaks, close) = (contact.gap.breaks(), same(&links));
     let on_break = |s: f64| breaks.iter().copied().find(|b| (b - s).abs() <= close).unwrap_or(s);
     let mut pairs = Vec::with_capacity(links.len());
+    let mut averted = 0;
     for link in &links {
         let e = first[link.edge];
         let [a, b] = ends(e);
@@ -58,15 +62,30 @@ pub(super) fn pair_up(
         };
         let ordered = |[p, q]: [usize; 2], turned: bool| if turned { [q, p] } else { [p, q] };
         let (length, normal) = mesh.edge_frame(e);
+        let first = ordered(mesh.edges[e].vertices, link.reversed);
+        let (mut direction, mut gap) = (Direction::constant(normal), link.arc.map(|s| contact.gap.at(on_break(s))));
+        if let Some(obstacle) = &contact.obstacle {
+            let [Some(from), Some(to)] = first.map(|v| obstacle.seen_from(mesh.points[v])) else {
+                let what = format!("the centre of its obstacle lies on '{}'", contact.first());
+                return Err(fault(what, "correct the centre, or the boundary"));
+            };
+            let facing = |n: [f64; 2]| n[0] * normal[0] + n[1] * normal[1] > GRAZING;
+            if !facing(from.0) || !facing(to.0) {
+                averted += 1;
+                continue;
+            }
+            (direction.ends, gap) = ([from.0, to.0], [from.1, to.1]);
+        }
         pairs.push(ContactPair {
             edges: [Some(e), opposite],
-            first: ordered(mesh.edges[e].vertices, link.reversed),
+            first,
             second: opposite.map(|f| ordered(mesh.edges[f].vertices, !link.reversed)),
             normal,
-            direction: Direction::constant(normal),
+            direction,
             length,
             arc: link.arc,
-            gap: link.arc.map(|s| contact.gap.at(on_break(s))),
+            gap,
+            bow: Bow::of(&contact.gap, link.arc.map(on_break)),
         });
     }
     if let Some(e) = facing.values().min() {
@@ -74,9 +93,33 @@ pub(super) fn pair_up(
         let what = format!("the edge {a} to {b} of the second side has no edge of '{}' opposite", contact.first());
         return Err(fault(what, "make the two sides coincide"));
     }
+    if let Some(obstacle) = &contact.obstacle {
+        if pairs.is_empty() {
+            let what = format!("no edge of '{}' faces its obstacle", contact.first());
+            return Err(fault(what, "a line has the body on its left, and a circle on its `side`"));
+        }
+        notes.extend(around_obstacle(contact, obstacle, averted > 0));
+    }
     notes.extend(unresolved_gap(contact, &links));
-    notes.extend(interpolated_gap(contact, &pairs));
     Ok(Interface { name: contact.name(), pairs })
+}
+
+/// Remarks on an obstacle with a place of its own.
+fn around_obstacle(contact: &Contact, obstacle: &Obstacle, averted: bool) -> Vec<Note> {
+    let (name, on) = (contact.name(), contact.first());
+    let note = |weakens_guarantee, text| Note { weakens_guarantee, text };
+    let mut notes = Vec::new();
+    if averted {
+        notes.push(note(false, format!("contact {name}: edges of '{on}' that do not face the obstacle are free")));
+    }
+    if !obstacle.is_straight() {
+        let text = format!(
+            "contact {name}: direction and distance of the circle are taken at the vertices of this mesh, and linear between: \
+             the bounds are for these"
+        );
+        notes.push(note(true, text));
+    }
+    notes
 }
 
 /// A remark when the gap bends inside an edge, or when the mesh begins to see the kinks of a table that stands for a curve.
@@ -105,30 +148,6 @@ pub(super) fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> 
              it stands for a curve, write gap = {{ circle = R, at = s }} or {{ parabola = R, at = s }}"
         ),
     })
-}
-
-/// A remark on how far the gap at the vertices, linear between them, is from the curve that it stands for, at the edges
-/// that touch it. It weakens the guarantee: the bounds are for another gap than the scene's.
-pub(super) fn interpolated_gap(contact: &Contact, pairs: &[ContactPair]) -> Option<Note> {
-    let (Gap::Circle(Touching { radius, at }) | Gap::Parabola(Touching { radius, at })) = contact.gap else {
-        return None;
-    };
-    let touching = pairs.iter().filter(|pair| pair.arc[0] <= at && at <= pair.arc[1]);
-    let longest = touching.map(|pair| pair.length).fold(0.0, f64::max);
-    Some(Note {
-        weakens_guarantee: true,
-        text: format!(
-            "{} a curve of radius {radius:?} at the vertices of this mesh and linear between them: at s = {at:?} up to {:.1e} \
-             away from it. The bounds are for the gap that is linear on every edge, and not guaranteed for the curve",
-            gap_note(contact),
-            longest * longest / (8.0 * radius)
-        ),
-    })
-}
-
-/// The beginning of the remark on a gap, which is that of each mesh.
-pub(super) fn gap_note(contact: &Contact) -> String {
-    format!("contact {}: the gap is that of", contact.name())
 }
 
 /// A convex table with this many steps stands for a curve.

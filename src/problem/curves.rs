@@ -29,6 +29,7 @@ pub(super) fn curved(problem: &Problem) -> Curved {
         let pairs = &interface.pairs;
         let stays = contact.normals == Normals::Facets
             || contact.direction.is_some()
+            || contact.obstacle.is_some()
             || !matches!(contact.gap, Gap::Constant(_));
         if stays {
             continue;
@@ -48,7 +49,9 @@ pub(super) fn curved(problem: &Problem) -> Curved {
 /// made, and another field on a finer one.
 pub(super) fn turned_by_the_mesh(problem: &Problem) -> Option<usize> {
     let on_circles = curved(problem);
-    problem.interfaces.iter().position(|interface| {
+    let from_the_mesh = |index: &usize| problem.scene.contacts[*index].obstacle.is_none();
+    (0..problem.interfaces.len()).filter(from_the_mesh).find(|&index| {
+        let interface = &problem.interfaces[index];
         let turns = |pair: &&ContactPair| !pair.direction.is_constant();
         let follows = |pair: &ContactPair| pair.edges.iter().flatten().all(|e| on_circles.contains_key(e));
         interface.pairs.iter().filter(turns).any(|pair| !follows(pair))
@@ -117,7 +120,12 @@ fn arcs(problem: &Problem, found: &mut Curved) {
                 && *corners != [b, a]
                 && has_room(problem, e, circle)
         };
-        if matches!(problem.conditions[e], Condition::Contact { .. } | Condition::Interior) {
+        let keeps = match problem.conditions[e] {
+            Condition::Contact { interface, .. } => problem.scene.contacts[interface].obstacle.is_none(),
+            Condition::Interior => true,
+            _ => false,
+        };
+        if keeps {
             continue;
         }
         if let Some((_, circle, _)) = arcs.iter().find(stands_for) {

@@ -120,11 +120,12 @@ pub(super) fn inherit(pairs: &mut [ContactPair], points: &[[f64; 2]], coarser: &
     }
 }
 
-/// Gives the pairs of a finer mesh the gap of the coarser pairs that they are parts of, linear along these.
-pub(super) fn keep_gap(pairs: &mut [ContactPair], coarser: &Coarser, interface: usize) {
+/// Gives the pairs of a finer mesh the gap of the coarser pairs that they are parts of, where it is linear along these.
+pub(super) fn keep_gap(pairs: &mut Vec<ContactPair>, coarser: &Coarser, interface: usize) {
     let parent = coarser.parents(interface);
+    pairs.retain(|pair| parent(pair).is_some());
     for pair in pairs {
-        let Some(parent) = parent(pair) else { continue };
+        let Some(parent) = parent(pair).filter(|parent| parent.bow.is_none()) else { continue };
         let [first, last] = parent.gap;
         let of = |end: usize| {
             let whole = pair.first[end] == parent.first[end];

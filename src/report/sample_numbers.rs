@@ -34,6 +34,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         solver: "FEniCSx".into(),
         version: "0.5.2".into(),
         degree,
+        cells: "triangles".into(),
         energy,
         admissible: true,
         relative_error_bound: (energy > lower).then(|| ((energy - lower) / complementary).sqrt()),

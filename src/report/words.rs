@@ -110,6 +110,7 @@ pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
         let reported = report.checks.iter().any(|check| check.name == recomputed && !check.passed);
         let suffix = match (primal.admissible, reported) {
             (_, true) => " (as reported)",
+            (true, _) if primal.is_of_quadrature() => " (its quadrature)",
             (true, _) => "",
             (false, _) => " (not admissible)",
         };

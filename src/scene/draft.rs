@@ -11,9 +11,9 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
-    Traction,
+    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
+    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
+    Target, Touching, Traction,
 };
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -265,23 +265,33 @@ fn support(Support { on, kind }: &Support) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
-            format!("on = {on}, type = \"clamped\", displacement = {}", list(displacement))
+            format!("on = {on}, type = \"clamped\", displacement = {}", affine(displacement))
         }
-        SupportKind::Roller => format!("on = {on}, type = \"roller\""),
+        SupportKind::Roller { direction, displacement } => {
+            let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+            format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
+        }
+    }
+}
+
+fn affine(Affine { value, gradient }: &Affine) -> String {
+    match *gradient == [[0.0; 2]; 2] {
+        true => list(value),
+        false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
     }
 }
 
 fn traction(Traction { on, load }: &Traction) -> String {
     let on = quoted(on);
     match load {
-        Load::Affine { value, gradient } => {
+        Load::Affine(Affine { value, gradient }) => {
             format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),
     }
 }
 
-fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
+fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> String {
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
@@ -297,6 +307,16 @@ fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    if let Some(Obstacle { shape, moved }) = obstacle {
+        let shape = match shape {
+            Shape::Line(ends) => format!("line = {}", rows(ends)),
+            Shape::Circle { centre, radius, inside } => {
+                let side = if *inside { "inside" } else { "outside" };
+                format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
+            }
+        };
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
+    }
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 

@@ -14,6 +14,7 @@ mod fault;
 mod files;
 mod geometry;
 mod nearest;
+mod obstacle;
 mod parse;
 pub(crate) mod polygon;
 mod quantity;
@@ -31,6 +32,7 @@ pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use files::Part;
+pub use obstacle::{Obstacle, Shape};
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
@@ -144,11 +146,45 @@ pub struct Support {
 pub enum SupportKind {
     /// u = displacement.
     Clamped {
-        /// u0, constant along the boundary.
-        displacement: [f64; 2],
+        /// u0.
+        displacement: Affine,
     },
-    /// u_n = 0, T_t = 0.
-    Roller,
+    /// One component of u is prescribed, and there is no traction across it.
+    Roller {
+        /// Unit vector; the outward normal where it is `None`.
+        direction: Option<[f64; 2]>,
+        /// The prescribed component.
+        displacement: f64,
+    },
+}
+
+impl SupportKind {
+    /// Clamped where it is.
+    pub const CLAMPED: Self =
+        SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
+    /// Rollers along the boundary.
+    pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
+}
+
+/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Affine {
+    /// Its value at the origin.
+    pub value: [f64; 2],
+    /// Its gradient.
+    pub gradient: [[f64; 2]; 2],
+}
+
+impl Affine {
+    /// The same everywhere.
+    pub fn constant(value: [f64; 2]) -> Self {
+        Affine { value, gradient: [[0.0; 2]; 2] }
+    }
+
+    /// Its value at `point`.
+    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
+    }
 }
 
 /// A loaded boundary.
@@ -163,13 +199,8 @@ pub struct Traction {
 /// Load on Γ_τ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// P(x) = value + gradient · x (gradient\[i\]\[j\] = ∂P_i/∂x_j).
-    Affine {
-        /// P at the origin.
-        value: [f64; 2],
-        /// Constant gradient of P.
-        gradient: [[f64; 2]; 2],
-    },
+    /// P(x).
+    Affine(Affine),
     /// P = −pressure · n with the outward normal n.
     Pressure(f64),
 }
@@ -185,6 +216,8 @@ pub struct Contact {
     pub normals: Normals,
     /// Unit vector along which sides that need not coincide are matched, and contact acts.
     pub direction: Option<[f64; 2]>,
+    /// A rigid obstacle that is not of the shape of the boundary.
+    pub obstacle: Option<Obstacle>,
 }
 
 /// Where the directions of contact come from.
@@ -209,7 +242,7 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None }
+        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.
@@ -238,7 +271,7 @@ pub enum Gap {
     /// first in (x, y) order; all around a body anticlockwise, from its first vertex in that order. Constant beyond the
     /// first and the last entry.
     Table(Vec<[f64; 2]>),
-    /// The distance of a circle that touches at an arc length, taken at the vertices of each mesh and linear between.
+    /// The distance of a circle that touches at an arc length; from where it turns away by 45° on, that of its tangent.
     Circle(Touching),
     /// The same with a parabola.
     Parabola(Touching),
@@ -269,13 +302,30 @@ impl Gap {
                     g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
                 }
             }
-            Gap::Circle(Touching { radius, at }) => {
-                let x = (s - at).abs();
-                // Without loss of digits near the point that touches; beyond the circle there is nothing to touch.
-                if x < *radius { x * x / (radius + (radius * radius - x * x).sqrt()) } else { x }
-            }
+            Gap::Circle(circle) => circle.distance(s - circle.at),
             Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
         }
+    }
+}
+
+impl Touching {
+    /// How far from where it touches a circle is taken as round: the tangent there leaves the side at 45°.
+    pub fn round(&self) -> f64 {
+        self.radius * std::f64::consts::FRAC_1_SQRT_2
+    }
+
+    /// The distance of a circle from the side, at `x` along it from where it touches.
+    fn distance(&self, x: f64) -> f64 {
+        let Touching { radius, .. } = self;
+        let round = x.abs().min(self.round());
+        // Without loss of digits near the point that touches.
+        round * round / (radius + (radius * radius - round * round).sqrt()) + (x.abs() - round)
+    }
+
+    /// The slope of that distance.
+    pub fn slope(&self, x: f64) -> f64 {
+        let round = x.abs().min(self.round());
+        (round / ((self.radius - round) * (self.radius + round)).sqrt()).copysign(x)
     }
 }
 

@@ -277,13 +277,70 @@ pub(super) struct RawSupport {
     /// The boundary.
     #[schemars(length(min = 1))]
     pub on: At<String>,
-    /// `clamped`: u = displacement. `roller`: no normal displacement, no tangential traction.
+    /// `clamped`: u = displacement. `roller`: one component of u is prescribed, mostly the normal one at zero, and there is no traction across it.
     #[serde(rename = "type")]
     #[schemars(extend("enum" = ["clamped", "roller"]))]
     pub kind: At<String>,
-    /// Prescribed displacement of a clamped boundary, zero where it is missing.
+    /// What is prescribed, zero where it is missing: the displacement of a clamped boundary, the component that a roller holds.
+    pub displacement: Option<At<RawDisplacement>>,
+    /// The component that a roller holds, without traction across it; the outward normal where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
-    pub displacement: Option<Pair>,
+    pub direction: Option<Pair>,
+}
+
+/// A number on rollers; on clamped boundaries a vector, or value + gradient · x.
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Displacement")]
+pub(super) enum RawDisplacement {
+    /// One component.
+    Component(f64),
+    /// The same along the boundary.
+    Constant(#[schemars(with = "[f64; 2]")] Vec<f64>),
+    /// Affine in x.
+    Affine(RawAffine),
+}
+
+/// value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Affine")]
+pub(super) struct RawAffine {
+    /// The value at the origin, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub value: Option<Pair>,
+    /// Rows of the gradient.
+    #[schemars(with = "[[f64; 2]; 2]")]
+    pub gradient: At<Vec<Pair>>,
+}
+
+impl<'de> Deserialize<'de> for RawDisplacement {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrVector;
+        impl<'de> Visitor<'de> for NumberOrVector {
+            type Value = RawDisplacement;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number for rollers, or [x, y], or { value = [x, y], gradient = [[a, b], [c, d]] }")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawDisplacement, A::Error> {
+                RawAffine::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(RawDisplacement::Affine)
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<RawDisplacement, A::Error> {
+                let mut vector = Vec::new();
+                while let Some(entry) = entries.next_element()? {
+                    vector.push(entry);
+                }
+                Ok(RawDisplacement::Constant(vector))
+            }
+        }
+        deserializer.deserialize_any(NumberOrVector)
+    }
 }
 
 /// A boundary that is loaded, by `value` (with or without `gradient`) or by `pressure`.
@@ -323,6 +380,40 @@ pub(super) struct RawContact {
     /// and contact acts along it.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,
+    /// A rigid obstacle with a place of its own, which the boundary `on` may touch, or overlap at the start.
+    pub obstacle: Option<At<Table<RawObstacle>>>,
+    /// By how much the obstacle moves.
+    #[serde(rename = "move")]
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub moved: Option<Pair>,
+}
+
+/// A rigid obstacle: a straight line or a circle.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Obstacle", extend("oneOf" = [{"required": ["line"]}, {"required": ["circle"]}]))]
+pub(super) struct RawObstacle {
+    /// Two points of the line, the body on its left.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub line: Option<At<Vec<Pair>>>,
+    /// A circle.
+    pub circle: Option<At<Table<RawObstacleCircle>>>,
+}
+
+/// A circle and the side on which the body is.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ObstacleCircle")]
+pub(super) struct RawObstacleCircle {
+    /// Its centre.
+    #[schemars(with = "[f64; 2]")]
+    pub centre: Pair,
+    /// Its radius.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: At<f64>,
+    /// Where the body is, `outside` where it is missing.
+    #[schemars(extend("enum" = ["outside", "inside"]))]
+    pub side: Option<At<String>>,
 }
 
 /// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
@@ -339,7 +430,7 @@ pub(super) enum RawGap {
     Curve(RawCurve),
 }
 
-/// The distance of a curve, taken anew at the vertices of each mesh.
+/// The distance of a curve, between vertices too; a circle goes on as its tangent from 45° on.
 #[derive(Debug, Clone, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "GapCurve", extend("oneOf" = [{"required": ["circle"]}, {"required": ["parabola"]}]))]

@@ -29,6 +29,9 @@ pub(super) fn without_gaps<'a>(problem: &Problem, group: &Group<'a>) -> Group<'a
     Group { components: group.components, members: group.members.clone(), runs }
 }
 
+/// The names of the contacts that have to stay open for a motion, and the motion.
+pub(super) type WhileOpen = (Vec<String>, DVector<f64>);
+
 /// Motions beside those that `found` has for `group`, each with the names of the contacts that have to stay open for it.
 ///
 /// # Errors
@@ -38,7 +41,7 @@ pub(super) fn free_while_open(
     group: &Group,
     loads: &LoadResultants,
     found: &Verdict,
-) -> Result<Vec<(Vec<String>, DVector<f64>)>, StaticsError> {
+) -> Result<Vec<WhileOpen>, StaticsError> {
     let with_gap = || group.runs.iter().filter(|run| is_apart(problem, run));
     if found.driven.is_some() || group.members.len() > MANY || with_gap().next().is_none() {
         return Ok(Vec::new());

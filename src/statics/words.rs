@@ -121,7 +121,7 @@ fn relative(components: &Components, motion: &RigidMotion, run: &Run, point: [f6
 
 fn on_roller(problem: &Problem, components: &Components, c: usize) -> bool {
     problem.mesh.edges.iter().zip(&problem.conditions).any(|(edge, condition)| {
-        matches!(condition, Condition::Roller) && edge.triangles[0].map(|t| components.of_triangle[t]) == Some(c)
+        matches!(condition, Condition::Roller { .. }) && edge.triangles[0].map(|t| components.of_triangle[t]) == Some(c)
     })
 }
 

@@ -44,6 +44,8 @@ const STALLED: f64 = 0.1;
 /// of the gap that triangles and contact pairs have to make up.
 const WORTH_ANOTHER: f64 = 0.25;
 const BY_TERMS: f64 = 0.5;
+/// A gap of no more than so many times what rounding of the bounds adds to it is mostly that.
+const TWICE: f64 = 2.0;
 
 /// How far from its tolerance a quantity is taken to be that has no interval yet.
 const UNKNOWN: f64 = 10.0;
@@ -281,7 +283,9 @@ fn open(certified: &Certified, options: &Options, goal: &Goal, gap: &Indicators)
 /// down to be worth another. What the data explain is much where gaps are wide or a body is stiff, and often much more than
 /// what rounding left of these solves.
 fn rounding(certified: &Certified, row: &HistoryRow, goal: &Goal, terms: &Indicators) -> Option<Stop> {
-    let (gap, round_off) = (row.upper - row.lower, certified.bracket.round_off);
+    let bracket = &certified.bracket;
+    let widening = bracket.lower_widening + bracket.free.as_ref().map_or(0.0, |free| free.widening);
+    let (gap, round_off) = (row.upper - row.lower, bracket.round_off.max(TWICE * widening));
     let idle = row.rate.is_some_and(|rate| rate < WORTH_ANOTHER);
     let is_rounding =
         row.relative_error_bound > goal.tolerance && gap <= round_off && (idle || terms.total() <= BY_TERMS * gap);

@@ -82,16 +82,25 @@ struct Told {
 /// The value of a quantity that the displacement tells, or its reactions where no displacement of the mesh moves a contact alone.
 fn told(problem: &Problem, functional: &Functional, judged: &Judged) -> Result<Told, String> {
     let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
-    if let Some(value) = finite(value_of(problem, functional, &judged.field.displacement)) {
+    let of_contact = functional.load.weights.iter().any(|w| !w.is_empty());
+    let reactions = judged.candidate.reactions.as_ref().filter(|_| functional.is_of_contact_alone());
+    let carried =
+        || finite(reactions.and_then(|reactions| weighted_reactions(problem, &functional.load.weights, reactions)));
+    // What lifts a force is linear on triangles, and no displacement on quadrilaterals.
+    let on_quadrilaterals = judged.candidate.on_quadrilaterals.is_some() && functional.kind.is_carried();
+    if let Some(value) = carried().filter(|_| on_quadrilaterals) {
         return Ok(Told { value, remark: None });
     }
-    let of_contact = functional.load.weights.iter().any(|w| !w.is_empty());
+    if let Some(value) = finite(value_of(problem, functional, &judged.field.displacement)) {
+        let remark =
+            "the value is that of its stresses on a motion that is linear on triangles, not of its nodal forces";
+        return Ok(Told { value, remark: on_quadrilaterals.then(|| remark.to_string()) });
+    }
     if functional.lift.is_some() || !of_contact {
         return Err("the displacement has no finite value of it".to_string());
     }
     let shared = "the contact shares a vertex with a support or another contact, or its direction turns";
-    let reactions = judged.candidate.reactions.as_ref().filter(|_| functional.is_of_contact_alone());
-    match finite(reactions.and_then(|reactions| weighted_reactions(problem, &functional.load.weights, reactions))) {
+    match carried() {
         Some(value) => {
             let remark = format!("{shared}: the value is that of the reactions as the model shares them out");
             Ok(Told { value, remark: Some(remark) })

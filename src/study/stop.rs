@@ -23,11 +23,11 @@ pub enum Stop {
     Stalled,
     /// What is left of the error lies on scales that no triangle has.
     Scales(String),
-    /// The gap is no more than what rounding of the data can leave, and stays.
+    /// The gap is no more than what rounding can leave, and stays.
     Rounding {
         /// The gap.
         gap: f64,
-        /// What rounding of the data can leave.
+        /// What rounding can leave.
         round_off: f64,
     },
 }
@@ -47,7 +47,7 @@ impl fmt::Display for Stop {
             Stop::Scales(where_it_is) => f.write_str(where_it_is),
             Stop::Rounding { gap, round_off } => write!(
                 f,
-                "what is left between the bounds, {gap:.1e}, is no more than rounding of the data can leave, {round_off:.1e}, \
+                "what is left between the bounds, {gap:.1e}, is no more than rounding can leave, {round_off:.1e}, \
                  and no longer becomes smaller"
             ),
         }

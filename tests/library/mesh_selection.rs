@@ -83,6 +83,7 @@ fn every_way_to_choose_edges_finds_them() {
         let problem = folder.load(&scene(ONE, &boundaries, FOOT)).unwrap_or_else(|e| panic!("{choice}: {e}"));
         assert_eq!(edges(&problem, "foot"), expected, "{choice}");
         assert_eq!(problem.mesh.triangles.len(), 4);
+        assert!(problem.mesh.is_quadrilateral());
         assert!(problem.notes.iter().any(|note| note.text.contains("2 quadrilaterals")), "{choice}");
     }
 }
@@ -105,6 +106,7 @@ fn bodies_by_number_meet_in_a_contact_along_their_common_edge() {
         let problem = folder.load(&scene(TWO, &sides("left", "right"), &conditions)).expect("a problem");
         let mesh = &problem.mesh;
         assert_eq!(mesh.points.len(), 8, "each body has vertices of its own");
+        assert!(mesh.is_quadrilateral());
         for (name, body) in [("left", 0), ("right", 1)] {
             let [edge] = *mesh.boundary(name) else { panic!("one edge is called {name}") };
             let [Some(triangle), None] = mesh.edges[edge].triangles else { panic!("an outer edge") };
@@ -178,5 +180,6 @@ fn sides_that_are_curved_are_measured_and_weaken_the_guarantee() {
     let foot = "boundaries = [{ name = \"foot\", normal = [0, -1] }]";
     let problem = folder.load(&scene(ONE, foot, FOOT)).expect("a problem");
     let note = problem.notes.iter().find(|note| note.weakens_guarantee).expect("a note");
+    assert!(problem.mesh.is_quadrilateral());
     assert!(note.text.contains("1 curved side") && note.text.contains("1.00e-2"), "{}", note.text);
 }

@@ -61,7 +61,7 @@ fn advice_follows_from_what_ended_the_run() {
     let problem = Problem::load(Scene::parse(&patch, "scene.toml".as_ref()).expect("a scene")).expect("a problem");
     let adapted = run(problem, &Goal { max_triangles: Some(1000), ..Goal::new(1e-12) });
     let (stopped, advice) = (adapted.stopped.expect("out of reach"), adapted.advice.expect("advice"));
-    assert!(stopped.contains("is no more than rounding of the data can leave"), "{stopped}");
+    assert!(stopped.contains("is no more than rounding can leave"), "{stopped}");
     assert!(advice.starts_with("No limit of this run was met") && !advice.contains("--max"), "{advice}");
     assert!(adapted.history.len() <= 2);
 }

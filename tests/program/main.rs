@@ -20,14 +20,17 @@ mod malformed_meshes;
 mod many_bodies;
 mod memory;
 mod mesh;
+mod own_mesh;
 #[path = "../support/pages.rs"]
 mod pages;
 mod printed;
+mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
 mod schemas;
+mod spoiled;
 mod stability;
 mod stale;
 mod statics;

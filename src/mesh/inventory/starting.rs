@@ -62,7 +62,7 @@ fn write(text: &mut String, inventory: &Inventory, mesh: &str, title: &str) -> s
     let first = outer.iter().find(|p| !p.named).map(|p| p.name.clone());
     let first = named(&inventory.boundaries).or(first).unwrap_or_else(|| "support".into());
     let other = usable.iter().map(|n| n.to_string()).chain(outer.iter().filter(|p| !p.named).map(|p| p.name.clone()));
-    let other = other.filter(|name| *name != first).last().unwrap_or_else(|| "load".into());
+    let other = other.rev().find(|name| *name != first).unwrap_or_else(|| "load".into());
     let on = |name: &str| toml_string(&name.replace(['\n', '\r'], " "));
     writeln!(text, "\n# Examples of conditions; a boundary has one at most.")?;
     writeln!(text, "# [[supports]]\n# on = {}\n# type = \"clamped\" # or \"roller\"\n", on(&first))?;

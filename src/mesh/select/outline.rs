@@ -31,6 +31,9 @@ pub(super) struct Outline<'a> {
     size: f64,
 }
 
+/// An edge as a cell runs round it, and the body of the cell.
+type Of = ([usize; 2], Option<usize>);
+
 impl<'a> Outline<'a> {
     pub(super) fn new(raw: &'a RawMesh, groups: &'a [([usize; 3], String)], scene: &'a Scene) -> Self {
         let cells: Vec<([usize; 3], &str)> = named_cells(raw).collect();
@@ -40,7 +43,7 @@ impl<'a> Outline<'a> {
             let body = of.entry(sorted(*cell)).or_default();
             *body = body.or(body_of(name));
         }
-        let mut sides: Map<Pair, Vec<([usize; 2], Option<usize>)>> = Map::default();
+        let mut sides: Map<Pair, Vec<Of>> = Map::default();
         let mut order = Vec::new();
         let mut seen: HashSet<[usize; 3]> = HashSet::new();
         for (cell, _) in cells.iter().filter(|(cell, _)| cell.iter().all(|&v| v < raw.points.len())) {

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
 use crate::report::words::{mean_in_words, upper_from};
-use crate::report::{DualSummary, Energy, Report};
+use crate::report::{DualSummary, Energy, PrimalSummary, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
     html! {
@@ -65,8 +65,11 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
         ("guaranteed", guaranteed.to_string(), "whether the bracket holds for the scene as written"),
     ];
-    let primal_meaning =
-        |admissible| if admissible { "admissible: an upper bound" } else { "not admissible everywhere: no bound" };
+    let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
+        (false, _) => "not admissible everywhere: no bound",
+        (true, true) => "admissible, but the energy is that of a quadrature: no bound",
+        (true, false) => "admissible: an upper bound",
+    };
     html! {
         (scroll("energies", html! {
             table {
@@ -78,7 +81,7 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                     @for primal in &report.primal {
                         tr {
                             td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
-                            td.why { (primal_meaning(primal.admissible)) }
+                            td.why { (primal_meaning(primal)) }
                         }
                     }
                 }
