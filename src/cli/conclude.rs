@@ -144,7 +144,13 @@ impl Session {
                 say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
-                say::line(&format!("  worth a look: {}", remark.name));
+                // What a method does by design is said on the spot.
+                let why = if remark.name.ends_with("/penetration-at-nodes") {
+                    format!(": {}", remark.why)
+                } else {
+                    String::new()
+                };
+                say::line(&format!("  worth a look: {}{why}", remark.name));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {

@@ -19,6 +19,7 @@ mod tolerance;
 pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use check::{Basis, Check};
+pub use forces::NodalForces;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use solution::{Extent, Numbering, Solution};
 pub use stress::{primal_means, von_mises, von_mises_map};

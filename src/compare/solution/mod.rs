@@ -9,14 +9,17 @@
 mod checks;
 mod digits;
 mod sites;
+mod weak;
 
 pub use digits::Extent;
 pub use sites::{Site, Sites, Span};
+pub use weak::{Law, Shape, Station, Weak};
 
 use super::balance::Balance;
 use super::candidate::Candidate;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
+use crate::element::Compliance;
 use crate::problem::{Problem, ROUND_OFF};
 
 /// What a solver may leave in the equations that it solves, relative to what they balance.
@@ -87,6 +90,16 @@ pub struct Solution<'a> {
     pushed: f64,
     /// What rounding of the displacements, to the digits that the file keeps, can leave of the residual.
     pub rounding: f64,
+    /// What supports leave of the nodal forces, contact forces among them.
+    unsupported: Vec<[f64; 2]>,
+    /// Material of every body.
+    materials: Vec<Compliance>,
+    /// How every contact holds in the mean, where it does and not at the nodes.
+    pub weak: Vec<Option<Weak>>,
+    /// Whether contact is claimed to hold in the mean.
+    claims_weak: bool,
+    /// Forces at nodes that contact in the mean exerts beside pressures.
+    beside: Vec<[f64; 2]>,
 }
 
 impl<'a> Solution<'a> {
@@ -101,6 +114,7 @@ impl<'a> Solution<'a> {
         let nodes = Nodes::new(problem.mesh.points.len(), inside);
         let sites = Sites::new(problem, candidate.degree, &holds);
         let mut rest = forces.unsupported(&holds, &nodes);
+        let unsupported = rest.clone();
         let pressing = sites.pressing(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);
@@ -108,7 +122,7 @@ impl<'a> Solution<'a> {
         let balance = Balance::new(problem, candidate, strain)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
-        Ok(Solution {
+        let mut solution = Solution {
             problem,
             candidate,
             rest,
@@ -124,7 +138,15 @@ impl<'a> Solution<'a> {
             rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
             sites,
             forces,
-        })
+            unsupported,
+            materials: problem.materials(),
+            weak: Vec::new(),
+            claims_weak: false,
+            beside: Vec::new(),
+        };
+        solution.recognise();
+        solution.accept();
+        Ok(solution)
     }
 
     /// The residual of the whole field, relative to its scale.

@@ -256,7 +256,7 @@ impl ForeignField {
     /// # Errors
     /// As [`Self::candidate`].
     pub fn matched(&self, problem: &Problem, seconds: f64) -> Result<(Candidate, Vec<Note>), FieldError> {
-        let matched = matching::onto(self, problem)?;
+        let matched = matching::onto(self, problem).map_err(|fault| self.displaced(problem).unwrap_or(fault))?;
         let note = |text: String| Note { weakens_guarantee: false, text };
         let mut notes = Vec::new();
         if matched.inserted > 0 {
@@ -295,6 +295,16 @@ impl ForeignField {
             numbering: Some(matched.numbering),
         };
         Ok((candidate, notes))
+    }
+
+    /// What is wrong with points that the displacement has moved off the mesh of `problem`.
+    fn displaced(&self, problem: &Problem) -> Option<FieldError> {
+        let back = |(x, u): (&[f64; 2], &Option<[f64; 2]>)| Some([x[0] - (*u)?[0], x[1] - (*u)?[1]]);
+        let points: Vec<[f64; 2]> = self.points.iter().zip(&self.values).map(back).collect::<Option<_>>()?;
+        matching::onto(&ForeignField { points, ..self.clone() }, problem).ok()?;
+        let what = "the points of the file are displaced already: they are x + u, and the points x are those of the scene's mesh";
+        let remedy = "write the mesh as it was before it moved (Elmer: `Displace Mesh = False`), or subtract the displacement from the points";
+        Some(self.fault(what.to_string(), remedy))
     }
 
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {
