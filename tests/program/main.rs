@@ -7,6 +7,7 @@ mod claimed;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;
+mod contact_in_the_mean;
 mod diff;
 mod element;
 mod fields;
@@ -17,6 +18,7 @@ mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+mod named_mistakes;
 mod printed;
 mod quantities;
 #[path = "../support/random.rs"]
