@@ -73,12 +73,14 @@ class Space:
         """For each held node its independent directions and the displacement along them."""
         problem, held = self.problem, {}
         for entry in problem["clamped"]:
-            for node in self.along(entry["edge"], problem["edges"][entry["edge"]][0]):
-                for direction, value in zip(np.eye(2), entry["displacement"]):
+            nodes = self.along(entry["edge"], problem["edges"][entry["edge"]][0])
+            first, last = np.broadcast_to(entry["displacement"], (2, 2))
+            for node, part in zip(nodes, np.linspace(0, 1, len(nodes))):
+                for direction, value in zip(np.eye(2), (1 - part) * first + part * last):
                     held.setdefault(node, []).append((direction, value))
         for entry in problem["roller"]:
             for node in self.along(entry["edge"], problem["edges"][entry["edge"]][0]):
-                held.setdefault(node, []).append((np.array(entry["normal"]), 0.0))
+                held.setdefault(node, []).append((np.array(entry["normal"]), entry["displacement"]))
         for entry in problem["pins"]:
             held.setdefault(entry["vertex"], []).append((np.array(entry["direction"]), 0.0))
         for node, conditions in held.items():

@@ -217,8 +217,8 @@ fn displacements(problem: &Problem, values: &mut BTreeMap<&'static str, f64>) ->
     let seconds = solution.seconds;
     values.extend([
         ("seconds", seconds.mesh + seconds.assemble + seconds.solve),
-        ("steps", solution.iterations as f64),
-        ("unknowns", solution.unknowns as f64),
+        ("steps", solution.iterations.unwrap_or(0) as f64),
+        ("unknowns", solution.unknowns.unwrap_or(0) as f64),
     ]);
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! What the displacement model hands back: read, and where it is accepted, compared and reported.
 
+use hypercircle::primal::Space;
 use hypercircle::primal::exchange::parse_solution;
 use hypercircle::study::candidates;
 
@@ -9,7 +10,7 @@ use super::setting::{certified, judge};
 pub fn run(bytes: &[u8]) {
     let certified = certified();
     for degree in [1, 2] {
-        match parse_solution(bytes, degree, &certified.problem) {
+        match parse_solution(bytes, Space::on_triangles(degree), &certified.problem) {
             Ok(solution) => judge(certified, candidates(&certified.problem, vec![solution])),
             Err(error) => assert!(!error.to_string().is_empty()),
         }

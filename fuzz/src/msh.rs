@@ -26,7 +26,7 @@ pub fn follow(raw: RawMesh) {
     let Ok(scene) = Scene::parse(&scene_of(&raw), Path::new("scene.toml")) else { return };
     let Ok((mesh, notes)) = Triangulation::new(raw, &scene) else { return };
     assert!((0..mesh.triangles.len()).all(|t| mesh.area(t) > 0.0), "a triangle without area");
-    let Ok((mesh, _)) = glue::glue(mesh, &scene) else { return };
+    let Ok(glue::Glued { mesh, .. }) = glue::glue(mesh, &scene) else { return };
     let _ = Problem::new(scene, mesh, notes);
 }
 

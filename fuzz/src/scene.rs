@@ -24,7 +24,7 @@ pub fn run(bytes: &[u8]) {
         }
     };
     let small = expected_triangles(&scene).is_some_and(|triangles| triangles <= SMALL as f64);
-    if !small || matches!(scene.mesh, MeshSource::File(_)) {
+    if !small || matches!(scene.mesh, MeshSource::File(_) | MeshSource::Parts(_)) {
         return;
     }
     let problem = match Problem::load(scene) {

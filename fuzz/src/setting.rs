@@ -47,6 +47,7 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         seconds: Vec::new(),
         components: Vec::new(),
         failure: None,
+        advice: None,
     };
     let dossier = assemble(findings, &fields);
     let text = report::json(&dossier.report).expect("every report can be written");

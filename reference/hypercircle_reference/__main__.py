@@ -1,4 +1,4 @@
-"""Command line: ``python3 -m hypercircle_reference problem.json --out DIR --degree 1 --degree 2``.
+"""Command line: ``python3 -m hypercircle_reference problem.json --out DIR --degree 1 --degree 2 --quadrilaterals 1``.
 
 Exit codes: 0 result files written, 2 bad arguments or exchange file, 3 the solver failed, 4 FEniCSx not installed.
 """
@@ -22,9 +22,10 @@ def arguments() -> argparse.Namespace:
     """Parse the command line."""
     parser = argparse.ArgumentParser(prog="hypercircle_reference", description=__doc__.splitlines()[0])
     parser.add_argument("problem", type=Path, help="the exchange file problem.json")
-    parser.add_argument("--out", type=Path, required=True, help="folder for primal-P1.json, primal-P2.json, …")
+    parser.add_argument("--out", type=Path, required=True, help="folder for primal-P1.json, primal-P2.json, …, primal-Q1.json, …")
     degrees = range(1, HIGHEST_DEGREE + 1)
-    parser.add_argument("--degree", type=int, choices=degrees, action="append", help="repeat for several; 1 and 2 if none is given")
+    parser.add_argument("--degree", type=int, choices=degrees, action="append", help="on triangles; repeat for several; 1 and 2 if none is given")
+    parser.add_argument("--quadrilaterals", type=int, choices=degrees, action="append", metavar="DEGREE", help="on quadrilaterals; repeat for several")
     parser.add_argument("--nodal-contact", action="store_true", help="bound the jump at the nodes only")
     parser.add_argument("--sabotage", choices=("flip-sign", "drop-row"), help="plant a bug on purpose")
     return parser.parse_args()
@@ -42,11 +43,13 @@ def run(options: argparse.Namespace) -> None:
     problem = read_problem(options.problem)
     read = perf_counter() - start
     log(comm, f"{len(problem.triangles)} triangles, {comm.size} ranks, DOLFINx {compat.SOLVER_VERSION}")
-    degrees = sorted(set(options.degree or (1, 2)))
-    results = solve_all(comm, problem, degrees, options.nodal_contact, options.sabotage, (imported, read))
+    on_triangles = options.degree or (() if options.quadrilaterals else (1, 2))
+    spaces = [("P", degree) for degree in sorted(set(on_triangles))]
+    spaces += [("Q", degree) for degree in sorted(set(options.quadrilaterals or ()))]
+    results = solve_all(comm, problem, spaces, options.nodal_contact, options.sabotage, (imported, read))
     if comm.rank == 0:
-        for degree, result in zip(degrees, results):
-            write_result(options.out / f"primal-P{degree}.json", result)
+        for (family, degree), result in zip(spaces, results):
+            write_result(options.out / f"primal-{family}{degree}.json", result)
 
 
 def main() -> None:

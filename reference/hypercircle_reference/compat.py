@@ -80,16 +80,22 @@ def jit(comm: MPI.Comm, make: Callable):
     return make()
 
 
-def create_mesh(comm: MPI.Comm, triangles: np.ndarray, points: np.ndarray):
-    """Distribute the triangles (m, 3) with coordinates (n, 2); rank 0 hands in everything, the others nothing."""
+SHAPES = {3: "triangle", 4: "quadrilateral"}
+"""Shapes of cells by their number of vertices."""
+
+
+def create_mesh(comm: MPI.Comm, cells: np.ndarray, points: np.ndarray):
+    """Distribute the cells, triangles (m, 3) or quadrilaterals (m, 4), with coordinates (n, 2); rank 0 hands in everything,
+    the others nothing. The vertices of a quadrilateral are those of a square at (0, 0), (1, 0), (0, 1), (1, 1)."""
+    shape = SHAPES[cells.shape[1]]
     if comm.rank != 0:
-        triangles, points = np.empty((0, 3), dtype=np.int64), np.empty((0, 2))
+        cells, points = np.empty((0, cells.shape[1]), dtype=np.int64), np.empty((0, 2))
     if MODERN:
-        element = basix.ufl.element("Lagrange", "triangle", 1, shape=(2,))
+        element = basix.ufl.element("Lagrange", shape, 1, shape=(2,))
         # Keywords, because 0.10 exchanged the order of the last two.
-        return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, cells=triangles, x=points, e=ufl.Mesh(element)))
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell("triangle", geometric_dimension=2), 1))
-    return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, triangles, points, domain))
+        return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=ufl.Mesh(element)))
+    domain = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.Cell(shape, geometric_dimension=2), 1))
+    return jit(comm, lambda: dolfinx.mesh.create_mesh(comm, cells, points, domain))
 
 
 def owned_cells(mesh) -> int:
@@ -97,21 +103,22 @@ def owned_cells(mesh) -> int:
     return mesh.topology.index_map(mesh.topology.dim).size_local
 
 
-def cell_input_vertices(mesh) -> np.ndarray:
-    """Vertices of each owned cell (m, 3) in the numbering of the points given to :func:`create_mesh`."""
+def cell_input_vertices(mesh, corners: int) -> np.ndarray:
+    """Vertices of each owned cell (m, corners) in the numbering of the points given to :func:`create_mesh`."""
     original = np.asarray(mesh.geometry.input_global_indices)
     # Releases after 0.10 have one table for each type of cell, and warn of the single one.
     tables = getattr(mesh.geometry, "dofmaps", None)
     table = tables[0] if isinstance(tables, (list, tuple)) else mesh.geometry.dofmap
-    return original[_table(table, 3)[: owned_cells(mesh)]]
+    return original[_table(table, corners)[: owned_cells(mesh)]]
 
 
-def vector_space(mesh, degree: int):
-    """Continuous Lagrange displacements of the given degree, their nodes at equal steps."""
+def vector_space(mesh, corners: int, degree: int):
+    """Continuous Lagrange displacements of the given degree on cells with so many corners, their nodes at equal steps."""
+    shape = SHAPES[corners]
     if MODERN:
-        element = basix.ufl.element("Lagrange", "triangle", degree, EQUAL_STEPS, shape=(2,))
+        element = basix.ufl.element("Lagrange", shape, degree, EQUAL_STEPS, shape=(2,))
         return jit(mesh.comm, lambda: dolfinx.fem.functionspace(mesh, element))
-    element = basix.ufl_wrapper.create_vector_element("Lagrange", "triangle", degree, EQUAL_STEPS)
+    element = basix.ufl_wrapper.create_vector_element("Lagrange", shape, degree, EQUAL_STEPS)
     return jit(mesh.comm, lambda: dolfinx.fem.FunctionSpace(mesh, element))
 
 
@@ -124,9 +131,10 @@ def constant_per_cell(mesh, values: np.ndarray):
     return coefficient
 
 
-def cell_nodes(space, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Global node index of each local degree of freedom of the owned cells (m, n), and where it is (m, n, 2)."""
-    local = _table(space.dofmap.list, (degree + 1) * (degree + 2) // 2)[: owned_cells(space.mesh)]
+def cell_nodes(space, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Global node index of each of the ``count`` local degrees of freedom of the owned cells (m, n), and where it is
+    (m, n, 2)."""
+    local = _table(space.dofmap.list, count)[: owned_cells(space.mesh)]
     index = space.dofmap.index_map.local_to_global(local.reshape(-1).astype(np.int32)).reshape(local.shape)
     return index, space.tabulate_dof_coordinates()[local, :2]
 

@@ -131,13 +131,13 @@ def _vertex_equalities(problem: Problem) -> list[tuple[int, np.ndarray, float]]:
     def add(vertex, direction, value):
         found.setdefault((int(vertex), *direction, value), (int(vertex), direction, float(value)))
 
-    for edge, displacement in zip(problem.clamped_edges, problem.clamped_values):
-        for vertex in problem.edges[edge]:
+    for edge, values in zip(problem.clamped_edges, problem.clamped_values):
+        for vertex, displacement in zip(problem.edges[edge], values):
             add(vertex, axes[0], displacement[0])
             add(vertex, axes[1], displacement[1])
-    for edge, normal in zip(problem.roller_edges, problem.roller_normals):
+    for edge, direction, value in zip(problem.roller_edges, problem.roller_directions, problem.roller_values):
         for vertex in problem.edges[edge]:
-            add(vertex, normal, 0.0)
+            add(vertex, direction, value)
     for vertex, direction in zip(problem.pin_vertices, problem.pin_directions):
         add(vertex, direction, 0.0)
     return list(found.values())

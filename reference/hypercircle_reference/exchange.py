@@ -6,6 +6,7 @@ import json
 import os
 import tempfile
 from dataclasses import dataclass
+from math import comb
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,9 @@ class Contact:
 
     ``edges`` (m, 2) and ``second`` (m, 2) hold −1 where the opposite side is a rigid obstacle. ``first`` (m, 2) are
     the end vertices on the first side, ``normal`` (m, 2) its outward unit normal n', ``direction`` (m, 2, 2) the direction
-    of contact n̂ at the two ends, linear between, ``gap`` (m, 2) the gap g at the two ends.
+    of contact n̂ at the two ends, linear between, ``gap`` (m, 2) the gap g at the two ends. Where ``curved`` (m,), ``gap_below``
+    (m, n, n + 2) has the coefficients of degree 2, 3, …, n + 1 of polynomials that lie nowhere above it, filled up with zeros,
+    the last of them the gap itself.
     """
 
     name: str
@@ -42,6 +45,8 @@ class Contact:
     normal: np.ndarray
     direction: np.ndarray
     gap: np.ndarray
+    curved: np.ndarray
+    gap_below: np.ndarray
 
     @property
     def turns(self) -> np.ndarray:
@@ -51,12 +56,34 @@ class Contact:
     def part(self, pairs: np.ndarray) -> "Contact":
         """The contact on some of its pairs."""
         arrays = (self.edges, self.first, self.second, self.normal, self.direction, self.gap)
+        arrays += (self.curved, self.gap_below)
         return Contact(self.name, *(array[pairs] for array in arrays))
+
+    def gap_coefficients(self, degree: int) -> np.ndarray:
+        """Coefficients (m, degree + 1) of polynomials of that degree, 2 or more, that lie nowhere above the gap."""
+        steps = np.arange(degree + 1)
+        found = ((degree - steps) * self.gap[:, :1] + steps * self.gap[:, 1:]) / degree
+        if self.curved.any():
+            found[self.curved] = self.gap_below[self.curved, degree - 2, : degree + 1]
+        return found
+
+    def gap_at(self, part: np.ndarray) -> np.ndarray:
+        """The gap (m, n) at the ``part`` (n,) of the way along each pair."""
+        found = (1.0 - part) * self.gap[:, :1] + part * self.gap[:, 1:]
+        if self.curved.any():
+            degree = self.gap_below.shape[1] + 1
+            weights = [comb(degree, j) * part**j * (1.0 - part) ** (degree - j) for j in range(degree + 1)]
+            found[self.curved] = self.gap_below[self.curved, -1] @ np.array(weights)
+        return found
 
 
 @dataclass(frozen=True)
 class Problem:
-    """What ``problem.json`` says, checked; index arrays are int64, everything else float64."""
+    """What ``problem.json`` says, checked; index arrays are int64, everything else float64.
+
+    ``quadrilaterals`` (m, 4) are the vertices of those cells, and ``halves`` (m, 2) the triangles at the first and at the third of
+    them.
+    """
 
     kinematics: str
     thickness: float
@@ -66,10 +93,13 @@ class Problem:
     body: np.ndarray
     edges: np.ndarray
     triangle_edges: np.ndarray
+    quadrilaterals: np.ndarray
+    halves: np.ndarray
     clamped_edges: np.ndarray
     clamped_values: np.ndarray
     roller_edges: np.ndarray
-    roller_normals: np.ndarray
+    roller_directions: np.ndarray
+    roller_values: np.ndarray
     traction_edges: np.ndarray
     traction_values: np.ndarray
     contacts: list[Contact]
@@ -111,12 +141,17 @@ def parse_problem(data: dict) -> Problem:
     body = _indices(data, "body", (len(triangles),), len(bodies))
     _check_mesh(points, triangles, edges, triangle_edges)
 
+    cells = _records(data, "quadrilaterals") if "quadrilaterals" in data else []
+    quadrilaterals = _index_column(cells, "quadrilaterals", "corners", (4,), len(points))
+    halves = _index_column(cells, "quadrilaterals", "triangles", (2,), len(triangles))
+    _check_halves(quadrilaterals, halves, triangles)
+
     clamped = _records(data, "clamped")
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
     pins = _records(data, "pins")
-    normals = _column(roller, "roller", "normal", (2,))
-    _check_unit(normals, "roller", "normal")
+    along = _column(roller, "roller", "normal", (2,))
+    _check_unit(along, "roller", "normal")
     directions = _column(pins, "pins", "direction", (2,))
     _check_unit(directions, "pins", "direction")
     return Problem(
@@ -128,10 +163,13 @@ def parse_problem(data: dict) -> Problem:
         body=body,
         edges=edges,
         triangle_edges=triangle_edges,
+        quadrilaterals=quadrilaterals,
+        halves=halves,
         clamped_edges=_index_column(clamped, "clamped", "edge", (), len(edges)),
-        clamped_values=_column(clamped, "clamped", "displacement", (2,)),
+        clamped_values=_column([_at_both_ends(entry) for entry in clamped], "clamped", "displacement", (2, 2)),
         roller_edges=_index_column(roller, "roller", "edge", (), len(edges)),
-        roller_normals=normals,
+        roller_directions=along,
+        roller_values=_column([{"displacement": 0.0, **entry} for entry in roller], "roller", "displacement", ()),
         traction_edges=_index_column(tractions, "tractions", "edge", (), len(edges)),
         traction_values=_column(tractions, "tractions", "values", (2, 2)),
         contacts=[
@@ -165,6 +203,8 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
         normal=_column(filled, inside, "normal", (2,)),
         direction=_column(filled, inside, "direction", (2, 2)),
         gap=_column(filled, inside, "gap", (2,)),
+        curved=np.array(["gap_below" in pair for pair in pairs], dtype=bool),
+        gap_below=_gap_below(pairs, inside),
     )
     _check_unit(contact.normal, inside, "normal")
     if np.any(np.abs(np.linalg.norm(contact.direction, axis=2) - 1.0) > 0.1):
@@ -177,6 +217,21 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
             pair = rows[np.argmax(wrong)]
             raise BadExchange(f"{inside}[{pair}]: edges[{side}] does not join the vertices given for that side")
     return contact
+
+
+def _gap_below(pairs: list[dict], where: str) -> np.ndarray:
+    curved = [pair["gap_below"] for pair in pairs if "gap_below" in pair]
+    count = max((len(degrees) for degrees in curved if isinstance(degrees, list)), default=0)
+    found = np.zeros((len(pairs), count, count + 2))
+    for i, pair in enumerate(pairs):
+        if "gap_below" not in pair:
+            continue
+        degrees = pair["gap_below"]
+        if not isinstance(degrees, list) or len(degrees) != count:
+            raise BadExchange(f"{where}[{i}].gap_below is not a list of {count} degrees")
+        for k, coefficients in enumerate(degrees):
+            found[i, k, : k + 3] = _array({"gap_below": coefficients}, "gap_below", f"{where}[{i}]", (k + 3,))
+    return found
 
 
 def _without_second(pair: dict, where: str) -> dict:
@@ -198,6 +253,14 @@ def _check_mesh(points, triangles, edges, triangle_edges) -> None:
         wrong = np.any(np.sort(edges[triangle_edges[:, i]], axis=1) != expected, axis=1)
         if wrong.any():
             raise BadExchange(f"triangle_edges[{np.argmax(wrong)}][{i}] is not the edge opposite vertex {i}")
+
+
+def _check_halves(quadrilaterals, halves, triangles) -> None:
+    for half, corners in enumerate(((0, 1, 3), (2, 3, 1))):
+        expected = np.sort(quadrilaterals[:, corners], axis=1)
+        wrong = np.any(np.sort(triangles[halves[:, half]], axis=1) != expected, axis=1)
+        if wrong.any():
+            raise BadExchange(f"quadrilaterals[{np.argmax(wrong)}].triangles[{half}] is not the half at corner {2 * half}")
 
 
 def _check_unit(vectors: np.ndarray, where: str, key: str) -> None:
@@ -251,6 +314,13 @@ def _scalar(data, key, where) -> float:
 
 def _indices(data, key, shape, count):
     return _in_range(_as_array(_get(data, key), key, shape, "i"), key, count, 0)
+
+
+def _at_both_ends(clamped: dict) -> dict:
+    """A clamped edge with its displacement at both ends, where the file has one vector for the whole edge."""
+    value = clamped.get("displacement")
+    constant = isinstance(value, list) and not any(isinstance(entry, list) for entry in value)
+    return {**clamped, "displacement": [value, value]} if constant else clamped
 
 
 def _column(entries, where, key, shape):

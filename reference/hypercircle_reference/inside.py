@@ -12,11 +12,15 @@ from .lattice import Lattice, bernstein
 
 def inside_supports(problem: Problem, lattice: Lattice, builder: Builder, done: np.ndarray) -> None:
     clamped = lattice.inside_edges(problem.clamped_edges)
-    builder.offset[2 * clamped[..., None] + AXIS] = problem.clamped_values[:, None]
+    steps = (np.arange(1, lattice.degree) / lattice.degree)[:, None]
+    first, last = problem.clamped_values[:, None, 0], problem.clamped_values[:, None, 1]
+    builder.offset[2 * clamped[..., None] + AXIS] = first + steps * (last - first)
     done[clamped] = True
     roller = lattice.inside_edges(problem.roller_edges)
     columns = builder.new_columns(np.full(roller.size, np.inf)).reshape(roller.shape)
-    builder.add(2 * roller[..., None] + AXIS, columns[..., None], _tangent(problem.roller_normals)[:, None])
+    builder.add(2 * roller[..., None] + AXIS, columns[..., None], _tangent(problem.roller_directions)[:, None])
+    along = problem.roller_values[:, None] * problem.roller_directions
+    builder.offset[2 * roller[..., None] + AXIS] = along[:, None]
     done[roller] = True
 
 
@@ -38,7 +42,7 @@ def inside_contacts(problem: Problem, lattice: Lattice, builder: Builder, done: 
         shape = np.eye(k - 1) if nodal else bernstein(k)[1:-1, 1:-1]
         follower, leader, sign = _sides(problem, lattice, contact)
         moved = 2 * follower[..., None] + AXIS
-        bounds = ((k - steps) * contact.gap[:, :1] + steps * contact.gap[:, 1:]) / k
+        bounds = contact.gap_at(steps / k) if nodal else contact.gap_coefficients(k)[:, 1:-1]
         jump = builder.new_columns(bounds.reshape(-1)).reshape(bounds.shape)
         amount = sign[:, None, None, None] * shape[None, :, :, None] * normal[:, :, None]
         builder.add(moved[:, :, None], jump[:, None, :, None], amount)
@@ -60,13 +64,12 @@ def inside_turning(problem: Problem, lattice: Lattice, builder: Builder, done: n
     """Where n̂ turns, u' = u'' + J: unknowns are c_1, …, c_k, the parts of J_1, …, J_(k−1) without any of them, and the
     displacement of the stiffer side."""
     k = lattice.degree
-    r = np.arange(1, k + 1)
     for index, whole in enumerate(problem.contacts):
         pairs = np.flatnonzero(whole.turns)
         contact = whole.part(pairs)
         follower, leader, sign = _sides(problem, lattice, contact)
         moved = _dofs(follower)
-        bounds = ((k + 1 - r) * contact.gap[:, :1] + r * contact.gap[:, 1:]) / (k + 1)
+        bounds = contact.gap_coefficients(k + 1)[:, 1:-1]
         columns = builder.new_columns(bounds.reshape(-1)).reshape(bounds.shape)
         turning = _Turning(contact, k)
         builder.add(moved[:, :, None], columns[:, None, :], sign[:, None, None] * turning.of_rows)

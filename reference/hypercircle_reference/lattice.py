@@ -1,6 +1,7 @@
 """The nodes of continuous displacements of degree k, and the polynomials along an edge that they carry.
 
-Nodes lie at equal steps. Their numbers: the vertices, then for each edge the k − 1 inside it from its first vertex to its
+Nodes lie at equal steps. A quadrilateral that two triangles make has the nodes of both, at equal steps of the square that is
+mapped onto it. Their numbers: the vertices, then for each edge the k − 1 inside it from its first vertex to its
 second, then for each triangle the (k − 1)(k − 2)/2 inside it, the weight of its first corner falling and, where that is
 equal, the weight of its second.
 
@@ -33,6 +34,13 @@ def traction_weights(degree: int) -> np.ndarray:
 def weights(degree: int) -> np.ndarray:
     """Weights of the corners, times k, at each node of a triangle (n, 3), the first falling, then the second."""
     return np.array([(degree - r, r - l, l) for r in range(degree + 1) for l in range(r + 1)])
+
+
+def square(degree: int) -> np.ndarray:
+    """Where the nodes of a quadrilateral are on the unit square ((k + 1)², 2), row by row, in the order of
+    :meth:`Lattice.of_quadrilaterals`."""
+    steps = np.arange(degree + 1) / degree
+    return np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
 
 
 @dataclass(frozen=True)
@@ -92,3 +100,21 @@ class Lattice:
             nodes[:, side[0]] = problem.triangles[:, first]
             nodes[:, side[1:k]] = self.along(problem, problem.triangle_edges[:, i], problem.triangles[:, first])
         return nodes
+
+    def of_quadrilaterals(self, problem) -> np.ndarray:
+        """Nodes of every quadrilateral (m, (k + 1)²), in the order of :func:`square`."""
+        k, at, nodes = self.degree, weights(self.degree), self.of_triangles(problem)
+        place = np.full((k + 1, k + 1, k + 1), -1)
+        place[tuple(at.T)] = np.arange(len(at))
+        out = np.empty((len(problem.quadrilaterals), (k + 1) ** 2), dtype=np.int64)
+        # Where the corners of the quadrilateral are among those of its two triangles.
+        corner = [problem.triangles[t][:, :, None] == problem.quadrilaterals[:, None, :] for t in problem.halves.T]
+        for j in range(k + 1):
+            for i in range(k + 1):
+                near = i + j <= k
+                parts = (k - i - j, i, 0, j) if near else (0, k - j, i + j - k, k - i)
+                own = corner[0] if near else corner[1]
+                alpha = own @ np.array(parts)
+                half = problem.halves[:, 0 if near else 1]
+                out[:, j * (k + 1) + i] = nodes[half, place[tuple(alpha.T)]]
+        return out

@@ -1,7 +1,10 @@
-"""The weak form: stiffness and load of continuous displacements of degree k on the given triangles.
+"""The weak form: stiffness and load of continuous displacements of degree k on the given triangles or quadrilaterals.
 
 𝓛(v) = ½ ∫ c e(v):e(v) − ∫ F·v − ∫ P·v, each integral times the thickness. FEniCSx assembles stiffness and body force;
 tractions, affine on each edge, are integrated in closed form against the traces of the shape functions.
+
+On a quadrilateral the shape functions are the images of polynomials of degree k in each of two coordinates of a square, and the
+integrals those of a Gauss rule: exact on parallelograms, and elsewhere part of what the model is.
 """
 
 from __future__ import annotations
@@ -12,11 +15,14 @@ from time import perf_counter
 import numpy as np
 import ufl
 
-from hypercircle_process import Failure
+from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
-from .lattice import Lattice, traction_weights, weights
+from .lattice import Lattice, square, traction_weights, weights
+
+GAUSS_POINTS = 6
+"""Points of the rule on quadrilaterals, in each direction."""
 
 OFF_STEP = 0.1
 """How far from a node of the lattice, in steps, a node of FEniCSx may seem to be on a very thin triangle."""
@@ -63,13 +69,19 @@ class Model:
 
 
 class Mesh:
-    """The triangles, distributed, with the way back to the numbering of the exchange file."""
+    """The triangles, distributed, with the way back to the numbering of the exchange file.
+
+    ``triangles`` (m,) is a triangle of the exchange file in each owned cell.
+    """
+
+    corners = 3
+    measure = ufl.dx
 
     def __init__(self, comm, problem: Problem):
         self.comm = comm
         self.problem = problem
         self.mesh = compat.create_mesh(comm, problem.triangles, problem.points)
-        corners = compat.cell_input_vertices(self.mesh)
+        corners = compat.cell_input_vertices(self.mesh, self.corners)
         self.triangles = self._triangle(self._edge(corners[:, 1], corners[:, 2]), corners[:, 0])
 
     def _edge(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -84,13 +96,18 @@ class Mesh:
 
     def numbering(self, space, lattice: Lattice) -> Numbering:
         """Gather the numbering of ``space`` from all ranks."""
-        index, points = compat.cell_nodes(space, lattice.degree)
-        ours = np.take_along_axis(lattice.of_triangles(self.problem)[self.triangles], self._places(points, lattice), axis=1)
+        nodes = self._nodes(lattice)
+        index, points = compat.cell_nodes(space, nodes.shape[1])
+        ours = np.take_along_axis(nodes, self._places(points, lattice), axis=1)
         pieces = self.comm.allgather((ours.reshape(-1), index.reshape(-1)))
         nodes = np.full(lattice.ends[2], -1, dtype=np.int64)
         for node, number in pieces:
             nodes[node] = number
         return Numbering(nodes, np.array(self.comm.allgather(compat.owned_nodes(space))))
+
+    def _nodes(self, lattice: Lattice) -> np.ndarray:
+        """The nodes of the owned cells in the order of the lattice."""
+        return lattice.of_triangles(self.problem)[self.triangles]
 
     def _places(self, points: np.ndarray, lattice: Lattice) -> np.ndarray:
         """Which node of its triangle each point (m, n, 2) of the owned cells is, in the order of the lattice."""
@@ -107,6 +124,43 @@ class Mesh:
         return found
 
 
+class QuadrilateralMesh(Mesh):
+    """The quadrilaterals in place of the triangles, which they have to cover."""
+
+    corners = 4
+    # Degree 2n − 1 asks for n points in each direction.
+    measure = ufl.dx(metadata={"quadrature_degree": 2 * GAUSS_POINTS - 1})
+
+    def __init__(self, comm, problem: Problem):
+        if 2 * len(problem.quadrilaterals) != len(problem.triangles):
+            raise BadExchange("quadrilaterals: some triangles are in none, and a model on quadrilaterals covers all")
+        self.comm = comm
+        self.problem = problem
+        # From around the cell to row by row, as FEniCSx has a square.
+        self.mesh = compat.create_mesh(comm, problem.quadrilaterals[:, [0, 1, 3, 2]], problem.points)
+        corners = compat.cell_input_vertices(self.mesh, self.corners)
+        given = self._diagonal(problem.quadrilaterals[:, 0], problem.quadrilaterals[:, 2])
+        self.cells = _find(given, self._diagonal(corners[:, 0], corners[:, 3]))
+        self.triangles = problem.halves[self.cells, 0]
+
+    def _diagonal(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """A number for the diagonal between two vertices, which no other cell has."""
+        return np.minimum(a, b) * len(self.problem.points) + np.maximum(a, b)
+
+    def _nodes(self, lattice: Lattice) -> np.ndarray:
+        return lattice.of_quadrilaterals(self.problem)[self.cells]
+
+    def _places(self, points: np.ndarray, lattice: Lattice) -> np.ndarray:
+        x, y = square(lattice.degree).T
+        shape = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
+        ours = shape @ self.problem.points[self.problem.quadrilaterals[self.cells]]
+        apart = np.linalg.norm(points[:, :, None] - ours[:, None], axis=3)
+        found = np.argmin(apart, axis=2)
+        if np.any(np.sort(found, axis=1) != np.arange(found.shape[1])):
+            raise Failure("FEniCSx has its nodes elsewhere than at equal steps")
+        return found
+
+
 def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     """Assemble stiffness and load of degree ``degree``.
 
@@ -115,7 +169,7 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     """
     problem, comm = mesh.problem, mesh.comm
     start = perf_counter()
-    space = compat.vector_space(mesh.mesh, degree)
+    space, dx = compat.vector_space(mesh.mesh, mesh.corners, degree), mesh.measure
     materials = np.array([_lame(body, problem.kinematics, flip_sign) for body in problem.bodies]) * problem.thickness
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
@@ -124,12 +178,12 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     displacement = compat.function(space)
 
     def work(u, v):
-        return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * ufl.dx
+        return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * dx
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
     energy = compat.form(comm, 0.5 * work(displacement, displacement))
-    linear = compat.form(comm, ufl.inner(force, v) * ufl.dx)
+    linear = compat.form(comm, ufl.inner(force, v) * dx)
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)

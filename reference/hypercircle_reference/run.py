@@ -1,4 +1,4 @@
-"""From a problem to the result files' contents: mesh once, then each degree on it."""
+"""From a problem to the result files' contents: each kind of cells once, then each degree on them."""
 
 from __future__ import annotations
 
@@ -12,22 +12,27 @@ from . import compat
 from .constraints import Constraints, build as build_constraints
 from .exchange import Problem
 from .lattice import Lattice
-from .model import Mesh, build as build_model
+from .model import GAUSS_POINTS, Mesh, QuadrilateralMesh, build as build_model
 from .solve import Solution, minimise, without_strongest_row
 
 
-def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=None, seconds=(0.0, 0.0)) -> list[dict]:
-    """One result per degree, in the layout of ``primal-P*.json``; equal on all ranks.
+MESHES = {"P": Mesh, "Q": QuadrilateralMesh}
+"""The cells of each family of displacements."""
+
+
+def solve_all(comm, problem: Problem, spaces, nodal_contact=False, sabotage=None, seconds=(0.0, 0.0)) -> list[dict]:
+    """One result for each of ``spaces``, pairs of family and degree, in the layout of ``primal-P*.json``; equal on all ranks.
 
     ``seconds`` is what imports and reading took before; reading counts as part of making the mesh.
     """
     start = perf_counter()
-    mesh = Mesh(comm, problem)
+    meshes = {family: MESHES[family](comm, problem) for family in dict.fromkeys(family for family, _ in spaces)}
     extent = float(np.max(np.ptp(problem.points, axis=0)))
     seconds_import, seconds_mesh = seconds[0], seconds[1] + perf_counter() - start
     results = []
-    for degree in degrees:
-        log(comm, f"degree {degree}")
+    for family, degree in spaces:
+        mesh = meshes[family]
+        log(comm, f"{family}{degree}")
         start = perf_counter()
         constraints = build_constraints(problem, degree, nodal_contact)
         seconds_constraints = perf_counter() - start
@@ -45,8 +50,11 @@ def solve_all(comm, problem: Problem, degrees, nodal_contact=False, sabotage=Non
             "solve": perf_counter() - start,
         }
         phases["total"] = sum(phases.values())
-        log(comm, f"degree {degree}: energy {solution.energy!r}, {solution.iterations} steps")
-        results.append(_result(comm, problem, degree, nodal_contact, constraints, solution, phases))
+        log(comm, f"{family}{degree}: energy {solution.energy!r}, {solution.iterations} steps")
+        result = _result(comm, problem, degree, nodal_contact, constraints, solution, phases)
+        if family == "Q":
+            result.update(cells="quadrilaterals", gauss_points=GAUSS_POINTS)
+        results.append(result)
     return results
 
 

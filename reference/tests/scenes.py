@@ -14,7 +14,7 @@ class Builder:
         self.data = {
             "format": "hypercircle-exchange", "version": 1, "kinematics": kinematics, "thickness": thickness,
             "bodies": [], "points": [], "triangles": [], "body": [], "edges": [], "triangle_edges": [],
-            "clamped": [], "roller": [], "tractions": [], "contacts": [], "pins": [],
+            "clamped": [], "roller": [], "tractions": [], "contacts": [], "pins": [], "quadrilaterals": [],
         }  # fmt: skip
         self.edge_of = {}
 
@@ -52,8 +52,11 @@ class Builder:
             for i in range(nx):
                 a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
                 split = [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
+                first = len(self.data["triangles"])
                 for corners in split:
                     self.triangle(body, corners)
+                corners = [b, c, d, a] if (i + j) % 2 == 0 else [a, b, c, d]
+                self.data["quadrilaterals"].append({"corners": corners, "triangles": [first, first + 1]})
         return {
             "bottom": [at(i, 0) for i in range(nx + 1)],
             "right": [at(nx, j) for j in range(ny + 1)],

@@ -9,7 +9,7 @@ use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
-use crate::problem::{Condition, Problem};
+use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
     let mut gap = Sum::default();
     for (_, pair) in problem.pairs().enumerate().filter(|(p, _)| counted.pair(*p)) {
         let t = contact_traction(problem, stress, pair);
-        gap.add(pair.length * side::integral(&t, &pair.gap));
+        gap.add(pair.length * side::integral(&t, &pair.gap_polynomial()));
     }
     let t = problem.scene.thickness;
     Complementary {
@@ -98,6 +98,20 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
     }
 }
 
+/// What the pressures of `stress` do at most on the part of the gaps that lies above their polynomials, thickness included.
+pub fn work_of_excess(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> f64 {
+    let curved = problem.pairs().enumerate().filter(|(p, pair)| pair.bow.excess() > 0.0 && counted.pair(*p));
+    let work = curved.map(|(_, pair)| excess_work(pair, &contact_traction(problem, stress, pair)));
+    problem.scene.thickness * work.sum::<f64>()
+}
+
+/// ∫ |t| (g − P) ds at most, for a traction by its coefficients, per unit thickness.
+pub fn excess_work(pair: &ContactPair, t: &[f64]) -> f64 {
+    let largest: Vec<f64> = t.iter().map(|t| t.abs()).collect();
+    // Like 4 t (1 − t): the two agree at the ends.
+    pair.length * pair.bow.excess() * side::integral(&largest, &[0.0, 2.0, 0.0])
+}
+
 /// ∫_{Γu} T·u0 of a stress, per unit thickness.
 pub fn support_work(problem: &Problem, stress: &StressField) -> Sum {
     support_work_of(problem, stress, Counted::ALL)
@@ -107,14 +121,15 @@ fn support_work_of(problem: &Problem, stress: &StressField, counted: Counted<'_>
     let mesh = &problem.mesh;
     let mut work = Sum::default();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        if let Condition::Clamped(u0) = condition
+        if let Some(ends) = condition.prescribed().filter(|ends| *ends != [[0.0; 2]; 2])
             && counted.boundary_edge(mesh, e)
         {
             let (length, _) = mesh.edge_frame(e);
             let degree = mesh.edges[e].triangles[0].map_or(1, |t| stress.degree(t));
             let tractions = stress.edge_traction(&problem.mesh, e, 0, degree);
-            for t in &tractions {
-                work.extend([0, 1].map(|c| length / tractions.len() as f64 * (t[c] * u0[c])));
+            let u0 = side::linear_moments(ends, length, degree);
+            for (t, u0) in tractions.iter().zip(u0) {
+                work.extend([0, 1].map(|c| t[c] * u0[c]));
             }
         }
     }
@@ -157,21 +172,7 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
             if !counted.triangle(t) {
                 return [0.0; 2];
             }
-            let corners = mesh.corners(t);
-            let area = sub_area(corners);
-            let material = &materials[mesh.body[t]];
-            let samples = Samples::of(v.degree(t) - 1, 0);
-            let (mut strain, mut sensitivity) = (0.0, 0.0);
-            let mut strains = Strains::default();
-            for sub in 0..3 {
-                strains.on(corners, v, t, sub);
-                for (q, (_, weight)) in samples.points.iter().enumerate() {
-                    let e = strains.sample(samples, q);
-                    strain += 0.5 * weight * area * material.strain_product(e, e);
-                    sensitivity += weight * area * absolute(material.stress(e)) * strains.spread(samples, q);
-                }
-            }
-            [strain, sensitivity * shape(corners)]
+            strain_with(&materials[mesh.body[t]], mesh.corners(t), v, t)
         })
         .collect();
     let strain: Sum = terms.iter().map(|t| t[0]).collect();
@@ -185,6 +186,34 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
         magnitude: t * (strain.magnitude() + work.magnitude()),
         sensitivity: t * (sensitivity + work.magnitude()),
     }
+}
+
+/// ½∫ c e(v):e(v) on triangle `t`, per unit thickness, and what a relative error of one in every number could change.
+pub fn strain_on(problem: &Problem, v: &Displacement, t: usize) -> [f64; 2] {
+    strain_of(problem, v, t, t)
+}
+
+/// The same for the displacement that `v` has as its triangle `own`, on triangle `t`.
+pub fn strain_of(problem: &Problem, v: &Displacement, own: usize, t: usize) -> [f64; 2] {
+    let body = &problem.scene.bodies[problem.mesh.body[t]];
+    let material = Compliance::new(problem.scene.kinematics, body.young, body.poisson);
+    strain_with(&material, problem.mesh.corners(t), v, own)
+}
+
+fn strain_with(material: &Compliance, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
+    let area = sub_area(corners);
+    let samples = Samples::of(v.degree(t) - 1, 0);
+    let (mut strain, mut sensitivity) = (0.0, 0.0);
+    let mut strains = Strains::default();
+    for sub in 0..3 {
+        strains.on(corners, v, t, sub);
+        for (q, (_, weight)) in samples.points.iter().enumerate() {
+            let e = strains.sample(samples, q);
+            strain += 0.5 * weight * area * material.strain_product(e, e);
+            sensitivity += weight * area * absolute(material.stress(e)) * strains.spread(samples, q);
+        }
+    }
+    [strain, sensitivity * shape(corners)]
 }
 
 /// The work of the loads on `v`, ∫F·v + ∫P·v, per unit thickness.

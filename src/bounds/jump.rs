@@ -14,6 +14,23 @@ pub fn side_coefficients(problem: &Problem, v: &Displacement, e: usize) -> Vec<[
 
 /// The coefficients of the opening g − (v' − v'')·n̂ along `pair`.
 pub fn openings(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
+    let jumps = jumps(problem, v, pair);
+    let degree = jumps.len().max(pair.gap_polynomial().len()) - 1;
+    less(&pair.gap_below(degree), &side::elevate(&jumps, degree))
+}
+
+/// Coefficients of degree `degree`, of which no polynomial with smaller ones opens wider than `v` does along `pair`.
+pub fn openings_within(problem: &Problem, v: &Displacement, pair: &ContactPair, degree: usize) -> Option<Vec<f64>> {
+    let jumps = jumps(problem, v, pair);
+    (jumps.len() <= degree + 1).then(|| less(&pair.gap_below(degree), &side::elevate(&jumps, degree)))
+}
+
+fn less(gap: &[f64], jumps: &[f64]) -> Vec<f64> {
+    gap.iter().zip(jumps).map(|(gap, jump)| gap - jump).collect()
+}
+
+/// The coefficients of (v' − v'')·n̂ along `pair`.
+pub fn jumps(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
     let along = |e: usize, start: usize| {
         let mut u = side_coefficients(problem, v, e);
         if problem.mesh.edges[e].vertices[0] != start {
@@ -25,7 +42,7 @@ pub fn openings(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<
     let other = pair.edges[1].zip(pair.second).map_or_else(|| vec![0.0; 2], |(e, second)| along(e, second[0]));
     let degree = own.len().max(other.len()) - 1;
     let [own, other] = [own, other].map(|u| side::elevate(&u, degree));
-    side::linear(pair.gap, degree).zip(own.iter().zip(&other)).map(|(gap, (own, other))| gap - (own - other)).collect()
+    own.iter().zip(&other).map(|(own, other)| own - other).collect()
 }
 
 /// The coefficients of u·n̂: of the degree of u, or of one more where n̂ turns.

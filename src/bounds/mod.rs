@@ -2,6 +2,7 @@
 
 mod at_rest;
 mod bracket;
+mod cells;
 mod counted;
 pub mod energy;
 mod gap;
@@ -17,9 +18,10 @@ pub mod upper;
 
 pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound, work_of_remainders};
-pub use energy::{Complementary, Potential, complementary, potential, support_work, work, work_of};
+pub use cells::{Cell, Enclosed, strain_energy, strain_energy_by};
+pub use energy::{Complementary, Potential, complementary, excess_work, potential, support_work, work, work_of};
 pub use gap::{LocalGap, local_gap};
-pub use jump::{openings, side_coefficients};
+pub use jump::{jumps, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;

@@ -68,13 +68,15 @@ pub fn balance_rounding(
 /// The traction on rollers times the displacement across them; thickness included.
 pub fn across_rollers(problem: &Problem, stress: &StressField, v: &Displacement, counted: Counted<'_>) -> f64 {
     let term = |e: usize| {
-        let (length, [x, y]) = problem.mesh.edge_frame(e);
-        let across = |values: &[[f64; 2]]| values.iter().map(|v| (v[0] * x + v[1] * y).abs()).fold(0.0, f64::max);
+        let Condition::Roller { direction: [x, y], displacement } = problem.conditions[e] else { return 0.0 };
+        let (length, _) = problem.mesh.edge_frame(e);
+        let along = |values: &[[f64; 2]], less: f64| {
+            values.iter().map(|v| (v[0] * x + v[1] * y - less).abs()).fold(0.0, f64::max)
+        };
         let degree = problem.mesh.edges[e].triangles[0].map_or(0, |t| stress.degree(t));
         let traction = stress.edge_traction(&problem.mesh, e, 0, degree);
-        length * across(&traction) * across(&side_coefficients(problem, v, e))
+        length * along(&traction, 0.0) * along(&side_coefficients(problem, v, e), displacement)
     };
-    let is_roller = |e: &usize| problem.conditions[*e] == Condition::Roller && counted.boundary_edge(&problem.mesh, *e);
-    let rollers = (0..problem.mesh.edges.len()).filter(is_roller);
+    let rollers = (0..problem.mesh.edges.len()).filter(|e| counted.boundary_edge(&problem.mesh, *e));
     problem.scene.thickness * rollers.map(term).sum::<f64>()
 }

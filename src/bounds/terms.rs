@@ -1,7 +1,7 @@
 //! The terms of both sides of a bracket: of a whole problem, or those that one of several ranks counts, and their sum.
 
 use super::counted::Counted;
-use super::energy::{Complementary, Potential, complementary_of, potential_of};
+use super::energy::{Complementary, Potential, complementary_of, potential_of, work_of_excess};
 use super::gap::{constitutive_error, contact_error};
 use super::rounding::{ROUNDING_PER_TERM, across_rollers, balance_rounding, largest_by_edge};
 use super::sum::Sum;
@@ -13,7 +13,7 @@ use crate::problem::Problem;
 pub struct LowerTerms {
     /// The complementary energy of λ_h.
     pub complementary: Complementary,
-    /// By how much rounding can have moved it, without what is left of equilibrium.
+    /// By how much rounding, and gaps that lie above their polynomials, can have moved it, without what is left of equilibrium.
     pub rounding: f64,
 }
 
@@ -24,7 +24,8 @@ impl LowerTerms {
         let largest = largest_by_edge(problem, moments);
         let size = |t: usize| problem.mesh.triangle_edges[t].map(|e| largest[e]).into_iter().fold(0.0, f64::max);
         let balance = balance_rounding(problem, stress, size, counted);
-        LowerTerms { complementary, rounding: ROUNDING_PER_TERM * complementary.sensitivity + balance }
+        let rounding = ROUNDING_PER_TERM * complementary.sensitivity + balance;
+        LowerTerms { complementary, rounding: rounding + work_of_excess(problem, stress, counted) }
     }
 
     /// The numbers, as another process takes them.

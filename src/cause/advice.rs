@@ -13,6 +13,8 @@ pub enum Kind {
     Material,
     /// The thickness.
     Thickness,
+    /// The element, or how it is integrated.
+    Element,
     /// A triangle, a vertex or an equation.
     Local,
     /// Displacements at the wrong nodes.
@@ -43,6 +45,7 @@ impl Kind {
             "body" if name.ends_with("/body_force") => Kind::Load,
             "body" | "bodies" | "stiffness" | "kinematics" => Kind::Material,
             "thickness" => Kind::Thickness,
+            "integration" => Kind::Element,
             "displacement" | "value" => Kind::Values,
             "points" => Kind::Moved,
             "precision" => Kind::Precision,
@@ -173,13 +176,21 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "One equation is not that of the scene: a force or a support acts at this node alone.",
             "Look for a point load, a constraint or an overwritten row at the marked node.",
         ],
+        (Kind::Element, "reduced") => [
+            "The equations are those of fewer points: a field may have motions that store no energy at these, seen as hourglass patterns.",
+            "Choose the fully integrated element of the program, or leave --solution out: the bound of the error holds for any field.",
+        ],
+        (Kind::Element, _) => [
+            "The element is another than the plain one of its nodes, which is no mistake in itself.",
+            "Choose the fully integrated element of the program, or leave --solution out: the bound of the error holds for any field.",
+        ],
         (Kind::Local, _) => [
             "All but a few equations are met: the assembly goes wrong at one spot.",
             "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
         ],
         (Kind::Equilibrium, "untried") => [
-            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 alone.",
-            "Run degrees 1 and 2 of the same solver beside it: what is wrong with those is named.",
+            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 on triangles alone.",
+            "Run degrees 1 and 2 of the same solver on triangles beside it (of FEniCSx: --primal-cells triangles): what is wrong with those is named.",
         ],
         (Kind::Equilibrium, _) => [
             "The displacement minimises another energy than that of the scene, or the solver stopped early. No single mistake that is looked for explains it.",

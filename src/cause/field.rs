@@ -96,7 +96,8 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     }
     if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
         let what = "stresses do not balance the loads".to_string();
-        let name = if candidate.higher.is_some() { "equilibrium/untried" } else { "equilibrium" };
+        let untried = candidate.higher.is_some() && candidate.cells.is_empty();
+        let name = if untried { "equilibrium/untried" } else { "equilibrium" };
         return made(Kind::Equilibrium, name, what, place::unbalanced(problem, judged));
     }
     if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {

@@ -37,8 +37,14 @@ pub struct Cause {
 }
 
 /// The causes of all checks that decide and did not pass: first what is wrong with this program's own solution, then
-/// with the displacement fields, then what is left. Every such check is in one of them.
-pub fn causes(problem: &Problem, comparison: &Comparison, diagnosis: &[Diagnosis]) -> Vec<Cause> {
+/// with the displacement fields, then what is left. Every such check is in one of them. `refinement` is what to do where a
+/// run ended before its tolerance.
+pub fn causes(
+    problem: &Problem,
+    comparison: &Comparison,
+    diagnosis: &[Diagnosis],
+    refinement: Option<&str>,
+) -> Vec<Cause> {
     let mut failing: Vec<&Check> = comparison.checks.iter().filter(|c| !c.passed && c.decides()).collect();
     let mut causes = Vec::new();
     let own = taken(&mut failing, |check| check.name == "dual/equilibrium" || check.name.ends_with("/free bound"));
@@ -48,7 +54,7 @@ pub fn causes(problem: &Problem, comparison: &Comparison, diagnosis: &[Diagnosis
     let missing = taken(&mut failing, |check| check.difference.is_none());
     causes.extend(of_baseline(&stored));
     causes.extend(missing.into_iter().map(not_made));
-    causes.extend(failing.into_iter().map(alone));
+    causes.extend(failing.into_iter().map(|check| alone(check, refinement)));
     causes
 }
 
@@ -104,15 +110,17 @@ fn not_made(check: &Check) -> Cause {
         sentence: format!("{} was not made: {}", check.name, check.why),
         place: None,
         suggests: "Nothing is known of what this check asks, so it does not count as passed.".to_string(),
-        remedy: "Remove the reason that is given, and run the scene again.".to_string(),
+        remedy: "Mend what stood in its way, as the sentence above says, and run the scene again.".to_string(),
         checks: vec![check.name.clone()],
     }
 }
 
 /// A failure that goes with no other.
-fn alone(check: &Check) -> Cause {
-    let [suggests, remedy] = match check.basis {
-        Basis::Asked => [
+fn alone(check: &Check, refinement: Option<&str>) -> Cause {
+    let is_tolerance = check.name.ends_with("/tolerance");
+    let [suggests, remedy] = match (check.basis, refinement.filter(|_| is_tolerance)) {
+        (Basis::Asked, Some(remedy)) => ["What was asked for was not reached.", remedy],
+        (Basis::Asked, None) => [
             "What was asked for was not reached; theory allows it.",
             "Refine further, with a larger --max-triangles or --max-seconds, or ask for less.",
         ],

@@ -13,15 +13,11 @@ use super::session::{DualRun, Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
 use crate::compare::{Basis, Candidate, Comparison, compare};
-use crate::problem::Note;
+use crate::problem::{Note, Problem};
 use crate::process::limit;
 use crate::study::{
     self, FieldError, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
 };
-
-/// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
-/// jump is a combination of six rounded values with weights that add up to six.
-const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 
 /// How contact of a field is claimed to hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -150,22 +146,19 @@ fn held(
     let certified = &run.certified;
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
-    if args.solution {
-        refuse_inserted(&candidate, field)?;
-    }
+    let before = if args.solution { before_contact(&certified.problem, &candidate, field)? } else { None };
     session.progress.phase("comparing");
-    // A claimed solution knows the digits of its file.
-    let rounding =
-        (field.is_single_precision() && !args.solution).then(|| (format!("admissible/{}", candidate.name), SINGLE));
-    let allow = args.judge.allowances().after(rounding);
+    let allow = args.judge.allowances();
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);
-    let asked = args.judge.allowances();
-    comparison.checks.iter_mut().for_each(|check| check.excused &= asked.given(&check.name).is_some());
     let mut claimed = None;
     if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
         session.progress.phase("holding the field to its claim");
-        let claim = study::claim(&certified.problem, judged, &certified.bracket, args.contact.is_some(), &allow)
-            .map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        let (problem, bracket) = (&certified.problem, &certified.bracket);
+        let claim = match &before {
+            None => study::claim(problem, judged, bracket, args.contact.is_some(), &allow),
+            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, &allow),
+        };
+        let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
         let admissible = format!("admissible/{}", judged.candidate.name);
         comparison.checks.retain(|check| check.name != admissible);
@@ -194,10 +187,10 @@ fn held(
         let check = study::error_check(judged, &sharpest.bracket, &allow);
         comparison.checks.push(check);
     }
-    let answers = session.answers(sharpest, &args.solve);
+    let answers = session.sharpest_answers(run, sharpened.as_ref(), &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
     let meant = if args.solution { Meant::Discrete } else { Meant::Exact };
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, meant, &allow));
+    comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, meant, &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
@@ -288,9 +281,30 @@ fn values_held(
     Ok((comparison, Particulars { answers, baseline, ..Particulars::default() }))
 }
 
-/// On a mesh into whose edges contacts have put vertices a field of the mesh before is no discrete solution.
+/// The problem and the field on the triangles of its file, where contact cut some of these: a claim is held there. `None` where the
+/// field is on the mesh of `problem`.
+///
+/// # Errors
+/// The field is on triangles that are neither.
+fn before_contact(
+    problem: &Problem,
+    candidate: &Candidate,
+    field: &ForeignField,
+) -> Result<Option<(Problem, Candidate)>, CliError> {
+    if candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut) {
+        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        let with_field = |before: Problem| field.candidate(&before, 0.0).map(|own| (before, own));
+        return before.map(with_field).transpose().map_err(refused);
+    }
+    refuse_inserted(candidate, field)?;
+    Ok(None)
+}
+
+/// On a mesh into whose edges contacts have put vertices a field on larger triangles is no discrete solution.
 fn refuse_inserted(candidate: &Candidate, field: &ForeignField) -> Result<(), CliError> {
-    let nodes = candidate.vertex.len() + if candidate.degree == 2 { candidate.middle.len() } else { 0 };
+    let whole = !candidate.cells.is_empty() && candidate.cells.iter().all(|cell| !cell.nodes.is_empty());
+    let inside = candidate.degree == 2 && !whole;
+    let nodes = candidate.vertex.len() + if inside { candidate.middle.len() } else { 0 };
     let known = candidate.numbering.iter().flat_map(|n| &n.nodes).take(nodes).all(Option::is_some);
     if known {
         return Ok(());

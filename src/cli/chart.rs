@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::{ValueEnum, value_parser};
 
 use super::methods::MethodOptions;
-use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive};
+use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive, tolerance};
 use super::progress::Progress;
 use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
@@ -89,7 +89,7 @@ impl FromStr for Accuracy {
     fn from_str(text: &str) -> Result<Self, String> {
         match text.contains('=') {
             true => text.parse().map(Accuracy::Quantity),
-            false => positive(text).map(Accuracy::Energy),
+            false => tolerance(text).map(Accuracy::Energy),
         }
     }
 }

@@ -101,6 +101,7 @@ impl Session {
                 diagnosis,
                 is_claimed,
                 failure,
+                advice: run.advice,
             },
             &fields,
         );
@@ -145,12 +146,9 @@ impl Session {
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
                 // What a method does by design is said on the spot.
-                let why = if remark.name.ends_with("/penetration-at-nodes") {
-                    format!(": {}", remark.why)
-                } else {
-                    String::new()
-                };
-                say::line(&format!("  worth a look: {}{why}", remark.name));
+                let by_design = remark.name.ends_with("/penetration-at-nodes") && !remark.why.is_empty();
+                let why = if by_design { remark.why.clone() } else { told(remark) };
+                say::line(&format!("  worth a look: {}: {why}", remark.name));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {
@@ -189,7 +187,8 @@ fn sharpened_note(finer: &Certified, stopped: Option<String>) -> Note {
     let triangles = finer.problem.mesh.triangles.len();
     let how = format!(
         "The bracket of the mesh as given could not tell two models apart. The stress side alone was refined to {triangles} \
-         triangles; the energy bounds are from there, contacts and stresses are compared on the mesh as given."
+         triangles; the energy bounds and the intervals of quantities are from there, contacts and stresses are compared on the \
+         mesh as given."
     );
     Note { weakens_guarantee: false, text: stopped.map_or(how.clone(), |reason| format!("{how} {reason}")) }
 }

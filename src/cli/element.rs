@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
 
-use super::options::{RunOptions, positive};
+use super::options::RunOptions;
 use super::{CliError, Exit, say};
 use crate::report::{ReportError, folder};
 use crate::scene::Kinematics;
@@ -48,7 +48,7 @@ pub struct Args {
     #[arg(long, value_name = "T", requires = "matrix")]
     pub thickness: Option<f64>,
     /// How exact the entries are, relative to the largest [default: 1e-9; 1e-5 for single precision]
-    #[arg(long, value_name = "X", value_parser = positive, requires = "matrix")]
+    #[arg(long, value_name = "X", value_parser = precision, requires = "matrix")]
     pub precision: Option<f64>,
     /// A property that the element does not claim; may be repeated
     #[arg(long, value_name = "PROPERTY", value_parser = property)]
@@ -66,6 +66,11 @@ fn property(name: &str) -> Result<String, String> {
     workbench::is_property(name).then(|| name.to_string()).ok_or_else(text)
 }
 
+fn precision(text: &str) -> Result<f64, String> {
+    let number = text.parse().map_err(|_| format!("'{text}' is no number"))?;
+    workbench::precision(number)
+}
+
 fn bad(message: impl Into<String>, remedy: &str) -> CliError {
     CliError::stopped(Exit::BadInput, message, remedy)
 }
@@ -79,8 +84,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let (subject, name) = match (&args.matrix, &args.name) {
         (Some(file), _) => (Subject::Displacement(Box::new(matrix(args, file)?)), stem(file)),
         (None, Some(name)) => {
-            let Shipped { name, lacks, .. } = *known(name)?;
+            let Shipped { name, lacks, adds, .. } = *known(name)?;
             options.waived.extend(lacks.iter().map(|name| name.to_string()));
+            options.claimed.extend(adds.iter().map(|name| name.to_string()));
             (known(name)?.subject().map_err(|e| CliError::stopped(Exit::Failed, e, ""))?, name.to_string())
         }
         (None, None) => {
@@ -96,6 +102,12 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         told(&report).iter().for_each(|line| say::line(line));
         if let Some(diagnosis) = &report.diagnosis {
             say::line(&format!("diagnosis: {}", diagnosis.sentence));
+        }
+        if let Some(hint) = &report.hint {
+            say::line(&format!("hint: {hint}"));
+        }
+        if let Some(untold) = &report.untold {
+            say::line(&format!("one shape: {untold}"));
         }
         say::line(&report.verdict);
         say::line(&format!("report: {}", dir.join("report.html").display()));

@@ -16,7 +16,7 @@ use crate::process::limit;
 use crate::process::signals::LastWords;
 use crate::report;
 use crate::report::number::{percent, seconds};
-use crate::scene::Scene;
+use crate::scene::{Scene, counted};
 use crate::study::{Accepted, Baseline, Signature};
 
 /// Options whose values are not those of the single scenes.
@@ -151,14 +151,14 @@ fn several(order: &Order<'_>) -> Result<Exit, CliError> {
         resume: order.job.resume,
     };
     let progress = Progress::new(order.run.quiet);
-    progress.phase(format!("{own} scenes, {processes} at a time"));
+    progress.phase(format!("{}, {processes} at a time", counted(own, "scene")));
     let ended = AtomicUsize::new(0);
     let kept = (!order.run.quiet).then(|| LastWords::kept_in(&out, ""));
     let finished = runner
         .run(&plan, &|planned, record| {
             let number = ended.fetch_add(1, Ordering::Relaxed) + 1;
             let entry = job::entry(&out, planned, record);
-            progress.phase(format!("{number} scenes of {own} have ended"));
+            progress.phase(format!("{number} of {} ended", counted(own, "scene")));
             progress.line(&line(&plan, &entry));
         })
         .map_err(refused)?;

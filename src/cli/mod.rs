@@ -17,6 +17,7 @@ pub mod job;
 pub mod judge;
 pub mod measure;
 pub mod memory;
+pub mod mesh;
 mod methods;
 pub mod options;
 pub mod part;
@@ -73,6 +74,8 @@ pub enum Command {
     Element(element::Args),
     /// Compare two reports: what changed, and whether it matters
     Diff(diff::Args),
+    /// Show what a mesh file holds, and write a scene to start from
+    Mesh(mesh::Args),
     /// Measure accuracy against time, every method and refinement
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
@@ -149,6 +152,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Gather(args) => gather::run(args),
         Command::Element(args) => element::run(args),
         Command::Diff(args) => diff::run(args),
+        Command::Mesh(args) => mesh::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Measure(args) => measure::run(args),

@@ -277,7 +277,7 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// A relative error: above zero, and at most one.
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     as_tolerance(number(text)?)
 }
 

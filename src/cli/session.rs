@@ -46,6 +46,8 @@ pub struct DualRun {
     pub history: Vec<HistoryRow>,
     /// Why refinement stopped before the tolerance was reached.
     pub stopped: Option<String>,
+    /// What to do about that.
+    pub advice: Option<&'static str>,
 }
 
 impl Session {
@@ -120,6 +122,7 @@ impl Session {
                     certified,
                     history: Vec::new(),
                     stopped: None,
+                    advice: None,
                 })
             }
             true => {
@@ -141,8 +144,9 @@ impl Session {
                     }
                     self.progress.phase(text);
                 };
-                study::adapt(problem, method.as_ref(), &options, &goal, told)
-                    .map(|Adapted { certified, history, stopped }| DualRun { certified, history, stopped })
+                study::adapt(problem, method.as_ref(), &options, &goal, told).map(
+                    |Adapted { certified, history, stopped, advice }| DualRun { certified, history, stopped, advice },
+                )
             }
         };
         let mut run = run.map_err(|error| self.refuse(error, folder))?;
@@ -157,6 +161,16 @@ impl Session {
         }
         self.progress.phase("bounding the quantities");
         study::answers(certified, &self.options(solve), |_| true)
+    }
+
+    /// The same where the stress side was `sharpened` after it was solved: the interval of the mesh as given, and that of the
+    /// finer one, hold the same value.
+    pub fn sharpest_answers(&self, run: &DualRun, sharpened: Option<&Sharpened>, solve: &SolveOptions) -> Vec<Answer> {
+        let own = self.answers(&run.certified, solve);
+        match sharpened {
+            Some(finer) => study::sharper(own, &self.answers(&finer.certified, solve)),
+            None => own,
+        }
     }
 
     fn options(&self, solve: &SolveOptions) -> Options {

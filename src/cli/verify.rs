@@ -12,7 +12,8 @@ use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
-use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand};
+use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand, WantedCells};
+use crate::problem::Note;
 use crate::process::limit;
 use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
 
@@ -44,6 +45,9 @@ pub struct Args {
         value_parser = value_parser!(u8).range(1..=i64::from(HIGHEST_DEGREE))
     )]
     pub primal_degree: Vec<u8>,
+    /// Cells of the displacement model of degree 1 and 2 where the mesh file has quadrilaterals
+    #[arg(long, value_name = "CELLS", value_enum, default_value_t, conflicts_with = "reference")]
+    pub primal_cells: WantedCells,
     /// Run COMMAND in the place of FEniCSx, without a shell: {problem} stands for the file to read, {out} for the folder to write
     /// primal-P1.json, … into, {degrees} for the degrees that are wanted; docs/exchange.md describes the files
     #[arg(long, value_name = "COMMAND", conflicts_with = "sabotage")]
@@ -73,7 +77,10 @@ impl Args {
 
     /// The names of the displacement solutions that are compared; a solver of the user's tells its own later.
     fn fields(&self) -> Option<Vec<String>> {
-        let of_fenicsx = || self.degrees().iter().map(|degree| format!("FEniCSx P{degree}")).collect();
+        // Which of the two is known when the mesh is.
+        let letters = if self.primal_cells == WantedCells::File { "PQ" } else { "P" };
+        let named = |letter: char| self.degrees().into_iter().map(move |degree| format!("FEniCSx {letter}{degree}"));
+        let of_fenicsx = || letters.chars().flat_map(named).collect();
         self.reference.is_none().then(of_fenicsx)
     }
 
@@ -126,6 +133,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let options = primal::Options {
         program: args.reference.clone(),
         degrees: args.degrees(),
+        cells: args.primal_cells,
         sabotage: args.sabotage.map(|s| match s {
             Planted::FlipSign => primal::Sabotage::FlipSign,
             Planted::DropRow => primal::Sabotage::DropRow,
@@ -150,16 +158,15 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         ],
         Some(_) => vec![(first.solver.clone(), first.solver_version.clone())],
     });
+    let mesh = &certified.problem.mesh;
+    let on_cells = match args.reference {
+        None => primal::remark(mesh, &primal::spaces(mesh, args.primal_cells, &args.degrees())),
+        Some(_) => None,
+    };
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
-    let answers = session.answers(certified, &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    comparison.checks.extend(quantity_checks(certified, &answers, &comparison, Meant::Discrete, &allow));
-    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
-    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
-    comparison.checks.extend(against);
     let (sharpened, enough) = match comparison.judged.is_empty() {
         true => (None, None),
         false => {
@@ -167,15 +174,24 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
             (sharpened, Some(enough))
         }
     };
+    let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
+    let answers = session.sharpest_answers(&run, sharpened.as_ref(), &args.solve);
+    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    let of_models = quantity_checks(certified, &sharpest.bracket, &answers, &comparison, Meant::Discrete, &allow);
+    comparison.checks.extend(of_models);
+    args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
+    let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
+    comparison.checks.extend(against);
     let particulars = Particulars {
         sharpened,
         enough,
         answers,
         seconds: vec![("stresses", in_stresses), ("displacements", in_displacements)],
         components,
-        diagnosis: diagnoses(&certified.problem, &comparison),
+        diagnosis: diagnoses(&certified.problem, &comparison, &certified.bracket),
         failure: failure.as_ref().map(ToString::to_string),
         baseline,
+        notes: on_cells.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect(),
         ..Particulars::default()
     };
     let exit = session.conclude(&run, &comparison, particulars, &folder)?;

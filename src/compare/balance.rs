@@ -39,6 +39,10 @@ pub struct Balance {
     pub left: f64,
     /// The same for the loads, plus √(2·½a(u,u)): what `left` is relative to.
     pub scale: f64,
+    /// The same for the loads alone.
+    pub load: f64,
+    /// The same for all that supports and contacts have to carry.
+    pub supported: f64,
     /// The same for what rounding of the displacements can leave.
     pub rounding: f64,
     /// By how much rounding of the displacements can have moved an energy that is added up from nodal forces.
@@ -71,24 +75,44 @@ impl Balance {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &Problem, candidate: &Candidate, strain: f64) -> Result<Self, NoUpperBound> {
-        let forces = match &candidate.higher {
-            Some(field) => NodalForces::of_coefficients(problem, field),
-            None => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
+        let forces = match (&candidate.on_quadrilaterals, &candidate.higher) {
+            (Some(own), _) => own.forces(problem).0,
+            (None, Some(field)) => NodalForces::of_coefficients(problem, field),
+            (None, None) => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
         };
+        Self::of_forces(problem, candidate, strain, &forces)
+    }
+
+    /// The same with the nodal forces of the candidate in its own space.
+    ///
+    /// # Errors
+    /// As [`Balance::new`].
+    pub fn of_forces(
+        problem: &Problem,
+        candidate: &Candidate,
+        strain: f64,
+        forces: &NodalForces,
+    ) -> Result<Self, NoUpperBound> {
+        // What stands for quadrilaterals is no displacement of the model.
+        let higher = candidate.higher.as_ref().filter(|_| candidate.cells.is_empty());
         let holds = holds(problem)?;
         let nodes = higher::nodes(problem, candidate.degree);
         let mut rest = forces.unsupported(&holds, &nodes);
         let solution = Solution { problem, candidate, holds: &holds };
-        match &candidate.higher {
-            Some(field) => solution.take_inside(field, &mut rest),
-            None => solution.take_middles(&mut rest),
+        match (&candidate.on_quadrilaterals, higher) {
+            (None, Some(field)) => solution.take_inside(field, &mut rest),
+            _ => solution.take_middles(&mut rest),
         }
         let at_vertices = rest.clone();
         solution.take_vertices(&mut rest);
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
         let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
-        let value = |i: usize| candidate.higher.as_ref().map_or_else(|| solution.value(i), |field| field.values()[i]);
+        let value = |i: usize| match (&candidate.on_quadrilaterals, higher) {
+            (Some(own), _) => own.field.values()[i],
+            (None, Some(field)) => field.values()[i],
+            (None, None) => solution.value(i),
+        };
         let (mut reactions, mut reaction_rounding) = (Vec::new(), Vec::new());
         let (mut carried, mut unbalanced) = (Vec::new(), Vec::new());
         for (index, interface) in problem.interfaces.iter().enumerate() {
@@ -102,9 +126,12 @@ impl Balance {
             unbalanced.push(ends.chain(inside).map(nodal).sum::<f64>());
             carried.push(first().map(|v| forces.left[v][0].hypot(forces.left[v][1])).sum::<f64>());
         }
+        let load = forces.energy_size(|i| forces.load[i][0].hypot(forces.load[i][1]));
         Ok(Balance {
             left: forces.energy_size(nodal),
-            scale: forces.energy_size(|i| forces.load[i][0].hypot(forces.load[i][1])) + (2.0 * strain).sqrt(),
+            load,
+            supported: forces.energy_size(|i| forces.left[i][0].hypot(forces.left[i][1])),
+            scale: load + (2.0 * strain).sqrt(),
             rounding: ROUNDING * forces.energy_size(|i| forces.size[i]),
             energy_rounding: ROUNDING
                 * (0..rest.len()).map(|i| forces.size[i] * value(i)[0].hypot(value(i)[1])).sum::<f64>(),
@@ -154,7 +181,7 @@ impl Solution<'_> {
             let middles = pair.edges.map(|e| e.map(|e| vertices + e));
             let Some(own) = middles[0] else { continue };
             let b1 = 2.0 * jump(self.value(own), middles[1].map(|m| self.value(m))) - 0.5 * (end(0) + end(1));
-            if b1 < 0.5 * (pair.gap[0] + pair.gap[1]) - within {
+            if b1 < pair.gap_below(2)[1] - within {
                 continue;
             }
             let pull = match middles[1] {

@@ -3,8 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::balance::Balance;
+use super::ceiling::{Extent, MISTAKE, PART};
+use super::on_quadrilaterals::QuadrilateralSolution;
 use super::solution::Numbering;
-use crate::bounds::{Bracket, NoUpperBound, Repair, UpperBound, Violation, repaired, repaired_at_contact};
+use crate::bounds::{
+    Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,
+};
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement};
 use crate::problem::Problem;
@@ -18,14 +22,18 @@ pub struct Candidate {
     pub solver: String,
     /// Its version.
     pub version: String,
-    /// Polynomial degree.
+    /// Polynomial degree; on quadrilaterals that in each coordinate, which is that along their sides.
     pub degree: usize,
     /// Value at each vertex.
     pub vertex: Vec<[f64; 2]>,
     /// Value at each edge midpoint.
     pub middle: Vec<[f64; 2]>,
-    /// The whole of a displacement of degree 3 or more, which these values do not determine.
+    /// The whole of a displacement of degree 3 or more, which these values do not determine, or of one on quadrilaterals.
     pub higher: Option<PlainDisplacement>,
+    /// Its quadrilaterals, on which it is no polynomial of the triangles; `higher` then stands for it there.
+    pub cells: Vec<Cell>,
+    /// The displacement on the quadrilaterals of the mesh file that `higher` stands for.
+    pub on_quadrilaterals: Option<QuadrilateralSolution>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
     /// ½a(u_h, u_h) as the program reports it.
@@ -34,10 +42,10 @@ pub struct Candidate {
     pub is_solution: bool,
     /// Contact reactions, interface by interface.
     pub reactions: Option<Vec<Reactions>>,
-    /// Nonlinear iterations.
-    pub iterations: usize,
-    /// Unknowns.
-    pub unknowns: usize,
+    /// Nonlinear iterations, where the program tells them.
+    pub iterations: Option<usize>,
+    /// Unknowns, where the program tells them.
+    pub unknowns: Option<usize>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
     /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.
@@ -65,6 +73,16 @@ impl Candidate {
         }
     }
 
+    /// The letter of its space: Q on quadrilaterals, P on triangles.
+    pub fn letter(&self) -> char {
+        if self.on_quadrilaterals.is_some() { 'Q' } else { 'P' }
+    }
+
+    /// Whether it is the polynomials on triangles that its maps and bounds are made of.
+    pub fn is_polynomial(&self) -> bool {
+        self.on_quadrilaterals.as_ref().is_none_or(|own| own.field.is_polynomial())
+    }
+
     /// The largest component of all displacements.
     pub fn largest(&self) -> f64 {
         self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
@@ -90,44 +108,58 @@ pub struct Reactions {
 pub struct Judged {
     /// What was delivered.
     pub candidate: Candidate,
-    /// The field as delivered.
+    /// The field as delivered, or the polynomials on triangles that have its values.
     pub field: UpperBound,
+    /// The energy of the field as delivered.
+    pub own: Potential,
     /// How far it was from admissible.
     pub violation: Violation,
     /// The nearest admissible field; its energy is the upper bound.
     pub admissible: UpperBound,
     /// How well it balances the loads in its own space, where it is meant to be a solution.
     pub balance: Option<Balance>,
+    /// How many times as large as any solution can be the field is; 1 where it is not larger.
+    pub larger: f64,
 }
 
 /// Solvers leave supports and contact to their own accuracy; a field within this of an admissible one is one.
 pub const ADMISSIBLE: f64 = 1e-9;
 
 impl Judged {
-    /// Evaluates a candidate.
+    /// Evaluates a candidate; `extent` says how large a solution can be.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
-    pub fn new(problem: &Problem, dual: &DualSolution, candidate: Candidate) -> Result<Self, NoUpperBound> {
+    pub fn new(
+        problem: &Problem,
+        dual: &DualSolution,
+        candidate: Candidate,
+        extent: Extent,
+    ) -> Result<Self, NoUpperBound> {
         let (mended, violation) = candidate.nearest_admissible(problem)?;
         let field = match &candidate.higher {
             Some(plain) => plain.split(&problem.mesh),
             None => Displacement::from_p2(&problem.mesh, &candidate.vertex, &candidate.middle),
         };
-        let field = UpperBound::new(problem, dual, field);
+        let cells = &candidate.cells;
+        let (field, admissible) = if cells.is_empty() {
+            (UpperBound::new(problem, dual, field), UpperBound::new(problem, dual, mended))
+        } else {
+            let admissible = UpperBound::of_mended_cells(problem, dual, cells, (&field, mended));
+            (UpperBound::of_cells(problem, dual, cells, field), admissible)
+        };
+        let own = match &candidate.on_quadrilaterals {
+            Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
+            _ => field.potential,
+        };
         let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
-        Ok(Judged {
-            admissible: UpperBound::new(problem, dual, mended),
-            balance: balance.transpose()?,
-            field,
-            violation,
-            candidate,
-        })
+        let larger = extent.larger(candidate.largest());
+        Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }
 
     /// Whether the field as delivered is admissible to the accuracy of a solver.
     pub fn is_admissible(&self) -> bool {
-        self.violation.largest() <= ADMISSIBLE
+        self.violation.largest() <= ADMISSIBLE.min(PART * MISTAKE / self.larger)
     }
 
     /// Guaranteed relative energy-norm error of the stress of the admissible field.

@@ -1,8 +1,11 @@
 //! Contact checks, interface by interface.
 
 use super::candidate::Judged;
+use super::ceiling::{Allowance, Ceilings};
+use super::mean;
 use super::nodal::{self, NodalDifference, nodal_pressures};
 use super::outcome::{ContactSummary, Profile, TwoSides};
+use super::peak::Peaks;
 use super::pressure::{
     Piece, contact_ends, disagreement, dual_pressure, l2, maximum, open_length, profile, reaction_moment,
     reaction_pressure, resultant, trace_pressure,
@@ -17,6 +20,8 @@ use crate::problem::{Interface, Problem, Scales};
 const NO_PRESSURE: f64 = 1e-9;
 /// Pressures below this fraction of the stress that the loads can ask for count as none, however large the others are.
 const NO_STRESS: f64 = 1e-10;
+/// Largest pressures below this fraction of it are not compared.
+const SEEN: f64 = 1e-6;
 /// Reactions below this fraction of the largest are what a solver leaves of zero.
 const NO_REACTION: f64 = 1e-7;
 /// A trace scatters around zero where the bodies are apart, by a few per cent of the largest pressure.
@@ -32,8 +37,12 @@ pub struct Sides<'a> {
     pub problem: &'a Problem,
     /// What is round-off.
     pub scales: &'a Scales,
+    /// What tolerances may be at most.
+    pub ceilings: &'a Ceilings,
     /// λ_h.
     pub dual: &'a DualSolution,
+    /// Between the lower bound and the best upper one.
+    pub gap: f64,
     /// The displacement solution to compare with.
     pub best: Option<&'a Judged>,
 }
@@ -44,7 +53,7 @@ impl Sides<'_> {
         let (mut summaries, mut checks) = (Vec::new(), Vec::new());
         for (index, interface) in self.problem.interfaces.iter().enumerate() {
             let own = dual_pressure(self.dual, index);
-            let mut summary = self.summary(interface, &own);
+            let mut summary = self.summary((index, interface), &own);
             for judged in all {
                 summary.profiles.extend(self.profiles(index, interface, judged));
             }
@@ -57,19 +66,21 @@ impl Sides<'_> {
     }
 
     /// What the dual solution says of a contact with the pressure `own`.
-    fn summary(&self, interface: &Interface, own: &[Piece]) -> ContactSummary {
+    fn summary(&self, (index, interface): (usize, &Interface), own: &[Piece]) -> ContactSummary {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
-        let threshold = (NO_PRESSURE * largest).max(self.no_pressure());
+        let threshold = self.open_below(NO_PRESSURE * largest);
+        let open = open_length(interface, own, threshold);
         ContactSummary {
             name: interface.name.clone(),
             resultant: TwoSides { dual: force, primal: None },
             moment: TwoSides { dual: about_zero(problem, moment, force), primal: None },
             pressure_max: TwoSides { dual: largest, primal: None },
             pressure_max_at: TwoSides { dual: problem.scene.as_written(at), primal: None },
-            open_fraction: open_length(interface, own, threshold) / length,
+            pressure_mean: mean::around(problem, (index, interface), own, at, length - open, self.gap),
+            open_fraction: open / length,
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
             pressure_l2_difference: None,
@@ -109,7 +120,7 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
         // Reactions are zero or not; a trace is never quite zero.
-        let threshold = (largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE }).max(self.no_pressure());
+        let threshold = self.open_below(largest * if reactions.is_some() { NO_REACTION } else { NO_TRACE });
         summary.resultant.primal = Some(force);
         summary.moment.primal = Some(about_zero(problem, moment, force));
         summary.pressure_max.primal = Some(largest);
@@ -123,21 +134,27 @@ impl Sides<'_> {
         if !best.candidate.is_solution {
             return checks;
         }
-        let nodes = reactions.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
+        // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
+        let bounded = reactions.filter(|_| best.candidate.is_polynomial());
+        let nodes = bounded.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
+        let means = nodes.as_deref().and_then(nodal::difference);
+        let floor = self.no_pressure().max(SEEN * self.scales.data.stress);
+        let peaks = Peaks::new(problem, interface, nodes.as_deref().unwrap_or_default(), [own, &pieces]);
+        checks.extend(means.and_then(|means| peaks.compared(summary, &means, &best.candidate.name, floor)));
         if reactions.is_some() {
             checks.push(resultant_check(self, best, (index, interface), summary.resultant.dual, force));
-            let unexplained = nodes.as_deref().and_then(nodal::difference).map_or(0.0, |d| d.unexplained);
+            let unexplained = means.map_or(0.0, |d| d.unexplained);
             checks.push(self.reactions_check(best, (index, interface), own, unexplained));
         }
         // Pressures that are round-off have neither a size nor an end.
         if largest.max(summary.pressure_max.dual) <= self.pressure_round_off(best, (index, interface)) {
             return checks;
         }
-        match nodes.as_deref().and_then(nodal::difference) {
+        match means {
             Some(difference) => checks.extend(self.bounded_pressure(best, (index, interface), &difference)),
             None => checks.extend(chosen_pressure(summary)),
         }
-        let own_threshold = (NO_PRESSURE * summary.pressure_max.dual).max(self.no_pressure());
+        let own_threshold = self.open_below(NO_PRESSURE * summary.pressure_max.dual);
         let disagree = disagreement(interface, (own, own_threshold), (&pieces, threshold));
         let pressed = 1.0 - summary.open_fraction;
         checks.push(Check::with_difference(
@@ -158,6 +175,11 @@ impl Sides<'_> {
         self.scales.round_off.stress.max(NO_STRESS * self.scales.data.stress)
     }
 
+    /// The pressure below which an edge is open where that of its contact is nothing below `part`.
+    fn open_below(&self, part: f64) -> f64 {
+        part.max(self.no_pressure())
+    }
+
     /// What rounding and the accuracy of a solver leave in a single reaction, thickness included.
     fn reaction_round_off(&self, best: &Judged, (index, interface): (usize, &Interface), own: &[Piece]) -> f64 {
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
@@ -165,6 +187,12 @@ impl Sides<'_> {
         let carried = forces(self.problem).max(self.problem.scene.thickness * largest * length);
         let of_displacements = best.balance.as_ref().map(|b| b.reaction_tolerance(index));
         REACTION * carried + of_displacements.unwrap_or(0.0) + self.scales.round_off.force
+    }
+
+    /// `all` that a force of interface `index` may be off by, of which the displacements of `best` have their part.
+    pub fn of_reaction(&self, best: &Judged, index: usize, all: f64) -> Allowance {
+        let digits = best.balance.as_ref().map_or(0.0, |balance| balance.reaction_tolerance(index));
+        Allowance { exact: all - digits, digits, ceiling: self.ceilings.force }
     }
 
     /// A force known to round-off is a pressure known to round-off over the length it acts on.
@@ -182,16 +210,13 @@ impl Sides<'_> {
         unexplained: f64,
     ) -> Check {
         let misreported = best.balance.as_ref().and_then(|b| b.reactions.get(index)).copied().unwrap_or(0.0);
-        Check::at_most(
-            &format!("contact/{}/reactions", interface.name),
-            misreported.max(self.problem.scene.thickness * unexplained),
-            0.0,
-            self.reaction_round_off(best, (index, interface), own),
-            Basis::RoundOff,
-            "Every reaction that the displacement model reports is what its stresses ask for at this vertex, their sum is \
+        let name = format!("contact/{}/reactions", interface.name);
+        let value = misreported.max(self.problem.scene.thickness * unexplained);
+        let why = "Every reaction that the displacement model reports is what its stresses ask for at this vertex, their sum is \
              the reported resultant, and each differs from the dual force at its vertex by exactly the work of \
-             λ_h − σ(u_h) on moving this vertex alone; the largest remainder.",
-        )
+             λ_h − σ(u_h) on moving this vertex alone; the largest remainder.";
+        self.of_reaction(best, index, self.reaction_round_off(best, (index, interface), own))
+            .check_of_large(|allowed| Check::at_most(&name, value, 0.0, allowed, Basis::RoundOff, why))
     }
 
     /// Pressures averaged at each vertex of Γ_K, which differ only as far as the stresses next to it do.

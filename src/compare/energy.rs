@@ -2,6 +2,7 @@
 
 use super::balance::Balance;
 use super::candidate::{ADMISSIBLE, Candidate, Judged};
+use super::ceiling::{Allowance, Ceilings, MISTAKE, PART};
 use super::solution::{Site, Sites};
 use super::tolerance::{chosen, name_of_order};
 use super::{Basis, Check};
@@ -11,6 +12,9 @@ use crate::problem::{Problem, Scales};
 
 /// Round-off allowed in an identity between energies, relative to 𝒮(λ_h).
 const IDENTITY: f64 = 1e-9;
+/// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
+/// jump is a combination of six rounded values with weights that add up to six.
+const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
 /// What an iterative solver may leave in the identities of a minimiser, relative to 𝒮(λ_h).
 const SOLVER: f64 = 1e-7;
 
@@ -50,37 +54,33 @@ pub fn dual_checks(
 /// Checks on one displacement solution.
 pub fn primal_checks(
     problem: &Problem,
-    scales: &Scales,
+    (scales, ceilings): (&Scales, &Ceilings),
     (dual, bracket): (&DualSolution, &Bracket),
     judged: &Judged,
 ) -> Vec<Check> {
     let who = judged.candidate.name.as_str();
-    let own = judged.field.potential;
-    let scale = bracket.complementary.strain.max(own.magnitude);
+    let own = judged.own;
+    let (strain, scale) = (bracket.complementary.strain, bracket.complementary.strain.max(own.magnitude));
     let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
     let name = format!("admissible/{who}");
     let Violation { support, penetration, at_vertices } = judged.violation;
-    // Where the direction of contact turns the jump of a P1 field is quadratic, and its minimiser bounds the vertices alone.
-    let at_vertices_alone = linear_where_contact_turns(problem, judged);
+    // Where the direction of contact turns or the gap is a curve, the minimiser of P1 bounds the jump at vertices alone.
+    let at_vertices_alone = linear_where_jumps_bend(problem, judged);
     let (depth, where_to) = match at_vertices_alone {
         true => {
             (at_vertices, format!("at vertices (by {at_vertices:.1e}; by {penetration:.1e} between them, drawn back)"))
         }
         false => (penetration, format!("between nodes too (by {penetration:.1e})")),
     };
-    checks.push(Check::at_most(
-        &name,
-        support.max(depth),
-        0.0,
-        ADMISSIBLE,
-        if judged.candidate.is_solution { Basis::RoundOff } else { Basis::Claimed },
-        format!(
-            "An admissible displacement meets its supports (off by {support:.1e}) and penetrates nowhere, {where_to}, \
-             relative to the largest displacement.{}",
-            deepest(problem, &judged.candidate)
-        ),
-    ));
+    let why = format!(
+        "An admissible displacement meets its supports (off by {support:.1e}) and penetrates nowhere, {where_to}, \
+         relative to the largest displacement.{}",
+        deepest(problem, &judged.candidate)
+    );
+    let basis = if judged.candidate.is_solution { Basis::RoundOff } else { Basis::Claimed };
+    let admissible = |allowed| Check::at_most(&name, support.max(depth), 0.0, allowed, basis, why.as_str());
+    checks.push(of_admissible(judged).check_of_large(admissible));
     checks.push(order(who, bracket, judged.admissible.upper()));
     let admissible = &judged.admissible;
     checks.push(two_ways(problem, scales, (dual, bracket), who, admissible));
@@ -90,17 +90,13 @@ pub fn primal_checks(
     ];
     for (what, reported, found) in claims {
         let Some(reported) = reported else { continue };
-        checks.push(Check::equal(
-            &format!("energy/{what}/{who}"),
-            reported,
-            found,
-            IDENTITY * scale + rounding,
-            Basis::RoundOff,
-            format!(
-                "The energy that the displacement program reports against the energy of its field, integrated here. {}",
-                lost_digits(rounding, IDENTITY * scale)
-            ),
-        ));
+        let why = format!(
+            "The energy that the displacement program reports against the energy of its field, integrated here. {}",
+            lost_digits(rounding, IDENTITY * scale)
+        );
+        let name = format!("energy/{what}/{who}");
+        let equal = |allowed| Check::equal(&name, reported, found, allowed, Basis::RoundOff, why.as_str());
+        checks.push(of_energy(ceilings, IDENTITY * strain, IDENTITY * scale + rounding).check_of_large(equal));
     }
     if !judged.candidate.is_solution {
         let name = format!("certified/{who}/energy-error");
@@ -116,33 +112,45 @@ pub fn primal_checks(
     }
     if judged.candidate.is_solution && problem.is_cone() {
         let name = format!("energy/identity/{who}");
-        checks.push(Check::equal(
-            &name,
-            own.total(),
-            -own.strain,
-            SOLVER * scale + rounding,
-            Basis::RoundOff,
-            "With zero gap and zero prescribed displacement the admissible set is a cone, and its minimiser satisfies \
-             𝓛(u_h) = −𝒮(τ(u_h)).",
-        ));
+        let why = "With zero gap and zero prescribed displacement the admissible set is a cone, and its minimiser satisfies \
+             𝓛(u_h) = −𝒮(τ(u_h)).";
+        let equal = |allowed| Check::equal(&name, own.total(), -own.strain, allowed, Basis::RoundOff, why);
+        checks.push(of_energy(ceilings, SOLVER * strain, SOLVER * scale + rounding).check_of_large(equal));
     }
     if let Some(balance) = &judged.balance {
-        checks.push(in_its_own_space(who, scales, balance));
-        checks.extend(judged.candidate.reactions.as_ref().map(|_| reactions(who, scales, balance)));
+        checks.push(in_its_own_space(who, (scales, ceilings), balance, own.strain));
+        checks.extend(judged.candidate.reactions.as_ref().map(|_| reactions(who, (scales, ceilings), balance)));
     }
     let gap = (admissible.upper() - bracket.lower()).max(0.0);
     let name = format!("stress/difference/{who}");
     let difference: f64 = admissible.local.triangles.iter().sum();
-    checks.push(Check::at_most(
-        &name,
-        (2.0 * difference).sqrt(),
-        0.0,
-        (2.0 * gap).sqrt() * (1.0 + IDENTITY) + (2.0 * (IDENTITY * scale + scales.round_off.energy)).sqrt(),
-        Basis::Guaranteed,
-        "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
-         √(2·gap).",
-    ));
+    let why = "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
+         √(2·gap).";
+    let apart = |slack: f64| (2.0 * gap).sqrt() * (1.0 + IDENTITY) + (2.0 * slack).sqrt();
+    let differs = |slack| Check::at_most(&name, (2.0 * difference).sqrt(), 0.0, apart(slack), Basis::Guaranteed, why);
+    let slack = [strain, scale].map(|scale| IDENTITY * scale + scales.round_off.energy);
+    checks.push(of_energy(ceilings, slack[0], slack[1]).check_of_large(differs));
+    if !judged.candidate.is_polynomial() {
+        let of_another = ["energy/lower-below/", "energy/gap-two-ways/", "stress/difference/"];
+        let meant = checks.iter_mut().filter(|check| of_another.iter().any(|start| check.name.starts_with(start)));
+        meant.for_each(|check| {
+            check.why.push_str(" Of the polynomials on triangles that have the values of this field.")
+        });
+    }
     checks
+}
+
+/// What an energy may be off by: `exact` for a field of the size that the problem allows, and `all` for the field.
+fn of_energy(ceilings: &Ceilings, exact: f64, all: f64) -> Allowance {
+    Allowance { exact, digits: (all - exact).max(0.0), ceiling: ceilings.energy }
+}
+
+/// What an admissible field may miss supports and penetrate by, relative to its largest displacement.
+fn of_admissible(judged: &Judged) -> Allowance {
+    let exact = ADMISSIBLE / judged.larger;
+    let rounded = !judged.candidate.is_solution && judged.candidate.precision >= f64::from(f32::EPSILON);
+    let all = if rounded { SINGLE } else { ADMISSIBLE };
+    Allowance { exact, digits: all - exact, ceiling: PART * MISTAKE / judged.larger }
 }
 
 /// Which contact a field penetrates most, and at which node; nothing where no node penetrates.
@@ -158,30 +166,49 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }
 
-/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges.
-fn linear_where_contact_turns(problem: &Problem, judged: &Judged) -> bool {
-    judged.candidate.is_solution && judged.candidate.degree == 1 && problem.contact_turns()
+/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
+fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
+    judged.candidate.is_solution
+        && judged.candidate.degree == 1
+        && (problem.contact_turns() || problem.pairs().any(|pair| !pair.bow.is_none()))
 }
 
-/// The larger space has the smaller energy: one check for each degree and the next.
-pub fn degree_order(problem: &Problem, scales: &Scales, judged: &[Judged], bracket: &Bracket) -> Vec<Check> {
-    let mut solutions: Vec<&Judged> = judged.iter().filter(|j| j.candidate.is_solution).collect();
-    solutions.sort_by_key(|j| j.candidate.degree);
-    let check = |pair: &[&Judged]| {
+/// The larger space has the smaller energy: one check for each degree and the next on the same cells.
+pub fn degree_order(
+    problem: &Problem,
+    (scales, ceilings): (&Scales, &Ceilings),
+    judged: &[Judged],
+    bracket: &Bracket,
+) -> Vec<Check> {
+    let solutions = |letter: char| {
+        let of = |j: &&Judged| j.candidate.is_solution && j.candidate.letter() == letter;
+        let mut solutions: Vec<&Judged> = judged.iter().filter(of).collect();
+        solutions.sort_by_key(|j| j.candidate.degree);
+        solutions
+    };
+    let check = |letter: char, pair: &[&Judged]| {
         let [low, high] = [pair[0], pair[1]];
         let [p, q] = [low, high].map(|j| j.candidate.degree);
-        let magnitude = low.field.potential.magnitude.max(high.field.potential.magnitude);
-        let scale = bracket.complementary.strain.max(magnitude);
-        Check::at_most(
-            &name_of_order(p, q),
-            high.field.potential.total(),
-            if linear_where_contact_turns(problem, low) { low.admissible.upper() } else { low.field.potential.total() },
-            SOLVER * scale + energy_rounding(scales, low) + energy_rounding(scales, high),
-            Basis::RoundOff,
-            format!("Every admissible P{p} field is an admissible P{q} field, so the P{q} minimum cannot be higher."),
-        )
+        let magnitude = low.own.magnitude.max(high.own.magnitude);
+        let strain = bracket.complementary.strain;
+        let (lower, rounding) = (high.own.total(), energy_rounding(scales, low) + energy_rounding(scales, high));
+        let upper = if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.own.total() };
+        let why = format!(
+            "Every admissible {letter}{p} field is an admissible {letter}{q} field, so the {letter}{q} minimum cannot be higher."
+        );
+        let name = name_of_order(letter, p, q);
+        let ordered = |allowed| Check::at_most(&name, lower, upper, allowed, Basis::RoundOff, why.as_str());
+        of_energy(ceilings, SOLVER * strain, SOLVER * strain.max(magnitude) + rounding).check_of_large(ordered)
     };
-    solutions.windows(2).filter(|pair| pair[0].candidate.degree < pair[1].candidate.degree).map(check).collect()
+    // Drawn back between its vertices, a Q1 field is none of Q2.
+    let nested = |letter: char, low: &Judged| letter == 'P' || !linear_where_jumps_bend(problem, low);
+    let of_letter = |letter: char| {
+        let solutions = solutions(letter);
+        let rises = |pair: &&[&Judged]| pair[0].candidate.degree < pair[1].candidate.degree;
+        let rising = solutions.windows(2).filter(rises).filter(|pair| nested(letter, pair[0]));
+        rising.map(|pair| check(letter, pair)).collect::<Vec<Check>>()
+    };
+    ['P', 'Q'].into_iter().flat_map(of_letter).collect()
 }
 
 /// Whether a bracket can tell two models apart.
@@ -238,41 +265,38 @@ fn two_ways(
 }
 
 /// Equilibrium of a solution in its own space.
-fn in_its_own_space(who: &str, scales: &Scales, balance: &Balance) -> Check {
+fn in_its_own_space(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance: &Balance, strain: f64) -> Check {
     // Forces that could hold no more energy than rounding of the data are none.
     let none = (2.0 * scales.round_off.energy).sqrt();
     let scale = balance.scale.max(none);
     let relative = |left: f64| if scale > 0.0 { left / scale } else { left };
     let place = balance.worst.map_or(String::new(), |([x, y], _)| format!(" Most is left at ({x:.6}, {y:.6})."));
-    Check::at_most(
-        &format!("primal/equilibrium/{who}"),
-        relative(balance.left),
-        0.0,
-        SOLVER + relative(balance.rounding + none),
-        Basis::RoundOff,
-        format!(
-            "A displacement solution balances the loads on every basis function of its space, with supports and with \
-             contacts that push where they are closed: what is left of the nodal forces, integrated here, relative to \
-             all of them.{place} {}",
-            lost_digits(relative(balance.rounding), SOLVER)
-        ),
-    )
+    let name = format!("primal/equilibrium/{who}");
+    let why = format!(
+        "A displacement solution balances the loads on every basis function of its space, with supports and with \
+         contacts that push where they are closed: what is left of the nodal forces, integrated here, relative to \
+         all of them.{place} {}",
+        lost_digits(relative(balance.rounding), SOLVER)
+    );
+    let left = |allowed| Check::at_most(&name, relative(balance.left), 0.0, allowed, Basis::RoundOff, why.as_str());
+    let ceiling = ceilings.extent.rounding_of_forces(balance.load, balance.supported, strain) + ceilings.of_data;
+    Allowance { exact: SOLVER + relative(none), digits: relative(balance.rounding), ceiling: relative(ceiling) }
+        .check_of_large(left)
 }
 
 /// Reported reactions against what the displacement asks for, the interface with the largest excess.
-fn reactions(who: &str, scales: &Scales, balance: &Balance) -> Check {
+fn reactions(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance: &Balance) -> Check {
     let allowed = |i: usize| SOLVER * balance.carried[i] + balance.reaction_tolerance(i) + scales.round_off.force;
     let excess = |i: usize| balance.reactions[i] - allowed(i);
     let worst = (0..balance.reactions.len()).max_by(|&i, &j| excess(i).total_cmp(&excess(j)));
-    Check::at_most(
-        &format!("primal/reactions/{who}"),
-        worst.map_or(0.0, |i| balance.reactions[i]),
-        0.0,
-        worst.map_or(0.0, allowed),
-        Basis::RoundOff,
-        "Every contact reaction that the displacement program reports is the one its stresses ask for, where a single contact \
-         acts on a vertex, and the reported resultant is their sum.",
-    )
+    let name = format!("primal/reactions/{who}");
+    let value = worst.map_or(0.0, |i| balance.reactions[i]);
+    let all = worst.map_or(0.0, allowed);
+    let exact = all.min(SOLVER * ceilings.force + scales.round_off.force);
+    let why = "Every contact reaction that the displacement program reports is the one its stresses ask for, where a single contact \
+         acts on a vertex, and the reported resultant is their sum.";
+    Allowance { exact, digits: all - exact, ceiling: ceilings.force }
+        .check_of_large(|allowed| Check::at_most(&name, value, 0.0, allowed, Basis::RoundOff, why))
 }
 
 /// What rounding of its displacements can have done to an energy of the displacement program.

@@ -25,6 +25,20 @@ pub struct NodalForces {
 impl NodalForces {
     /// Of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
     pub fn new(problem: &Problem, degree: usize, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
+        let mut forces = Self::on(problem, degree, vertex, middle, |_| true);
+        forces.add_tractions(problem, degree);
+        forces.take_loads();
+        forces
+    }
+
+    /// The forces of stresses and body forces on the triangles that are `counted`.
+    pub(super) fn on(
+        problem: &Problem,
+        degree: usize,
+        vertex: &[[f64; 2]],
+        middle: &[[f64; 2]],
+        counted: impl Fn(usize) -> bool,
+    ) -> Self {
         let mesh = &problem.mesh;
         let vertices = mesh.points.len();
         let count = vertices + if degree == 2 { mesh.edges.len() } else { 0 };
@@ -38,7 +52,7 @@ impl NodalForces {
         let mut stiffest = vec![0.0; count];
         let materials = problem.materials();
         let t = problem.scene.thickness;
-        for (k, corners) in mesh.triangles.iter().enumerate() {
+        for (k, corners) in mesh.triangles.iter().enumerate().filter(|(k, _)| counted(*k)) {
             let material = &materials[mesh.body[k]];
             // λ + 2μ, and no less than either eigenvalue of c.
             let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
@@ -84,8 +98,6 @@ impl NodalForces {
                 forces.load[node][1] += area / 3.0 * f[1];
             }
         }
-        forces.add_tractions(problem, degree);
-        forces.take_loads();
         forces
     }
 
@@ -98,7 +110,7 @@ impl NodalForces {
         }
     }
 
-    fn add_tractions(&mut self, problem: &Problem, degree: usize) {
+    pub(super) fn add_tractions(&mut self, problem: &Problem, degree: usize) {
         let mesh = &problem.mesh;
         for (e, condition) in problem.conditions.iter().enumerate() {
             let Condition::Traction([pa, pb]) = condition else { continue };
@@ -128,7 +140,7 @@ impl NodalForces {
 
     /// What supports cannot take of `left`, whose nodes on vertices and edges are `nodes`.
     pub fn unsupported(&self, holds: &Holds, nodes: &Nodes) -> Vec<[f64; 2]> {
-        let all = holds.of_nodes(nodes).chain(std::iter::repeat(&Hold::Free));
+        let all = holds.of_nodes(nodes).chain(std::iter::repeat(Hold::Free));
         self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()
     }
 }

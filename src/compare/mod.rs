@@ -2,13 +2,19 @@
 
 mod balance;
 mod candidate;
+mod ceiling;
+pub mod cells;
 mod check;
 mod coefficients;
 mod contact;
 mod energy;
 mod forces;
+mod forces_on_quadrilaterals;
+mod mean;
 mod nodal;
+mod on_quadrilaterals;
 mod outcome;
+mod peak;
 mod piece;
 pub mod pressure;
 mod resultant;
@@ -18,12 +24,18 @@ mod tolerance;
 
 pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
+pub use ceiling::Extent;
 pub use check::{Basis, Check};
 pub use forces::NodalForces;
+pub use mean::MeanPressure;
+pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
-pub use solution::{Extent, Numbering, Solution};
+pub use pressure::weighted_reactions;
+pub use solution::{Nonmatching, Numbering, Solution};
 pub use stress::{primal_means, von_mises, von_mises_map};
 pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
+
+use ceiling::Ceilings;
 
 use crate::bounds::{Bracket, UpperBound};
 use crate::dual::DualSolution;
@@ -68,7 +80,9 @@ impl Comparison {
     /// The best upper bound with the name of the field it comes from.
     pub fn upper<'a>(&'a self, bracket: &'a Bracket) -> Option<(&'a UpperBound, &'a str)> {
         let free = bracket.free.iter().map(|f| (f, "free"));
-        let delivered = self.judged.iter().map(|j| (&j.admissible, j.candidate.name.as_str()));
+        // What is no polynomial on triangles is bounded by the energy of another field.
+        let own = self.judged.iter().filter(|j| j.candidate.is_polynomial());
+        let delivered = own.map(|j| (&j.admissible, j.candidate.name.as_str()));
         free.chain(delivered).min_by(|a, b| a.0.upper().total_cmp(&b.0.upper()))
     }
 }
@@ -81,11 +95,13 @@ pub fn compare(
     candidates: Vec<Candidate>,
     allow: &Allowances,
 ) -> Comparison {
+    let scales = Scales::new(problem).from_closed_contacts(problem);
+    let ceilings = Ceilings::new(problem, &scales, (dual, bracket));
     let mut refused = Vec::new();
     let mut judged = Vec::new();
     for candidate in candidates {
         let name = candidate.name.clone();
-        match Judged::new(problem, dual, candidate) {
+        match Judged::new(problem, dual, candidate, ceilings.extent) {
             Ok(j) => judged.push(j),
             Err(reason) => refused.push(Check::not_made(
                 &format!("admissible/{name}"),
@@ -100,17 +116,17 @@ pub fn compare(
         let (a, b) = (rank(&judged[a]), rank(&judged[b]));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    let scales = Scales::new(problem).from_closed_contacts(problem);
     let mut comparison = Comparison { judged, best, contacts: Vec::new(), stress: None, checks: Vec::new() };
     let upper = comparison.upper(bracket).map_or(f64::INFINITY, |(u, _)| u.upper());
     comparison.checks = energy::dual_checks(problem, &scales, (dual, bracket), upper);
     comparison.checks.extend(refused);
     for judged in &comparison.judged {
-        comparison.checks.extend(energy::primal_checks(problem, &scales, (dual, bracket), judged));
+        comparison.checks.extend(energy::primal_checks(problem, (&scales, &ceilings), (dual, bracket), judged));
     }
-    comparison.checks.extend(energy::degree_order(problem, &scales, &comparison.judged, bracket));
+    comparison.checks.extend(energy::degree_order(problem, (&scales, &ceilings), &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);
-    let sides = contact::Sides { problem, scales: &scales, dual, best };
+    let gap = (upper - bracket.lower()).max(0.0);
+    let sides = contact::Sides { problem, scales: &scales, ceilings: &ceilings, dual, gap, best };
     let (contacts, checks) = sides.compare(&comparison.judged);
     comparison.stress = best.map(|b| stress::compare(problem, dual, bracket.complementary.strain, b));
     comparison.contacts = contacts;

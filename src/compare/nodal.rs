@@ -10,21 +10,28 @@
 //!
 //! ∫ (−t) φ n·n̂ − R(φ) = −∫ (λ_h − σ(u_h)) : e(w),   |∫ (−t) φ n·n̂ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
 //!
+//! Of a solution on quadrilaterals φ is the function of degree 1 in each coordinate; the rest is the same on parallelograms.
+//!
 //! The equation holds to round-off for a correct solution, the inequality says what its two sides may amount to. Both hold for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
 
 use std::collections::{HashMap, HashSet};
 
 use super::candidate::{Judged, Reactions};
+use super::on_quadrilaterals::hat_gradient;
 use super::pressure::Piece;
 use super::stress::primal_means;
 use crate::dual::DualSolution;
-use crate::element::contraction;
+use crate::element::bilinear::Bilinear;
+use crate::element::geometry::sub_corners;
+use crate::element::{Samples, Strains, contraction};
 use crate::problem::{Condition, Interface, Problem};
 use crate::vector::dot;
 
 /// Mean pressures at a vertex of Γ_K, weighted by its hat function.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodalPressure {
+    /// The vertex, of the first side.
+    pub vertex: usize,
     /// ∫ φ ds.
     pub weight: f64,
     /// ∫ (−t) φ n·n̂ / ∫ φ of the dual solution.
@@ -103,7 +110,10 @@ pub fn nodal_pressures(
             }
         }
     }
-    let works = works(problem, dual, judged, &normals);
+    let works = match &judged.candidate.on_quadrilaterals {
+        None => works(problem, dual, judged, &normals),
+        Some(_) => works_on_quadrilaterals(problem, dual, judged, &normals),
+    };
     let mut vertices: Vec<usize> = normals.into_keys().collect();
     vertices.sort_unstable();
     vertices
@@ -112,6 +122,7 @@ pub fn nodal_pressures(
             let [weight, pressure] = sums[&v];
             let [work, size] = works.get(&v).copied().unwrap_or_default();
             NodalPressure {
+                vertex: v,
                 weight,
                 dual: pressure / weight,
                 primal: force[&v] / (thickness * weight),
@@ -159,12 +170,13 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
     for (e, condition) in problem.conditions.iter().enumerate() {
         for v in problem.mesh.edges[e].vertices {
             let Some(&n) = normals.get(&v) else { continue };
-            let across = || dot(n, problem.mesh.edge_frame(e).1).abs() > ALIGNED;
+            let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
                 Condition::Clamped(_) => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
-                Condition::Roller | Condition::Contact { .. } => across(),
+                Condition::Roller { direction, .. } => across(*direction),
+                Condition::Contact { .. } => across(problem.mesh.edge_frame(e).1),
             };
             if stops {
                 held.insert(v);
@@ -206,6 +218,54 @@ fn works(
             let sum = sums.entry(*v).or_default();
             sum[0] += area * contraction(d, e);
             sum[1] += (stress * motion).sqrt();
+        }
+    }
+    sums
+}
+
+/// The same for the functions of degree 1 on quadrilaterals, which are parallelograms: all integrands are polynomials.
+fn works_on_quadrilaterals(
+    problem: &Problem,
+    dual: &DualSolution,
+    judged: &Judged,
+    normals: &HashMap<usize, [f64; 2]>,
+) -> HashMap<usize, [f64; 2]> {
+    let mesh = &problem.mesh;
+    let materials = problem.materials();
+    let field = &judged.field.displacement;
+    let mut strains = Strains::default();
+    let mut sums: HashMap<usize, [f64; 2]> = HashMap::new();
+    for cell in mesh.quadrilaterals().filter(|cell| cell.corners.iter().any(|v| normals.contains_key(v))) {
+        let map = Bilinear::new(cell.points(mesh));
+        for t in cell.triangles {
+            let material = &materials[mesh.body[t]];
+            let stress = 2.0 * judged.field.local.triangles[t] / problem.scene.thickness;
+            let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
+            let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
+            let mut parts = [[0.0; 2]; 4];
+            for sub in 0..3 {
+                strains.on(mesh.corners(t), field, t, sub);
+                let corners = sub_corners(mesh.corners(t), sub);
+                for (q, (l, weight)) in samples.points.iter().enumerate() {
+                    let weight = weight * mesh.area(t) / 3.0;
+                    let (own, other) =
+                        (dual.stress.sample(t, sub, shapes, q), material.stress(strains.sample(samples, q)));
+                    let d = [0, 1, 2].map(|c| own[c] - other[c]);
+                    let p = [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum());
+                    for (i, part) in parts.iter_mut().enumerate() {
+                        let Some(n) = normals.get(&cell.corners[i]) else { continue };
+                        let g = hat_gradient(&map, i, p);
+                        let e = [n[0] * g[0], n[1] * g[1], 0.5 * (n[0] * g[1] + n[1] * g[0])];
+                        part[0] += weight * contraction(d, e);
+                        part[1] += weight * material.strain_product(e, e);
+                    }
+                }
+            }
+            for ([work, motion], v) in parts.into_iter().zip(cell.corners).filter(|(_, v)| normals.contains_key(v)) {
+                let sum = sums.entry(v).or_default();
+                sum[0] += work;
+                sum[1] += (stress * motion).sqrt();
+            }
         }
     }
     sums

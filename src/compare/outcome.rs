@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::mean::MeanPressure;
+
 /// A pair of values, one from each side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct TwoSides<T> {
@@ -25,6 +27,9 @@ pub struct ContactSummary {
     pub pressure_max: TwoSides<f64>,
     /// Where it is.
     pub pressure_max_at: TwoSides<[f64; 2]>,
+    /// The mean of the pressure of λ_h around the place where it is largest; `null` where nothing presses, or what holds the
+    /// contact there leaves no mean that is bounded.
+    pub pressure_mean: Option<MeanPressure>,
     /// Fraction of the length that carries no pressure.
     pub open_fraction: f64,
     /// The same from the displacement solution.

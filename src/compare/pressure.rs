@@ -1,10 +1,12 @@
 //! Contact pressure from both sides, along each interface.
 
+use std::collections::HashMap;
+
 use super::candidate::{Judged, Reactions};
 pub use super::piece::{Piece, variation};
 use crate::dual::DualSolution;
-use crate::element::Strains;
 use crate::element::displacement::through;
+use crate::element::{Strains, side};
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// −t of the dual solution.
@@ -19,14 +21,13 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
     // ∫ of the shape function per unit edge length: hat functions, or Bernstein polynomials of the jump.
     let inner = |k: usize| reactions.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
     let share = |k: usize| 1.0 / (inner(k).len() + 2) as f64;
-    let mut weight = std::collections::HashMap::new();
+    let mut weight = HashMap::new();
     for (k, pair) in interface.pairs.iter().enumerate() {
         for v in pair.first {
             *weight.entry(v).or_insert(0.0) += share(k) * pair.length * thickness;
         }
     }
-    let force: std::collections::HashMap<_, _> =
-        reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
+    let force: HashMap<_, _> = reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
     let at = |v: usize| force.get(&v).copied().unwrap_or(0.0) / weight[&v];
     interface
         .pairs
@@ -96,7 +97,7 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
 /// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.
 pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
-    let mut normal = std::collections::HashMap::new();
+    let mut normal = HashMap::new();
     let mut moment = 0.0;
     for (k, pair) in interface.pairs.iter().enumerate() {
         for (v, n) in pair.first.into_iter().zip(pair.direction.ends) {
@@ -122,6 +123,40 @@ pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Rea
         moment -= normal.get(v).map_or(0.0, |n| r * cross(problem.mesh.points[*v], *n));
     }
     moment
+}
+
+/// −∫ φ t of the one contact on whose pairs `weights` φ lie, from the `reactions` of all; `None` where the weights lie on
+/// several, or there are none.
+pub fn weighted_reactions(problem: &Problem, weights: &[Vec<f64>], reactions: &[Reactions]) -> Option<f64> {
+    let mut rest = weights;
+    let mut found = None;
+    for (interface, own) in problem.interfaces.iter().zip(reactions) {
+        let (here, after) = rest.split_at_checked(interface.pairs.len())?;
+        rest = after;
+        if here.iter().all(|weights| weights.is_empty()) {
+            continue;
+        }
+        if found.is_some() {
+            return None;
+        }
+        let mut at: HashMap<usize, f64> = HashMap::new();
+        let mut sum = 0.0;
+        for (k, (pair, weights)) in interface.pairs.iter().zip(here).enumerate().filter(|(_, (_, w))| !w.is_empty()) {
+            let inner = own.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
+            let degree = inner.len() + 1;
+            let weights = match weights.len() - 1 <= degree {
+                true => side::elevate(weights, degree),
+                false => side::from_moments(&side::moments(weights, degree)),
+            };
+            sum -= inner.iter().zip(&weights[1..]).map(|(r, w)| r * w).sum::<f64>();
+            for (vertex, weight) in pair.first.into_iter().zip([weights[0], weights[degree]]) {
+                at.entry(vertex).or_insert(weight);
+            }
+        }
+        sum -= own.vertices.iter().zip(&own.vertex).map(|(v, r)| r * at.get(v).copied().unwrap_or(0.0)).sum::<f64>();
+        found = Some(sum);
+    }
+    found
 }
 
 /// Largest value and where it is.

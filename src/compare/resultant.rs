@@ -2,6 +2,7 @@
 
 use super::candidate::Judged;
 use super::contact::Sides;
+use super::on_quadrilaterals::strain_norm_squared;
 use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::bounds::Sum;
@@ -29,53 +30,104 @@ pub fn resultant_check(
     let of_displacements = best.balance.as_ref().map(|b| b.reaction_tolerance(index));
     let round_off =
         RESULTANT * forces(sides.problem).max(size) + of_displacements.unwrap_or(0.0) + sides.scales.round_off.force;
-    let (allowed, basis, why) = match translation_norm(sides.problem, (index, interface), dual, primal) {
-        Some(norm) => (
+    let norm = if best.candidate.is_polynomial() {
+        translation_norm(sides.problem, (index, interface), dual, primal, best.candidate.on_quadrilaterals.is_some())
+    } else {
+        Err(Meets::Distorted)
+    };
+    let (allowed, basis, why) = match norm {
+        Ok(norm) => (
             (2.0 * apart.value().max(0.0)).sqrt() * norm + round_off,
             Basis::Guaranteed,
             "Contact resultants of the two models: they differ at most by ‖λ_h − σ(u_h)‖ times the energy norm of a \
-             displacement that moves the first side of the contact as a whole; zero where equilibrium fixes the resultant.",
+             displacement that moves the first side of the contact as a whole; zero where equilibrium fixes the resultant."
+                .to_string(),
         ),
-        None => (
+        Err(_) if difference <= round_off => (
+            round_off,
+            Basis::RoundOff,
+            "Contact resultants of the two models, which differ by rounding alone.".to_string(),
+        ),
+        Err(meets) => (
             chosen("resultant") * size + round_off,
             Basis::Chosen,
-            "Contact resultants of the two models. Supports meet this contact, and what passes at such a vertex through \
-             the support and what through the contact is not the same question for the two models: theory sets no bound.",
+            format!("Contact resultants of the two models. {} theory sets no bound.", meets.in_words()),
         ),
     };
-    Check::with_difference(&name, size, primal[0].hypot(primal[1]), difference, allowed, basis, why)
+    let found = primal[0].hypot(primal[1]);
+    let made = |allowed| Check::with_difference(&name, size, found, difference, allowed, basis, why.clone());
+    sides.of_reaction(best, index, allowed).check_of_large(made)
 }
 
-/// ‖e(w)‖ for a continuous piecewise linear w that is a unit translation along the difference of the resultants on the
+/// Why no displacement moves the first side of a contact alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Meets {
+    /// A support meets it.
+    Support,
+    /// Another contact meets it.
+    Contact,
+    /// Conditions that meet elsewhere on the piece do not leave it free.
+    Elsewhere,
+    /// Both sides belong to one piece.
+    Itself,
+    /// The solution is one on quadrilaterals that are no parallelograms.
+    Distorted,
+}
+
+impl Meets {
+    fn in_words(self) -> &'static str {
+        match self {
+            Meets::Support => {
+                "Supports meet this contact, and what passes at such a vertex through the support and what through the contact is \
+                 not the same question for the two models:"
+            }
+            Meets::Contact => {
+                "Another contact meets this one, and what passes at such a vertex through one and what through the other is not the \
+                 same question for the two models:"
+            }
+            Meets::Elsewhere => {
+                "Supports or other contacts that meet on the body of its first side leave no displacement that moves this side \
+                 alone:"
+            }
+            Meets::Distorted => {
+                "The displacement solution is one on quadrilaterals that are no parallelograms, in the integrals of its own Gauss rule:"
+            }
+            Meets::Itself => "Both sides belong to one piece, so that no displacement moves the first alone:",
+        }
+    }
+}
+
+/// ‖e(w)‖ for a continuous w, piecewise linear or of degree 1 on `quadrilaterals`, that is a unit translation along the difference of the resultants on the
 /// first side of the interface, as far into its piece as supports and other contacts allow, and zero elsewhere.
 fn translation_norm(
     problem: &Problem,
     (index, interface): (usize, &Interface),
     dual: [f64; 2],
     primal: [f64; 2],
-) -> Option<f64> {
+    quadrilaterals: bool,
+) -> Result<f64, Meets> {
     let mesh = &problem.mesh;
     let off = [dual[0] - primal[0], dual[1] - primal[1]];
     let size = off[0].hypot(off[1]);
     if size == 0.0 {
-        return Some(0.0);
+        return Ok(0.0);
     }
     let d = [off[0] / size, off[1] / size];
     let components = Components::new(problem);
-    let piece = components.of_vertex[interface.pairs.first()?.first[0]];
+    let Some(first) = interface.pairs.first() else { return Ok(0.0) };
+    let piece = components.of_vertex[first.first[0]];
     // A piece that meets itself moves both sides.
     let second = interface.pairs.iter().filter_map(|pair| pair.second).flatten();
     if second.into_iter().any(|v| components.of_vertex[v] == piece) {
-        return None;
+        return Err(Meets::Itself);
     }
     let mut w: Vec<[f64; 2]> = components.of_vertex.iter().map(|&c| if c == piece { d } else { [0.0; 2] }).collect();
     let on_contact: std::collections::HashSet<usize> = interface.pairs.iter().flat_map(|p| p.first).collect();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let (_, n) = mesh.edge_frame(e);
         for v in mesh.edges[e].vertices {
             let held = match condition {
                 Condition::Clamped(_) => [0.0; 2],
-                Condition::Roller => along(w[v], n),
+                Condition::Roller { direction, .. } => along(w[v], *direction),
                 // Other contacts of the piece must not be moved in their normal direction.
                 Condition::Contact { interface, pair, .. } if *interface != index => {
                     along(w[v], direction_at(&problem.interfaces[*interface].pairs[*pair], v))
@@ -83,17 +135,19 @@ fn translation_norm(
                 _ => continue,
             };
             if on_contact.contains(&v) && (held[0] - d[0]).hypot(held[1] - d[1]) > 1e-9 {
-                return None;
+                return Err(match condition {
+                    Condition::Contact { .. } => Meets::Contact,
+                    _ => Meets::Support,
+                });
             }
             w[v] = held;
         }
     }
     // Where two conditions meet, what one of them takes of w another may have needed.
     let kept = |(e, condition): (usize, &Condition)| {
-        let (_, n) = mesh.edge_frame(e);
         mesh.edges[e].vertices.iter().all(|v| match condition {
             Condition::Clamped(_) => w[*v] == [0.0; 2],
-            Condition::Roller => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
+            Condition::Roller { direction: n, .. } => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
             Condition::Contact { interface, pair, .. } if *interface != index => {
                 let n = direction_at(&problem.interfaces[*interface].pairs[*pair], *v);
                 (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9
@@ -102,7 +156,10 @@ fn translation_norm(
         })
     };
     if !problem.conditions.iter().enumerate().all(kept) {
-        return None;
+        return Err(Meets::Elsewhere);
+    }
+    if quadrilaterals {
+        return Ok((problem.scene.thickness * strain_norm_squared(problem, &w)).sqrt());
     }
     let field = Displacement::from_p1(mesh, &w);
     let materials = problem.materials();
@@ -113,7 +170,7 @@ fn translation_norm(
             mesh.area(t) * materials[mesh.body[t]].strain_product(e, e)
         })
         .collect();
-    Some((problem.scene.thickness * sum.value()).sqrt())
+    Ok((problem.scene.thickness * sum.value()).sqrt())
 }
 
 /// The unit direction in which contact acts at a vertex of a pair.

@@ -1,11 +1,12 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
 /// The tolerances this program chose, by the last part of the check name. What exceeds them is a remark.
-pub const CHOSEN: [(&str, f64, &str); 6] = [
+pub const CHOSEN: [(&str, f64, &str); 7] = [
     ("sharpness", SHARP, "a bracket wider than this could not tell two models apart"),
     ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
     ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
     ("pressure-max", 0.35, "where no reactions are given, nothing bounds a maximum"),
+    ("peak-pressure", 1.5, "times what the bracket explains of means: nothing bounds the pressure at a point"),
     ("resultant", 0.05, "where supports hold every vertex of a contact, nothing bounds the force at its ends"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
 ];
@@ -23,7 +24,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 28] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -38,6 +39,7 @@ const NAMES: [&str; 27] = [
     "primal/reactions/{field}",
     "stress/difference/{field}",
     "contact/{contact}/open-length",
+    "contact/{contact}/peak-pressure",
     "contact/{contact}/pressure-l2",
     "contact/{contact}/pressure-max",
     "contact/{contact}/reactions",
@@ -54,7 +56,7 @@ const NAMES: [&str; 27] = [
 ];
 
 /// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end
-/// with their degree, as `FEniCSx P2` does, are also held against each other.
+/// with their degree, as `FEniCSx P2` and `FEniCSx Q2` do, are also held against each other.
 pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
     let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
         values.iter().map(|value| template.replace(key, value)).collect()
@@ -64,14 +66,19 @@ pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
         name if name.contains("{contact}") => with(name, "{contact}", contacts),
         name => vec![name.to_string()],
     });
-    let degree = |field: &String| field.rsplit_once(" P").and_then(|(_, k)| k.parse::<usize>().ok());
-    let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
-    all.chain(degrees.windows(2).map(|pair| name_of_order(pair[0], pair[1]))).collect()
+    let orders = ['P', 'Q'].into_iter().flat_map(|letter| {
+        let degree = |field: &String| field.rsplit_once(&format!(" {letter}")).and_then(|(_, k)| k.parse().ok());
+        let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
+        degrees.windows(2).map(|pair| name_of_order(letter, pair[0], pair[1])).collect::<Vec<String>>()
+    });
+    all.chain(orders).collect()
 }
 
-/// The name of the check that holds the energies of two displacement solutions of degrees p < q against each other.
-pub fn name_of_order(p: usize, q: usize) -> String {
-    format!("energy/p{p}-above-p{q}")
+/// The name of the check that holds the energies of two displacement solutions of degrees p < q, both P or both Q, against each
+/// other.
+pub fn name_of_order(letter: char, p: usize, q: usize) -> String {
+    let letter = letter.to_ascii_lowercase();
+    format!("energy/{letter}{p}-above-{letter}{q}")
 }
 
 /// Allowed values from the command line, by check name.

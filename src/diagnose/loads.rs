@@ -4,6 +4,7 @@ use super::Finding;
 use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
+use crate::compare::cells;
 use crate::problem::Condition;
 
 /// Coefficients of components that are smaller than this are none.
@@ -134,6 +135,13 @@ fn of_body(space: &Space<'_>, body: usize, force: [f64; 2]) -> Vec<[f64; 2]> {
     let (problem, mesh) = (space.problem(), &space.problem().mesh);
     let mut forces = vec![[0.0; 2]; space.count()];
     for t in (0..mesh.triangles.len()).filter(|t| mesh.body[*t] == body) {
+        let Some(cell) = space.counted(t) else { continue };
+        if let Some(cell) = cell {
+            for (node, weight) in cell.nodes.iter().zip(cells::weights(&cell.field)) {
+                (0..2).for_each(|c| forces[*node][c] += problem.scene.thickness * weight * force[c]);
+            }
+            continue;
+        }
         let part = problem.scene.thickness * mesh.area(t) / 3.0;
         let nodes = space.nodes(t);
         // A quadratic shape function has a third of the area at a midpoint and nothing at a corner.

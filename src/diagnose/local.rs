@@ -170,7 +170,7 @@ impl<'a> Places<'a> {
             edges.iter().flat_map(|e| mesh.edges[*e].vertices.into_iter().chain([vertices + e])).collect();
         let left = self.without(nodes.into_iter().filter(|n| *n < self.space.count()));
         let (key, sentence) = match edges.first().map(|e| self.space.problem().conditions[*e]) {
-            Some(Condition::Roller) => {
+            Some(Condition::Roller { .. }) => {
                 ("clamped", format!("{name} is held along the boundary too, where the scene lets it slide"))
             }
             Some(Condition::Traction(_)) => (
@@ -186,6 +186,10 @@ impl<'a> Places<'a> {
         let problem = self.space.problem();
         let numbering = self.space.solution.candidate.numbering.as_ref();
         let corners = problem.mesh.triangles[t].map(|v| self.space.solution.named(v)).join(", ");
+        if let Some(cell) = self.space.cell(t) {
+            let corners = cell.nodes.iter().take(4).map(|v| self.space.solution.named(*v)).collect::<Vec<_>>();
+            return format!("the quadrilateral with the corners {}", corners.join(", "));
+        }
         match numbering.and_then(|n| n.triangle(t)) {
             Some(triangle) => format!("{triangle} (corners: {corners})"),
             None => format!("the triangle with the corners {corners}"),

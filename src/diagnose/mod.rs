@@ -9,6 +9,7 @@
 
 mod contact;
 mod fit;
+mod integration;
 mod layer;
 mod loads;
 mod local;
@@ -156,6 +157,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         trials.extend(moved::trial(&space));
         trials.extend(lumped::trials(&space));
         trials.extend(local::trials(&space));
+        trials.extend(integration::trials(&space));
         trials.extend(contact::trials(&space));
         let mut terms = Terms::new(&space);
         material::terms(&space, &mut terms);

@@ -1,6 +1,7 @@
 //! Nodal forces of parts of a model, as columns that can be held against the residual.
 
-use crate::compare::Solution;
+use crate::bounds::Cell;
+use crate::compare::{Solution, cells};
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
@@ -41,6 +42,12 @@ impl Moduli {
         [2.0 * mu * (1.0 + poisson), poisson]
     }
 
+    /// The stress of a strain (xx, yy, xy).
+    pub fn stress(&self, e: [f64; 3]) -> [f64; 3] {
+        let pressure = self.lambda * (e[0] + e[1]);
+        [pressure + 2.0 * self.mu * e[0], pressure + 2.0 * self.mu * e[1], 2.0 * self.shear * e[2]]
+    }
+
     /// The difference from `other`.
     pub fn less(self, other: Self) -> Self {
         Moduli { lambda: self.lambda - other.lambda, mu: self.mu - other.mu, shear: self.shear - other.shear }
@@ -55,12 +62,15 @@ pub struct Space<'a> {
     pub residual: Vec<f64>,
     /// Its square.
     pub square: f64,
+    /// Of every triangle the quadrilateral that it is a part of.
+    cell_of: Vec<Option<usize>>,
 }
 
 impl<'a> Space<'a> {
     /// That of `solution`.
     pub fn new(solution: &'a Solution<'a>) -> Self {
-        let mut space = Space { solution, residual: Vec::new(), square: 0.0 };
+        let cell_of = cells::of_triangles(solution.problem, &solution.candidate.cells);
+        let mut space = Space { solution, residual: Vec::new(), square: 0.0, cell_of };
         space.residual = space.weighed(&solution.rest);
         space.square = space.residual.iter().map(|x| x * x).sum();
         space
@@ -95,15 +105,32 @@ impl<'a> Space<'a> {
         self.residual[2 * node].powi(2) + self.residual[2 * node + 1].powi(2)
     }
 
-    /// The nodes of triangle `t`: corners, then the midpoints opposite them.
+    /// The quadrilateral that triangle `t` is a part of.
+    pub fn cell(&self, t: usize) -> Option<&'a Cell> {
+        Some(&self.solution.candidate.cells[self.cell_of[t]?])
+    }
+
+    /// The same where `t` is the first of its triangles, which counts for all of it.
+    pub fn counted(&self, t: usize) -> Option<Option<&'a Cell>> {
+        match self.cell(t) {
+            Some(cell) if cell.triangles.first() != Some(&t) => None,
+            cell => Some(cell),
+        }
+    }
+
+    /// The nodes of triangle `t`: corners, then the midpoints opposite them; those of its quadrilateral where it is a part of one.
     pub fn nodes(&self, t: usize) -> Vec<usize> {
+        if let Some(cell) = self.cell(t) {
+            return cell.nodes.clone();
+        }
         let mesh = &self.problem().mesh;
         let middles = mesh.triangle_edges[t].map(|e| mesh.points.len() + e);
         let all = mesh.triangles[t].into_iter().chain(middles);
         all.filter(|n| *n < self.count()).collect()
     }
 
-    /// Adds the nodal forces of triangle `t` with the given constants, for displacements `value`.
+    /// Adds the nodal forces of triangle `t`, or with the first of its triangles those of a quadrilateral, with the given constants, for
+    /// displacements `value`.
     pub fn add_element(
         &self,
         t: usize,
@@ -112,6 +139,16 @@ impl<'a> Space<'a> {
         mut add: impl FnMut(usize, [f64; 2]),
     ) {
         let problem = self.problem();
+        let Some(cell) = self.counted(t) else { return };
+        if let Some(cell) = cell {
+            let values: Vec<[f64; 2]> = cell.nodes.iter().map(|n| value(*n)).collect();
+            let points = self.solution.points.unwrap_or(cells::full(&cell.field));
+            let forces = cells::forces(&cell.field, &values, points, |e| moduli.stress(e));
+            for (node, f) in cell.nodes.iter().zip(forces) {
+                add(*node, f.map(|f| problem.scene.thickness * f));
+            }
+            return;
+        }
         let weight = problem.scene.thickness * problem.mesh.area(t) / 3.0;
         let g = gradients(problem.mesh.corners(t));
         let nodes = self.nodes(t);
@@ -125,11 +162,9 @@ impl<'a> Space<'a> {
                 e[1] += d[1] * y;
                 e[2] += 0.5 * (d[1] * x + d[0] * y);
             }
-            let pressure = moduli.lambda * (e[0] + e[1]);
-            let s = [0, 1].map(|c| pressure + 2.0 * moduli.mu * e[c]);
-            let shear = 2.0 * moduli.shear * e[2];
+            let s = moduli.stress(e);
             for (node, d) in nodes.iter().zip(&shape) {
-                add(*node, [weight * (d[0] * s[0] + d[1] * shear), weight * (d[0] * shear + d[1] * s[1])]);
+                add(*node, [weight * (d[0] * s[0] + d[1] * s[2]), weight * (d[0] * s[2] + d[1] * s[1])]);
             }
         }
     }

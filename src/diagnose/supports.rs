@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::Finding;
-use super::words::{near, number};
+use super::words::number;
+use crate::bounds::Hold;
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
-use crate::scene::SupportKind;
 
 /// Forces this small beside all others are none.
 const NO_FORCE: f64 = 1e-6;
@@ -48,7 +48,7 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
                 number(depth)
             );
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
-        } else if let Some(s) = prescribed(solution, support.kind, &nodes) {
+        } else if let Some(s) = prescribed(solution, &nodes) {
             let sentence = format!("the displacement of {on} is {} times the prescribed one", number(s));
             Finding::new(name("displacement"), Some(s), Some(1.0), sentence)
         } else if let Some(stiffness) = spring(&off, &force) {
@@ -88,18 +88,21 @@ fn off(solution: &Solution<'_>, node: usize) -> [f64; 2] {
 }
 
 /// The factor on a prescribed displacement that the nodes have, where they all have the same.
-fn prescribed(solution: &Solution<'_>, kind: SupportKind, nodes: &[usize]) -> Option<f64> {
-    let SupportKind::Clamped { displacement: [x, y] } = kind else { return None };
-    let square = x * x + y * y;
-    let factor = |n: &usize| {
+fn prescribed(solution: &Solution<'_>, nodes: &[usize]) -> Option<f64> {
+    let pair = |n: &usize| {
         let u = solution.candidate.value(*n);
-        let s = (u[0] * x + u[1] * y) / square;
-        ((u[0] - s * x).hypot(u[1] - s * y) <= SOLVER * solution.largest).then_some(s)
+        match solution.hold(*n) {
+            Hold::Free => [[0.0; 2]; 2],
+            Hold::Line { normal: [x, y], value } => [[u[0] * x + u[1] * y, 0.0], [value, 0.0]],
+            Hold::Fixed(value) => [u, value],
+        }
     };
-    let all: Option<Vec<f64>> = if square > 0.0 { nodes.iter().map(factor).collect() } else { None };
-    let all = all?;
-    let first = *all.first()?;
-    all.iter().all(|s| near(*s, first)).then_some(first)
+    let pairs: Vec<[[f64; 2]; 2]> = nodes.iter().map(pair).collect();
+    let sum = |i: usize| pairs.iter().map(|pair| pair[i][0] * pair[1][0] + pair[i][1] * pair[1][1]).sum::<f64>();
+    let square = sum(1);
+    let factor = sum(0) / square;
+    let met = |[u, w]: &[[f64; 2]; 2]| (u[0] - factor * w[0]).hypot(u[1] - factor * w[1]) <= SOLVER * solution.largest;
+    (square > 0.0 && pairs.iter().all(met)).then_some(factor)
 }
 
 /// The stiffness of springs that would exert these forces, where there is one.

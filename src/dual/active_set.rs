@@ -170,7 +170,7 @@ impl ActiveSet {
             if next == closed || (at_rounding && !anew) {
                 let start = Instant::now();
                 let stress = system.modes.stresses(problem, &now.s);
-                let moments = system.unknowns.moments(problem, &now.x);
+                let moments = system.unknowns.moments(&now.x);
                 let residual = Equilibrium::measure(problem, &stress, &moments).residual();
                 if !residual.is_finite() || residual > self.accuracy() {
                     return Err(DualError::NotConverged {

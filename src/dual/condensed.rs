@@ -126,7 +126,7 @@ impl Condensed {
         let reached = |error, state: &ContactState| Unsettled { error, closed: Some(state.closed.clone()) };
         let now = settling.run(now, &mut state).map_err(|error| reached(error, &state))?;
         let stress = system.modes.stresses(problem, &now.s);
-        let moments = system.unknowns.moments(problem, &now.x);
+        let moments = system.unknowns.moments(&now.x);
         if self.most_refinements > 0 {
             let accepted = settling.accept(&now, &stress, &moments, &state, self.accuracy());
             accepted.map_err(|error| reached(error, &state))?;

@@ -109,11 +109,6 @@ impl Measured<'_> {
     fn edge(&self, e: usize, found: &mut Equilibrium) {
         let degree = self.moments.of(e).len() - 1;
         let own = self.traction(e, 0, degree);
-        let (_, normal) = self.problem.mesh.edge_frame(e);
-        let along = |t: [f64; 2]| {
-            let shear = t[1] * normal[0] - t[0] * normal[1];
-            [-shear * normal[1], shear * normal[0]]
-        };
         let condition = &self.problem.conditions[e];
         let left: Vec<[f64; 2]> = match condition {
             Condition::Interior => {
@@ -123,7 +118,13 @@ impl Measured<'_> {
                 let applied = side::linear([a[0], b[0]], degree).zip(side::linear([a[1], b[1]], degree));
                 own.iter().zip(applied).map(|(t, p)| [t[0] - p.0, t[1] - p.1]).collect()
             }
-            Condition::Roller => own.iter().map(|t| along(*t)).collect(),
+            Condition::Roller { direction: [x, y], .. } => {
+                let across = |[a, b]: &[f64; 2]| {
+                    let across = b * x - a * y;
+                    [-across * y, across * x]
+                };
+                own.iter().map(across).collect()
+            }
             Condition::Clamped(_) | Condition::Contact { .. } => Vec::new(),
         };
         let worst = if matches!(condition, Condition::Traction(_)) { &mut found.applied } else { &mut found.jump };
@@ -154,7 +155,7 @@ impl Measured<'_> {
             }
         }
         let openings = along.along(&own, opposite.as_deref(), pair.direction.shares);
-        let gaps = side::moments(&pair.gap, t.len() - 1);
+        let gaps = pair.gap_moments(t.len() - 1);
         for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
             found.tension = found.tension.max(self.relative.of(*t, a));
             found.work += t.max(0.0) * (opening + pair.length * gap);

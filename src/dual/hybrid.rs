@@ -91,7 +91,7 @@ pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion])
     let mesh = &problem.mesh;
     let mut pivots: Vec<Pivot> = Vec::with_capacity(motions.len());
     for u in motions {
-        let mut z = unknowns.project(problem, |e, k| {
+        let mut z = unknowns.project(|e, k| {
             let [a, b] = mesh.edges[e].vertices;
             let [near, far] = moments_of_ends(problem, unknowns, e, k);
             [0, 1].map(|c| near * u[a][c] + far * u[b][c])
@@ -121,7 +121,7 @@ pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion])
 pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) -> Vec<f64> {
     let mesh = &problem.mesh;
     let unknowns = &system.unknowns;
-    let moments = if given { unknowns.moments(problem, x) } else { unknowns.moments_of_change(problem, x) };
+    let moments = if given { unknowns.moments(x) } else { unknowns.moments_of_change(x) };
     let mut out = vec![0.0; system.modes.parameters()];
     let parts = system.modes.split_parameters(&mut out);
     parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, s)| {
@@ -188,7 +188,7 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
             }
             continue;
         }
-        for (at, components) in sides.rows(mesh, &system.unknowns) {
+        for (at, components) in sides.rows(&system.unknowns) {
             for component in components {
                 let value = component.direction[0] * values[at] + component.direction[1] * values[at + 1];
                 for &(dof, c) in component.terms() {

@@ -107,7 +107,7 @@ impl DualMethod for Clarabel {
         let contact = solution.s[first_jump..].iter().zip(&solution.z[first_jump..]);
         let closed = system.unknowns.by_pair(contact.map(|(s, z)| s >= z).collect());
         let stress = system.modes.stresses(problem, &s);
-        let moments = system.unknowns.moments(problem, &x);
+        let moments = system.unknowns.moments(&x);
         // The stopping test sees the largest row; what the stresses miss is the answer.
         let residual = Equilibrium::measure(problem, &stress, &moments).residual();
         if !residual.is_finite() || residual > self.accuracy() {
@@ -176,7 +176,7 @@ impl ConicProgram {
             for (out, mode) in raised.chunks_exact_mut(sides.len()).zip(modes.tractions()) {
                 sides.raise(mode, out);
             }
-            for (at, components) in sides.rows(mesh, &system.unknowns) {
+            for (at, components) in sides.rows(&system.unknowns) {
                 for component in components {
                     let [dx, dy] = component.direction;
                     for &(dof, c) in component.terms() {
@@ -235,8 +235,8 @@ impl ConicProgram {
         let x: Vec<f64> = z.iter().zip(&self.row_scale).map(|(z, d)| -z * d).collect();
         let work: f64 = -self.b.iter().zip(z).map(|(b, z)| b * z).sum::<f64>() * self.size;
         // Moments of u0 are no part of the motion.
-        let mut motion = system.unknowns.moments(problem, &x);
-        let given = system.unknowns.moments(problem, &vec![0.0; x.len()]);
+        let mut motion = system.unknowns.moments(&x);
+        let given = system.unknowns.moments(&vec![0.0; x.len()]);
         let values = motion.values_mut().as_flattened_mut().iter_mut();
         values.zip(given.values().as_flattened()).for_each(|(m, g)| *m -= g);
         DualError::infeasible(problem, motion, work)

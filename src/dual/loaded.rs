@@ -233,7 +233,7 @@ impl<'a> Loaded<'a> {
         let Loaded { problem, system, .. } = self;
         let (stress, moments) = fields.get_or_init(|| {
             let stress = system.modes.stresses(problem, &now.s);
-            (Arc::new(stress), Arc::new(system.unknowns.moments_of_change(problem, &now.x)))
+            (Arc::new(stress), Arc::new(system.unknowns.moments_of_change(&now.x)))
         });
         Response {
             stress: Arc::clone(stress),

@@ -123,11 +123,11 @@ impl Refinement<'_> {
         let (mut largest, mut gross) = (0.0_f64, 0.0);
         for (e, edge) in problem.mesh.edges.iter().enumerate() {
             let Some(t) = edge.triangles[0] else { continue };
-            let (length, normal) = problem.mesh.edge_frame(e);
+            let (length, _) = problem.mesh.edge_frame(e);
             let force = &mut force[problem.mesh.body[t]];
             let degree = system.unknowns.degree(e);
             let share = length / (degree + 1) as f64;
-            for component in (0..=degree).flat_map(|k| system.unknowns.components(e, k, normal)) {
+            for component in (0..=degree).flat_map(|k| system.unknowns.components(e, k)) {
                 // A jump belongs to both sides, which balance it between them.
                 for &(unknown, share_of) in component.own_terms() {
                     gross += share * system.external[unknown].abs();

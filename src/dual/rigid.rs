@@ -54,8 +54,7 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
         let piece = pieces.of_triangle[t];
         match condition {
             Condition::Clamped(_) => clamped[piece] = true,
-            Condition::Roller => {
-                let (_, n) = mesh.edge_frame(e);
+            Condition::Roller { direction: n, .. } => {
                 for v in mesh.edges[e].vertices {
                     let row = Vector3::from_fn(|i, _| {
                         let u = at(pieces, piece, &Vector3::ith(i, 1.0), mesh.points[v]);

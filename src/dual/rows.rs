@@ -89,20 +89,11 @@ impl Sides {
     }
 
     /// The coefficients of all sides with the components that their moments, and so their tractions, are taken in.
-    pub fn rows<'a>(
-        &self,
-        mesh: &'a Triangulation,
-        unknowns: &'a Unknowns,
-    ) -> impl Iterator<Item = (usize, [Component; 2])> + use<'a> {
+    pub fn rows<'a>(&self, unknowns: &'a Unknowns) -> impl Iterator<Item = (usize, [Component; 2])> + use<'a> {
         let sides = *self;
         (0..3).flat_map(move |i| {
             let e = sides.edges[i];
-            let normal = match &unknowns.edges[e] {
-                // Their components are along the axes, or along the direction of contact.
-                EdgeMoments::Free(_) | EdgeMoments::Given(_) | EdgeMoments::Contact(_) => [0.0; 2],
-                EdgeMoments::Tangential(_) => mesh.edge_frame(e).1,
-            };
-            (0..=sides.degrees[i]).map(move |k| (sides.at(i, k), unknowns.components(e, k, normal)))
+            (0..=sides.degrees[i]).map(move |k| (sides.at(i, k), unknowns.components(e, k)))
         })
     }
 

@@ -77,7 +77,7 @@ impl System {
         let pattern = Pattern::new(problem, &unknowns);
         let entries = || entries(problem, &unknowns, &modes, &pattern);
         let ((values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
-        let external = load_of_tractions(problem, &unknowns, problem.tractions());
+        let external = load_of_tractions(&unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
         let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
@@ -113,14 +113,14 @@ fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &
         let room = chunk.iter().map(|sides| sides.len() * (sides.len() + 1)).max().unwrap_or(0);
         memory.resize(chunk.len() * room, 0.0);
         let locals = memory.par_chunks_exact_mut(room).zip(&chunk).zip(start..start + chunk.len());
-        locals.with_min_len(64).for_each(|((out, sides), t)| local(problem, unknowns, modes, sides, t, out));
+        locals.with_min_len(64).for_each(|((out, sides), t)| local(unknowns, modes, sides, t, out));
         for ((local, sides), t) in memory.chunks_exact(room).zip(&chunk).zip(start..) {
             let (load, rest) = local.split_at(sides.len());
             let stiffness = &rest[..sides.len() * sides.len()];
             match sides.free(unknowns) {
                 Some(first) => pattern.add_blocks(sides, first, stiffness, load, &mut values, &mut rhs),
                 None => {
-                    let terms = terms(problem, unknowns, sides);
+                    let terms = terms(unknowns, sides);
                     pattern.add_terms(&terms, stiffness, load, &mut values, &mut rhs);
                 }
             }
@@ -132,7 +132,8 @@ fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &
 
 /// ∫ g B_k of each jump.
 pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
-    jump_moments(problem, unknowns, problem.pairs().map(|pair| &pair.gap[..]))
+    let gaps: Vec<Vec<f64>> = problem.pairs().map(ContactPair::gap_polynomial).collect();
+    jump_moments(problem, unknowns, gaps.iter().map(Vec::as_slice))
 }
 
 /// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.
@@ -160,18 +161,13 @@ pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> b
 }
 
 /// The coefficients, on every unknown, of tractions given by their values at the ends of edges.
-pub fn load_of_tractions(
-    problem: &Problem,
-    unknowns: &Unknowns,
-    tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
-) -> Vec<f64> {
+pub fn load_of_tractions(unknowns: &Unknowns, tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>) -> Vec<f64> {
     let mut load = vec![0.0; unknowns.count];
     for (e, [a, b]) in tractions {
         let degree = unknowns.degree(e);
-        let (_, normal) = problem.mesh.edge_frame(e);
         let along = |c: usize| side::linear([a[c], b[c]], degree);
         for (k, value) in along(0).zip(along(1)).enumerate() {
-            for component in unknowns.components(e, k, normal) {
+            for component in unknowns.components(e, k) {
                 for &(dof, c) in component.terms() {
                     load[dof] += c * (component.direction[0] * value.0 + component.direction[1] * value.1);
                 }
@@ -200,7 +196,7 @@ pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<
 }
 
 /// Minus the load of the particular field and of given moments, then T Tᵀ row by row, in the components of the numbering.
-fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, sides: &Sides, t: usize, out: &mut [f64]) {
+fn local(unknowns: &Unknowns, modes: &ModeTable, sides: &Sides, t: usize, out: &mut [f64]) {
     let element = modes.of(t);
     let m = sides.len();
     let (load, rest) = out.split_at_mut(m);
@@ -220,7 +216,7 @@ fn local(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, sides: &Side
     if sides.free(unknowns).is_none() {
         turned.extend_from_slice(tractions);
         let mut fixed = vec![0.0; element.parameters()];
-        for (at, components) in sides.rows(&problem.mesh, unknowns) {
+        for (at, components) in sides.rows(unknowns) {
             let directions = [components[0].direction, components[1].direction];
             let turn = |[x, y]: [f64; 2]| directions.map(|d| d[0] * x + d[1] * y);
             for (mode, fixed) in turned.chunks_exact_mut(m).zip(&mut fixed) {
@@ -272,9 +268,9 @@ fn gram_of<const M: usize>(tractions: &[f64], out: &mut [f64]) {
 }
 
 /// The components of all coefficients of a triangle, each at its place.
-fn terms(problem: &Problem, unknowns: &Unknowns, sides: &Sides) -> Vec<Component> {
+fn terms(unknowns: &Unknowns, sides: &Sides) -> Vec<Component> {
     let mut terms: Vec<Option<Component>> = vec![None; sides.len()];
-    for (at, [along, across]) in sides.rows(&problem.mesh, unknowns) {
+    for (at, [along, across]) in sides.rows(unknowns) {
         terms[at] = Some(along);
         terms[at + 1] = Some(across);
     }

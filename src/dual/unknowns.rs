@@ -7,7 +7,7 @@
 //! [`super::contact_moments`]), and all jumps are numbered last.
 
 use super::contact_moments::ContactEdge;
-use crate::element::{Elements, SideValues};
+use crate::element::{Elements, SideValues, side};
 use crate::problem::{Condition, ContactPair, Problem};
 
 /// Unknowns that belong together: consecutive numbers that share one sparsity pattern.
@@ -24,10 +24,17 @@ pub struct UnknownBlock {
 pub enum EdgeMoments {
     /// x and y of one moment after the other.
     Free(usize),
-    /// Γ_u: the moments of u0, all the same.
-    Given([f64; 2]),
-    /// Γ_0: the tangential moments are unknown, the normal ones zero.
-    Tangential(usize),
+    /// Γ_u: the moments of u0.
+    Given(Vec<[f64; 2]>),
+    /// Γ_0: the moments across the direction of a roller are unknown, those along it given, and all the same.
+    Across {
+        /// The first unknown.
+        first: usize,
+        /// The direction.
+        direction: [f64; 2],
+        /// Each moment along it.
+        given: f64,
+    },
     /// Γ_K.
     Contact(Box<ContactEdge>),
 }
@@ -119,7 +126,7 @@ impl Unknowns {
             let coefficients = usize::from(degree[e]) + 1;
             match *condition {
                 Condition::Interior | Condition::Traction(_) => first_block[e] = push(2 * coefficients),
-                Condition::Roller => first_block[e] = push(coefficients),
+                Condition::Roller { .. } => first_block[e] = push(coefficients),
                 Condition::Clamped(_) => {}
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
@@ -141,10 +148,13 @@ impl Unknowns {
             .enumerate()
             .map(|(e, condition)| match *condition {
                 Condition::Interior | Condition::Traction(_) => EdgeMoments::Free(blocks[first_block[e]].start),
-                Condition::Roller => EdgeMoments::Tangential(blocks[first_block[e]].start),
-                Condition::Clamped(u0) => {
-                    let part = problem.mesh.edge_frame(e).0 / f64::from(degree[e] + 1);
-                    EdgeMoments::Given([u0[0] * part, u0[1] * part])
+                Condition::Roller { direction, displacement } => EdgeMoments::Across {
+                    first: blocks[first_block[e]].start,
+                    direction,
+                    given: displacement * problem.mesh.edge_frame(e).0 / f64::from(degree[e] + 1),
+                },
+                Condition::Clamped(ends) => {
+                    EdgeMoments::Given(side::linear_moments(ends, problem.mesh.edge_frame(e).0, degree[e].into()))
                 }
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
@@ -169,18 +179,18 @@ impl Unknowns {
         self.degree[e].into()
     }
 
-    /// The two components, at right angles, of moment `k` (in the order of the edge's vertices) of an edge with outward unit
-    /// normal `normal`.
-    pub fn components(&self, e: usize, k: usize, normal: [f64; 2]) -> [Component; 2] {
+    /// The two components, at right angles, of moment `k` (in the order of the edge's vertices) of an edge.
+    pub fn components(&self, e: usize, k: usize) -> [Component; 2] {
         const X: [f64; 2] = [1.0, 0.0];
         const Y: [f64; 2] = [0.0, 1.0];
-        let tangent = [-normal[1], normal[0]];
         match &self.edges[e] {
             EdgeMoments::Free(first) => {
                 [Component::unknown(X, first + 2 * k), Component::unknown(Y, first + 2 * k + 1)]
             }
-            EdgeMoments::Given(m) => [Component::given(X, m[0]), Component::given(Y, m[1])],
-            EdgeMoments::Tangential(first) => [Component::given(normal, 0.0), Component::unknown(tangent, first + k)],
+            EdgeMoments::Given(m) => [Component::given(X, m[k][0]), Component::given(Y, m[k][1])],
+            EdgeMoments::Across { first, direction: [x, y], given } => {
+                [Component::given([*x, *y], *given), Component::unknown([-y, *x], first + k)]
+            }
             EdgeMoments::Contact(edge) => edge.components(k),
         }
     }
@@ -199,7 +209,7 @@ impl Unknowns {
         let block = |first: usize| block_of[first] as usize;
         match &self.edges[e] {
             EdgeMoments::Given(_) => ([0; 3], 0),
-            EdgeMoments::Free(first) | EdgeMoments::Tangential(first) => ([block(*first), 0, 0], 1),
+            EdgeMoments::Free(first) | EdgeMoments::Across { first, .. } => ([block(*first), 0, 0], 1),
             EdgeMoments::Contact(edge) => match (edge.side, edge.second) {
                 (0, Some(other)) => ([block(edge.across), block(edge.jump), block(other)], 3),
                 (1, Some(own)) => ([block(edge.across), block(own), 0], 2),
@@ -209,7 +219,7 @@ impl Unknowns {
     }
 
     /// The Cartesian moments of every edge, from the values of the unknowns.
-    pub fn moments(&self, problem: &Problem, x: &[f64]) -> SideValues<[f64; 2]> {
+    pub fn moments(&self, x: &[f64]) -> SideValues<[f64; 2]> {
         let counts = self.degree.iter().map(|&p| usize::from(p) + 1);
         let mut moments = SideValues::filled(counts, [0.0; 2]);
         for (e, edge) in self.edges.iter().enumerate() {
@@ -219,12 +229,12 @@ impl Unknowns {
                     let values = x[*first..].chunks_exact(2);
                     own.iter_mut().zip(values).for_each(|(m, x)| *m = [x[0], x[1]]);
                 }
-                EdgeMoments::Given(given) => own.fill(*given),
-                EdgeMoments::Tangential(_) | EdgeMoments::Contact(_) => {
-                    let (_, normal) = problem.mesh.edge_frame(e);
+                EdgeMoments::Given(given) => own.copy_from_slice(given),
+                EdgeMoments::Across { .. } | EdgeMoments::Contact(_) => {
                     for (k, m) in own.iter_mut().enumerate() {
-                        for component in self.components(e, k, normal) {
-                            let value: f64 = component.terms().iter().map(|&(dof, c)| c * x[dof]).sum();
+                        for component in self.components(e, k) {
+                            let value =
+                                component.fixed + component.terms().iter().map(|&(dof, c)| c * x[dof]).sum::<f64>();
                             m[0] += value * component.direction[0];
                             m[1] += value * component.direction[1];
                         }
@@ -236,11 +246,15 @@ impl Unknowns {
     }
 
     /// The same of a change: what supports give does not change.
-    pub fn moments_of_change(&self, problem: &Problem, x: &[f64]) -> SideValues<[f64; 2]> {
-        let mut moments = self.moments(problem, x);
+    pub fn moments_of_change(&self, x: &[f64]) -> SideValues<[f64; 2]> {
+        let mut moments = self.moments(x);
         for (e, edge) in self.edges.iter().enumerate() {
-            if let EdgeMoments::Given(_) = edge {
-                moments.of_mut(e).fill([0.0; 2]);
+            match edge {
+                EdgeMoments::Given(_) => moments.of_mut(e).fill([0.0; 2]),
+                EdgeMoments::Across { direction: [x, y], given, .. } if *given != 0.0 => {
+                    moments.of_mut(e).iter_mut().for_each(|m| *m = [m[0] - given * x, m[1] - given * y]);
+                }
+                _ => {}
             }
         }
         moments
@@ -248,21 +262,20 @@ impl Unknowns {
 
     /// Values of the unknowns of a displacement: `at(e, k)` gives moment k of an edge. Jumps and rollers take the components
     /// they stand for.
-    pub fn project(&self, problem: &Problem, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
+    pub fn project(&self, at: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
         let mut x = vec![0.0; self.count];
         for e in 0..self.edges.len() {
-            (0..=self.degree(e)).for_each(|k| self.project_moment(problem, e, k, at(e, k), &mut x));
+            (0..=self.degree(e)).for_each(|k| self.project_moment(e, k, at(e, k), &mut x));
         }
         x
     }
 
     /// Gives the unknowns `x` what moment `k` of edge `e` contributes to them.
-    pub fn project_moment(&self, problem: &Problem, e: usize, k: usize, m: [f64; 2], x: &mut [f64]) {
+    pub fn project_moment(&self, e: usize, k: usize, m: [f64; 2], x: &mut [f64]) {
         if let EdgeMoments::Contact(edge) = &self.edges[e] {
             return edge.project(k, m, x);
         }
-        let (_, normal) = problem.mesh.edge_frame(e);
-        for component in self.components(e, k, normal) {
+        for component in self.components(e, k) {
             if let [(dof, _)] = component.terms() {
                 x[*dof] = m[0] * component.direction[0] + m[1] * component.direction[1];
             }

@@ -9,6 +9,7 @@
 //!
 //! where T holds the traction coefficients of the modes (theory in `docs/theory.md`).
 
+pub mod bilinear;
 mod block;
 mod compliance;
 pub mod congruent;
@@ -18,8 +19,10 @@ mod field;
 mod frame;
 pub mod geometry;
 mod interpolate;
+pub mod on_quadrilaterals;
 pub mod plain;
 pub mod quadrature;
+pub mod quadrilateral;
 mod samples;
 pub mod side;
 mod side_values;
@@ -37,7 +40,9 @@ pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use on_quadrilaterals::OnQuadrilaterals;
 pub use plain::PlainDisplacement;
+pub use quadrilateral::Quadrilateral;
 pub use samples::Samples;
 pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;

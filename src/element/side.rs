@@ -74,6 +74,15 @@ pub fn moments(g: &[f64], p: usize) -> Vec<f64> {
     (0..=p).map(|k| g.iter().enumerate().map(|(j, c)| c * product(p, k, q, j)).sum()).collect()
 }
 
+/// ∫ u B_k ds, k = 0 … p, of the linear u with these values at the ends of an edge of this length.
+pub fn linear_moments([a, b]: [[f64; 2]; 2], length: f64, p: usize) -> Vec<[f64; 2]> {
+    let of = |k: usize, c: usize| match a[c] == b[c] {
+        true => a[c] * (length / (p + 1) as f64),
+        false => ((p + 1 - k) as f64 * a[c] + (k + 1) as f64 * b[c]) * length / ((p + 1) * (p + 2)) as f64,
+    };
+    (0..=p).map(|k| [of(k, 0), of(k, 1)]).collect()
+}
+
 /// ∫₀¹ f g ds of the polynomials with the given coefficients; no coefficients stand for zero.
 pub fn integral(f: &[f64], g: &[f64]) -> f64 {
     let (Some(p), Some(q)) = (f.len().checked_sub(1), g.len().checked_sub(1)) else { return 0.0 };

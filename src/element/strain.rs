@@ -122,6 +122,7 @@ mod tests {
                 .to_vec(),
             triangle_edges: vec![[0, 1, 2]],
             names: Vec::new(),
+            cells: crate::mesh::FileCells::default(),
         };
         let u = |p: [f64; 2]| [p[0] * p[0] - 2.0 * p[0] * p[1], 3.0 * p[1] * p[1] + p[0]];
         let middles = [0, 1, 2].map(|i| [0, 1].map(|c| 0.5 * (CORNERS[(i + 1) % 3][c] + CORNERS[(i + 2) % 3][c])));

@@ -142,14 +142,16 @@ pub fn names(scenes: &[PathBuf]) -> Vec<String> {
     named.collect()
 }
 
-/// The scene file, the mesh that it names and `others`, in one number. What cannot be read counts as empty: the run will
+/// The scene file, the meshes that it names and `others`, in one number. What cannot be read counts as empty: the run will
 /// say so.
 pub fn content(scene: &Path, others: &[PathBuf]) -> String {
     let mesh = match Scene::read(scene).map(|scene| scene.mesh.clone()) {
-        Ok(MeshSource::File(path)) => Some(path),
-        _ => None,
+        Ok(MeshSource::File(path)) => vec![path],
+        Ok(MeshSource::Parts(parts)) => parts.into_iter().map(|part| part.file).collect(),
+        _ => Vec::new(),
     };
-    let files = std::iter::once(scene).chain(mesh.as_deref()).chain(others.iter().map(PathBuf::as_path));
+    let files =
+        std::iter::once(scene).chain(mesh.iter().map(PathBuf::as_path)).chain(others.iter().map(PathBuf::as_path));
     let read = |path: &Path| if path.is_file() { fs::read(path).unwrap_or_default() } else { Vec::new() };
     let hashes: Vec<String> = files.map(|path| hash(&read(path))).collect();
     hash(hashes.join(" ").as_bytes())

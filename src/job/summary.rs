@@ -6,6 +6,7 @@ use std::path::Path;
 use super::data::{Entry, Gathered, Job};
 use crate::report::markdown::{cell, code};
 use crate::report::number::{percent, seconds};
+use crate::scene::counted;
 
 /// Bytes of the whole text.
 const MOST: usize = 1_000_000;
@@ -50,8 +51,14 @@ pub fn summary(gathered: &Gathered, out: &Path) -> String {
         text.push_str(&full);
         shown += 1;
     }
-    if bad.len() > shown {
-        let _ = writeln!(text, "{} more scenes are not in order; see `index.html`.\n", bad.len() - shown);
+    let more = bad.len() - shown;
+    if more > 0 {
+        let _ = writeln!(
+            text,
+            "{} {} not in order; see `index.html`.\n",
+            counted(more, "more scene"),
+            if more == 1 { "is" } else { "are" }
+        );
     }
     let _ = writeln!(text, "hypercircle {} · {} of processes", job.version, seconds(job.seconds));
     text
@@ -80,7 +87,7 @@ fn table(text: &mut String, job: &Job, order: &[usize]) {
             seconds(entry.seconds),
         );
         if text.len() - start > TABLE && row + 1 < order.len() {
-            let _ = writeln!(text, "\n… and {} more scenes.", order.len() - row - 1);
+            let _ = writeln!(text, "\n… and {}.", counted(order.len() - row - 1, "more scene"));
             break;
         }
     }

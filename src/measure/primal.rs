@@ -131,8 +131,9 @@ fn asked(problem: &Problem, field: &Displacement, names: &[String]) -> Vec<Asked
 fn answer(problem: &Problem, candidate: &Candidate, quantities: &[String]) -> Answer {
     let mut answer = Answer {
         triangles: problem.mesh.triangles.len(),
-        unknowns: candidate.unknowns,
-        iterations: candidate.iterations,
+        // Where the program does not tell, the values of its field.
+        unknowns: candidate.unknowns.unwrap_or(2 * (candidate.vertex.len() + candidate.middle.len())),
+        iterations: candidate.iterations.unwrap_or(0),
         ..Answer::default()
     };
     match candidate.nearest_admissible(problem) {

@@ -5,9 +5,10 @@
 //! then cover the same intervals, and forces along the direction act at equal projected positions.
 
 use super::error::at;
+use super::glue::Record;
 use super::polyline::SAME;
 use super::{MeshError, Triangulation};
-use crate::scene::{Contact, Note, Scene};
+use crate::scene::{Contact, Note, Scene, counted};
 
 /// Cosine of the angle between the direction and a normal below which an edge does not face the other side.
 const GRAZING: f64 = 0.05;
@@ -74,7 +75,7 @@ pub(super) fn match_along(
     contact: &Contact,
     names: &[String; 2],
     given: [f64; 2],
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let d = outward(&mesh, [&names[0], &names[1]], given);
     // Both sides are seen along d, so that positions agree.
@@ -89,15 +90,22 @@ pub(super) fn match_along(
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
     for (from, into) in [(0, 1), (1, 0)] {
-        let mut positions: Vec<f64> = sides[from].iter().flat_map(|f| f.span).collect();
-        positions.sort_by(f64::total_cmp);
-        positions.dedup_by(|a, b| (*a - *b).abs() <= SAME * (b.abs().max(1e-300)));
-        for position in positions {
+        // Each with the shorter of its edges: what is put nowhere has to be an end of that one, too.
+        let long = |f: &Facing| f.span[1] - f.span[0];
+        let mut positions: Vec<(f64, f64)> = sides[from].iter().flat_map(|f| f.span.map(|s| (s, long(f)))).collect();
+        positions.sort_by(|a, b| a.0.total_cmp(&b.0));
+        positions.dedup_by(|a, b| {
+            let is_same = (a.0 - b.0).abs() <= SAME * b.0.abs();
+            b.1 = if is_same { b.1.min(a.1) } else { b.1 };
+            is_same
+        });
+        for (position, shortest) in positions {
             let Some(other) = sides[into].iter().find(|f| f.span[0] < position && position < f.span[1]) else {
                 continue;
             };
             let t = (position - other.span[0]) / (other.span[1] - other.span[0]);
-            if t > CLOSE && t < 1.0 - CLOSE {
+            let close = CLOSE * (shortest / long(other)).min(1.0);
+            if t > close && t < 1.0 - close {
                 let [p, q] = other.vertices.map(|v| mesh.points[v]);
                 inserted.push((other.edge, [0, 1].map(|c| p[c] + t * (q[c] - p[c]))));
                 counts[from] += 1;
@@ -117,11 +125,11 @@ pub(super) fn match_along(
         let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
         MeshError::contact(scene, contact.name(), what, "mesh both sides with about the same edge lengths")
     };
-    let mesh = mesh.with_inserted(&inserted).map_err(flat)?;
-    let [a, b] = [0, 1].map(|i| format!("{} vertices of '{}'", counts[i], names[i]));
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(flat)?;
+    let [a, b] = [0, 1].map(|i| format!("{} of '{}'", counted(counts[i], "vertex"), names[i]));
     let text =
         format!("contact {}: along its direction, {a} and {b} were inserted into the other side", contact.name());
-    notes.push(Note { weakens_guarantee: false, text });
+    record.notes.push(Note { weakens_guarantee: false, text });
     Ok(mesh)
 }
 

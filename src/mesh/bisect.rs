@@ -79,7 +79,14 @@ pub fn bisect(
         }
     }
     let body = parent.iter().map(|&t| mesh.body[t]).collect();
-    let mesh = Triangulation::connect(points, triangles, body, mesh.names.clone(), &label);
+    // The new number of each triangle that is still whole.
+    let mut number = vec![None; mesh.triangles.len()];
+    for (new, &old) in parent.iter().enumerate() {
+        number[old] = (triangles[new] == mesh.triangles[old]).then_some(new);
+    }
+    let cells = mesh.cells.kept(|t| number[t]);
+    let mut mesh = Triangulation::connect(points, triangles, body, mesh.names.clone(), &label);
+    mesh.cells = cells;
     Bisected { mesh, refinement: RefinementEdges(edges), parent }
 }
 

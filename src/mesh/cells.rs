@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::error::{MeshError, at};
+use super::error::{MeshError, at, shown_by};
 use super::{Map, RawMesh, labels::suggestion};
 use crate::scene::Note;
 use crate::scene::Scene;
@@ -76,7 +76,11 @@ pub(super) fn check(raw: &RawMesh, scene: &Scene, notes: &mut Vec<Note>) -> Resu
             return Err(MeshError::cells(
                 scene,
                 format!("body '{}' of the scene has no triangle", body.name),
-                format!("name a physical surface (or geometry.polygons.body) so{}", suggestion(&body.name, &names)),
+                format!(
+                    "name a physical surface (or geometry.polygons.body) so{}{}",
+                    suggestion(&body.name, &names),
+                    shown_by(scene)
+                ),
             ));
         }
     }

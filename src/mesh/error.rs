@@ -110,7 +110,20 @@ impl MeshError {
 fn mesh_name(scene: &Scene) -> String {
     match &scene.mesh {
         MeshSource::File(path) => format!("mesh file {}", path.display()),
+        MeshSource::Parts(parts) => {
+            let files: Vec<String> = parts.iter().map(|part| part.file.display().to_string()).collect();
+            format!("mesh files {}", files.join(", "))
+        }
         MeshSource::Geometry { .. } => format!("{}, [geometry]", scene.path.display()),
+    }
+}
+
+/// Which command shows what the mesh of `scene` holds, to end a remedy with; nothing where it is made of polygons.
+pub(crate) fn shown_by(scene: &Scene) -> String {
+    match &scene.mesh {
+        MeshSource::File(path) => format!("; `hypercircle mesh {}` shows what there is", path.display()),
+        MeshSource::Parts(_) => "; `hypercircle mesh FILE` shows what there is in each file".to_string(),
+        MeshSource::Geometry { .. } => String::new(),
     }
 }
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::{MeshError, RawMesh, foreign, gmsh};
+use super::{MeshError, RawMesh, abaqus, foreign, gmsh};
 use crate::scene::Note;
 
-/// Reads a mesh file: `.msh` natively, everything else through meshio, which is given at most `limit`.
+/// Reads a mesh file: Gmsh's `.msh` and Abaqus's `.inp` natively, everything else through meshio, which is given at most `limit`.
 ///
 /// # Errors
 /// [`MeshError`] when it does not exist, is no regular file, or does not follow its format.
@@ -20,11 +20,12 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
     if !kind.is_file() {
         return Err(MeshError::file(file, "this is not a regular file", "write the mesh into a file"));
     }
-    if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("msh")) {
-        let bytes = std::fs::read(file)
-            .map_err(|e| MeshError::file(file, format!("cannot be read: {e}"), "check its permissions"))?;
-        gmsh::parse(&bytes, file)
-    } else {
-        foreign::read(file, limit)
+    let bytes = || {
+        std::fs::read(file).map_err(|e| MeshError::file(file, format!("cannot be read: {e}"), "check its permissions"))
+    };
+    match file.extension().map(|extension| extension.to_ascii_lowercase()) {
+        Some(extension) if extension == "msh" => gmsh::parse(&bytes()?, file),
+        Some(extension) if extension == "inp" => abaqus::parse(&bytes()?, file),
+        _ => foreign::read(file, limit),
     }
 }

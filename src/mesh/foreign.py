@@ -1,60 +1,124 @@
-"""Prints a mesh file as JSON: points, and cells with their group names. Needs meshio."""
+"""Writes a mesh file as JSON: points, cells with their group names, and node sets. Needs meshio, or Gmsh for what meshio does not read."""
 
 import json
 import sys
 
-try:
-    import meshio
-except ImportError as error:
-    print(error, file=sys.stderr)
-    sys.exit(44)
-
-source, target = sys.argv[1:]
-try:
-    mesh = meshio.read(source)
-except ModuleNotFoundError as error:
-    print(error.name, file=sys.stderr)
-    sys.exit(45)
-shapes = {"line": "line", "line3": "line", "triangle": "triangle", "triangle6": "triangle"}
-
+SHAPES = {"line": "line", "line3": "line", "triangle": "triangle", "triangle6": "triangle",
+          "quad": "quadrilateral", "quad8": "quadrilateral", "quad9": "quadrilateral"}
+# By Gmsh's number of the element type.
+GMSH_SHAPES = {1: ("line", 2), 8: ("line", 3), 2: ("triangle", 3), 9: ("triangle", 6),
+               3: ("quadrilateral", 4), 16: ("quadrilateral", 8), 10: ("quadrilateral", 9)}
 # The integers that group cells, by the name each format gives them.
-known = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to_read"]
-whole = [name for name, blocks in mesh.cell_data.items() if all(b.dtype.kind in "iu" and b.ndim == 1 for b in blocks)]
-whole = [name for name in whole if name != "gmsh:geometrical"]
-chosen = next((name for name in known if name in whole), whole[0] if len(whole) == 1 else None)
-
-names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
-families = getattr(mesh, "cell_tags", {}) or {}
+GROUPING = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to_read", "su2:tag", "cell_ids", "GroupIds"]
+# Suffixes that meshio does not know and Gmsh reads.
+ONLY_GMSH = {".unv", ".geo", ".rmed", ".diff", ".p3d", ".neu"}
 
 
-def groups(block, shape):
-    """Names of each cell of a block."""
-    cells = mesh.cells[block].data
-    result = [[] for _ in cells]
-    for name, sets in mesh.cell_sets.items():
-        if not name.startswith("gmsh:") and sets[block] is not None:
-            for cell in sets[block]:
-                result[int(cell)].append(name)
-    if chosen is not None:
-        for found, tag in zip(result, mesh.cell_data[chosen][block]):
-            tag = int(tag)
-            more = families.get(tag) or [names.get((1 if shape == "line" else 2, tag), str(tag) if tag else None)]
-            if not found:
-                found.extend(name for name in more if name is not None)
-    return result
+def from_meshio(source):
+    """Points, blocks, node sets and numbers of groups, as meshio has them."""
+    import meshio
+
+    mesh = meshio.read(source)
+    whole = [name for name, blocks in mesh.cell_data.items() if all(b.dtype.kind in "iu" and b.ndim == 1 for b in blocks)]
+    whole = [name for name in whole if name not in ("gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType")]
+    chosen = next((name for name in GROUPING if name in whole), whole[0] if len(whole) == 1 else None)
+    names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
+    families = getattr(mesh, "cell_tags", {}) or {}
+
+    def groups(block, shape):
+        cells = mesh.cells[block].data
+        result = [[] for _ in cells]
+        for name, sets in mesh.cell_sets.items():
+            if not name.startswith("gmsh:") and block < len(sets) and sets[block] is not None:
+                for cell in sets[block]:
+                    result[int(cell)].append(name)
+        if chosen is not None:
+            for found, tag in zip(result, mesh.cell_data[chosen][block]):
+                tag = int(tag)
+                more = families.get(tag) or [names.get((1 if shape == "line" else 2, tag), str(tag) if tag else None)]
+                if not found:
+                    found.extend(name for name in more if name is not None)
+        return result
+
+    blocks = []
+    for number, block in enumerate(mesh.cells):
+        shape = SHAPES.get(block.type, block.type)
+        if shape in ("vertex", "point"):
+            continue
+        kept = shape in SHAPES.values()
+        blocks.append({
+            "shape": shape,
+            "nodes": block.data.tolist() if kept else [],
+            "groups": groups(number, shape) if kept else [],
+        })
+    sets = {name: [int(node) for node in nodes] for name, nodes in mesh.point_sets.items()}
+    for tag, families_of in (getattr(mesh, "point_tags", {}) or {}).items():
+        data = mesh.point_data.get("point_tags")
+        if data is not None:
+            for name in families_of:
+                sets.setdefault(name, []).extend(int(i) for i in (data == tag).nonzero()[0])
+    points = [[float(x) for x in point] for point in mesh.points]
+    return {"points": points, "blocks": blocks, "node_sets": sets, "numbers": [[*key, name] for key, name in names.items()]}
 
 
-blocks = []
-for number, block in enumerate(mesh.cells):
-    shape = shapes.get(block.type, block.type)
-    if shape in ("vertex", "point"):
-        continue
-    kept = shape in ("line", "triangle")
-    blocks.append({
-        "shape": shape,
-        "nodes": block.data.tolist() if kept else [],
-        "groups": groups(number, shape) if kept else [],
-    })
-points = [[float(x) for x in point] for point in mesh.points]
-with open(target, "w", encoding="utf-8") as out:
-    json.dump({"points": points, "blocks": blocks}, out)
+def from_gmsh(source):
+    """The same by Gmsh."""
+    import gmsh
+
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.open(source)
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    index = {int(tag): i for i, tag in enumerate(tags)}
+    points = [[float(x) for x in coordinates[3 * i:3 * i + 3]] for i in range(len(tags))]
+    numbers, named = [], {}
+    for dim, tag in gmsh.model.getPhysicalGroups():
+        name = gmsh.model.getPhysicalName(dim, tag) or str(tag)
+        numbers.append([int(dim), int(tag), name])
+        for entity in gmsh.model.getEntitiesForPhysicalGroup(dim, tag):
+            named.setdefault((dim, int(entity)), []).append(name)
+    blocks = []
+    for dim, entity in gmsh.model.getEntities():
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dim, entity)):
+            kind = int(kind)
+            if kind == 15:
+                continue
+            if kind not in GMSH_SHAPES:
+                blocks.append({"shape": gmsh.model.mesh.getElementProperties(kind)[0], "nodes": [], "groups": []})
+                continue
+            shape, count = GMSH_SHAPES[kind]
+            cells = [[index[int(n)] for n in nodes[i:i + count]] for i in range(0, len(nodes), count)]
+            group = named.get((dim, entity)) or ([str(entity)] if dim == 2 else [])
+            blocks.append({"shape": shape, "nodes": cells, "groups": [group] * len(cells)})
+    sets = {}
+    for dim, tag, name in numbers:
+        if dim == 0:
+            sets[name] = [index[int(n)] for n in gmsh.model.mesh.getNodesForPhysicalGroup(dim, tag)[0]]
+    gmsh.finalize()
+    return {"points": points, "blocks": blocks, "node_sets": sets, "numbers": numbers}
+
+
+def main():
+    source, target = sys.argv[1:]
+    if any(source.lower().endswith(suffix) for suffix in ONLY_GMSH):
+        try:
+            found = from_gmsh(source)
+        except ModuleNotFoundError:
+            print("gmsh", file=sys.stderr)
+            sys.exit(45)
+    else:
+        try:
+            import meshio  # noqa: F401
+        except ImportError as error:
+            print(error, file=sys.stderr)
+            sys.exit(44)
+        try:
+            found = from_meshio(source)
+        except ModuleNotFoundError as error:
+            print(error.name, file=sys.stderr)
+            sys.exit(45)
+    with open(target, "w", encoding="utf-8") as out:
+        json.dump(found, out)
+
+
+main()

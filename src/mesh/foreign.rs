@@ -1,11 +1,13 @@
 //! Every format but Gmsh's, through meshio, in a Python process of its own.
 
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::rc::Rc;
 use std::time::Duration;
 
 use serde::Deserialize;
 
-use super::gmsh::content::{Content, Element, Kind};
+use super::content::{Content, Element, Kind};
 use super::{MeshError, RawMesh, meshio};
 use crate::scene::Note;
 
@@ -16,6 +18,11 @@ const INSTEAD: &str = "convert it to Gmsh's format (.msh)";
 struct Converted {
     points: Vec<Vec<f64>>,
     blocks: Vec<CellBlock>,
+    #[serde(default)]
+    node_sets: BTreeMap<String, Vec<u64>>,
+    /// Dimension, number and name of each group that has a number.
+    #[serde(default)]
+    numbers: Vec<(i32, i32, String)>,
 }
 
 #[derive(Deserialize)]
@@ -54,18 +61,28 @@ pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError
         content.names.extend([((1, tag), name.clone()), ((2, tag), name.clone())]);
     }
     let tag_of = |name: &String| names.binary_search(name).map_or(0, |i| i as i32 + 1);
+    content.numbers = Some(found.numbers.into_iter().map(|(dimension, tag, name)| ((dimension, tag), name)).collect());
+    content.node_sets = found.node_sets.into_iter().collect();
+    // Cells of the same groups share one list of them.
+    let mut lists: HashMap<Vec<String>, Rc<[i32]>> = HashMap::new();
+    let mut physical_of = |groups: Vec<String>| match lists.get(&groups) {
+        Some(list) => Rc::clone(list),
+        None => Rc::clone(lists.entry(groups).or_insert_with_key(|groups| groups.iter().map(tag_of).collect())),
+    };
     let mut tag = 0;
     for block in found.blocks {
         let kind = match block.shape.as_str() {
             "line" => Kind::Line,
             "triangle" => Kind::Triangle,
+            "quadrilateral" => Kind::Quadrilateral,
             other => {
                 let what = format!("it has cells of the kind '{other}'");
-                return Err(MeshError::file(file, what, "mesh the plane surfaces with straight triangles"));
+                let remedy =
+                    "this program is plane: mesh surfaces with triangles or quadrilaterals of first or second order";
+                return Err(MeshError::file(file, what, remedy));
             }
         };
-        let corners = if kind == Kind::Line { 2 } else { 3 };
-        let odd = block.nodes.iter().find(|nodes| ![corners, corners * (corners + 1) / 2].contains(&nodes.len()));
+        let odd = block.nodes.iter().find(|nodes| !kind.takes(nodes.len()));
         if let Some(nodes) = odd {
             let what = format!("meshio gave a cell of the kind '{}' with {} nodes", block.shape, nodes.len());
             return Err(MeshError::file(file, what, INSTEAD));
@@ -76,7 +93,7 @@ pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError
         }
         for (nodes, groups) in block.nodes.into_iter().zip(block.groups) {
             tag += 1;
-            content.elements.push(Element { kind, tag, nodes, physical: groups.iter().map(tag_of).collect() });
+            content.elements.push(Element { kind, tag, nodes, physical: physical_of(groups), entity: None });
         }
     }
     content.into_raw(file)

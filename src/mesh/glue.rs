@@ -8,101 +8,57 @@ use std::collections::HashMap;
 use super::along::match_along;
 use super::boxes::{BoxTree, around};
 use super::error::at;
+use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
-use super::{MeshError, Triangulation};
-use crate::scene::Note;
-use crate::scene::{Contact, ContactSides, Scene};
-use crate::vector::distance;
+use super::{MeshError, Triangulation, Uncut};
+use crate::scene::{Contact, ContactSides, Note, Scene, counted};
 
-/// Part of the shortest edge nearby within which two vertices are one, and of an edge's length within which a vertex
-/// lies on it.
-const CLOSE: f64 = 1e-6;
+/// A mesh whose contact sides match.
+#[derive(Debug, Clone)]
+pub struct Glued {
+    /// The mesh.
+    pub mesh: Triangulation,
+    /// What was done to make sides match.
+    pub notes: Vec<Note>,
+    /// The mesh before; `None` where nothing was done to it.
+    pub uncut: Option<Uncut>,
+}
 
-/// Part of the size of the mesh that counts as round-off; mesh generators compute points on curves to about 1e-12.
-const ROUND_OFF: f64 = 1e-10;
+/// What is done to a mesh.
+pub(super) struct Record {
+    /// In words.
+    pub notes: Vec<Note>,
+    /// Of every triangle, the one before that it was cut out of.
+    pub parent: Vec<usize>,
+}
 
 /// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
 ///
 /// # Errors
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
-pub fn glue(mut mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
-    let mut notes = Vec::new();
-    snap(&mut mesh, scene, &mut notes);
-    for (index, contact) in scene.contacts.iter().enumerate() {
+pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
+    let mut record = Record { notes: Vec::new(), parent: (0..before.triangles.len()).collect() };
+    let mut mesh = before.clone();
+    let (along, others): (Vec<usize>, Vec<usize>) =
+        (0..scene.contacts.len()).partition(|&index| scene.contacts[index].direction.is_some());
+    // What the other side gets of them is put there with its vertices.
+    for index in along {
+        mesh = insert_breaks(mesh, scene, index, &mut record)?;
+    }
+    snap(&mut mesh, scene, &mut record.notes);
+    for contact in &scene.contacts {
         let ContactSides::Between(names) = &contact.sides else { continue };
         mesh = match contact.direction {
-            None => match_vertices(mesh, scene, contact, names, &mut notes)?,
-            Some(direction) => {
-                mesh = insert_breaks(mesh, scene, index, &mut notes)?;
-                match_along(mesh, scene, contact, names, direction, &mut notes)?
-            }
+            None => match_vertices(mesh, scene, contact, names, &mut record)?,
+            Some(direction) => match_along(mesh, scene, contact, names, direction, &mut record)?,
         };
     }
-    for index in (0..scene.contacts.len()).filter(|&index| scene.contacts[index].direction.is_none()) {
-        mesh = insert_breaks(mesh, scene, index, &mut notes)?;
+    for index in others {
+        mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
-    Ok((mesh, notes))
-}
-
-/// Largest extent of the mesh.
-fn extent(mesh: &Triangulation) -> f64 {
-    let [lower, upper] = around(&mesh.points, 0.0);
-    (upper[0] - lower[0]).max(upper[1] - lower[1])
-}
-
-/// The vertices of a side, each with the length of its shortest edge there.
-fn side_vertices(mesh: &Triangulation, name: &str) -> Vec<(usize, f64)> {
-    let mut shortest: HashMap<usize, f64> = HashMap::new();
-    for e in mesh.boundary(name) {
-        let length = mesh.edge_frame(e).0;
-        for v in mesh.edges[e].vertices {
-            shortest.entry(v).and_modify(|l| *l = l.min(length)).or_insert(length);
-        }
-    }
-    let mut vertices: Vec<_> = shortest.into_iter().collect();
-    vertices.sort_unstable_by_key(|v| v.0);
-    vertices
-}
-
-/// Gives vertices of facing sides that are equal up to round-off the same coordinates, those of the lowest index. All
-/// contacts at once, because a vertex may belong to several.
-fn snap(mesh: &mut Triangulation, scene: &Scene, notes: &mut Vec<Note>) {
-    let mut leader: Vec<usize> = (0..mesh.points.len()).collect();
-    let find = |leader: &[usize], mut v: usize| {
-        while leader[v] != v {
-            v = leader[v];
-        }
-        v
-    };
-    for contact in &scene.contacts {
-        let (ContactSides::Between(names), None) = (&contact.sides, contact.direction) else { continue };
-        let [first, second] = [0, 1].map(|i| side_vertices(mesh, &names[i]));
-        if second.is_empty() {
-            continue;
-        }
-        let tree = BoxTree::new(second.iter().map(|(v, _)| [mesh.points[*v]; 2]).collect());
-        for (v, length) in first {
-            for i in tree.meeting(&around(&[mesh.points[v]], CLOSE * length)) {
-                let (w, other) = second[i];
-                if distance(mesh.points[v], mesh.points[w]) <= CLOSE * length.min(other) {
-                    let (a, b) = (find(&leader, v), find(&leader, w));
-                    leader[a.max(b)] = a.min(b);
-                }
-            }
-        }
-    }
-    let mut moved = 0.0_f64;
-    for v in 0..leader.len() {
-        let target = mesh.points[find(&leader, v)];
-        moved = moved.max(distance(mesh.points[v], target));
-        mesh.points[v] = target;
-    }
-    if moved > ROUND_OFF * extent(mesh) {
-        notes.push(Note {
-            weakens_guarantee: true,
-            text: format!("contact sides coincide only up to {moved:.1e}: vertices were moved by that much to match"),
-        });
-    }
+    let changed = mesh.points != before.points;
+    let Record { notes, parent } = record;
+    Ok(Glued { mesh, notes, uncut: changed.then_some(Uncut { mesh: before, parent }) })
 }
 
 /// Puts the vertices of each side into the edges of the other.
@@ -111,7 +67,7 @@ fn match_vertices(
     scene: &Scene,
     contact: &Contact,
     names: &[String; 2],
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
@@ -123,8 +79,8 @@ fn match_vertices(
         let tree = BoxTree::new(edges.iter().map(|&e| around(&ends(e), margin(e))).collect());
         let present: Vec<_> = edges.iter().flat_map(|&e| ends(e).map(key)).collect();
         let present: std::collections::HashSet<_> = present.into_iter().collect();
-        for (v, _) in side_vertices(&mesh, &names[from]) {
-            let p = mesh.points[v];
+        for v in side_vertices(&mesh, &names[from]) {
+            let p = mesh.points[v.vertex];
             if present.contains(&key(p)) {
                 continue;
             }
@@ -152,15 +108,19 @@ fn match_vertices(
         return Ok(mesh);
     }
     let size = extent(&mesh);
-    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
-        .map(|(from, into)| format!("{} vertices of '{}' inserted into '{}'", counts[from], names[from], names[into]))
+        .map(|(from, into)| {
+            format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
+        })
         .collect();
-    notes.push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
+    record
+        .notes
+        .push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
     if moved > ROUND_OFF * size {
-        notes.push(Note {
+        record.notes.push(Note {
             weakens_guarantee: true,
             text: format!("contact {}: the sides deviate by {moved:.1e} and were made to coincide", contact.name()),
         });
@@ -179,7 +139,7 @@ fn insert_breaks(
     mesh: Triangulation,
     scene: &Scene,
     index: usize,
-    notes: &mut Vec<Note>,
+    record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
     let (contact, breaks) = (&scene.contacts[index], scene.contact_breaks(index));
     if breaks.is_empty() {
@@ -200,22 +160,14 @@ fn insert_breaks(
         let opposite = |i: usize| facing.get(&[key(side[i][1]), key(side[i][0])]);
         inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
     }
-    let mesh = mesh.with_inserted(&inserted).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
     let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {
         if count > 0 {
-            let text = format!("contact {}: {count} vertices inserted where {place}", contact.name());
-            notes.push(Note { weakens_guarantee: false, text });
+            let text = format!("contact {}: {} inserted where {place}", contact.name(), counted(count, "vertex"));
+            record.notes.push(Note { weakens_guarantee: false, text });
         }
     }
     Ok(mesh)
-}
-
-/// Distance of `p` from a segment.
-fn distance_to(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
-    let d = [b[0] - a[0], b[1] - a[1]];
-    let along = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-    let t = along.clamp(0.0, 1.0);
-    distance(p, [a[0] + t * d[0], a[1] + t * d[1]])
 }

@@ -5,11 +5,16 @@ use super::{Map, Triangulation};
 
 impl Triangulation {
     /// Puts vertices on boundary edges, given as (edge, point); the triangle that owns the edge is cut from its
-    /// opposite corner. New vertices and triangles are appended.
+    /// opposite corner. New vertices and triangles are appended, and to `parent` the entry of the triangle that a new one was cut
+    /// out of.
     ///
     /// # Errors
     /// A point that lies so far beside its edge that a triangle would turn over.
-    pub(crate) fn with_inserted(&self, at: &[(usize, [f64; 2])]) -> Result<Triangulation, [f64; 2]> {
+    pub(crate) fn with_inserted(
+        &self,
+        at: &[(usize, [f64; 2])],
+        parent: &mut Vec<usize>,
+    ) -> Result<Triangulation, [f64; 2]> {
         let mut on_edge: Map<usize, Vec<[f64; 2]>> = Map::default();
         for (edge, point) in at {
             on_edge.entry(*edge).or_default().push(*point);
@@ -46,6 +51,7 @@ impl Triangulation {
                 } else {
                     triangles.push(child);
                     body.push(body[t]);
+                    parent.push(parent[t]);
                 }
                 label.extend(name.map(|n| (pair(step[0], step[1]), n)));
             }
@@ -56,7 +62,11 @@ impl Triangulation {
                 *other = triangles.len() - 1;
             }
         }
-        Ok(Triangulation::connect(points, triangles, body, self.names.clone(), &label))
+        let same = |t: usize| (triangles[t] == self.triangles[t]).then_some(t);
+        let cells = self.cells.kept(same);
+        let mut mesh = Triangulation::connect(points, triangles, body, self.names.clone(), &label);
+        mesh.cells = cells;
+        Ok(mesh)
     }
 }
 

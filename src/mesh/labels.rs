@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::error::{MeshError, at};
+use super::error::{MeshError, at, shown_by};
 use super::halves::HalfEdges;
 use super::{Map, RawMesh, cells::Cells};
 use crate::scene::Note;
@@ -134,7 +134,7 @@ pub(super) fn assign(
 }
 
 /// The two sides of an edge shared by two bodies along which a contact separates them: the name that the contact
-/// lists first goes to the body that the scene lists first.
+/// lists first goes to the body that the scene lists first, unless `[[boundaries]]` says whose it is.
 fn facing<'a>(
     cells: &Cells,
     both: &[Side],
@@ -170,7 +170,12 @@ fn facing<'a>(
     let find = |wanted: &str| carrying.iter().copied().find(|n| *n == wanted);
     match (find(first), find(second), carrying.len()) {
         (Some(first), Some(second), 2) => {
-            let (early, late) = if bodies[0] < bodies[1] { (sides[0], sides[1]) } else { (sides[1], sides[0]) };
+            let forward = match [first, second].map(|name| body_of(name, scene)) {
+                [Some(body), _] if bodies.contains(&body) => bodies[0] == body,
+                [_, Some(body)] if bodies.contains(&body) => bodies[1] == body,
+                _ => bodies[0] < bodies[1],
+            };
+            let (early, late) = if forward { (sides[0], sides[1]) } else { (sides[1], sides[0]) };
             Ok([(early, first), (late, second)])
         }
         _ => Err(MeshError::boundary(
@@ -190,15 +195,23 @@ fn facing<'a>(
     }
 }
 
+/// The body on whose outline the scene puts this boundary, where it says so.
+fn body_of(name: &str, scene: &Scene) -> Option<usize> {
+    scene.boundaries.iter().filter(|boundary| boundary.name == name).find_map(|boundary| boundary.body)
+}
+
 /// Every name of the scene is on an edge.
 fn check_names(labels: &Labels, used: &[&str], scene: &Scene) -> Result<(), MeshError> {
     for name in used {
         if !labels.names.iter().any(|n| n == name) {
             let existing: Vec<&str> = labels.names.iter().map(String::as_str).collect();
             let remedy = match existing.as_slice() {
-                [] => "no boundary has a name: put the curves into physical curves, and save them".to_string(),
+                [] => "no boundary has a name: put the curves into physical curves and save them, or add a [[boundaries]] that says \
+                       which edges it has"
+                    .to_string(),
                 _ => format!("the boundaries are {}{}", existing.join(", "), suggestion(name, &existing)),
             };
+            let remedy = format!("{remedy}{}", shown_by(scene));
             let conditions = scene.boundary_names_used();
             let by_quantity = !conditions.iter().any(|(n, by)| n == name && !matches!(by, BoundaryUse::Quantity(_)));
             let bodies: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
@@ -232,10 +245,11 @@ fn note_idle(mut idle: Vec<&str>, scene: &Scene, notes: &mut Vec<Note>) {
     }
     idle.sort_unstable();
     idle.dedup();
-    notes.extend(idle.into_iter().map(|name| Note {
-        weakens_guarantee: false,
-        text: format!("the scene does not mention the physical curve '{name}': it is free of traction"),
-    }));
+    let text = |name: &str| match scene.boundaries.iter().any(|boundary| boundary.name == name) {
+        true => format!("no condition uses the boundary '{name}': it is free of traction"),
+        false => format!("the scene does not mention the physical curve '{name}': it is free of traction"),
+    };
+    notes.extend(idle.into_iter().map(|name| Note { weakens_guarantee: false, text: text(name) }));
 }
 
 /// `; did you mean 'x'?` when one of `names` is close to `name`.

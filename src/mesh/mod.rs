@@ -4,12 +4,15 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
+mod abaqus;
 pub(crate) mod along;
 pub mod bisect;
 mod boxes;
 mod cells;
+mod content;
 pub(crate) mod error;
 mod file;
+pub mod file_cells;
 pub mod foreign;
 pub mod glue;
 #[cfg(test)]
@@ -18,25 +21,38 @@ pub mod gmsh;
 mod halves;
 mod hanging;
 mod insert;
+pub mod inventory;
 pub(crate) mod labels;
 pub(crate) mod meshio;
+mod nearby;
 mod overlap;
+mod parts;
 pub mod polygons;
 pub(crate) mod polyline;
+pub(crate) mod quadrilateral;
 mod quarter;
+mod select;
 pub(crate) mod sets;
+mod solids;
 #[cfg(test)]
 pub(crate) mod testing;
 mod topology;
 #[cfg(test)]
 mod topology_tests;
+mod uncut;
 
 pub use error::MeshError;
+pub use file_cells::{FileCells, Quadrilateral};
+pub use select::Sets;
+pub use uncut::Uncut;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
 use std::time::Duration;
+
+use glue::Glued;
+
 /// The circles of the edges that stand for an arc, by edge; refining puts new vertices on them.
 pub type Curved = Map<usize, crate::scene::Circle>;
 
@@ -47,8 +63,21 @@ use crate::scene::{MeshSource, Scene};
 pub fn expected_triangles(scene: &Scene) -> Option<f64> {
     match &scene.mesh {
         MeshSource::Geometry { size, polygons } => Some(polygons::expected_triangles(polygons, *size)),
-        MeshSource::File(_) => None,
+        MeshSource::File(_) | MeshSource::Parts(_) => None,
     }
+}
+
+/// A scene with its mesh.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// The scene, its coordinates counted as those of the mesh.
+    pub scene: Scene,
+    /// The mesh, with contact sides that match.
+    pub mesh: Triangulation,
+    /// How it was made.
+    pub notes: Vec<Note>,
+    /// The mesh before contact sides were made to match; `None` where they did already.
+    pub uncut: Option<Uncut>,
 }
 
 /// Reads or makes the mesh of `scene`, checks it, and makes contact sides match. The mesh counts its coordinates from a
@@ -57,11 +86,16 @@ pub fn expected_triangles(scene: &Scene) -> Option<f64> {
 ///
 /// # Errors
 /// [`MeshError`] says what is wrong, where, and what to do.
-pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<Note>), MeshError> {
+pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
-        MeshSource::File(path) => {
-            let (mut raw, notes) = file::read(path, limit)?;
+        MeshSource::File(_) | MeshSource::Parts(_) => {
+            let (mut raw, mut notes) = match &scene.mesh {
+                MeshSource::Parts(parts) => parts::read(parts, &scene, limit)?,
+                MeshSource::File(path) => file::read(path, limit)?,
+                MeshSource::Geometry { .. } => Default::default(),
+            };
             raw.shift(scene.origin);
+            select::select(&mut raw, &scene, &mut notes)?;
             let (scene, middle) = scene.about_middle(raw.points.iter());
             raw.shift(middle);
             (scene, (raw, notes))
@@ -69,17 +103,18 @@ pub fn load(scene: Scene, limit: Duration) -> Result<(Scene, Triangulation, Vec<
         MeshSource::Geometry { polygons, .. } => {
             let corners: Vec<[f64; 2]> = polygons.iter().flat_map(|p| p.points.iter().copied()).collect();
             let (scene, _) = scene.about_middle(corners.iter());
-            let made = polygons::mesh(&scene)?;
-            (scene, made)
+            let (mut raw, mut notes) = polygons::mesh(&scene)?;
+            select::select(&mut raw, &scene, &mut notes)?;
+            (scene, (raw, notes))
         }
     };
     let (mesh, more) = Triangulation::new(raw, &scene)?;
     notes.extend(more);
-    let (mesh, more) = glue::glue(mesh, &scene)?;
+    let Glued { mesh, notes: more, uncut } = glue::glue(mesh, &scene)?;
     notes.extend(more);
     let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     notes.extend(scene.coarseness(size));
-    Ok((scene, mesh, notes))
+    Ok(Loaded { scene, mesh, notes, uncut })
 }
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
@@ -93,6 +128,10 @@ pub struct RawMesh {
     pub segments: Vec<([usize; 2], String)>,
     /// More of both, with several names each.
     pub shared: Vec<Shared>,
+    /// The corners of the quadrilaterals of which some of the triangles are halves.
+    pub quadrilaterals: Vec<[usize; 4]>,
+    /// What else the file groups.
+    pub sets: Sets,
 }
 
 /// Cells that all carry the same names, listed once: those of an entity that is in many physical groups.
@@ -174,6 +213,8 @@ pub struct Triangulation {
     pub triangle_edges: Vec<[usize; 3]>,
     /// Boundary names.
     pub names: Vec<String>,
+    /// Which triangles are halves of a quadrilateral of the mesh file.
+    pub cells: FileCells,
 }
 
 impl Triangulation {

@@ -36,6 +36,8 @@ impl Triangulation {
                 label.extend(edge.vertices.map(|v| (pair(v, first + e), name)));
             }
         }
-        Triangulation::connect(points, triangles, body, self.names.clone(), &label)
+        let mut mesh = Triangulation::connect(points, triangles, body, self.names.clone(), &label);
+        mesh.cells = self.quartered_cells();
+        mesh
     }
 }

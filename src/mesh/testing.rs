@@ -17,7 +17,7 @@ pub(crate) fn scene(bodies: &[&str]) -> Scene {
 }
 
 pub(crate) fn clamp(mut scene: Scene, on: &str) -> Scene {
-    scene.draft.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });
+    scene.draft.supports.push(Support { on: on.into(), kind: SupportKind::CLAMPED });
     scene
 }
 
@@ -78,7 +78,18 @@ pub(crate) fn both(mut one: RawMesh, other: RawMesh) -> RawMesh {
     one.points.extend(other.points);
     one.triangles.extend(other.triangles.into_iter().map(|(t, name)| (t.map(|v| v + shift), name)));
     one.segments.extend(other.segments.into_iter().map(|(s, name)| (s.map(|v| v + shift), name)));
+    one.quadrilaterals.extend(other.quadrilaterals.into_iter().map(|q| q.map(|v| v + shift)));
     one
+}
+
+/// The same, its triangles in pairs the halves of quadrilaterals.
+pub(crate) fn of_quadrilaterals(mut grid: RawMesh) -> RawMesh {
+    let pairs = grid.triangles.chunks(2).filter_map(|pair| match pair {
+        [([a, b, c], _), ([_, _, d], _)] => Some([*a, *b, *c, *d]),
+        _ => None,
+    });
+    grid.quadrilaterals = pairs.collect();
+    grid
 }
 
 pub(crate) fn total_area(mesh: &Triangulation) -> f64 {

@@ -6,7 +6,7 @@ use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::labels::{self, Labels, Pair, pair};
 use super::sets::DisjointSets;
-use super::{Edge, Map, RawMesh, Triangulation, hanging, overlap};
+use super::{Edge, FileCells, Map, RawMesh, Triangulation, hanging, overlap};
 use crate::scene::Note;
 use crate::scene::Scene;
 
@@ -26,7 +26,10 @@ impl Triangulation {
         let halves = HalfEdges::new(&cells.triangles, raw.points.len());
         check_edges(&raw, &cells, &halves, scene)?;
         let labels = labels::assign(&raw, &cells, &halves, scene, &mut notes)?;
-        let mesh = split(&raw, cells, &halves, labels);
+        let quadrilaterals = FileCells::find(&raw.quadrilaterals, &cells.triangles);
+        let mut mesh = split(&raw, cells, &halves, labels);
+        mesh.cells = quadrilaterals;
+        mesh.drop_parted_cells();
         overlap::check(&mesh, scene)?;
         hanging::check(&mesh, scene, &mut notes)?;
         Ok((mesh, notes))
@@ -65,7 +68,7 @@ impl Triangulation {
         for edge in edges.iter_mut().filter(|edge| edge.is_boundary()) {
             edge.name = label.get(&pair(edge.vertices[0], edge.vertices[1])).copied();
         }
-        Triangulation { points, triangles, body, edges, triangle_edges, names }
+        Triangulation { points, triangles, body, edges, triangle_edges, names, cells: FileCells::default() }
     }
 
     /// The names of the boundary edges, in the form that [`Triangulation::connect`] takes.

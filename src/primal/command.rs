@@ -9,7 +9,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::exchange::{PROBLEM_FILE, solution_file};
-use super::{HIGHEST_DEGREE, PrimalError};
+use super::{Cells, HIGHEST_DEGREE, PrimalError, Space};
 use crate::process::{Outcome, Scratch, package, python, supervise, words};
 
 /// What stands for the exchange file in a command.
@@ -59,11 +59,12 @@ impl SolverCommand {
         self.words.iter().any(|word| word.contains(DEGREES))
     }
 
-    /// Runs the program in the current folder, and finds out for which degrees there is a result in `folder` then.
+    /// Runs the program in the current folder, and finds out for which spaces there is a result in `folder` then; of `degrees` that
+    /// the command is told each is owed, on triangles or on quadrilaterals.
     ///
     /// # Errors
     /// [`PrimalError`].
-    pub fn run(&self, folder: &Path, degrees: &[u8], limit: Duration) -> Result<Vec<u8>, PrimalError> {
+    pub fn run(&self, folder: &Path, degrees: &[u8], limit: Duration) -> Result<Vec<Space>, PrimalError> {
         let in_folder = |source| PrimalError::Io { path: folder.to_owned(), source };
         let folder = std::path::absolute(folder).map_err(in_folder)?;
         let scratch = Scratch::new().map_err(|source| PrimalError::Io { path: std::env::temp_dir(), source })?;
@@ -77,6 +78,7 @@ impl SolverCommand {
             _ => PrimalError::Failed { of: of(), status: "it did not start".to_owned(), log: error.to_string() },
         })?;
         let log = ended.text();
+        let there = |space: Space| fs::exists(folder.join(solution_file(space))).unwrap_or(true);
         match ended.outcome {
             Outcome::TimedOut => Err(PrimalError::TimedOut { of: of(), limit, log }),
             Outcome::Lost(error) => Err(PrimalError::Failed { of: of(), status: format!("lost: {error}"), log }),
@@ -84,11 +86,17 @@ impl SolverCommand {
             Outcome::Exit(status) if !status.success() => {
                 Err(PrimalError::Failed { of: of(), status: package::words(status), log })
             }
-            Outcome::Exit(_) if self.is_told_degrees() => Ok(degrees.to_vec()),
+            Outcome::Exit(_) if self.is_told_degrees() => {
+                let space = |degree: &u8| {
+                    let whole = Space { cells: Cells::Quadrilaterals, degree: *degree };
+                    if there(whole) { whole } else { Space::on_triangles(*degree) }
+                };
+                Ok(degrees.iter().map(space).collect())
+            }
             Outcome::Exit(_) => {
-                let found: Vec<u8> = (1..=HIGHEST_DEGREE)
-                    .filter(|degree| fs::exists(folder.join(solution_file(*degree))).unwrap_or(true))
-                    .collect();
+                let on = |cells| (1..=HIGHEST_DEGREE).map(move |degree| Space { cells, degree });
+                let all = on(Cells::Triangles).chain(on(Cells::Quadrilaterals));
+                let found: Vec<Space> = all.filter(|space| there(*space)).collect();
                 if found.is_empty() { Err(PrimalError::NoResult { of: of(), log }) } else { Ok(found) }
             }
         }

@@ -55,6 +55,18 @@ fn the_least_answer_is_enough() {
 }
 
 #[test]
+fn a_result_on_quadrilaterals_needs_a_mesh_of_them() {
+    let copy = COPY.replace("P1", "Q1");
+    let told = with_script(&copy, "SOLVER {problem} {out}", |_| {}).unwrap_err().to_string();
+    assert!(told.contains("primal-Q1.json") && told.contains("its cells are triangles"), "{told}");
+    let told = copy
+        .replace("cp", "sed 's/\"degree\"/\"cells\": \"quadrilaterals\", \"gauss_points\": 3, \"degree\"/'")
+        .replace(" \"$2", " > \"$2");
+    let told = with_script(&told, "SOLVER {problem} {out}", |_| {}).unwrap_err().to_string();
+    assert!(told.contains("a mesh file of convex quadrilaterals alone"), "{told}");
+}
+
+#[test]
 fn what_goes_wrong_is_told() {
     let run = |body: &str| with_script(body, "SOLVER {problem} {out}", |_| {}).unwrap_err().to_string();
     let failed = run("echo 'singular matrix' >&2; exit 7");

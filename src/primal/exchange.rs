@@ -6,16 +6,21 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{HIGHEST_DEGREE, PrimalError, PrimalSolution};
+use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
+use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
-use crate::problem::{Condition, Pin, Problem};
+use crate::mesh::Quadrilateral;
+use crate::problem::{Condition, ContactPair, Pin, Problem};
+
+/// The largest Gauss rule in each direction of a quadrilateral.
+const MOST_GAUSS_POINTS: usize = 20;
 
 /// Name of the file the model reads.
 pub const PROBLEM_FILE: &str = "problem.json";
 
-/// Name of the file the model writes for `degree`.
-pub fn solution_file(degree: u8) -> String {
-    format!("primal-P{degree}.json")
+/// Name of the file the model writes for `space`.
+pub fn solution_file(space: Space) -> String {
+    format!("primal-{space}.json")
 }
 
 #[derive(Serialize)]
@@ -30,6 +35,8 @@ struct ProblemFile<'a> {
     body: &'a [usize],
     edges: Vec<[usize; 2]>,
     triangle_edges: &'a [[usize; 3]],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    quadrilaterals: Vec<QuadrilateralEntry>,
     clamped: Vec<ClampedEntry>,
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
@@ -46,15 +53,30 @@ struct BodyEntry<'a> {
 }
 
 #[derive(Serialize)]
+struct QuadrilateralEntry {
+    corners: [usize; 4],
+    triangles: [usize; 2],
+}
+
+#[derive(Serialize)]
 struct ClampedEntry {
     edge: usize,
-    displacement: [f64; 2],
+    displacement: Prescribed,
+}
+
+/// The same at both ends of an edge, or one value each.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Prescribed {
+    Constant([f64; 2]),
+    Linear([[f64; 2]; 2]),
 }
 
 #[derive(Serialize)]
 struct RollerEntry {
     edge: usize,
     normal: [f64; 2],
+    displacement: f64,
 }
 
 #[derive(Serialize)]
@@ -77,6 +99,8 @@ struct PairEntry {
     normal: [f64; 2],
     direction: [[f64; 2]; 2],
     gap: [f64; 2],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    gap_below: Vec<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -91,8 +115,14 @@ impl<'a> ProblemFile<'a> {
         let (mut clamped, mut roller, mut tractions) = (Vec::new(), Vec::new(), Vec::new());
         for (edge, condition) in problem.conditions.iter().enumerate() {
             match *condition {
-                Condition::Clamped(displacement) => clamped.push(ClampedEntry { edge, displacement }),
-                Condition::Roller => roller.push(RollerEntry { edge, normal: mesh.edge_frame(edge).1 }),
+                Condition::Clamped(ends) => {
+                    let displacement =
+                        if ends[0] == ends[1] { Prescribed::Constant(ends[0]) } else { Prescribed::Linear(ends) };
+                    clamped.push(ClampedEntry { edge, displacement });
+                }
+                Condition::Roller { direction, displacement } => {
+                    roller.push(RollerEntry { edge, normal: direction, displacement });
+                }
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
@@ -119,6 +149,10 @@ impl<'a> ProblemFile<'a> {
             body: &mesh.body,
             edges: mesh.edges.iter().map(|edge| edge.vertices).collect(),
             triangle_edges: &mesh.triangle_edges,
+            quadrilaterals: mesh
+                .quadrilaterals()
+                .map(|Quadrilateral { corners, triangles, .. }| QuadrilateralEntry { corners, triangles })
+                .collect(),
             clamped,
             roller,
             tractions,
@@ -137,6 +171,7 @@ impl<'a> ProblemFile<'a> {
                             normal: pair.normal,
                             direction: pair.direction.ends,
                             gap: pair.gap,
+                            gap_below: gap_below(pair),
                         })
                         .collect(),
                 })
@@ -146,14 +181,23 @@ impl<'a> ProblemFile<'a> {
     }
 }
 
+/// Coefficients of degree 2, 3, … of polynomials that lie nowhere above a curved gap, the last of them the gap itself; none
+/// of one that is linear.
+fn gap_below(pair: &ContactPair) -> Vec<Vec<f64>> {
+    let degrees = if pair.bow.is_none() { 0 } else { usize::from(HIGHEST_DEGREE) };
+    (2..2 + degrees).map(|degree| pair.gap_below(degree)).collect()
+}
+
 /// Write `problem.json` into `folder`, which is made where it does not exist. Results of an earlier run are removed.
 pub fn write_problem(problem: &Problem, pins: &[Pin], folder: &Path) -> Result<(), PrimalError> {
     let in_folder = |source| PrimalError::Io { path: folder.to_owned(), source };
     fs::create_dir_all(folder).map_err(in_folder)?;
-    for degree in 1..=HIGHEST_DEGREE {
-        match fs::remove_file(folder.join(solution_file(degree))) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(in_folder(error)),
-            _ => {}
+    for cells in [Cells::Triangles, Cells::Quadrilaterals] {
+        for degree in 1..=HIGHEST_DEGREE {
+            match fs::remove_file(folder.join(solution_file(Space { cells, degree }))) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(in_folder(error)),
+                _ => {}
+            }
         }
     }
     let path = folder.join(PROBLEM_FILE);
@@ -171,22 +215,22 @@ struct SolutionFile {
     solution: PrimalSolution,
 }
 
-/// Read the result for `degree` from `folder` and check that it fits `problem`.
-pub fn read_solution(folder: &Path, degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
-    let file = solution_file(degree);
+/// Read the result for `space` from `folder` and check that it fits `problem`.
+pub fn read_solution(folder: &Path, space: Space, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let file = solution_file(space);
     let text = fs::read(folder.join(&file)).map_err(|error| {
         let reason = format!("it cannot be read ({error})");
         PrimalError::BadResult { file, reason }
     })?;
-    parse_solution(&text, degree, problem)
+    parse_solution(&text, space, problem)
 }
 
-/// The result for `degree` from the content of its file, once it was seen to fit `problem`.
+/// The result for `space` from the content of its file, once it was seen to fit `problem`.
 ///
 /// # Errors
 /// [`PrimalError::BadResult`].
-pub fn parse_solution(text: &[u8], degree: u8, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
-    let bad = |reason: String| PrimalError::BadResult { file: solution_file(degree), reason };
+pub fn parse_solution(text: &[u8], space: Space, problem: &Problem) -> Result<PrimalSolution, PrimalError> {
+    let bad = |reason: String| PrimalError::BadResult { file: solution_file(space), reason };
     let found: SolutionFile = serde_json::from_slice(text).map_err(|error| bad(error.to_string()))?;
     if (found.format.as_str(), found.version) != ("hypercircle-primal", 1) {
         return Err(bad(format!(
@@ -194,11 +238,22 @@ pub fn parse_solution(text: &[u8], degree: u8, problem: &Problem) -> Result<Prim
             found.format, found.version
         )));
     }
-    check(&found.solution, degree, problem).map_err(bad)?;
+    check(&found.solution, space, problem).map_err(bad)?;
     Ok(found.solution)
 }
 
-fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(), String> {
+fn check(solution: &PrimalSolution, Space { cells, degree }: Space, problem: &Problem) -> Result<(), String> {
+    if solution.cells != cells {
+        return Err(format!("its cells are {}", solution.cells.name()));
+    }
+    if cells == Cells::Quadrilaterals && !(usize::from(degree) <= HIGHEST && can_carry(&problem.mesh)) {
+        return Err(format!(
+            "on quadrilaterals a result has a degree of at most {HIGHEST}, on a mesh file of convex quadrilaterals alone"
+        ));
+    }
+    if cells == Cells::Quadrilaterals && !solution.gauss_points.is_some_and(|n| (1..=MOST_GAUSS_POINTS).contains(&n)) {
+        return Err(format!("gauss_points, from 1 to {MOST_GAUSS_POINTS}, is missing"));
+    }
     if solution.degree != degree {
         return Err(format!("it holds degree {}, not {degree}", solution.degree));
     }
@@ -250,93 +305,5 @@ fn check(solution: &PrimalSolution, degree: u8, problem: &Problem) -> Result<(),
 }
 
 #[cfg(test)]
-mod tests {
-    use serde_json::{Value, json};
-
-    use super::*;
-    use crate::primal::fixture::pressed_square;
-    use crate::primal::{Options, Sabotage, run};
-
-    fn written(problem: &Problem, pins: &[Pin]) -> Value {
-        let folder = tempfile::tempdir().unwrap();
-        write_problem(problem, pins, folder.path()).unwrap();
-        serde_json::from_slice(&fs::read(folder.path().join(PROBLEM_FILE)).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn conditions_become_entries_and_free_edges_none() {
-        let mut problem = pressed_square();
-        problem.conditions[3] = Condition::Clamped([0.25, -0.5]);
-        let file = written(&problem, &[Pin { vertex: 2, direction: [0.0, 1.0] }]);
-        assert_eq!(file["format"], "hypercircle-exchange");
-        assert_eq!(file["kinematics"], "plane-stress");
-        assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0]}]));
-        assert_eq!(file["clamped"], json!([{"edge": 3, "displacement": [0.25, -0.5]}]));
-        assert_eq!(file["tractions"], json!([{"edge": 4, "values": [[2.0, 0.0], [2.0, 0.0]]}]));
-        assert_eq!(file["contacts"][0]["name"], "right|rigid");
-        assert_eq!(file["contacts"][0]["pairs"][0]["edges"], json!([1, null]));
-        assert_eq!(file["contacts"][0]["pairs"][0]["second"], Value::Null);
-        assert_eq!(file["edges"][2], json!([2, 0]));
-        assert_eq!(file["pins"], json!([{"vertex": 2, "direction": [0.0, 1.0]}]));
-        assert_eq!(written(&pressed_square(), &[])["tractions"].as_array().unwrap().len(), 1);
-    }
-
-    #[test]
-    fn a_folder_that_cannot_be_made_is_named() {
-        let file = tempfile::NamedTempFile::new().unwrap();
-        let error = write_problem(&pressed_square(), &[], &file.path().join("below")).unwrap_err();
-        assert!(matches!(&error, PrimalError::Io { path, .. } if path.ends_with("below")), "{error}");
-    }
-
-    /// Uniform stress has a closed solution; see the fixture.
-    #[test]
-    fn fenicsx_solves_the_pressed_square() {
-        for ranks in [None, Some(2)] {
-            let solutions = match run(&pressed_square(), &[], &Options { ranks, ..Options::default() }) {
-                Err(PrimalError::NotInstalled(reason)) => return eprintln!("skipped: {reason}"),
-                outcome => outcome.unwrap(),
-            };
-            for (solution, degree) in solutions.iter().zip([1, 2]) {
-                assert_eq!((solution.degree, solution.ranks), (degree, ranks.unwrap_or(1)));
-                let [energy, strain] = [solution.energy, solution.strain_energy].map(Option::unwrap);
-                assert!((energy + 1.0).abs() < 1e-12 && (strain - 1.0).abs() < 1e-12);
-                assert!((solution.contacts.as_ref().unwrap()[0].resultant[0] + 1.0).abs() < 1e-12);
-                for (point, u) in pressed_square().mesh.points.iter().zip(&solution.vertex_displacement) {
-                    assert!((u[0] - 2.0 * (1.0 - point[0])).abs() < 1e-12 && u[1].abs() < 1e-12);
-                }
-                assert_eq!(solution.admissible, Some(true));
-            }
-        }
-    }
-
-    #[test]
-    fn a_result_for_another_problem_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let options = Options {
-            scratch: Some(folder.path().to_owned()),
-            sabotage: Some(Sabotage::DropRow),
-            ..Options::default()
-        };
-        let problem = pressed_square();
-        match run(&problem, &[], &options) {
-            Err(PrimalError::NotInstalled(reason)) => return eprintln!("skipped: {reason}"),
-            outcome => assert!(outcome.unwrap()[0].energy.unwrap() < -1.0 - 1e-3),
-        }
-        let mut other = problem.clone();
-        other.mesh.points.push([5.0, 5.0]);
-        assert!(matches!(read_solution(folder.path(), 2, &other), Err(PrimalError::BadResult { .. })));
-        let path = folder.path().join(solution_file(1));
-        let mut told: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-        assert!(told["energy_rounding"].as_f64().unwrap() < 1e-12);
-        told["energy_rounding"] = json!(-1.0);
-        fs::write(&path, told.to_string()).unwrap();
-        let refused = read_solution(folder.path(), 1, &problem).unwrap_err().to_string();
-        assert!(refused.contains("energy_rounding is -1"), "{refused}");
-        told.as_object_mut().unwrap().remove("energy_rounding");
-        fs::write(&path, told.to_string()).unwrap();
-        assert_eq!(read_solution(folder.path(), 1, &problem).unwrap().energy_rounding, None);
-        let mut other = problem;
-        other.interfaces[0].name = "left|rigid".to_owned();
-        assert!(matches!(read_solution(folder.path(), 1, &other), Err(PrimalError::BadResult { .. })));
-    }
-}
+#[path = "exchange_tests.rs"]
+mod tests;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// The unit square, pressure 2 on its left, a rigid wall on its right, rollers below; E = 1, ν = 0, thickness ½.
@@ -24,6 +24,7 @@ pub(crate) fn pressed_square() -> Problem {
         ],
         triangle_edges: vec![[1, 2, 0], [3, 4, 2]],
         names: Vec::new(),
+        cells: crate::mesh::FileCells::default(),
     };
     let pair = ContactPair {
         edges: [Some(1), None],
@@ -34,6 +35,7 @@ pub(crate) fn pressed_square() -> Problem {
         length: 1.0,
         arc: [0.0, 1.0],
         gap: [0.0, 0.0],
+        bow: Bow::default(),
     };
     Problem {
         scene: Scene::unchecked(Draft {
@@ -43,7 +45,7 @@ pub(crate) fn pressed_square() -> Problem {
         }),
         mesh,
         conditions: vec![
-            Condition::Roller,
+            Condition::Roller { direction: [0.0, -1.0], displacement: 0.0 },
             Condition::Contact { interface: 0, pair: 0, side: 0 },
             Condition::Interior,
             Condition::Traction([[0.0, 0.0]; 2]),
@@ -52,5 +54,6 @@ pub(crate) fn pressed_square() -> Problem {
         interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair] }],
         notes: Vec::new(),
         refinement: crate::problem::Refinement::default(),
+        uncut: None,
     }
 }

@@ -8,6 +8,7 @@
 //! Python package this program carries inside it, or the command that was given ([`SolverCommand`]), and reads the results. The
 //! files are described in `docs/exchange.md`.
 
+mod cells;
 mod command;
 pub mod exchange;
 #[cfg(test)]
@@ -20,6 +21,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+pub use self::cells::{Cells, Space, WantedCells, remark, spaces};
 pub use self::command::SolverCommand;
 use crate::problem::{Pin, Problem};
 
@@ -31,6 +33,8 @@ pub const HIGHEST_DEGREE: u8 = crate::element::displacement::MOST as u8;
 pub struct Options {
     /// Polynomial degrees, each from 1 to [`HIGHEST_DEGREE`], each solved once. A program that is not told them solves its own.
     pub degrees: Vec<u8>,
+    /// Which cells they are solved on; a program chooses for itself.
+    pub cells: WantedCells,
     /// A solver to run in the place of FEniCSx; ranks, planted bugs, nodal contact and the interpreter are not for it.
     pub program: Option<SolverCommand>,
     /// The process is ended when it takes longer.
@@ -51,6 +55,7 @@ impl Default for Options {
     fn default() -> Self {
         Options {
             degrees: vec![1, 2],
+            cells: WantedCells::Triangles,
             program: None,
             timeout: Duration::from_secs(1800),
             sabotage: None,
@@ -167,6 +172,12 @@ pub struct PrimalSolution {
     pub petsc_version: String,
     /// Polynomial degree k.
     pub degree: u8,
+    /// The cells that it is a displacement on.
+    #[serde(default)]
+    pub cells: Cells,
+    /// Points of the Gauss rule in each direction of a quadrilateral; `None` on triangles.
+    #[serde(default)]
+    pub gauss_points: Option<usize>,
     /// Number of MPI ranks.
     #[serde(default)]
     pub ranks: usize,
@@ -179,15 +190,15 @@ pub struct PrimalSolution {
     /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
     #[serde(default)]
     pub energy_rounding: Option<f64>,
-    /// Sets of closed contacts that were tried; 1 for a problem without contact.
+    /// Sets of closed contacts that were tried; 1 for a problem without contact, `None` where the solver does not tell.
     #[serde(default)]
-    pub iterations: usize,
+    pub iterations: Option<usize>,
     /// The solver's reason for stopping; positive.
     #[serde(default)]
     pub converged_reason: i32,
-    /// Unknowns left after supports are eliminated.
+    /// Unknowns left after supports are eliminated; `None` where the solver does not tell.
     #[serde(default)]
-    pub unknowns: usize,
+    pub unknowns: Option<usize>,
     /// Whether the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
     #[serde(default)]
     pub admissible: Option<bool>,
@@ -197,7 +208,7 @@ pub struct PrimalSolution {
     /// u_h at each vertex of the mesh.
     pub vertex_displacement: Vec<[f64; 2]>,
     /// u_h at the k − 1 points inside each edge of the mesh, at equal steps from its first vertex to its second; `None` for
-    /// degree 1.
+    /// degree 1. On quadrilaterals that of a diagonal is the one in the middle of its cell.
     #[serde(default)]
     pub edge_displacement: Option<Vec<[f64; 2]>>,
     /// u_h at the (k − 1)(k − 2)/2 points inside each triangle, as [`crate::element::PlainDisplacement`] has them; `None` below
@@ -265,14 +276,15 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
     };
     exchange::write_problem(problem, pins, folder)?;
     let Some(program) = &options.program else {
-        process::run(folder, options)?;
-        return options.degrees.iter().map(|&degree| exchange::read_solution(folder, degree, problem)).collect();
+        let spaces = spaces(&problem.mesh, options.cells, &options.degrees);
+        process::run(folder, options, &spaces)?;
+        return spaces.iter().map(|&space| exchange::read_solution(folder, space, problem)).collect();
     };
     let started = Instant::now();
-    let degrees = program.run(folder, &options.degrees, options.timeout)?;
-    let share = started.elapsed().as_secs_f64() / degrees.len() as f64;
-    let named = |degree: &u8| {
-        let mut solution = exchange::read_solution(folder, *degree, problem)?;
+    let spaces = program.run(folder, &options.degrees, options.timeout)?;
+    let share = started.elapsed().as_secs_f64() / spaces.len() as f64;
+    let named = |space: &Space| {
+        let mut solution = exchange::read_solution(folder, *space, problem)?;
         if solution.solver.is_empty() {
             solution.solver = program.name();
         }
@@ -281,5 +293,5 @@ pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<Pri
         }
         Ok(solution)
     };
-    degrees.iter().map(named).collect()
+    spaces.iter().map(named).collect()
 }

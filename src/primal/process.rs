@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use super::exchange::PROBLEM_FILE;
-use super::{Options, PrimalError, Sabotage};
+use super::{Cells, Options, PrimalError, Sabotage, Space};
 use crate::process::package::{Call, Failure, Package};
 
 /// Who is meant in messages.
@@ -30,14 +30,14 @@ const PACKAGE: Package = Package {
     ],
 };
 
-/// Solve the problem in `folder`, which then holds one result file per degree.
-pub fn run(folder: &Path, options: &Options) -> Result<(), PrimalError> {
+/// Solve the problem in `folder`, which then holds one result file for each of `spaces`.
+pub fn run(folder: &Path, options: &Options, spaces: &[Space]) -> Result<(), PrimalError> {
     let in_folder = |source| PrimalError::Io { path: folder.to_owned(), source };
     let folder = std::path::absolute(folder).map_err(in_folder)?;
     let call = Call {
         interpreter: options.interpreter.as_deref(),
         ranks: options.ranks,
-        arguments: arguments(&folder, options),
+        arguments: arguments(&folder, options, spaces),
         limit: options.timeout,
     };
     PACKAGE.run(&call).map_err(|failure| match failure {
@@ -48,10 +48,14 @@ pub fn run(folder: &Path, options: &Options) -> Result<(), PrimalError> {
     })
 }
 
-fn arguments(folder: &Path, options: &Options) -> Vec<OsString> {
+fn arguments(folder: &Path, options: &Options, spaces: &[Space]) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec![folder.join(PROBLEM_FILE).into(), "--out".into(), folder.into()];
-    for degree in &options.degrees {
-        arguments.extend(["--degree".into(), degree.to_string().into()]);
+    for Space { cells, degree } in spaces {
+        let option = match cells {
+            Cells::Triangles => "--degree",
+            Cells::Quadrilaterals => "--quadrilaterals",
+        };
+        arguments.extend([option.into(), degree.to_string().into()]);
     }
     let sabotage = options.sabotage.map(|sabotage| match sabotage {
         Sabotage::FlipSign => "flip-sign",

@@ -3,12 +3,12 @@
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-use super::contact::interpolated_gap;
-use super::{ContactPair, Direction, Interface, Note, ProblemError};
+use super::contact::unresolved_gap;
+use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::along::{Facing, facing, outward, turned};
 use crate::mesh::error::at;
-use crate::mesh::polyline::chain;
+use crate::mesh::polyline::{Link, chain};
 use crate::scene::{Contact, Gap, Scene};
 
 /// Part of an interval within which its ends are those of another one.
@@ -79,13 +79,15 @@ pub(super) fn pair_along(
             length: covered,
             arc: link.arc,
             gap,
+            bow: Bow::of(&contact.gap, link.arc),
         });
     }
     if pairs.is_empty() {
         let what = format!("seen along its direction, '{}' and '{}' do not face each other", names[0], names[1]);
         return Err(fault(what, "correct `direction`, or the names"));
     }
-    notes.extend(interpolated_gap(contact, &pairs));
+    let facing: Vec<Link> = links.iter().filter(|link| matched.contains_key(&edges[link.edge])).copied().collect();
+    notes.extend(unresolved_gap(contact, &facing));
     notes.extend(oblique(contact, &pairs, d));
     Ok(Interface { name: contact.name(), pairs })
 }

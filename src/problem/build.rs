@@ -1,17 +1,18 @@
 //! From scene and mesh to a [`Problem`].
 
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Duration;
 
-use super::contact::{gap_note, pair_up};
+use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::{Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
-use crate::mesh::{self, Curved, Triangulation};
-use crate::scene::{Load, MeshSource, Normals, Scene, SupportKind};
+use crate::mesh::{self, Curved, Loaded, Triangulation};
+use crate::scene::{Draft, Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
@@ -38,8 +39,8 @@ impl Problem {
     /// # Errors
     /// As [`Problem::load`].
     pub fn load_within(scene: Scene, limit: Duration) -> Result<Problem, ProblemError> {
-        let (scene, mesh, notes) = mesh::load(scene, limit)?;
-        Problem::new(scene, mesh, notes)
+        let Loaded { scene, mesh, notes, uncut } = mesh::load(scene, limit)?;
+        Ok(Problem { uncut: uncut.map(Arc::new), ..Problem::new(scene, mesh, notes)? })
     }
 
     /// The problem to refine to a tolerance, by a `load` that the caller has: on the coarsest mesh that represents `scene`,
@@ -68,6 +69,16 @@ impl Problem {
         Ok(problem)
     }
 
+    /// The problem on its mesh before contact cut it, without its contacts; `None` where contact changed nothing.
+    ///
+    /// # Errors
+    /// None that [`Problem::new`] did not have.
+    pub fn before_contact(&self) -> Result<Option<Problem>, ProblemError> {
+        let Some(uncut) = &self.uncut else { return Ok(None) };
+        let draft = Draft { contacts: Vec::new(), ..(*self.scene).clone() };
+        Problem::new(Scene::unchecked(draft), uncut.mesh.clone(), Vec::new()).map(Some)
+    }
+
     /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was
     /// made; remarks about the data are added to it.
     ///
@@ -91,8 +102,13 @@ impl Problem {
                 let role = edge.name.and_then(|n| roles.get(mesh.names[n].as_str()));
                 match role {
                     _ if !edge.is_boundary() => Condition::Interior,
-                    Some(Role::Support(SupportKind::Clamped { displacement })) => Condition::Clamped(*displacement),
-                    Some(Role::Support(SupportKind::Roller)) => Condition::Roller,
+                    Some(Role::Support(SupportKind::Clamped { displacement })) => {
+                        Condition::Clamped(edge.vertices.map(|v| displacement.at(mesh.points[v])))
+                    }
+                    Some(Role::Support(SupportKind::Roller { direction, displacement })) => Condition::Roller {
+                        direction: direction.unwrap_or_else(|| mesh.edge_frame(e).1),
+                        displacement: *displacement,
+                    },
                     Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
                     // Contact edges are overwritten when they are paired.
                     Some(Role::Contact) | None => Condition::Traction([[0.0; 2]; 2]),
@@ -102,8 +118,6 @@ impl Problem {
         let mut interfaces = Vec::with_capacity(scene.contacts.len());
         let mut remarks = Vec::new();
         for (interface, contact) in scene.contacts.iter().enumerate() {
-            let of_the_mesh_before = gap_note(contact);
-            notes.retain(|note| !note.text.starts_with(&of_the_mesh_before));
             let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
             if let Some(coarser) = coarser.filter(|coarser| coarser.refinement == Refinement::KeepsEdges) {
                 keep_gap(&mut matched.pairs, coarser, interface);
@@ -133,7 +147,7 @@ impl Problem {
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement })
+        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement, uncut: None })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -163,8 +177,8 @@ impl Problem {
 
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
     pub fn is_cone(&self) -> bool {
-        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2]);
-        no_gap && self.conditions.iter().all(|c| !matches!(c, Condition::Clamped(u) if *u != [0.0; 2]))
+        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none());
+        no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 
     /// Whether the direction of contact turns along any edge.
@@ -247,9 +261,6 @@ fn end_tractions(mesh: &Triangulation, e: usize, load: &Load) -> [[f64; 2]; 2] {
             let (_, normal) = mesh.edge_frame(e);
             [normal.map(|n| 0.0 - p * n); 2]
         }
-        Load::Affine { value, gradient } => mesh.edges[e].vertices.map(|v| {
-            let x = mesh.points[v];
-            [0, 1].map(|i| value[i] + gradient[i][0] * x[0] + gradient[i][1] * x[1])
-        }),
+        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
     }
 }

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use super::along::pair_along;
-use super::{ContactPair, Direction, Interface, Note, ProblemError};
+use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
 use crate::mesh::polyline::{Link, chain, key, same};
-use crate::scene::{Contact, ContactSides, Gap, Scene, Touching};
+use crate::scene::{Contact, ContactSides, Gap, Scene};
 
 /// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::glue`].
 pub(super) fn pair_up(
@@ -67,6 +67,7 @@ pub(super) fn pair_up(
             length,
             arc: link.arc,
             gap: link.arc.map(|s| contact.gap.at(on_break(s))),
+            bow: Bow::of(&contact.gap, link.arc.map(on_break)),
         });
     }
     if let Some(e) = facing.values().min() {
@@ -75,12 +76,11 @@ pub(super) fn pair_up(
         return Err(fault(what, "make the two sides coincide"));
     }
     notes.extend(unresolved_gap(contact, &links));
-    notes.extend(interpolated_gap(contact, &pairs));
     Ok(Interface { name: contact.name(), pairs })
 }
 
 /// A remark when the gap bends inside an edge, or when the mesh begins to see the kinks of a table that stands for a curve.
-fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
+pub(super) fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
     let Gap::Table(rows) = &contact.gap else { return None };
     let close = same(links);
     let inside = |s: f64| links.iter().any(|link| s - link.arc[0] > close && link.arc[1] - s > close);
@@ -105,30 +105,6 @@ fn unresolved_gap(contact: &Contact, links: &[Link]) -> Option<Note> {
              it stands for a curve, write gap = {{ circle = R, at = s }} or {{ parabola = R, at = s }}"
         ),
     })
-}
-
-/// A remark on how far the gap at the vertices, linear between them, is from the curve that it stands for, at the edges
-/// that touch it. It weakens the guarantee: the bounds are for another gap than the scene's.
-pub(super) fn interpolated_gap(contact: &Contact, pairs: &[ContactPair]) -> Option<Note> {
-    let (Gap::Circle(Touching { radius, at }) | Gap::Parabola(Touching { radius, at })) = contact.gap else {
-        return None;
-    };
-    let touching = pairs.iter().filter(|pair| pair.arc[0] <= at && at <= pair.arc[1]);
-    let longest = touching.map(|pair| pair.length).fold(0.0, f64::max);
-    Some(Note {
-        weakens_guarantee: true,
-        text: format!(
-            "{} a curve of radius {radius:?} at the vertices of this mesh and linear between them: at s = {at:?} up to {:.1e} \
-             away from it. The bounds are for the gap that is linear on every edge, and not guaranteed for the curve",
-            gap_note(contact),
-            longest * longest / (8.0 * radius)
-        ),
-    })
-}
-
-/// The beginning of the remark on a gap, which is that of each mesh.
-pub(super) fn gap_note(contact: &Contact) -> String {
-    format!("contact {}: the gap is that of", contact.name())
 }
 
 /// A convex table with this many steps stands for a curve.

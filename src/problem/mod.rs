@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod bow;
 mod build;
 mod contact;
 mod curves;
@@ -11,12 +12,15 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
+use std::sync::Arc;
+
 use crate::element::Compliance;
-use crate::mesh::Triangulation;
+use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::{Body, Scene};
 
@@ -35,6 +39,8 @@ pub struct Problem {
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
     pub refinement: Refinement,
+    /// The mesh as it was read or made, where contacts changed it; none of a mesh that was refined.
+    pub uncut: Option<Arc<Uncut>>,
 }
 
 impl Problem {
@@ -78,10 +84,15 @@ pub enum Condition {
     /// T = P, given by its values at the two ends of the edge (in the order of [`crate::mesh::Edge::vertices`]).
     /// A free edge has P = 0.
     Traction([[f64; 2]; 2]),
-    /// u = u0.
-    Clamped([f64; 2]),
-    /// u_n = 0, T_t = 0.
-    Roller,
+    /// u = u0, given by its values at the two ends of the edge, linear between.
+    Clamped([[f64; 2]; 2]),
+    /// u · direction = displacement, and no traction across the direction.
+    Roller {
+        /// Unit vector; on most rollers the outward normal of the edge.
+        direction: [f64; 2],
+        /// The prescribed component.
+        displacement: f64,
+    },
     /// Side 0 or 1 of `interfaces[interface].pairs[pair]`.
     Contact {
         /// Index into [`Problem::interfaces`].
@@ -91,6 +102,23 @@ pub enum Condition {
         /// 0 for the first side, 1 for the second.
         side: usize,
     },
+}
+
+impl Condition {
+    /// What a support prescribes at the two ends of its edge, linear between: all of u on a clamped edge, on rollers the part
+    /// along their direction. `None` where nothing is held.
+    pub fn prescribed(&self) -> Option<[[f64; 2]; 2]> {
+        match *self {
+            Condition::Clamped(ends) => Some(ends),
+            Condition::Roller { direction, displacement } => Some([direction.map(|n| displacement * n); 2]),
+            _ => None,
+        }
+    }
+
+    /// Whether something other than zero is prescribed.
+    pub fn is_moved(&self) -> bool {
+        self.prescribed().is_some_and(|ends| ends != [[0.0; 2]; 2])
+    }
 }
 
 /// One contact of the scene.
@@ -119,8 +147,10 @@ pub struct ContactPair {
     pub length: f64,
     /// Arc length of the two ends.
     pub arc: [f64; 2],
-    /// Gap g at the two ends; linear between.
+    /// Gap g at the two ends.
     pub gap: [f64; 2],
+    /// How far it lies below its chord between them.
+    pub bow: Bow,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use super::direction::unit;
 use super::{ContactPair, Interface, Note, Refinement};
 use crate::mesh::Curved;
+use crate::scene::counted;
 
 /// Cosine of the angle between the normals of two edges beyond which the vertex between them is a corner: 30°.
 const CORNER: f64 = 0.866_025_403_784_438_6;
@@ -119,11 +120,11 @@ pub(super) fn inherit(pairs: &mut [ContactPair], points: &[[f64; 2]], coarser: &
     }
 }
 
-/// Gives the pairs of a finer mesh the gap of the coarser pairs that they are parts of, linear along these.
+/// Gives the pairs of a finer mesh the gap of the coarser pairs that they are parts of, where it is linear along these.
 pub(super) fn keep_gap(pairs: &mut [ContactPair], coarser: &Coarser, interface: usize) {
     let parent = coarser.parents(interface);
     for pair in pairs {
-        let Some(parent) = parent(pair) else { continue };
+        let Some(parent) = parent(pair).filter(|parent| parent.bow.is_none()) else { continue };
         let [first, last] = parent.gap;
         let of = |end: usize| {
             let whole = pair.first[end] == parent.first[end];
@@ -151,10 +152,11 @@ fn facets(interface: &Interface) -> Option<Note> {
     Some(Note {
         weakens_guarantee: false,
         text: format!(
-            "{}: {} edges stand for a curve; they lie up to {farthest:.1e} from it, {:.1e} of the length of the contact. The \
+            "{}: {} {} for a curve; they lie up to {farthest:.1e} from it, {:.1e} of the length of the contact. The \
              bounds are for these edges with the direction of contact of the curve",
             beginning(interface),
-            turning.len(),
+            counted(turning.len(), "edge"),
+            if turning.len() == 1 { "stands" } else { "stand" },
             farthest / length
         ),
     })

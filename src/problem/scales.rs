@@ -196,9 +196,9 @@ fn imposed(problem: &Problem) -> f64 {
     let mut clamped = vec![false; count];
     let mut prescribed = 0.0_f64;
     for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
-        if let (Condition::Clamped(u0), Some(t)) = (condition, edge.triangles[0]) {
-            clamped[piece[t]] = true;
-            prescribed = prescribed.max(norm(*u0));
+        if let (Some(ends), Some(t)) = (condition.prescribed(), edge.triangles[0]) {
+            clamped[piece[t]] |= matches!(condition, Condition::Clamped(_));
+            prescribed = ends.into_iter().fold(prescribed, |most, u| most.max(norm(u)));
         }
     }
     let loose = |e: &Option<usize>| e.and_then(|e| mesh.edges[e].triangles[0]).is_some_and(|t| !clamped[piece[t]]);
@@ -218,7 +218,7 @@ fn widest_gap(problem: &Problem) -> f64 {
 mod tests {
     use super::*;
     use crate::mesh::testing::*;
-    use crate::scene::{Gap, Load, Scene, SupportKind};
+    use crate::scene::{Affine, Gap, Load, Scene, SupportKind};
 
     /// Two unit squares side by side, the right one clamped.
     fn squares(gap: f64) -> Scene {
@@ -239,7 +239,8 @@ mod tests {
 
     #[test]
     fn loads_have_sizes_of_their_own() {
-        let mut scene = load(squares(0.0), "a_left", Load::Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] });
+        let mut scene =
+            load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
         scene.draft.bodies[1].body_force = [0.0, -2.0];
         scene.draft.bodies[1].young = 10.0;
@@ -262,7 +263,8 @@ mod tests {
     fn units_of_length_and_stress_scale_the_sizes() {
         let made = |length: f64, stress: f64| {
             let mut scene = load(squares(0.0), "a_left", Load::Pressure(2.0 * stress));
-            scene.draft.supports[0].kind = SupportKind::Clamped { displacement: [0.01 * length, 0.0] };
+            scene.draft.supports[0].kind =
+                SupportKind::Clamped { displacement: Affine::constant([0.01 * length, 0.0]) };
             scene.draft.bodies.iter_mut().for_each(|body| body.young *= stress);
             let mut problem = Problem::load(scene).expect("a good scene");
             problem.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);

@@ -4,7 +4,7 @@ use super::{Condition, Problem};
 use crate::mesh::Triangulation;
 use crate::mesh::bisect::RefinementEdges;
 use crate::mesh::testing::*;
-use crate::scene::{Contact, ContactSides, Gap, Load, Scene, Support, SupportKind};
+use crate::scene::{Affine, Contact, ContactSides, Gap, Load, Scene, Support, SupportKind};
 
 fn two_blocks(gap: Gap, n: usize) -> Scene {
     let polygons = vec![rectangle("a", [0.0; 2], [1.0; 2]), rectangle("b", [1.0, 0.0], [2.0, 1.0])];
@@ -12,10 +12,10 @@ fn two_blocks(gap: Gap, n: usize) -> Scene {
     let scene = load(
         clamp(scene, "b_right"),
         "a_left",
-        Load::Affine { value: [4.0, 0.0], gradient: [[0.0, -7.0], [0.5, 0.0]] },
+        Load::Affine(Affine { value: [4.0, 0.0], gradient: [[0.0, -7.0], [0.5, 0.0]] }),
     );
     let mut scene = load(scene, "a_top", Load::Pressure(2.0));
-    scene.draft.supports.push(Support { on: "a_bottom".into(), kind: SupportKind::Roller });
+    scene.draft.supports.push(Support { on: "a_bottom".into(), kind: SupportKind::ROLLER });
     contact(scene, "a_right", "b_left", gap)
 }
 
@@ -53,8 +53,8 @@ fn conditions_follow_the_names() {
         let middle = [0, 1].map(|k| 0.5 * edge.vertices.iter().map(|&v| mesh.points[v][k]).sum::<f64>());
         match problem.conditions[e] {
             Condition::Interior => assert!(!edge.is_boundary()),
-            Condition::Clamped(u) => assert_eq!((middle[0], u), (2.0, [0.0; 2])),
-            Condition::Roller => assert!(middle[1] == 0.0 && middle[0] < 1.0),
+            Condition::Clamped(u) => assert_eq!((middle[0], u), (2.0, [[0.0; 2]; 2])),
+            Condition::Roller { .. } => assert!(middle[1] == 0.0 && middle[0] < 1.0),
             Condition::Contact { .. } => assert_eq!(middle[0], 1.0),
             Condition::Traction(p) if middle[0] == 0.0 => {
                 for (v, p) in edge.vertices.iter().zip(p) {

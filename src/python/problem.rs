@@ -16,8 +16,10 @@ pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'
     out.set_item("kinematics", scene.kinematics.name())?;
     out.set_item("thickness", scene.thickness)?;
     out.set_item("bodies", list(py, &scene.bodies, body_entry)?)?;
-    let normals: Vec<[f64; 2]> = (0..mesh.edges.len()).map(|e| mesh.edge_frame(e).1).collect();
     out.set_item("points", numbers(mesh.points.iter().map(|p| scene.as_written(*p)).collect())?)?;
+    let quadrilaterals: Vec<[usize; 4]> = mesh.quadrilaterals().map(|cell| cell.corners).collect();
+    let quadrilaterals = indices(quadrilaterals.into_pyobject(py)?.into_any())?.call_method1("reshape", (-1, 4))?;
+    out.set_item("quadrilaterals", quadrilaterals)?;
     out.set_item("triangles", indices(mesh.triangles.into_pyobject(py)?)?)?;
     out.set_item("body", indices(mesh.body.into_pyobject(py)?)?)?;
     let names: Vec<Option<&str>> =
@@ -27,9 +29,6 @@ pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'
     out.set_item("edges", indices(edges.into_pyobject(py)?)?)?;
     out.set_item("triangle_edges", indices(mesh.triangle_edges.into_pyobject(py)?)?)?;
     let known = list(py, &conditions, condition_entry)?;
-    for (k, _) in conditions.iter().enumerate().filter(|(_, condition)| matches!(condition, Condition::Roller)) {
-        known.get_item(k)?.set_item("normal", normals[k])?;
-    }
     out.set_item("conditions", known)?;
     out.set_item("interfaces", list(py, &interfaces, interface_entry)?)?;
     Ok(out)
@@ -62,11 +61,18 @@ fn condition_entry<'py>(py: Python<'py>, condition: &Condition) -> PyResult<Boun
             entry.set_item("values", *values)?;
             "traction"
         }
-        Condition::Clamped(displacement) => {
-            entry.set_item("displacement", *displacement)?;
+        Condition::Clamped([first, last]) => {
+            match first == last {
+                true => entry.set_item("displacement", *first)?,
+                false => entry.set_item("displacement", [*first, *last])?,
+            }
             "clamped"
         }
-        Condition::Roller => "roller",
+        Condition::Roller { direction, displacement } => {
+            entry.set_item("normal", *direction)?;
+            entry.set_item("displacement", *displacement)?;
+            "roller"
+        }
         Condition::Contact { .. } => "contact",
     };
     entry.set_item("kind", kind)?;
@@ -84,6 +90,9 @@ fn interface_entry<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Boun
         entry.set_item("direction", pair.direction.ends)?;
         entry.set_item("length", pair.length)?;
         entry.set_item("gap", pair.gap)?;
+        if !pair.bow.is_none() {
+            entry.set_item("gap_polynomial", pair.gap_polynomial())?;
+        }
         pairs.append(entry)?;
     }
     let out = PyDict::new(py);

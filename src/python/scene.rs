@@ -93,8 +93,8 @@ impl Scene {
         self.of.quantities.iter().map(|quantity| quantity.name.clone()).collect()
     }
 
-    /// The scene on its mesh, refined uniformly `refine` times: `points` (n × 2), `triangles` (m × 3), `body` (m, index into
-    /// `bodies`), `edges` (e × 2), `triangle_edges` (m × 3), `conditions` of the edges (a roller has its outward
+    /// The scene on its mesh, refined uniformly `refine` times: `points` (n × 2), `triangles` (m × 3), `quadrilaterals` of the mesh file
+    /// whose halves are among them (q × 4), `body` (m, index into `bodies`), `edges` (e × 2), `triangle_edges` (m × 3), `conditions` of the edges (a roller has its outward
     /// `normal`), `boundaries` (the name of each edge, or `None`), `interfaces` (each pair has the `direction` of contact at its two ends), `bodies`, `kinematics`,
     /// `thickness`.
     #[pyo3(signature = (refine = 0))]

@@ -43,7 +43,8 @@ fn called(
 }
 
 /// What is right and what is wrong with a displacement element: a dictionary with `passed`, `verdict`, `diagnosis` (`cause`, `explained`,
-/// `sentence`, or `None`) and `findings`, each with `name`, `asks`, `claim`, `value`, `allowed`, `passed` and `sentence`.
+/// `sentence`, or `None`), `hint` (what to say of the input, or `None`), `untold` (what a matrix of one shape cannot tell; `None` with a
+/// formula) and `findings`, each with `name`, `asks`, `claim`, `value`, `allowed`, `passed` and `sentence`.
 ///
 /// `element` is a stiffness matrix (an array of 2n rows), or what makes one: a callable `stiffness(nodes, young, poisson)`, or an object
 /// with such a method. It is given an n × 2 array and returns K per unit thickness; with it shapes, Poisson's ratios and solved
@@ -119,7 +120,8 @@ pub fn workbench<'py>(
     };
     let made = made.map_err(fault)?;
     let usual = made.precision;
-    let made = made.with_precision(precision.filter(|p| *p > 0.0).unwrap_or(usual));
+    let said = precision.map(crate::workbench::precision).transpose().map_err(fault)?;
+    let made = made.with_precision(said.unwrap_or(usual));
     // The formula comes back for the interpreter.
     let report = py.detach(move || Report::of_displacement(&made, &options));
     written(py, &report, out)

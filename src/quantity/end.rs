@@ -1,10 +1,9 @@
 //! The bound that one adjoint pair gives.
 
 use super::interval::Known;
-use super::lift::jumps;
 use super::pass::{Fields, Integrals, Pass, pass};
 use super::search::Search;
-use crate::bounds::{NodalValues, ROUNDING_PER_TERM, Sum, openings, support_work, work};
+use crate::bounds::{NodalValues, ROUNDING_PER_TERM, Sum, excess_work, jumps, openings, support_work, work};
 use crate::dual::Response;
 use crate::element::{Displacement, side};
 
@@ -72,7 +71,8 @@ impl Search<'_, '_> {
             rounding += ROUNDING_PER_TERM * work.magnitude();
         }
         for (pair, s) in problem.pairs().zip(response.contact.iter()) {
-            sum.add(-pair.length * side::integral(s, &pair.gap));
+            sum.add(-pair.length * side::integral(s, &pair.gap_polynomial()));
+            rounding += excess_work(pair, s);
         }
         let supports = support_work(problem, &response.stress);
         sum.add(-supports.value());

@@ -8,9 +8,9 @@
 
 use std::collections::BTreeSet;
 
-use super::lift::{jumps, lift};
+use super::lift::lift;
 use super::region::{Cut, cut, twice_area};
-use crate::bounds::{holds_at, work};
+use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};
@@ -30,6 +30,11 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether it is what contacts or supports carry.
+    pub fn is_carried(self) -> bool {
+        matches!(self, Kind::Force | Kind::Moment)
+    }
+
     /// The word for it.
     pub fn name(self) -> &'static str {
         match self {
@@ -128,14 +133,18 @@ impl Functional {
     /// The signs that the value cannot have, negative and positive: contact does not pull, so that a force of it alone whose weight
     /// does not change its sign has one sign too.
     pub fn cannot_be(&self) -> [bool; 2] {
-        let load = &self.load;
-        let other = !load.tractions.is_empty() || !load.strains.is_empty() || load.force.iter().any(|f| *f != [0.0; 2]);
-        if other || self.constant != 0.0 {
+        if !self.is_of_contact_alone() || self.constant != 0.0 {
             return [false; 2];
         }
         // t ≤ 0.
-        let all = |sign: f64| load.weights.iter().flatten().all(|w| sign * w >= 0.0);
+        let all = |sign: f64| self.load.weights.iter().flatten().all(|w| sign * w >= 0.0);
         [all(-1.0), all(1.0)]
+    }
+
+    /// Whether nothing but the normal traction of contacts, and what is known, enters.
+    pub fn is_of_contact_alone(&self) -> bool {
+        let load = &self.load;
+        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(|f| *f == [0.0; 2])
     }
 
     fn empty(problem: &Problem, kind: Kind) -> Self {
@@ -187,7 +196,15 @@ fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional,
     let q = d.map(|d| d / total);
     for e in edges {
         match problem.conditions[e] {
-            Condition::Clamped(u0) => functional.constant += length(e) * (q[0] * u0[0] + q[1] * u0[1]),
+            Condition::Clamped([a, b]) => {
+                functional.constant += 0.5 * length(e) * (q[0] * (a[0] + b[0]) + q[1] * (a[1] + b[1]));
+            }
+            Condition::Roller { direction: [x, y], displacement } => {
+                // What the roller prescribes is known; the load acts across it.
+                let along = q[0] * x + q[1] * y;
+                functional.constant += length(e) * along * displacement;
+                functional.load.tractions.push((e, [[q[0] - along * x, q[1] - along * y]; 2]));
+            }
             _ => functional.load.tractions.push((e, [q; 2])),
         }
     }

@@ -15,7 +15,7 @@ use super::pass::{strained, uncancelled};
 use super::search::Search;
 use super::value::displaced;
 use crate::bounds::energy::square;
-use crate::bounds::{Bracket, Nearest, UpperBound, mid_field, openings};
+use crate::bounds::{Bracket, Nearest, UpperBound, excess_work, mid_field, openings_within};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
 use crate::element::{StressField, side};
 use crate::problem::{ContactPair, Problem, Scales};
@@ -81,6 +81,24 @@ impl Interval {
         outside(self.ends, self.rounding, x)
     }
 
+    /// What this interval and one from sharper stresses tell together of one value, with the shares of this one.
+    pub fn and(self, sharper: &Interval) -> Self {
+        let both =
+            |[a, b]: [f64; 2], [c, d]: [f64; 2]| if a.max(c) <= b.min(d) { [a.max(c), b.min(d)] } else { [c, d] };
+        let ends = both(self.ends, sharper.ends);
+        let value = if sharper.value.is_nan() { self.value } else { sharper.value };
+        let reason = |k: usize| if ends[k].is_finite() { None } else { sharper.reasons[k].clone() };
+        Interval {
+            ends,
+            first_order: both(self.first_order, sharper.first_order),
+            value: value.max(ends[0]).min(ends[1]),
+            exact_by_statics: self.exact_by_statics || sharper.exact_by_statics,
+            rounding: self.rounding.max(sharper.rounding),
+            reasons: [reason(0), reason(1)],
+            shares: self.shares,
+        }
+    }
+
     /// Half of the width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])
@@ -128,11 +146,15 @@ impl<'a> Known<'a> {
     ) -> Result<Self, String> {
         let nearest = Nearest::new(problem, &dual.moments, &upper.prepared).map_err(|error| error.to_string())?;
         let gap = (upper.upper() - bracket.lower()).max(0.0);
-        let of_contact = upper.local.pairs.iter().flatten().map(|p| p.max(0.0)).sum::<f64>() + upper.widening;
+        let tractions = dual.contact_traction.iter().flat_map(|of| of.iter());
+        let of_excess: f64 = problem.pairs().zip(tractions).map(|(pair, t)| excess_work(pair, t)).sum();
+        let of_contact = upper.local.pairs.iter().flatten().map(|p| p.max(0.0)).sum::<f64>()
+            + upper.widening
+            + problem.scene.thickness * of_excess;
         let ball = 0.5 * (gap + of_contact.min(gap)) / problem.scene.thickness;
         let open = |(pair, count): (&ContactPair, usize)| {
-            let found = openings(problem, &upper.displacement, pair);
-            in_degree(&found, count.max(1) - 1).into_iter().map(|o| o.max(0.0)).collect()
+            let found = openings_within(problem, &upper.displacement, pair, count.max(1) - 1);
+            found.unwrap_or_else(|| vec![0.0; count.max(1)]).into_iter().map(|o| o.max(0.0)).collect()
         };
         let middle = mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?;
         Ok(Known {

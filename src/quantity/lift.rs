@@ -1,8 +1,8 @@
 //! Displacements that lift the weight of a contact force.
 
-use crate::bounds::{holds_at, openings};
+use crate::bounds::{holds_at, jumps};
 use crate::element::{Displacement, side};
-use crate::problem::{ContactPair, Problem};
+use crate::problem::Problem;
 
 /// The displacement, linear on triangles, that has jumps −φ from the motion of first sides alone and meets the supports;
 /// `None` where no such one does.
@@ -33,9 +33,4 @@ pub(super) fn lift(problem: &Problem, weights: &[Vec<f64>]) -> Option<Displaceme
         jumps.iter().zip(&weights).all(|(j, w)| (j + w).abs() <= 1e-9 * size)
     });
     (met && exact).then_some(lift)
-}
-
-/// The coefficients of (v' − v'')·n̂ along a pair.
-pub(super) fn jumps(problem: &Problem, v: &Displacement, pair: &ContactPair) -> Vec<f64> {
-    openings(problem, v, &ContactPair { gap: [0.0; 2], ..*pair }).into_iter().map(|o| -o).collect()
 }

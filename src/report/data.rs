@@ -181,20 +181,30 @@ pub struct PrimalSummary {
     pub solver: String,
     /// Its version.
     pub version: String,
-    /// Polynomial degree.
+    /// Polynomial degree; on quadrilaterals that in each coordinate of a square.
     pub degree: usize,
+    /// `triangles`, or `quadrilaterals` where the displacement is one on those of the mesh file.
+    pub cells: String,
     /// 𝓛(u_h).
     pub energy: f64,
-    /// Whether the field is admissible everywhere, so that its energy is an upper bound.
+    /// Whether the field is admissible everywhere, so that its energy is an upper bound, unless it is that of a quadrature.
     pub admissible: bool,
-    /// Guaranteed relative energy-norm error of its stress, √((𝓛(u_h) + Π(λ_h)) / 𝒮(λ_h)).
+    /// Guaranteed relative energy-norm error of its stress, √((𝓛(u_h) + Π(λ_h)) / 𝒮(λ_h)); `null` on quadrilaterals that are
+    /// no parallelograms, whose energy is that of a quadrature.
     pub relative_error_bound: Option<f64>,
-    /// Nonlinear iterations.
-    pub iterations: usize,
-    /// Unknowns.
-    pub unknowns: usize,
+    /// Nonlinear iterations, where the program tells them.
+    pub iterations: Option<usize>,
+    /// Unknowns, where the program tells them.
+    pub unknowns: Option<usize>,
     /// Seconds by phase, as reported by the program; `total` is always there.
     pub seconds: std::collections::BTreeMap<String, f64>,
+}
+
+impl PrimalSummary {
+    /// Whether the energy is that of a quadrature, on quadrilaterals that are no parallelograms.
+    pub fn is_of_quadrature(&self) -> bool {
+        self.cells == "quadrilaterals" && self.relative_error_bound.is_none()
+    }
 }
 
 /// One mesh of an adaptive run.

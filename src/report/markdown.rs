@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
-use super::words::{accuracy, basis_word, failing, headline, status_symbol, upper_from, worth_a_look};
+use super::words::{accuracy, basis_word, failing, headline, mean_in_words, status_symbol, upper_from, worth_a_look};
 use super::{Report, Status};
 use crate::cause::told;
+use crate::scene::counted;
 
 /// How many failing checks and quantities are listed before the rest is only counted.
 const LISTED: usize = 12;
@@ -31,7 +32,7 @@ pub fn summary(report: &Report) -> String {
         let _ = writeln!(text, "> **Weakens the guarantee:** {}\n", cell(&note.text));
     }
     if report.notes.len() > weakening.len() {
-        let _ = writeln!(text, "{} more note(s) in `report.html`.\n", report.notes.len() - weakening.len());
+        let _ = writeln!(text, "{} in `report.html`.\n", counted(report.notes.len() - weakening.len(), "more note"));
     }
     let _ = writeln!(
         text,
@@ -98,11 +99,11 @@ fn causes(text: &mut String, report: &Report) {
     for cause in report.causes.iter().take(LISTED) {
         let _ = writeln!(
             text,
-            "- **{}** {} *Try:* {} ({} checks)",
+            "- **{}** {} *Try:* {} ({})",
             cell(&cause.sentence),
             cell(&cause.suggests),
             cell(&cause.remedy),
-            cause.checks.len()
+            counted(cause.checks.len(), "check")
         );
     }
     if report.causes.len() > LISTED {
@@ -165,7 +166,7 @@ fn primals(text: &mut String, report: &Report) {
             significant(primal.energy, digits_to_tell(primal.energy, lower)),
             if primal.admissible { "yes" } else { "no" },
             primal.relative_error_bound.map_or("–".to_string(), percent),
-            primal.unknowns
+            primal.unknowns.map_or("–".to_string(), |unknowns| unknowns.to_string())
         );
     }
     text.push('\n');
@@ -192,6 +193,13 @@ fn contacts(text: &mut String, report: &Report) {
             percent(contact.open_fraction),
             contact.pressure_l2_difference.map_or("–".to_string(), percent)
         );
+    }
+    text.push('\n');
+    for contact in &report.contact {
+        if let Some(mean) = &contact.pressure_mean {
+            let words = mean_in_words(mean, report.is_guaranteed());
+            let _ = writeln!(text, "- `{}`: {words}", code(&contact.name));
+        }
     }
     text.push('\n');
 }

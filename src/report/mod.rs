@@ -9,6 +9,7 @@ pub(crate) mod document;
 pub mod figure;
 pub mod folder;
 mod html;
+pub mod inventory;
 mod json;
 mod junit;
 mod lattice;

@@ -50,7 +50,7 @@ pub struct QuantityOfModel {
     pub degree: usize,
     /// Its value; `null` where its displacement does not tell.
     pub value: Option<f64>,
-    /// Why there is no value; `null` where there is one.
+    /// Why there is no value, or what that of its reactions is worth; `null` where its displacement tells.
     pub reason: Option<String>,
     /// Whether it lies in the interval; `null` where there is no value or no interval.
     pub inside: Option<bool>,
@@ -65,7 +65,7 @@ pub(crate) struct Held {
     pub degree: Option<usize>,
     /// The value; `None` where the field does not tell.
     pub value: Option<f64>,
-    /// Why the field does not tell.
+    /// Why the field does not tell, or what its value is worth.
     pub reason: Option<String>,
     /// Whether its distance from the interval is within what its own error allows, where that was checked.
     pub allowed: Option<bool>,
@@ -167,7 +167,11 @@ impl QuantitySummary {
         if outside == 0.0 {
             return String::new();
         }
-        let own = if held.allowed == Some(true) { ", which its own error may explain" } else { "" };
+        let own = match &held.reason {
+            _ if held.allowed == Some(true) => ", which its own error may explain".to_string(),
+            Some(reason) => format!("; {reason}"),
+            None => String::new(),
+        };
         format!("outside by {}{own}", significant(outside, 3))
     }
 }

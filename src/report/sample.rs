@@ -8,7 +8,7 @@ use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Note, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
 
 /// Something to make a dossier from.
@@ -157,7 +157,15 @@ fn two_blocks(n: usize) -> Problem {
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
         notes,
         refinement: crate::problem::Refinement::default(),
+        uncut: None,
     }
+}
+
+/// The halves of the squares become those of quadrilaterals of a mesh file.
+pub(crate) fn with_quadrilaterals(mesh: &mut Triangulation) {
+    let corners: Vec<[usize; 4]> =
+        mesh.triangles.chunks(2).map(|half| [half[0][0], half[0][1], half[1][1], half[1][2]]).collect();
+    mesh.cells = crate::mesh::FileCells::find(&corners, &mesh.triangles);
 }
 
 fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>) -> Triangulation {
@@ -177,7 +185,7 @@ fn topology(points: Vec<[f64; 2]>, triangles: Vec<[usize; 3]>, body: Vec<usize>)
         }));
     }
     let names = ["left_load", "wall", "floor <a&b>"].map(String::from).to_vec();
-    Triangulation { points, triangles, body, edges, triangle_edges, names }
+    Triangulation { points, triangles, body, edges, triangle_edges, names, cells: crate::mesh::FileCells::default() }
 }
 
 fn condition(mesh: &Triangulation, e: usize) -> Condition {
@@ -190,9 +198,9 @@ fn condition(mesh: &Triangulation, e: usize) -> Condition {
     } else if both(0, 0.0) {
         Condition::Traction([p, q].map(|x| [4.0 - 7.0 * x[1], 0.0]))
     } else if both(0, 2.0) {
-        Condition::Clamped([0.0, 0.0])
+        Condition::Clamped([[0.0; 2]; 2])
     } else if left && both(1, 0.0) {
-        Condition::Roller
+        Condition::Roller { direction: [0.0, -1.0], displacement: 0.0 }
     } else {
         Condition::Traction([[0.0; 2]; 2])
     }
@@ -216,6 +224,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         length: h,
         arc: [k as f64 * h, (k + 1) as f64 * h],
         gap: [0.0; 2],
+        bow: Bow::default(),
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::sample::{Verdict, contact_pressure};
 use super::*;
-use crate::compare::{Basis, Check};
+use crate::compare::{Basis, Check, MeanPressure};
 use crate::dual::Phases;
 use crate::problem::Problem;
 
@@ -34,11 +34,12 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         solver: "FEniCSx".into(),
         version: "0.5.2".into(),
         degree,
+        cells: "triangles".into(),
         energy,
         admissible: true,
         relative_error_bound: (energy > lower).then(|| ((energy - lower) / complementary).sqrt()),
-        iterations: 4,
-        unknowns: 1234 * degree,
+        iterations: Some(4),
+        unknowns: Some(1234 * degree),
         seconds: BTreeMap::from([("assemble".into(), 0.3), ("solve".into(), 0.5), ("total".into(), 0.9)]),
     };
     let verdict_text = match verdict {
@@ -129,6 +130,7 @@ fn contact(failed: bool) -> ContactSummary {
         moment: TwoSides { dual: 0.0833, primal: Some(0.0829) },
         pressure_max: TwoSides { dual: 2.01, primal: Some(1.97) },
         pressure_max_at: TwoSides { dual: [1.0, 0.0], primal: Some([1.0, 0.0]) },
+        pressure_mean: Some(MeanPressure { value: 1.58, half_width: Some(0.21), at: [1.0, 0.0], radius: 0.156 }),
         open_fraction: 0.375,
         open_fraction_primal: Some(0.375),
         contact_ends: vec![0.5],

@@ -27,8 +27,8 @@ const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 /// Point data: `dual_stress`, `mid_stress`, `stress_…` of every displacement model and `stress_difference_…`, λ_h less that, as
 /// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
 /// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
-/// everywhere, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
-/// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, and the
+/// everywhere, `cell` where the mesh file has quadrilaterals, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
+/// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, the corners of quadrilaterals, and the
 /// values of `displacement_…` at as many of these nodes as it has; not in files for looking at.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
@@ -85,6 +85,11 @@ fn given(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
     });
     let indices: Vec<u8> = nodes_of.flat_map(|n| (n as i32).to_le_bytes()).collect();
     out.table("nodes_of_triangles", "Int32", 6, mesh.triangles.len(), &indices)?;
+    if !mesh.cells.is_empty() {
+        let corners: Vec<[usize; 4]> = mesh.quadrilaterals().map(|cell| cell.corners).collect();
+        let indices: Vec<u8> = corners.as_flattened().iter().flat_map(|n| (*n as i32).to_le_bytes()).collect();
+        out.table("nodes_of_quadrilaterals", "Int32", 4, corners.len(), &indices)?;
+    }
     let mut names = Vec::new();
     for (name, values) in &dossier.given {
         out.table(&unique_key("displacement", name, &mut names), "Float64", 2, values.len(), &bytes(values))?;
@@ -171,6 +176,10 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
     out.open("CellData", &[])?;
     out.array("triangle", "Int64", &[], on_cells(&|t| t as i64))?;
     out.array("body", "Int64", &[], on_cells(&|t| mesh.body[t] as i64))?;
+    if !mesh.cells.is_empty() {
+        let cell = mesh.cell_of_triangles();
+        out.array("cell", "Int64", &[], on_cells(&|t| cell[t] as i64))?;
+    }
     if lattice.degrees.iter().any(|p| *p != 1) {
         out.array("degree", "Int64", &[], on_cells(&|t| lattice.degrees[t] as i64))?;
     }

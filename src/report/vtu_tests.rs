@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use quick_xml::events::Event;
 
 use super::*;
-use crate::report::sample::{Sample, Verdict, assert_well_formed};
+use crate::report::sample::{Sample, Verdict, assert_well_formed, with_quadrilaterals};
 
 /// Name → (type, components, bytes), read with nothing of the writer.
 fn arrays(xml: &str) -> BTreeMap<String, (String, usize, Vec<u8>)> {
@@ -245,4 +245,15 @@ fn meshio_finds_the_area_and_stresses_of_every_degree() {
     // Sixteen triangles, of which six have degree 1, five 2 and five 3: 3 (6 + 5 · 4 + 5 · 9) cells.
     let complaints = String::from_utf8_lossy(&output.stderr);
     assert_eq!(text.trim(), "triangle 213 2.0 True [1, 2, 3] 213", "{complaints}");
+}
+
+#[test]
+fn halves_of_a_quadrilateral_have_one_number() {
+    let mut sample = Sample::new(2, Verdict::Agree);
+    with_quadrilaterals(&mut sample.problem.mesh);
+    let bytes = vtu(&sample.dossier()).expect("written");
+    let found = arrays(std::str::from_utf8(&bytes).expect("UTF-8"));
+    let (triangle, cell) = (ints(&found["triangle"].2), ints(&found["cell"].2));
+    assert_eq!(triangle.len(), cell.len());
+    assert!(triangle.iter().zip(&cell).all(|(t, c)| *c == t / 2), "{triangle:?} {cell:?}");
 }

@@ -1,7 +1,8 @@
 //! The words shared by the page, the summary and the JUnit file.
 
+use super::number::{significant, vector};
 use super::{Report, Status};
-use crate::compare::{Basis, Check};
+use crate::compare::{Basis, Check, MeanPressure};
 
 /// The verdict as one word.
 pub(crate) fn status_word(status: Status) -> &'static str {
@@ -32,6 +33,20 @@ pub(crate) fn status_symbol(status: Status) -> &'static str {
         Status::Infeasible => "∅",
         Status::Failed => "⚠",
     }
+}
+
+/// A mean pressure with what it is worth.
+pub(crate) fn mean_in_words(mean: &MeanPressure, is_guaranteed: bool) -> String {
+    let worth = match (mean.half_width, is_guaranteed) {
+        (Some(half), true) => format!(" ± {}, guaranteed", significant(half, 2)),
+        (Some(half), false) => format!(" ± {}, for the data as represented on the mesh", significant(half, 2)),
+        (None, _) => " without a bound".to_string(),
+    };
+    let (value, radius) = (significant(mean.value, 4), significant(mean.radius, 3));
+    format!(
+        "pressure {value}{worth}, in the mean around {}, with a weight that falls to zero at {radius} from there",
+        vector(mean.at, 4)
+    )
 }
 
 /// Where an allowed value comes from, in one or two words.
@@ -95,6 +110,7 @@ pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
         let reported = report.checks.iter().any(|check| check.name == recomputed && !check.passed);
         let suffix = match (primal.admissible, reported) {
             (_, true) => " (as reported)",
+            (true, _) if primal.is_of_quadrature() => " (its quadrature)",
             (true, _) => "",
             (false, _) => " (not admissible)",
         };

@@ -5,7 +5,7 @@
 //! computed: the differences from a point in the middle are exact, and nothing that the coordinates carry is lost. Messages
 //! and results show the coordinates of the file.
 
-use super::{Load, MeshSource, Note, Scene};
+use super::{Affine, Load, MeshSource, Note, Scene, SupportKind};
 
 /// Largest distance from the point (0, 0), in sizes of the scene, at which coordinates stay as they are.
 const NEAR: f64 = 16.0;
@@ -16,7 +16,7 @@ impl Scene {
     /// The same scene with coordinates counted from a point in the middle of `points`, in each direction in which they lie
     /// far from zero, and that point. `points` themselves are to be moved by it.
     ///
-    /// P(x) = value + gradient · x of a traction becomes the same function of the new coordinates; regions and points of
+    /// P(x) = value + gradient · x of a traction, and the same of a clamped boundary, becomes the same function of the new coordinates; regions and points of
     /// quantities move along.
     pub(crate) fn about_middle<'a>(mut self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
         let [x, y] = [0, 1].map(|c| range(points.clone().map(|p| p[c])));
@@ -38,10 +38,16 @@ impl Scene {
             }
         }
         for traction in &mut self.draft.tractions {
-            if let Load::Affine { value, gradient } = &mut traction.load {
-                *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
+            if let Load::Affine(load) = &mut traction.load {
+                move_origin(load, middle);
             }
         }
+        for support in &mut self.draft.supports {
+            if let SupportKind::Clamped { displacement } = &mut support.kind {
+                move_origin(displacement, middle);
+            }
+        }
+        self.draft.boundaries.iter_mut().for_each(|boundary| boundary.edges.shift(middle));
         self.draft.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
         self.draft.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
         (self, middle)
@@ -64,6 +70,11 @@ impl Scene {
             ),
         })
     }
+}
+
+/// The same function of coordinates counted from `middle`.
+fn move_origin(Affine { value, gradient }: &mut Affine, middle: [f64; 2]) {
+    *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
@@ -128,7 +139,7 @@ mod tests {
         let MeshSource::Geometry { polygons, .. } = &scene.mesh else { panic!("polygons") };
         assert_eq!(polygons[0].points, [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]);
         assert_eq!(scene.as_written([0.5, -0.5]), [1e8 + 1.0, -2e8]);
-        let Load::Affine { value, gradient } = scene.tractions[0].load else { panic!("affine") };
+        let Load::Affine(Affine { value, gradient }) = scene.tractions[0].load else { panic!("affine") };
         assert_eq!((value, gradient), ([4.0 + 0.5 * (3.0 - 7.0), 0.0], [[3.0, -7.0], [0.0, 0.0]]));
         assert!(scene.coarseness(1.0).is_some_and(|note| note.text.contains("2.0e8")));
         assert_eq!(moved(square([100.0, 0.0], 0.0)).coarseness(1.0), None);

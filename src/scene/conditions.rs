@@ -5,9 +5,13 @@ use std::ops::Range;
 
 use super::error::{Fault, SceneError};
 use super::fault::names;
-use super::raw::{At, RawContact, RawCurve, RawGap, RawScene, RawSupport, RawTraction, Table};
+use super::raw::{
+    At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
+};
 use super::source::{Source, counted};
-use super::{Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction};
+use super::{
+    Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
+};
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
 
@@ -19,8 +23,13 @@ pub(super) struct Conditions {
 }
 
 /// Checks the three lists, in the order of the file within each.
-pub(super) fn conditions(raw: &RawScene, mesh: &MeshSource, source: &Source) -> Result<Conditions, SceneError> {
-    let mut taken = Taken::new(mesh, source);
+/// `known` has the names of the edges, sorted; `None` where only a mesh file knows them.
+pub(super) fn conditions(
+    raw: &RawScene,
+    known: Option<Vec<String>>,
+    source: &Source,
+) -> Result<Conditions, SceneError> {
+    let mut taken = Taken { source, known, by: HashMap::new() };
     let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
     let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
     let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
@@ -35,12 +44,13 @@ fn each<R, T>(
     list.iter().enumerate().map(|(i, raw)| check(raw, &format!("[[{key}]] number {}", i + 1))).collect()
 }
 
-/// The names of the polygon edges, sorted; `None` where only a mesh file knows them.
-pub(super) fn edge_names(mesh: &MeshSource) -> Option<Vec<String>> {
+/// The names of polygon edges and of `boundaries`, sorted; `None` where only a mesh file knows them.
+pub(super) fn edge_names(mesh: &MeshSource, boundaries: &[Boundary]) -> Option<Vec<String>> {
     match mesh {
-        MeshSource::File(_) => None,
+        MeshSource::File(_) | MeshSource::Parts(_) => None,
         MeshSource::Geometry { polygons, .. } => {
-            Some(names(polygons.iter().flat_map(|p| p.edges.iter().map(String::as_str))))
+            let edges = polygons.iter().flat_map(|p| &p.edges);
+            Some(names(edges.chain(boundaries.iter().map(|boundary| &boundary.name)).map(String::as_str)))
         }
     }
 }
@@ -53,11 +63,7 @@ struct Taken<'a> {
     by: HashMap<String, (String, Range<usize>)>,
 }
 
-impl<'a> Taken<'a> {
-    fn new(mesh: &MeshSource, source: &'a Source<'a>) -> Self {
-        Self { source, known: edge_names(mesh), by: HashMap::new() }
-    }
-
+impl Taken<'_> {
     /// The name, if it exists and is free; from now on it belongs to `table`.
     fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
         let on = self.source.name(name, (table, key), NAME_A_BOUNDARY)?;
@@ -80,22 +86,69 @@ impl<'a> Taken<'a> {
 fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Result<Support, SceneError> {
     let Table(support) = &raw.value;
     let source = taken.source;
-    let kind = match (support.kind.value.as_str(), &support.displacement) {
-        ("clamped", None) => SupportKind::Clamped { displacement: [0.0; 2] },
-        ("clamped", Some(u)) => SupportKind::Clamped { displacement: source.vector(u, (table, "displacement"))? },
-        ("roller", None) => SupportKind::Roller,
-        ("roller", Some(u)) => {
-            let remedy = "delete `displacement`, or write type = \"clamped\"";
-            let (table, other) = (table.to_owned(), "type = \"roller\", which holds the normal displacement at zero");
-            return Err(source.error(u.span(), Fault::Misplaced { key: "displacement", table, other, remedy }));
+    let word = support.kind.value.as_str();
+    let kind = match word {
+        "clamped" => {
+            if let Some(d) = &support.direction {
+                let remedy = "delete `direction`, or write type = \"roller\", which holds one component";
+                let (table, other) = (table.to_owned(), "type = \"clamped\", which holds both components");
+                return Err(source.error(d.span(), Fault::Misplaced { key: "direction", table, other, remedy }));
+            }
+            let displacement = support.displacement.as_ref().map(|u| clamped(u, table, source)).transpose()?;
+            SupportKind::Clamped { displacement: displacement.unwrap_or_default() }
         }
-        (other, _) => {
+        "roller" => {
+            let remedy = "write the direction of the component that is held, like [1.0, 0.0]";
+            let direction =
+                support.direction.as_ref().map(|d| source.unit(d, (table, "direction"), remedy)).transpose()?;
+            let displacement = support.displacement.as_ref().map(|u| roller(u, table, source)).transpose()?;
+            SupportKind::Roller { direction, displacement: displacement.unwrap_or_default() }
+        }
+        other => {
             let known = ["clamped", "roller"].map(String::from).to_vec();
             let fault = Fault::UnknownWord { key: "type", table: table.to_owned(), found: other.to_owned(), known };
             return Err(source.error(support.kind.span(), fault));
         }
     };
     Ok(Support { on: taken.claim(&support.on, table, "on")?, kind })
+}
+
+/// The displacement of a clamped boundary.
+fn clamped(u: &At<RawDisplacement>, table: &str, source: &Source) -> Result<Affine, SceneError> {
+    match &u.value {
+        RawDisplacement::Constant(vector) => {
+            let vector = At { value: vector.clone(), start: u.start, end: u.end };
+            source.vector(&vector, (table, "displacement")).map(Affine::constant)
+        }
+        RawDisplacement::Affine(RawAffine { value, gradient }) => {
+            let value = value.as_ref().map(|value| source.vector(value, (table, "displacement.value"))).transpose()?;
+            Ok(Affine {
+                value: value.unwrap_or_default(),
+                gradient: matrix(gradient, (table, "displacement.gradient"), source)?,
+            })
+        }
+        RawDisplacement::Component(_) => {
+            let (key, table, found) = ("displacement".to_owned(), table.to_owned(), "one number".to_owned());
+            let remedy = "write both components [ux, uy], or type = \"roller\", which holds one";
+            Err(source.error(u.span(), Fault::Count { key, table, found, expected: "2 numbers".to_owned(), remedy }))
+        }
+    }
+}
+
+/// The component that rollers prescribe.
+fn roller(u: &At<RawDisplacement>, table: &str, source: &Source) -> Result<f64, SceneError> {
+    match &u.value {
+        RawDisplacement::Component(value) => {
+            let number = At { value: *value, start: u.start, end: u.end };
+            source.number(&number, (table, "displacement"), |_| true, ("", ""))
+        }
+        RawDisplacement::Constant(_) | RawDisplacement::Affine(_) => {
+            let remedy = "write one number, the displacement along the outward normal or along `direction`, or write \
+                          type = \"clamped\"";
+            let (table, other) = (table.to_owned(), "type = \"roller\", which holds one component, as a vector");
+            Err(source.error(u.span(), Fault::Misplaced { key: "displacement", table, other, remedy }))
+        }
+    }
 }
 
 fn traction(raw: &At<Table<RawTraction>>, table: &str, taken: &mut Taken) -> Result<Traction, SceneError> {
@@ -121,21 +174,26 @@ fn traction(raw: &At<Table<RawTraction>>, table: &str, taken: &mut Taken) -> Res
         }
         (Some(value), gradient, None) => {
             let value = source.vector(value, (table, "value"))?;
-            let gradient = gradient.as_ref().map_or(Ok([[0.0; 2]; 2]), |rows| matrix(rows, table, source))?;
-            Load::Affine { value, gradient }
+            let gradient = gradient.as_ref().map(|rows| matrix(rows, (table, "gradient"), source)).transpose()?;
+            Load::Affine(Affine { value, gradient: gradient.unwrap_or_default() })
         }
     };
     Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load })
 }
 
-fn matrix(rows: &At<Vec<At<Vec<f64>>>>, table: &str, source: &Source) -> Result<[[f64; 2]; 2], SceneError> {
+fn matrix(
+    rows: &At<Vec<At<Vec<f64>>>>,
+    (table, key): (&str, &str),
+    source: &Source,
+) -> Result<[[f64; 2]; 2], SceneError> {
     let [first, second] = rows.value.as_slice() else {
-        let (key, found) = ("gradient".to_owned(), counted(rows.value.len(), "row"));
+        let (key, found) = (key.to_owned(), counted(rows.value.len(), "row"));
         let remedy = "write the two rows [[∂Px/∂x, ∂Px/∂y], [∂Py/∂x, ∂Py/∂y]]";
         let fault = Fault::Count { key, table: table.to_owned(), found, expected: "2".to_owned(), remedy };
         return Err(source.error(rows.span(), fault));
     };
-    Ok([source.vector(first, (table, "gradient[0]"))?, source.vector(second, (table, "gradient[1]"))?])
+    let row = |row, i: usize| source.vector(row, (table, &format!("{key}[{i}]")));
+    Ok([row(first, 0)?, row(second, 1)?])
 }
 
 fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Result<Contact, SceneError> {

@@ -9,9 +9,11 @@ use std::path::PathBuf;
 
 use toml::Value;
 
+use super::selection::written;
 use super::{
-    Body, Component, Contact, ContactSides, Extent, Gap, Holder, Kinematics, Load, MeshSource, Normals, Polygon,
-    Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching, Traction,
+    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
+    MeshSource, Normals, Part, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Touching,
+    Traction,
 };
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -34,6 +36,10 @@ pub struct Draft {
     pub mesh: MeshSource,
     /// Bodies in the order of the file.
     pub bodies: Vec<Body>,
+    /// The cells of bodies that are not found by their name.
+    pub cells: Vec<BodyCells>,
+    /// Names for parts of the outline that the mesh leaves without.
+    pub boundaries: Vec<Boundary>,
     /// Γ_u and Γ_0.
     pub supports: Vec<Support>,
     /// Γ_τ.
@@ -56,6 +62,8 @@ impl Draft {
             thickness: 1.0,
             mesh,
             bodies: Vec::new(),
+            cells: Vec::new(),
+            boundaries: Vec::new(),
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
@@ -81,6 +89,14 @@ impl Draft {
         )?;
         match &self.mesh {
             MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
+            MeshSource::Parts(parts) => {
+                let part = |Part { file, prefix, scale, translate }: &Part| {
+                    let (file, prefix) = (quoted(&file.to_string_lossy()), quoted(prefix));
+                    let (scale, translate) = (number(*scale), list(translate));
+                    format!("{{ file = {file}, prefix = {prefix}, scale = {scale}, translate = {translate} }}")
+                };
+                writeln!(text, "mesh.parts = [{}]", parts.iter().map(part).collect::<Vec<_>>().join(", "))?;
+            }
             MeshSource::Geometry { size: Some(size), .. } => writeln!(text, "geometry.size = {}", number(*size))?,
             MeshSource::Geometry { .. } => (),
         }
@@ -88,11 +104,14 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for Body { name, young, poisson, body_force } in &self.bodies {
+        for (i, Body { name, young, poisson, body_force }) in self.bodies.iter().enumerate() {
+            let cells = self.cells.iter().find(|cells| cells.body == i);
+            let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
             let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
-            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force} }}")?;
+            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force}{cells} }}")?;
         }
         let lists = [
+            ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
             ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
             ("tractions", self.tractions.iter().map(traction).collect()),
             ("contacts", self.contacts.iter().map(contact).collect()),
@@ -104,6 +123,20 @@ impl Draft {
             writeln!(text, "]")?;
         }
         Ok(())
+    }
+
+    fn boundary(&self, Boundary { name, body, edges }: &Boundary) -> String {
+        let body = body.and_then(|i| self.bodies.get(i)).map(|body| format!(", body = {}", quoted(&body.name)));
+        let edges = match edges {
+            Edges::Line(ends) => format!("line = {}", rows(ends)),
+            Edges::Box(ends) => format!("box = {}", rows(ends)),
+            Edges::Circle { centre, radius } => {
+                format!("circle = {{ centre = {}, radius = {} }}", list(centre), number(*radius))
+            }
+            Edges::Normal { direction, angle } => format!("normal = {}, angle = {}", list(direction), number(*angle)),
+            Edges::Group(group) => written(group),
+        };
+        format!("name = {}{}, {edges}", quoted(name), body.unwrap_or_default())
     }
 
     fn quantity(&self, quantity: &Quantity) -> String {
@@ -138,7 +171,7 @@ impl Draft {
                     Region::Whole => String::new(),
                     Region::Polygon(points) => format!(", polygon = {}", rows(points)),
                 };
-                format!("stress = {}{region}, {}", body(*of), written(component))
+                format!("stress = {}{region}, {}", body(*of), component_of(component))
             }
         };
         format!("name = {}, {what}", quoted(&quantity.name))
@@ -190,7 +223,19 @@ impl Deref for Scene {
     }
 }
 
-fn quoted(text: &str) -> String {
+/// A key of a table as TOML writes it.
+pub(crate) fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { basic(name) }
+}
+
+/// A string on one line, with escapes; JSON's are TOML's.
+fn basic(text: &str) -> String {
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+}
+
+/// A string as TOML writes it.
+pub(crate) fn quoted(text: &str) -> String {
     Value::from(text).to_string()
 }
 
@@ -220,16 +265,26 @@ fn support(Support { on, kind }: &Support) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
-            format!("on = {on}, type = \"clamped\", displacement = {}", list(displacement))
+            format!("on = {on}, type = \"clamped\", displacement = {}", affine(displacement))
         }
-        SupportKind::Roller => format!("on = {on}, type = \"roller\""),
+        SupportKind::Roller { direction, displacement } => {
+            let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+            format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
+        }
+    }
+}
+
+fn affine(Affine { value, gradient }: &Affine) -> String {
+    match *gradient == [[0.0; 2]; 2] {
+        true => list(value),
+        false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
     }
 }
 
 fn traction(Traction { on, load }: &Traction) -> String {
     let on = quoted(on);
     match load {
-        Load::Affine { value, gradient } => {
+        Load::Affine(Affine { value, gradient }) => {
             format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),
@@ -255,7 +310,7 @@ fn contact(Contact { sides, gap, normals, direction }: &Contact) -> String {
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 
-fn written(component: &Component) -> String {
+fn component_of(component: &Component) -> String {
     let name = ["xx", "yy", "xy"].into_iter().zip([Component::XX, Component::YY, Component::XY]);
     match name.into_iter().find(|(_, known)| known == component) {
         Some((name, _)) => format!("component = {name:?}"),

@@ -134,6 +134,16 @@ pub enum Fault {
         /// The bodies that have a table.
         known: Vec<String>,
     },
+    /// A name that no body has.
+    #[error("{table} names the body \"{name}\", which the scene does not have")]
+    NoSuchBody {
+        /// As written.
+        name: String,
+        /// Its table.
+        table: String,
+        /// The bodies of the scene.
+        known: Vec<String>,
+    },
     /// A body without a polygon.
     #[error("body \"{name}\" has a table but no polygon")]
     BodyWithoutPolygon {
@@ -236,6 +246,7 @@ impl Fault {
             Fault::UnknownBody { name, known, .. } => {
                 format!("{}; or add a table [bodies.{name}]", suggestion(name, known, "bodies with a table", '"'))
             }
+            Fault::NoSuchBody { name, known, .. } => suggestion(name, known, "bodies", '"'),
             Fault::BodyWithoutPolygon { name, known } => {
                 let named = suggestion(name, known, "bodies that polygons name", '"');
                 format!("{named}; or add a [[geometry.polygons]] with body = \"{name}\", or delete the table")
@@ -265,7 +276,7 @@ impl Fault {
             Fault::OneOf { both: true, .. } | Fault::Misplaced { .. } => "one too many",
             Fault::OneOf { both: false, .. } => "one is missing here",
             Fault::EmptyName { .. } => "empty",
-            Fault::UnknownBody { .. } => "no table of this name",
+            Fault::UnknownBody { .. } | Fault::NoSuchBody { .. } => "no table of this name",
             Fault::BodyWithoutPolygon { .. } => "no polygon of this name",
             Fault::Polygon { .. } | Fault::Arc { .. } => "here",
             Fault::UnknownBoundary { .. } => "no edge of this name",

@@ -11,6 +11,7 @@ mod conditions;
 mod draft;
 pub mod error;
 mod fault;
+mod files;
 mod geometry;
 mod nearest;
 mod parse;
@@ -18,6 +19,7 @@ pub(crate) mod polygon;
 mod quantity;
 mod raw;
 mod read;
+mod selection;
 mod source;
 pub(crate) mod text;
 mod validate;
@@ -26,10 +28,14 @@ use std::path::PathBuf;
 
 pub use circle::Circle;
 pub use draft::Draft;
+pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
+pub use files::Part;
 pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
+pub use selection::{BodyCells, Boundary, Edges, Group};
+pub(crate) use source::counted;
 pub(crate) use validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.
@@ -78,6 +84,8 @@ impl Kinematics {
 pub enum MeshSource {
     /// A mesh file, path already resolved against the scene's folder.
     File(PathBuf),
+    /// Several mesh files that together are the mesh.
+    Parts(Vec<Part>),
     /// Polygons, meshed by the program.
     Geometry {
         /// Target edge length; `None` asks for the coarsest mesh that represents geometry and data.
@@ -136,11 +144,45 @@ pub struct Support {
 pub enum SupportKind {
     /// u = displacement.
     Clamped {
-        /// u0, constant along the boundary.
-        displacement: [f64; 2],
+        /// u0.
+        displacement: Affine,
     },
-    /// u_n = 0, T_t = 0.
-    Roller,
+    /// One component of u is prescribed, and there is no traction across it.
+    Roller {
+        /// Unit vector; the outward normal where it is `None`.
+        direction: Option<[f64; 2]>,
+        /// The prescribed component.
+        displacement: f64,
+    },
+}
+
+impl SupportKind {
+    /// Clamped where it is.
+    pub const CLAMPED: Self =
+        SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
+    /// Rollers along the boundary.
+    pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
+}
+
+/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Affine {
+    /// Its value at the origin.
+    pub value: [f64; 2],
+    /// Its gradient.
+    pub gradient: [[f64; 2]; 2],
+}
+
+impl Affine {
+    /// The same everywhere.
+    pub fn constant(value: [f64; 2]) -> Self {
+        Affine { value, gradient: [[0.0; 2]; 2] }
+    }
+
+    /// Its value at `point`.
+    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
+    }
 }
 
 /// A loaded boundary.
@@ -155,13 +197,8 @@ pub struct Traction {
 /// Load on Γ_τ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// P(x) = value + gradient · x (gradient\[i\]\[j\] = ∂P_i/∂x_j).
-    Affine {
-        /// P at the origin.
-        value: [f64; 2],
-        /// Constant gradient of P.
-        gradient: [[f64; 2]; 2],
-    },
+    /// P(x).
+    Affine(Affine),
     /// P = −pressure · n with the outward normal n.
     Pressure(f64),
 }
@@ -230,7 +267,7 @@ pub enum Gap {
     /// first in (x, y) order; all around a body anticlockwise, from its first vertex in that order. Constant beyond the
     /// first and the last entry.
     Table(Vec<[f64; 2]>),
-    /// The distance of a circle that touches at an arc length, taken at the vertices of each mesh and linear between.
+    /// The distance of a circle that touches at an arc length; from where it turns away by 45° on, that of its tangent.
     Circle(Touching),
     /// The same with a parabola.
     Parabola(Touching),
@@ -261,13 +298,30 @@ impl Gap {
                     g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
                 }
             }
-            Gap::Circle(Touching { radius, at }) => {
-                let x = (s - at).abs();
-                // Without loss of digits near the point that touches; beyond the circle there is nothing to touch.
-                if x < *radius { x * x / (radius + (radius * radius - x * x).sqrt()) } else { x }
-            }
+            Gap::Circle(circle) => circle.distance(s - circle.at),
             Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
         }
+    }
+}
+
+impl Touching {
+    /// How far from where it touches a circle is taken as round: the tangent there leaves the side at 45°.
+    pub fn round(&self) -> f64 {
+        self.radius * std::f64::consts::FRAC_1_SQRT_2
+    }
+
+    /// The distance of a circle from the side, at `x` along it from where it touches.
+    fn distance(&self, x: f64) -> f64 {
+        let Touching { radius, .. } = self;
+        let round = x.abs().min(self.round());
+        // Without loss of digits near the point that touches.
+        round * round / (radius + (radius * radius - round * round).sqrt()) + (x.abs() - round)
+    }
+
+    /// The slope of that distance.
+    pub fn slope(&self, x: f64) -> f64 {
+        let round = x.abs().min(self.round());
+        (round / ((self.radius - round) * (self.radius + round)).sqrt()).copysign(x)
     }
 }
 

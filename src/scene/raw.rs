@@ -94,6 +94,9 @@ pub(super) struct RawScene {
     /// One table per body, by its name.
     #[schemars(extend("minProperties" = 1))]
     pub bodies: BTreeMap<At<String>, At<Table<RawBody>>>,
+    /// Names for parts of the outline that the mesh leaves without.
+    #[serde(default)]
+    pub boundaries: Vec<At<Table<RawBoundary>>>,
     /// Boundaries that are held.
     #[serde(default)]
     pub supports: Vec<At<Table<RawSupport>>>,
@@ -121,14 +124,36 @@ pub(super) struct RawModel {
     pub thickness: Option<At<f64>>,
 }
 
-/// A mesh file: a physical surface is a body, a physical curve a boundary, both matched by name.
+/// A mesh file or several: a physical surface is a body, a physical curve a boundary, both matched by name.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Mesh")]
+#[schemars(rename = "Mesh", extend("oneOf" = [{"required": ["file"]}, {"required": ["parts"]}]))]
 pub(super) struct RawMesh {
-    /// Path relative to the scene. Gmsh MSH 2.2 and 4.1 are read natively, anything else through meshio.
+    /// Path relative to the scene. Gmsh MSH 2.0 to 4.1 and decks of Abaqus and CalculiX are read natively, anything else through meshio.
+    #[schemars(length(min = 1))]
+    pub file: Option<At<String>>,
+    /// Several files in place of `file`.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub parts: Vec<At<Table<RawPart>>>,
+}
+
+/// One of several mesh files.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "MeshPart")]
+pub(super) struct RawPart {
+    /// Path relative to the scene.
     #[schemars(length(min = 1))]
     pub file: At<String>,
+    /// Stands before every name of this file; cells that it leaves without a name are called by the prefix, less a separator at its end.
+    pub prefix: Option<At<String>>,
+    /// Factor on the coordinates of the file, 1 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub scale: Option<At<f64>>,
+    /// Added to the coordinates after scaling, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub translate: Option<Pair>,
 }
 
 /// Polygons to be meshed by the program.
@@ -188,6 +213,60 @@ pub(super) struct RawBody {
     /// Constant force per volume, none where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
     pub body_force: Option<Pair>,
+    /// Its cells are those of this physical group of the mesh file, or of this elementary entity where there is no such group.
+    pub tag: Option<At<i32>>,
+    /// Its cells are those of this set of the mesh file.
+    #[schemars(length(min = 1))]
+    pub set: Option<At<String>>,
+}
+
+/// A name for edges of the outline; tables of one name are one boundary.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(
+    rename = "Boundary",
+    extend("oneOf" = [{"required": ["line"]}, {"required": ["box"]}, {"required": ["circle"]}, {"required": ["normal"]},
+                      {"required": ["set"]}, {"required": ["tag"]}])
+)]
+pub(super) struct RawBoundary {
+    /// The name that conditions use.
+    #[schemars(length(min = 1))]
+    pub name: At<String>,
+    /// The body on whose outline the edges lie.
+    pub body: Option<At<String>>,
+    /// The edges on this segment.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub line: Option<At<Vec<Pair>>>,
+    /// The edges inside the box with these opposite corners.
+    #[serde(rename = "box")]
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
+    pub inside: Option<At<Vec<Pair>>>,
+    /// The edges whose ends lie on this circle.
+    pub circle: Option<At<Table<RawBoundaryCircle>>>,
+    /// The edges whose outward normal is within `angle` of this direction.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub normal: Option<Pair>,
+    /// Degrees, 30 where it is missing.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 180))]
+    pub angle: Option<At<f64>>,
+    /// The edges of this node, element or surface set of the mesh file.
+    #[schemars(length(min = 1))]
+    pub set: Option<At<String>>,
+    /// The edges of this physical group of the mesh file, or of this elementary entity where there is no such group.
+    pub tag: Option<At<i32>>,
+}
+
+/// A circle on which edges lie.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "BoundaryCircle")]
+pub(super) struct RawBoundaryCircle {
+    /// Its centre.
+    #[schemars(with = "[f64; 2]")]
+    pub centre: Pair,
+    /// Its radius.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius: At<f64>,
 }
 
 /// A boundary that is held.
@@ -198,13 +277,70 @@ pub(super) struct RawSupport {
     /// The boundary.
     #[schemars(length(min = 1))]
     pub on: At<String>,
-    /// `clamped`: u = displacement. `roller`: no normal displacement, no tangential traction.
+    /// `clamped`: u = displacement. `roller`: one component of u is prescribed, mostly the normal one at zero, and there is no traction across it.
     #[serde(rename = "type")]
     #[schemars(extend("enum" = ["clamped", "roller"]))]
     pub kind: At<String>,
-    /// Prescribed displacement of a clamped boundary, zero where it is missing.
+    /// What is prescribed, zero where it is missing: the displacement of a clamped boundary, the component that a roller holds.
+    pub displacement: Option<At<RawDisplacement>>,
+    /// The component that a roller holds, without traction across it; the outward normal where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
-    pub displacement: Option<Pair>,
+    pub direction: Option<Pair>,
+}
+
+/// A number on rollers; on clamped boundaries a vector, or value + gradient · x.
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Displacement")]
+pub(super) enum RawDisplacement {
+    /// One component.
+    Component(f64),
+    /// The same along the boundary.
+    Constant(#[schemars(with = "[f64; 2]")] Vec<f64>),
+    /// Affine in x.
+    Affine(RawAffine),
+}
+
+/// value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Affine")]
+pub(super) struct RawAffine {
+    /// The value at the origin, zero where it is missing.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub value: Option<Pair>,
+    /// Rows of the gradient.
+    #[schemars(with = "[[f64; 2]; 2]")]
+    pub gradient: At<Vec<Pair>>,
+}
+
+impl<'de> Deserialize<'de> for RawDisplacement {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrVector;
+        impl<'de> Visitor<'de> for NumberOrVector {
+            type Value = RawDisplacement;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number for rollers, or [x, y], or { value = [x, y], gradient = [[a, b], [c, d]] }")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RawDisplacement, A::Error> {
+                RawAffine::deserialize(serde::de::value::MapAccessDeserializer::new(map)).map(RawDisplacement::Affine)
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawDisplacement, E> {
+                Ok(RawDisplacement::Component(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<RawDisplacement, A::Error> {
+                let mut vector = Vec::new();
+                while let Some(entry) = entries.next_element()? {
+                    vector.push(entry);
+                }
+                Ok(RawDisplacement::Constant(vector))
+            }
+        }
+        deserializer.deserialize_any(NumberOrVector)
+    }
 }
 
 /// A boundary that is loaded, by `value` (with or without `gradient`) or by `pressure`.
@@ -260,7 +396,7 @@ pub(super) enum RawGap {
     Curve(RawCurve),
 }
 
-/// The distance of a curve, taken anew at the vertices of each mesh.
+/// The distance of a curve, between vertices too; a circle goes on as its tangent from 45° on.
 #[derive(Debug, Clone, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "GapCurve", extend("oneOf" = [{"required": ["circle"]}, {"required": ["parabola"]}]))]

@@ -124,7 +124,11 @@ const UNDERFLOWS: (&str, &str) =
 
 const NOT_FINITE: (&str, &str) = ("every number must be finite", "write a finite number");
 
-/// `1 point`, `3 points`.
-pub(super) fn counted(n: usize, noun: &str) -> String {
-    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+/// `1 point`, `3 points`, `2 vertices`.
+pub(crate) fn counted(n: usize, noun: &str) -> String {
+    match (n, noun.strip_suffix("ex")) {
+        (1, _) => format!("1 {noun}"),
+        (_, Some(stem)) => format!("{n} {stem}ices"),
+        (_, None) => format!("{n} {noun}s"),
+    }
 }

@@ -2,22 +2,25 @@
 
 use std::path::Path;
 
-use super::conditions::{Conditions, conditions};
+use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
-use super::{Body, Draft, Kinematics, MeshSource, Scene, geometry};
+use super::{Body, BodyCells, Draft, Kinematics, MeshSource, Scene, files, geometry, selection};
 
 /// Checks the whole scene; the first fault found is the error.
 pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { text, path };
     let name = scene_name(path);
     let (kinematics, thickness) = model(&raw.model, &source)?;
-    let bodies = bodies(&raw, &source)?;
+    let (bodies, cells) = bodies(&raw, &source)?;
     let mesh = mesh(&raw, &bodies, &source)?;
-    let conditions = conditions(&raw, &mesh, &source)?;
-    let quantities = quantities(&raw, &mesh, &bodies, &conditions, &source)?;
+    selection::only_of_files(&raw, &mesh, &source)?;
+    let boundaries = selection::boundaries(&raw, &mesh, &bodies, &source)?;
+    let edges = edge_names(&mesh, &boundaries);
+    let conditions = conditions(&raw, edges.clone(), &source)?;
+    let quantities = quantities(&raw, edges, &bodies, &conditions, &source)?;
     let Conditions { supports, tractions, contacts } = conditions;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
@@ -30,6 +33,8 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         thickness,
         mesh,
         bodies,
+        cells,
+        boundaries,
         supports,
         tractions,
         contacts,
@@ -62,13 +67,14 @@ fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64)
     Ok((kinematics, thickness))
 }
 
-fn bodies(raw: &RawScene, source: &Source) -> Result<Vec<Body>, SceneError> {
+fn bodies(raw: &RawScene, source: &Source) -> Result<(Vec<Body>, Vec<BodyCells>), SceneError> {
     if raw.bodies.is_empty() {
         return Err(source.error(0..0, Fault::NoBodies));
     }
     let mut bodies: Vec<_> = raw.bodies.iter().collect();
     bodies.sort_by_key(|(name, _)| name.start);
-    let body = |(name, table): (&At<String>, &At<Table<super::raw::RawBody>>)| {
+    let mut cells = Vec::new();
+    let body = |(index, (name, table)): (usize, (&At<String>, &At<Table<super::raw::RawBody>>))| {
         let Table(raw) = &table.value;
         let label = format!("[bodies.{}]", name.value);
         let name =
@@ -81,9 +87,11 @@ fn bodies(raw: &RawScene, source: &Source) -> Result<Vec<Body>, SceneError> {
             None => [0.0; 2],
             Some(force) => source.vector(force, (&label, "body_force"))?,
         };
+        cells.extend(selection::cells(raw, &label, index, source)?);
         Ok(Body { name, young, poisson, body_force })
     };
-    bodies.into_iter().map(body).collect()
+    let bodies = bodies.into_iter().enumerate().map(body).collect::<Result<_, SceneError>>()?;
+    Ok((bodies, cells))
 }
 
 /// Why a Poisson's ratio outside (−1, ½) is none.
@@ -115,11 +123,7 @@ fn mesh(raw: &RawScene, bodies: &[Body], source: &Source) -> Result<MeshSource, 
             Err(source.error(late, one_of(true)).with_related(early, "the other one"))
         }
         (None, None) => Err(source.error(0..0, one_of(false))),
-        (Some(mesh), None) => {
-            let Table(raw) = &mesh.value;
-            let file = source.name(&raw.file, ("[mesh]", "file"), "name the mesh file, relative to the scene")?;
-            Ok(MeshSource::File(source.path.parent().unwrap_or(Path::new("")).join(file)))
-        }
+        (Some(mesh), None) => files::files(mesh, source),
         (None, Some(geometry)) => geometry::geometry(geometry, raw, bodies, source),
     }
 }

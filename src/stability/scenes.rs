@@ -1,10 +1,11 @@
 //! Rectangular bodies on grids, put together in memory.
 
-use crate::mesh::{RawMesh, Triangulation, glue};
+use crate::mesh::glue::{self, Glued};
+use crate::mesh::{RawMesh, Triangulation};
 use crate::problem::Problem;
 use crate::scene::{
-    Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support, SupportKind,
-    Traction,
+    Affine, Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support,
+    SupportKind, Traction,
 };
 
 /// A scene with its mesh, before it is checked.
@@ -67,19 +68,19 @@ impl Sketch {
 
     /// u = 0 on `on`.
     pub fn clamp(mut self, on: &str) -> Self {
-        self.scene.supports.push(Support { on: on.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } });
+        self.scene.supports.push(Support { on: on.into(), kind: SupportKind::CLAMPED });
         self
     }
 
     /// u_n = 0, no shear, on `on`.
     pub fn roller(mut self, on: &str) -> Self {
-        self.scene.supports.push(Support { on: on.into(), kind: SupportKind::Roller });
+        self.scene.supports.push(Support { on: on.into(), kind: SupportKind::ROLLER });
         self
     }
 
     /// P = (a + b y, 0) on `on`.
     pub fn push(mut self, on: &str, a: f64, b: f64) -> Self {
-        let load = Load::Affine { value: [a, 0.0], gradient: [[0.0, b], [0.0, 0.0]] };
+        let load = Load::Affine(Affine { value: [a, 0.0], gradient: [[0.0, b], [0.0, 0.0]] });
         self.scene.tractions.push(Traction { on: on.into(), load });
         self
     }
@@ -163,7 +164,7 @@ impl Sketch {
         // Its triangles are no file's and no polygons'.
         let scene = Scene::unchecked(self.scene);
         let (mesh, mut notes) = Triangulation::new(self.raw, &scene).map_err(|e| e.to_string())?;
-        let (mesh, more) = glue::glue(mesh, &scene).map_err(|e| e.to_string())?;
+        let Glued { mesh, notes: more, .. } = glue::glue(mesh, &scene).map_err(|e| e.to_string())?;
         notes.extend(more);
         Problem::new(scene, mesh, notes).map_err(|e| e.to_string())
     }

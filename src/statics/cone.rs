@@ -26,20 +26,33 @@ struct Working {
 
 /// r above, for unit `rows` g_i. Zero to round-off of |`load`| when the rows can balance the load.
 pub(crate) fn unbalanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<DVector<f64>, Unsettled> {
+    Ok(balanced(load, rows)?.0)
+}
+
+/// What is left of a load, and the forces that balance the rest: (row, force).
+pub(crate) type Balanced = (DVector<f64>, Vec<(usize, f64)>);
+
+/// The same with the forces that balance the other part.
+pub(crate) fn balanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<Balanced, Unsettled> {
     let size = load.norm();
     let mut now = Working { rows: Vec::new(), forces: Vec::new(), rest: load.clone() };
     let mut refused = vec![false; rows.len()];
+    let mut settled = false;
     for _ in 0..100 + 20 * rows.len() {
         let rest = now.rest.norm();
         if rest <= 4.0 * f64::EPSILON * size {
-            return Ok(now.rest);
+            settled = true;
+            break;
         }
         let entering = (0..rows.len())
             .filter(|i| !refused[*i] && !now.rows.contains(i))
             .map(|i| (i, rows[i].dot(&now.rest)))
             .filter(|(_, pull)| *pull > ANGLE * rest)
             .max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((entering, _)) = entering else { return Ok(now.rest) };
+        let Some((entering, _)) = entering else {
+            settled = true;
+            break;
+        };
         match with_row(&now, entering, load, rows) {
             Some(next) if next.rest.norm() < rest => {
                 now = next;
@@ -48,7 +61,8 @@ pub(crate) fn unbalanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<D
             _ => refused[entering] = true,
         }
     }
-    Err(Unsettled)
+    let Working { rows, forces, rest } = now;
+    if settled { Ok((rest, rows.into_iter().zip(forces).collect())) } else { Err(Unsettled) }
 }
 
 /// The working set after `entering` has joined and every force that would turn negative has left; `None` where

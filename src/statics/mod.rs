@@ -11,6 +11,7 @@ mod balance;
 mod components;
 pub(crate) mod cone;
 mod few;
+mod gaps;
 mod loads;
 mod many;
 mod pins;
@@ -144,6 +145,11 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
             both_ways.push(if told { words::free_both_ways(&components, &words(&motion)) } else { String::new() });
             held.push(motion);
         }
+        let open = gaps::without_gaps(problem, &group);
+        for (names, direction) in gaps::free_while_open(problem, &group, &loads, &found)? {
+            let moving = words::moving(problem, &open, &loads, &motion(&group, &direction).0);
+            both_ways.push(words::free_while_open(&components, &moving, &names));
+        }
         if let Some(driven) = found.driven {
             let (motion, factor) = motion(&group, &driven.motion);
             // Summing force times displacement instead would lose small differences.
@@ -168,7 +174,10 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
     let (equilibrium, notes) = if impossible.is_empty() {
         let mut notes = both_ways;
         if notes.len() > MOST_NOTES {
-            let more = format!("{} more rigid motions are free in the same way.", notes.len() - MOST_NOTES);
+            let more = match notes.len() - MOST_NOTES {
+                1 => "One more rigid motion is free in the same way.".to_string(),
+                more => format!("{more} more rigid motions are free in the same way."),
+            };
             notes.truncate(MOST_NOTES);
             notes.push(more);
         }

@@ -133,7 +133,7 @@ pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &[DVector<f64>])
         let kind = match condition {
             Condition::Interior | Condition::Traction(_) => Some(Kind::Free),
             Condition::Clamped(_) => None,
-            Condition::Roller | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
+            Condition::Roller { .. } | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
         };
         let component = mesh.edges[e].triangles[0].map(|t| group.components.of_triangle[t]);
         let component = component.filter(|c| group.member(*c).is_some());
@@ -149,8 +149,12 @@ pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &[DVector<f64>])
     Ok(chosen.into_iter().map(pin).collect())
 }
 
+/// Along edge `e`, or across the direction of its rollers.
 fn tangent(problem: &Problem, e: usize) -> [f64; 2] {
-    let (_, n) = problem.mesh.edge_frame(e);
+    let n = match problem.conditions[e] {
+        Condition::Roller { direction, .. } => direction,
+        _ => problem.mesh.edge_frame(e).1,
+    };
     [-n[1], n[0]]
 }
 

@@ -276,14 +276,24 @@ impl Group<'_> {
         (turns && !touching.is_empty()).then_some(touching)
     }
 
-    /// The rows that vanish on rollers: no rotation, and no displacement across each direction of roller there is.
+    /// The rows that vanish on rollers: no rotation, and no displacement along each normal there is; at both ends of an edge that
+    /// is held along another direction, none along that.
     pub fn rollers(&self, problem: &Problem) -> Vec<Part> {
         let mesh = &problem.mesh;
         let mut directions: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.members.len()];
+        let mut oblique: Vec<Part> = Vec::new();
         for (e, condition) in problem.conditions.iter().enumerate() {
-            let (Condition::Roller, Some(t)) = (condition, mesh.edges[e].triangles[0]) else { continue };
-            let Some(m) = self.member(self.components.of_triangle[t]) else { continue };
+            let (Condition::Roller { direction, .. }, Some(t)) = (condition, mesh.edges[e].triangles[0]) else {
+                continue;
+            };
+            let c = self.components.of_triangle[t];
+            let Some(m) = self.member(c) else { continue };
             let (length, n) = mesh.edge_frame(e);
+            if (direction[0] * n[1] - direction[1] * n[0]).abs() > STRAIGHT {
+                let ends = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+                oblique.extend(ends.iter().filter_map(|p| self.displacement(c, *p, *direction)));
+                continue;
+            }
             // Weighted by length, equal directions add up to the normal of the line from end to end.
             let same = directions[m].iter_mut().find(|sum| {
                 let turn = (n[0] * sum[1] - n[1] * sum[0]).abs();
@@ -306,7 +316,7 @@ impl Group<'_> {
             }
             rows
         };
-        directions.into_iter().enumerate().flat_map(rows).collect()
+        directions.into_iter().enumerate().flat_map(rows).chain(oblique).collect()
     }
 }
 

@@ -121,7 +121,7 @@ fn relative(components: &Components, motion: &RigidMotion, run: &Run, point: [f6
 
 fn on_roller(problem: &Problem, components: &Components, c: usize) -> bool {
     problem.mesh.edges.iter().zip(&problem.conditions).any(|(edge, condition)| {
-        matches!(condition, Condition::Roller) && edge.triangles[0].map(|t| components.of_triangle[t]) == Some(c)
+        matches!(condition, Condition::Roller { .. }) && edge.triangles[0].map(|t| components.of_triangle[t]) == Some(c)
     })
 }
 
@@ -154,6 +154,21 @@ pub(super) fn free_both_ways(components: &Components, moving: &[Moving]) -> Stri
     format!(
         "Nothing hinders this motion either way, and the loads do no work on it: {}. The stress is unique, the \
          displacement only up to this motion.",
+        all.join(", ")
+    )
+}
+
+/// The same for a motion that only contacts with a gap would hinder: those of these `names`.
+pub(super) fn free_while_open(components: &Components, moving: &[Moving], names: &[String]) -> String {
+    let all: Vec<_> =
+        moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();
+    let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+    let (contacts, stay, gaps) =
+        if names.len() == 1 { ("contact", "stays", "its gap lets") } else { ("contacts", "stay", "their gaps let") };
+    format!(
+        "While {contacts} {} {stay} open, nothing hinders this motion either way, and the loads do no work on it: {}. The stress is \
+         unique, the displacement only up to this motion, as far as {gaps} it.",
+        list(&quoted),
         all.join(", ")
     )
 }

@@ -17,6 +17,7 @@ use super::indicators::Indicators;
 use super::outlook::outlook;
 use super::rounds::{Next, Rounds, across};
 use super::stage::{Solved, Stage};
+use super::stop::Stop;
 use super::trend::{Seen, learnt};
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::dual::{DualMethod, Options, Size};
@@ -38,6 +39,13 @@ const PATIENCE_WITH_THE_FIRST: f64 = 3.0;
 
 /// A mesh that makes the error smaller by less than this power of its unknowns is hardly worth them.
 const STALLED: f64 = 0.1;
+
+/// Where the gap may be rounding alone, the power of its unknowns by which a mesh has to make the error smaller, and the part
+/// of the gap that triangles and contact pairs have to make up.
+const WORTH_ANOTHER: f64 = 0.25;
+const BY_TERMS: f64 = 0.5;
+/// A gap of no more than so many times what rounding of the bounds adds to it is mostly that.
+const TWICE: f64 = 2.0;
 
 /// How far from its tolerance a quantity is taken to be that has no interval yet.
 const UNKNOWN: f64 = 10.0;
@@ -107,6 +115,8 @@ pub struct Adapted {
     pub history: Vec<HistoryRow>,
     /// Why refinement stopped before the tolerance was reached.
     pub stopped: Option<String>,
+    /// What to do about that.
+    pub advice: Option<&'static str>,
 }
 
 /// Refines `problem` until the guaranteed relative energy-norm error is at most `goal.tolerance`; `on_step` hears of
@@ -157,13 +167,13 @@ pub fn adapt(
             // there are small ones.
             (Err(StudyError::Dual(reason)), Some(solved)) => {
                 shortest = COARSER * shortest.max(smallest);
-                (solved, Some(format!("the next mesh could not be solved ({reason})")))
+                (solved, Some(Stop::Unsolved(reason.to_string())))
             }
             (Err(error), _) => return Err(error),
         };
         let Measured { solved: Solved { certified, .. }, row, terms, left } = &solved;
         if *left <= 1.0 {
-            return Ok(Adapted { certified: solved.solved.certified, history, stopped: None });
+            return Ok(Adapted { certified: solved.solved.certified, history, stopped: None, advice: None });
         }
         let spent = start.elapsed().as_secs_f64();
         let mesh = (&certified.problem, &solved.solved.elements);
@@ -171,19 +181,20 @@ pub fn adapt(
         let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest, seconds);
         let finer = match (goal.max_seconds, fault, terms) {
             (_, Some(fault), _) if shortest > LONGEST => Next::Nothing(fault),
-            (Some(most), ..) if spent >= most => Next::Nothing(format!("{most} seconds have passed")),
-            _ if stalls(&history, goal) => Next::Nothing("it no longer makes the error smaller".to_string()),
-            (.., Err(reason)) => Next::Nothing(format!("no upper bound could be built ({reason})")),
-            (.., Ok(terms)) => {
-                rounds.next(&solved.solved, terms, *left, row.rate.is_some_and(|rate| rate < STALLED))?
-            }
+            (Some(most), ..) if spent >= most => Next::Nothing(Stop::Seconds(most)),
+            _ if stalls(&history, goal) => Next::Nothing(Stop::Stalled),
+            (.., Err(reason)) => Next::Nothing(Stop::NoUpperBound(reason.clone())),
+            (.., Ok(terms)) => match rounding(certified, row, goal, terms) {
+                Some(stop) => Next::Nothing(stop),
+                None => rounds.next(&solved.solved, terms, *left, row.rate.is_some_and(|rate| rate < STALLED))?,
+            },
         };
         stage = match finer {
             Next::Mesh(finer) => *finer,
-            Next::Nothing(reason) => {
+            Next::Nothing(stop) => {
                 let pace = outlook(&history, goal, &admission, Size::of_degrees(mesh.0, mesh.1));
-                let stopped = Some(stopped(&reason, row, goal, pace));
-                return Ok(Adapted { certified: solved.solved.certified, history, stopped });
+                let (stopped, advice) = (Some(stopped(&stop, row, goal, pace)), Some(stop.advice()));
+                return Ok(Adapted { certified: solved.solved.certified, history, stopped, advice });
             }
         };
         last = Some(solved);
@@ -213,10 +224,9 @@ impl Measured {
             Err(reason) => Err(reason.to_string()),
         };
         // The gap is the square of the error.
-        let of_energy = if certified.bracket.tells(row.upper, goal.tolerance) {
-            0.0
-        } else {
-            (row.relative_error_bound / goal.tolerance).powi(2)
+        let of_energy = match row.relative_error_bound <= goal.tolerance {
+            true => 0.0,
+            false => (row.relative_error_bound / goal.tolerance).powi(2),
         };
         let mut left = if of_energy > 0.0 { of_energy.max(1.0 + f64::EPSILON) } else { 0.0 };
         if !goal.wanted.is_empty()
@@ -269,6 +279,19 @@ fn open(certified: &Certified, options: &Options, goal: &Goal, gap: &Indicators)
     (most, shares)
 }
 
+/// Rounding, where it may be all that is left of the gap: below what the data explain a mesh has to have brought the error
+/// down to be worth another. What the data explain is much where gaps are wide or a body is stiff, and often much more than
+/// what rounding left of these solves.
+fn rounding(certified: &Certified, row: &HistoryRow, goal: &Goal, terms: &Indicators) -> Option<Stop> {
+    let bracket = &certified.bracket;
+    let widening = bracket.lower_widening + bracket.free.as_ref().map_or(0.0, |free| free.widening);
+    let (gap, round_off) = (row.upper - row.lower, bracket.round_off.max(TWICE * widening));
+    let idle = row.rate.is_some_and(|rate| rate < WORTH_ANOTHER);
+    let is_rounding =
+        row.relative_error_bound > goal.tolerance && gap <= round_off && (idle || terms.total() <= BY_TERMS * gap);
+    is_rounding.then_some(Stop::Rounding { gap, round_off })
+}
+
 /// Whether the last two meshes were hardly worth their triangles.
 fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
     let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
@@ -300,7 +323,7 @@ fn row(
     }
 }
 
-fn stopped(reason: &str, row: &HistoryRow, goal: &Goal, pace: Option<String>) -> String {
+fn stopped(reason: &Stop, row: &HistoryRow, goal: &Goal, pace: Option<String>) -> String {
     let pace = pace.map_or(String::new(), |pace| format!(" Outlook: {pace}."));
     let tolerance = match goal.wanted.first() {
         Some(wanted) if goal.tolerance.is_infinite() => {

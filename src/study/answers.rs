@@ -1,20 +1,11 @@
-//! The quantities of a scene: their intervals, the values of displacement models in them, and the checks that follow.
+//! The quantities of a scene and their intervals.
 
 use super::Certified;
-use super::adaptive::Wanted;
-use crate::compare::{Allowances, Basis, Check, Comparison, Judged};
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::{Displacement, Elements, StressField};
-use crate::problem::{Problem, Scales};
-use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced, value_of};
-use crate::report::{QuantityOfModel, QuantitySummary};
+use crate::problem::Problem;
+use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced};
 use crate::scene::Quantity;
-
-/// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
-const OWN_ERROR: f64 = 2.0;
-
-/// What solvers leave of a value, relative to what such a quantity can be.
-const SOLVED: f64 = 1e-8;
 
 /// A quantity and what is guaranteed of it.
 #[derive(Debug, Clone)]
@@ -25,15 +16,25 @@ pub struct Answer {
     pub interval: Interval,
     /// What it is.
     pub kind: Kind,
+    /// By how much the root of the energy error of a displacement can change its value, at most: the width of the interval of
+    /// first order over the root of the gap that it comes from. Infinite where there is no such interval.
+    pub sensitivity: f64,
 }
 
-/// A value of a quantity that comes without a field.
-#[derive(Debug, Clone, PartialEq)]
-pub struct GivenValue {
-    /// Name of the quantity.
-    pub name: String,
-    /// The value.
-    pub value: f64,
+impl Answer {
+    /// Nothing is known, for this reason.
+    fn unknown(name: String, kind: Kind, reason: &str) -> Self {
+        Answer { name, kind, interval: Interval::unknown(reason), sensitivity: f64::INFINITY }
+    }
+
+    /// What two meshes tell of the same value, with the shares of this one.
+    fn and(self, finer: &Answer) -> Self {
+        Answer {
+            interval: self.interval.and(&finer.interval),
+            sensitivity: self.sensitivity.min(finer.sensitivity),
+            ..self
+        }
+    }
 }
 
 /// Refuses quantities that do not fit the mesh.
@@ -77,25 +78,41 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
         let free = bracket.free.as_ref().map_err(|error| error.to_string())?;
         Known::new(problem, dual, bracket, free, factorised, options)
     });
+    let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
     let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
         match (Functional::new(problem, quantity), &known) {
             (Ok(functional), _) if motions.iter().any(|motion| changes(problem, &functional, motion)) => {
                 let reason = "a motion that neither supports nor closed contacts resist changes it";
-                Answer { name, kind: functional.kind, interval: Interval::unknown(reason) }
+                Answer::unknown(name, functional.kind, reason)
             }
             (Ok(functional), Ok(known)) => {
                 let interval = known.interval(&functional);
-                Answer { name, kind: functional.kind, interval }
+                let sensitivity = sensitivity(&interval, gap);
+                Answer { name, kind: functional.kind, interval, sensitivity }
             }
-            (Ok(functional), Err(reason)) => {
-                let kind = functional.kind;
-                Answer { name, kind, interval: Interval::unknown(reason) }
-            }
-            (Err(error), _) => Answer { name, kind: Kind::Force, interval: Interval::unknown(&error.to_string()) },
+            (Ok(functional), Err(reason)) => Answer::unknown(name, functional.kind, reason),
+            (Err(error), _) => Answer::unknown(name, Kind::Force, &error.to_string()),
         }
     };
     quantities.iter().map(answer).collect()
+}
+
+/// The width of first order over the root of the gap; infinite where either is missing.
+fn sensitivity(interval: &Interval, gap: f64) -> f64 {
+    let [low, high] = interval.first_order;
+    let of_root = (high - low) / gap.sqrt();
+    if gap > 0.0 && of_root.is_finite() { of_root } else { f64::INFINITY }
+}
+
+/// What the answers on a mesh and on a finer one of the same domain tell together: the ends that are nearer, with what each
+/// triangle of the first mesh adds.
+pub fn sharper(own: Vec<Answer>, finer: &[Answer]) -> Vec<Answer> {
+    let both = |own: Answer| match finer.iter().find(|finer| finer.name == own.name) {
+        Some(finer) => own.and(finer),
+        None => own,
+    };
+    own.into_iter().map(both).collect()
 }
 
 /// Those of the stresses: of the options, or blocks where refinement has chosen other degrees.
@@ -117,167 +134,4 @@ fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool 
     let is_displacement = !load.tractions.is_empty() || load.force.iter().any(|f| *f != [0.0; 2]);
     is_displacement
         && displaced(problem, functional, &Displacement::from_p1(&problem.mesh, motion)).abs() > UNMOVED * largest
-}
-
-/// The rows of the report: every answer with the values of the displacement models that were `compared`.
-pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
-    let summary = |answer: &Answer| {
-        let Interval { ends: [lower, upper], first_order, value, exact_by_statics, rounding, reasons, .. } =
-            &answer.interval;
-        let known = answer.interval.has_an_end();
-        let primal = |(judged, value): (&Judged, Option<f64>)| QuantityOfModel {
-            solver: judged.candidate.name.clone(),
-            degree: judged.candidate.degree,
-            value,
-            reason: value.is_none().then(|| not_told(certified, answer)),
-            inside: value.filter(|_| known).map(|v| answer.interval.outside(v) == 0.0),
-        };
-        QuantitySummary {
-            name: answer.name.clone(),
-            kind: answer.kind.name().to_string(),
-            value: *value,
-            lower: *lower,
-            upper: *upper,
-            first_order: *first_order,
-            exact_by_statics: *exact_by_statics,
-            rounding: *rounding,
-            primal: comparison.judged.iter().zip(values_in(certified, answer, comparison)).map(primal).collect(),
-            reason: reasons.iter().flatten().next().cloned(),
-        }
-    };
-    answers.iter().map(summary).collect()
-}
-
-/// The values of a quantity in the displacement models, on their own mesh.
-fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) -> Vec<Option<f64>> {
-    let problem = &certified.problem;
-    let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
-    let functional = quantity.and_then(|quantity| Functional::new(problem, quantity).ok());
-    let value = |judged: &Judged| {
-        value_of(problem, functional.as_ref()?, &judged.field.displacement).filter(|value| value.is_finite())
-    };
-    comparison.judged.iter().map(value).collect()
-}
-
-/// Why a displacement has no value of a quantity.
-fn not_told(certified: &Certified, answer: &Answer) -> String {
-    let problem = &certified.problem;
-    let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
-    match quantity.map(|quantity| Functional::new(problem, quantity)) {
-        Some(Err(error)) => error.to_string(),
-        Some(Ok(functional)) if functional.lift.is_none() && functional.load.weights.iter().any(|w| !w.is_empty()) => {
-            "the contact shares a vertex with a support or another contact, or its direction turns: no displacement of the \
-             mesh moves it alone, and how they share the force there is not told"
-                .to_string()
-        }
-        _ => "the displacement has no finite value of it".to_string(),
-    }
-}
-
-/// How a value outside an interval is judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Meant {
-    /// A discrete solution on this mesh: what its own energy leaves open is allowed.
-    Discrete,
-    /// The exact value.
-    Exact,
-}
-
-/// One check for every quantity and displacement model.
-pub fn quantity_checks(
-    certified: &Certified,
-    answers: &[Answer],
-    comparison: &Comparison,
-    meant: Meant,
-    allow: &Allowances,
-) -> Vec<Check> {
-    let mut checks = Vec::new();
-    let scales = Scales::new(&certified.problem);
-    for answer in answers.iter().filter(|answer| answer.interval.has_an_end()) {
-        for (judged, value) in comparison.judged.iter().zip(values_in(certified, answer, comparison)) {
-            let field = &judged.candidate.name;
-            let Some(value) = value else { continue };
-            let own = match meant {
-                Meant::Exact => 0.0,
-                Meant::Discrete => OWN_ERROR * own_error(certified, answer, judged),
-            };
-            if !own.is_finite() {
-                continue;
-            }
-            let whose = if own > 0.0 {
-                format!("{field} may miss it by what its own energy leaves open")
-            } else {
-                format!("no correct value lies outside, and that of {field} has to lie inside")
-            };
-            let allowed = own + SOLVED * answer.kind.size(&certified.problem, &scales.data);
-            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
-        }
-    }
-    allow.apply(&mut checks);
-    checks
-}
-
-/// One check for every value that was given.
-pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
-    let check = |given: &GivenValue| {
-        let name = format!("quantity/{}/given", given.name);
-        match answers.iter().find(|answer| answer.name == given.name) {
-            Some(answer) if answer.interval.has_an_end() => {
-                inside(&name, answer, given.value, 0.0, "no correct value lies outside")
-            }
-            Some(answer) => {
-                let reason = answer.interval.reasons.iter().flatten().next().cloned().unwrap_or_default();
-                Check::not_made(&name, 0.0, Basis::Guaranteed, format!("There is no interval for it: {reason}."))
-            }
-            None => Check::not_made(&name, 0.0, Basis::Guaranteed, "The scene has no quantity of this name."),
-        }
-    };
-    let mut checks: Vec<Check> = given.iter().map(check).collect();
-    allow.apply(&mut checks);
-    checks
-}
-
-/// One check for every quantity that was to be known more closely.
-pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
-    let check = |wanted: &Wanted| {
-        let name = format!("quantity/{}/tolerance", wanted.name);
-        match answers.iter().find(|answer| answer.name == wanted.name) {
-            Some(Answer { interval, .. }) if interval.half_width().is_finite() => Check::at_most(
-                &name,
-                interval.half_width() / interval.value.abs(),
-                0.0,
-                wanted.tolerance,
-                Basis::Asked,
-                "The half-width of the interval, relative to the value, against the tolerance that was asked for.",
-            ),
-            _ => Check::not_made(&name, wanted.tolerance, Basis::Asked, "There is no interval with two ends."),
-        }
-    };
-    let mut checks: Vec<Check> = wanted.iter().map(check).collect();
-    allow.apply(&mut checks);
-    checks
-}
-
-/// A check that `value` lies in the interval, or outside by no more than `allowed`.
-fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) -> Check {
-    let [lower, upper] = answer.interval.ends;
-    let nearest = value.max(lower).min(upper);
-    let why = format!(
-        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
-        answer.kind.name(),
-        answer.name
-    );
-    Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
-}
-
-/// What the energy of a displacement leaves open of its value: the width of first order belongs to H, its own error to its
-/// own gap.
-fn own_error(certified: &Certified, answer: &Answer, judged: &Judged) -> f64 {
-    let bracket = &certified.bracket;
-    let of_bracket = bracket.free.as_ref().map_or(0.0, |free| free.upper() - bracket.lower());
-    let own = (judged.admissible.upper() - bracket.lower()).max(0.0);
-    let [low, high] = answer.interval.first_order;
-    let [lower, upper] = answer.interval.ends;
-    let width = if (high - low).is_finite() { high - low } else { upper - lower };
-    if of_bracket > 0.0 && width.is_finite() { width * (own / of_bracket).sqrt() } else { f64::INFINITY }
 }

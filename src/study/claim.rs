@@ -1,7 +1,9 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
-use crate::compare::{ADMISSIBLE, Allowances, Basis, Check, Comparison, Extent, Judged, Solution};
+use crate::compare::{
+    ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells,
+};
 use crate::diagnose::{Diagnosis, Energies, diagnose, in_the_mean};
 use crate::problem::{Note, Problem, Scales};
 
@@ -34,12 +36,12 @@ pub fn claim(
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
     let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?;
-    let solution = solution.within(extent(bracket)).with_weak_contact(weak);
+    let solution = solution.within(Extent::of(bracket)).with_weak_contact(weak);
     let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
         .any(|c| (!c.passed && c.decides() && c.value.is_some()) || c.excused)
-        .then(|| diagnose(&solution, energies(problem, judged)));
+        .then(|| explained(problem, judged, &solution, bracket));
     let notes = weak_notes(&solution, || energies(problem, judged));
     let at_nodes = checks.iter_mut().filter(|check| check.name.ends_with("/penetration-at-nodes"));
     at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
@@ -60,13 +62,39 @@ pub fn weak_contact(problem: &Problem, judged: &Judged) -> Option<Vec<Note>> {
     (judged.violation.support <= ADMISSIBLE && contacts).then(|| weak_notes(&solution, || energies(problem, judged)))
 }
 
-/// How large a solution can be.
-fn extent(bracket: &Bracket) -> Extent {
-    let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
-        let field = &free.displacement;
-        (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
-    });
-    Extent { strain: bracket.complementary.strain, displacement }
+/// The same for the solution of a method whose contact sides have different vertices: `own` is it on the triangles of its file,
+/// those of `before`, from which `problem` was made. Nothing is fitted to it.
+///
+/// # Errors
+/// As [`claim`].
+pub fn claim_before_contact(
+    problem: &Problem,
+    (before, own): (&Problem, &Candidate),
+    judged: &Judged,
+    bracket: &Bracket,
+    allow: &Allowances,
+) -> Result<Claim, NoUpperBound> {
+    let solution = Solution::new(before, own, judged.field.potential.strain)?.within(Extent::of(bracket));
+    let solution = Nonmatching::new(solution, problem);
+    let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
+    Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
+}
+
+/// What explains a field best: on quadrilaterals by whichever rule its program may have used.
+fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracket: &Bracket) -> Option<Diagnosis> {
+    let energies = energies(problem, judged);
+    let own = diagnose(solution, energies);
+    let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
+    if is_explained(&own) {
+        return own;
+    }
+    let strain = judged.field.potential.strain;
+    let others = cells::rules(&judged.candidate).into_iter().filter(|points| *points != solution.points);
+    let by = |points| {
+        let other = Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(bracket));
+        diagnose(&other, energies).map(Some).filter(is_explained)
+    };
+    others.into_iter().find_map(by).unwrap_or(own)
 }
 
 /// Whether the sharpest `bracket` of a run leaves a field the name of a solution at all: its guaranteed error is below 100 %.
@@ -86,8 +114,8 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
 }
 
 /// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
-/// nodal forces the hypotheses are fitted to.
-pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
+/// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
+pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());
@@ -96,6 +124,7 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison) -> Vec<Diagnosis> {
     };
     let explained = |judged: &Judged| {
         let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?;
+        let solution = solution.within(Extent::of(bracket));
         diagnose(&solution, energies(problem, judged))
     };
     comparison.judged.iter().filter(wrong).filter_map(explained).collect()
@@ -108,7 +137,8 @@ fn energies(problem: &Problem, judged: &Judged) -> Energies {
     let lifted =
         || lifted_within(problem, &candidate.vertex, &candidate.middle, candidate.degree.min(2)).ok().flatten();
     // What is admissible already is changed by nothing.
-    let lifted = if judged.is_admissible() { None } else { lifted() };
+    // A field on quadrilaterals is changed in no space of triangles.
+    let lifted = if judged.is_admissible() || !candidate.cells.is_empty() { None } else { lifted() };
     Energies {
         own: own.total(),
         admissible: lifted.map(|field| potential(problem, &field).total()),

@@ -1,10 +1,11 @@
 //! From results to the data behind the report.
 
 use super::Certified;
-use super::answers::{Answer, summaries};
+use super::answers::Answer;
 use super::curves;
 use super::maps::Fields;
 use super::provenance::{identifier, provenance};
+use super::quantity_checks::summaries;
 use super::verdict::verdict;
 use crate::bounds::{Bracket, UpperBound};
 use crate::cause::causes;
@@ -46,6 +47,8 @@ pub struct Findings<'a> {
     pub is_claimed: bool,
     /// Why the displacement side is missing, where it should be there.
     pub failure: Option<String>,
+    /// What to do where refinement ended before its tolerance.
+    pub advice: Option<&'static str>,
 }
 
 /// Puts the report and its fields together.
@@ -103,7 +106,7 @@ fn report(findings: &Findings<'_>) -> Report {
         (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
         (None, true) => Status::Agree,
     };
-    let causes = causes(problem, comparison, &findings.diagnosis);
+    let causes = causes(problem, comparison, &findings.diagnosis, findings.advice);
     let (checks, remarks) = comparison.checks.iter().cloned().partition(|check| check.decides());
     let mut provenance = provenance(problem, findings.threads);
     provenance.components.extend(findings.components.iter().cloned());
@@ -136,9 +139,10 @@ fn report(findings: &Findings<'_>) -> Report {
                 solver: j.candidate.solver.clone(),
                 version: j.candidate.version.clone(),
                 degree: j.candidate.degree,
-                energy: j.candidate.reported.unwrap_or(j.field.potential.total()),
+                cells: if j.candidate.on_quadrilaterals.is_some() { "quadrilaterals" } else { "triangles" }.to_string(),
+                energy: j.candidate.reported.unwrap_or(j.own.total()),
                 admissible: j.is_admissible(),
-                relative_error_bound: Some(j.relative_error(sharpest)),
+                relative_error_bound: j.candidate.is_polynomial().then(|| j.relative_error(sharpest)),
                 iterations: j.candidate.iterations,
                 unknowns: j.candidate.unknowns,
                 seconds: j.candidate.seconds.clone(),

@@ -18,9 +18,11 @@ mod outlook;
 mod patch;
 mod primal;
 mod provenance;
+mod quantity_checks;
 mod rounds;
 mod sharpen;
 mod stage;
+mod stop;
 mod trend;
 #[cfg(test)]
 mod trend_tests;
@@ -30,12 +32,10 @@ mod warm_start;
 pub use accepted::{Accepted, Signature, checks as baseline_checks};
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
 pub use admission::Admission;
-pub use answers::{
-    Answer, GivenValue, Meant, answers, quantity_checks, refuse_quantities, summaries, value_checks, wanted_checks,
-};
+pub use answers::{Answer, answers, refuse_quantities, sharper};
 pub use baseline::{Baseline, BaselineError};
 pub use certified::{Certified, StudyError, certify};
-pub use claim::{Claim, claim, diagnoses, error_check, weak_contact};
+pub use claim::{Claim, claim, claim_before_contact, diagnoses, error_check, weak_contact};
 pub use curves::remarks as curve_remarks;
 pub use date::today;
 pub use dossier::{Findings, assemble, infeasible};
@@ -46,6 +46,7 @@ pub use outlook::outlook;
 pub use primal::{candidates, pins};
 pub use provenance::provenance;
 pub(crate) use provenance::{hash, hex, identifier, locked_version};
+pub use quantity_checks::{GivenValue, Meant, quantity_checks, summaries, value_checks, wanted_checks};
 pub use sharpen::{Sharpened, sharpen};
 pub use stage::certify_divided;
 pub use warm_start::{closed_coefficients, guess_refined};

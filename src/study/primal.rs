@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::compare::{Candidate, Reactions};
-use crate::element::PlainDisplacement;
+use crate::compare::{Candidate, QuadrilateralSolution, Reactions};
+use crate::element::{OnQuadrilaterals, PlainDisplacement};
 use crate::mesh::Edge;
-use crate::primal::{PrimalContact, PrimalSolution};
+use crate::primal::{Cells, PrimalContact, PrimalSolution, Space};
 use crate::problem::{Pin, Problem};
 use crate::statics::Statics;
 
@@ -37,22 +37,36 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
     let vertex = solution.vertex_displacement;
     let edge = solution.edge_displacement.unwrap_or_default();
     let inside = solution.triangle_displacement.unwrap_or_default();
+    let on_quadrilaterals = match solution.cells {
+        Cells::Triangles => None,
+        Cells::Quadrilaterals => {
+            let field = OnQuadrilaterals::new(mesh, degree, [vertex.as_slice(), &edge].concat());
+            field.zip(solution.gauss_points).map(|(field, gauss_points)| QuadrilateralSolution { field, gauss_points })
+        }
+    };
     let plain = || PlainDisplacement::from_values(mesh, degree, &vertex, &edge, &inside);
-    let higher = if degree > 2 { plain() } else { None };
+    let higher = match &on_quadrilaterals {
+        Some(own) => own.field.on_triangles(mesh),
+        None if degree > 2 => plain(),
+        None => None,
+    };
     let mean = |e: &Edge| [0, 1].map(|c| 0.5 * (vertex[e.vertices[0]][c] + vertex[e.vertices[1]][c]));
     let middle = match (&higher, degree) {
+        (Some(_), 2) => edge,
         (Some(plain), _) => plain.middles(mesh),
         (None, 1) => mesh.edges.iter().map(mean).collect(),
         (None, _) => edge,
     };
     Candidate {
-        name: format!("{} P{}", solution.solver, solution.degree),
+        name: format!("{} {}", solution.solver, Space { cells: solution.cells, degree: solution.degree }),
         solver: solution.solver,
         version: solution.solver_version,
         degree,
         vertex,
         middle,
         higher,
+        cells: Vec::new(),
+        on_quadrilaterals,
         reported: solution.energy,
         reported_strain: solution.strain_energy,
         is_solution: true,

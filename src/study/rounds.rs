@@ -7,6 +7,7 @@ use super::certified::StudyError;
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::stage::{Solved, Stage};
+use super::stop::Stop;
 use super::trend::{EXPECTED, inherited, raised};
 use crate::dual::Size;
 use crate::element::{Elements, block};
@@ -83,7 +84,7 @@ pub enum Next {
     /// Another mesh.
     Mesh(Box<Stage>),
     /// None, and why.
-    Nothing(String),
+    Nothing(Stop),
 }
 
 /// What a round came to.
@@ -91,7 +92,7 @@ enum Round {
     /// A finer mesh, and the terms of the gap to expect on it.
     Finer(Box<Stage>, Indicators),
     /// No finer mesh: why, and the factor by which triangles must have grown for the rounds so far to be of use.
-    Last(String, f64),
+    Last(Stop, f64),
 }
 
 impl<'a> Rounds<'a> {
@@ -118,12 +119,12 @@ impl<'a> Rounds<'a> {
         let mut stage = Stage::new(self.problem.clone(), solved.refinement.clone(), solved.elements.clone());
         stage.ways.clone_from(&solved.ways);
         if let Some(reason) = self.beyond_numbers(&stage, terms, left, stalls) {
-            return Ok(Next::Nothing(reason));
+            return Ok(Next::Nothing(Stop::Scales(reason)));
         }
         let solved = unknowns(&stage);
         let in_time = self.seconds.map_or(GROWTH, |[left, last]| (left / last).powf(1.0 / TIME));
         if in_time < WORTH_A_SOLVE {
-            return Ok(Next::Nothing("the time that is left is too short for the next mesh".to_string()));
+            return Ok(Next::Nothing(Stop::SecondsLeft));
         }
         if left > NEAR
             && let Some(raised) = self.with_first_degree(&stage)
@@ -202,7 +203,7 @@ impl<'a> Rounds<'a> {
             return Ok(match beyond {
                 Some(reason) => Round::Last(reason, WORTH_A_SOLVE),
                 None if count > unknowns(stage) => Round::Finer(Box::new(next), predicted),
-                None => Round::Last("the triangles are as small as numbers can resolve".to_string(), 1.0),
+                None => Round::Last(Stop::Scales("the triangles are as small as numbers can resolve".to_string()), 1.0),
             });
         }
     }
@@ -229,13 +230,11 @@ impl<'a> Rounds<'a> {
     }
 
     /// Why `next` is more than may be solved.
-    fn beyond(&self, next: &Stage) -> Option<String> {
+    fn beyond(&self, next: &Stage) -> Option<Stop> {
         let count = next.problem.mesh.triangles.len();
         match self.goal.max_triangles {
-            Some(most) if count > most => Some(format!("the next mesh would have more than {most} triangles")),
-            _ => self.admission.admit(next.size(), Some(self.kept)).err().map(|excess| {
-                format!("the next mesh, of {count} triangles, would not fit into memory (about {excess})")
-            }),
+            Some(most) if count > most => Some(Stop::Triangles(most)),
+            _ => self.admission.admit(next.size(), Some(self.kept)).err().map(|excess| Stop::Memory(count, excess)),
         }
     }
 }

@@ -46,7 +46,8 @@ pub fn sharpen(
     if goal.wanted.is_empty() && certified.bracket.tells(upper, goal.tolerance) {
         return Ok(None);
     }
-    let known_upper = comparison.judged.iter().map(|j| j.admissible.upper()).reduce(f64::min);
+    let bounding = comparison.judged.iter().filter(|j| j.candidate.is_polynomial());
+    let known_upper = bounding.map(|j| j.admissible.upper()).reduce(f64::min);
     let goal =
         Goal { known_upper, max_seconds: goal.max_seconds.or(Some(PATIENCE)), least_rate: Some(STALLED), ..goal };
     let problem = Problem { refinement: Refinement::KeepsEdges, ..certified.problem.clone() };

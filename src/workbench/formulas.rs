@@ -1,11 +1,18 @@
 //! Stiffness matrices of the isoparametric family, by quadrature: what shipped elements are made of, and what a matrix is held against.
 
+mod dilatation;
+mod enhanced;
+
 use nalgebra::{DMatrix, Matrix3};
 
 use super::displacement::DisplacementElement;
 use super::material::Material;
 use super::outline::Outline;
 use crate::element::quadrature::{segment_rule, triangle_rule};
+
+pub use dilatation::Split;
+pub(super) use dilatation::{one_sided, with_rows};
+pub use enhanced::Correction;
 
 /// Shape functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +23,8 @@ pub enum Family {
     P2,
     /// Bilinear quadrilateral: its corners, counter-clockwise.
     Q4,
+    /// Serendipity quadrilateral: corners, then the middles of (0, 1), (1, 2), (2, 3), (3, 0).
+    Q8,
 }
 
 /// What may be done otherwise than right.
@@ -26,11 +35,19 @@ pub enum Variant {
     Right,
     /// One quadrature point in the middle.
     OnePoint,
-    /// n × n quadrature points of Gauss on a quadrilateral, where two are the rule. The integrand is no polynomial on a distorted one, so that
+    /// n × n quadrature points of Gauss on a quadrilateral, where two (three of Q8) are the rule. The integrand is no polynomial on a distorted one, so that
     /// the matrix is another one, and as good.
     Points(usize),
     /// The Jacobian where its transpose belongs: ∇N = J⁻¹ ∇̂N in place of J⁻ᵀ ∇̂N.
     Transposed,
+    /// The quadratic triangle with its three points inside and not in the middles of the sides: the same matrix by other points.
+    Inner,
+    /// Q4 with the incompatible modes 1 − ξ² and 1 − η² of Wilson, condensed, by n × n points.
+    Incompatible(Correction, usize),
+    /// Q4 whose volume change is that of the middle: B-bar, mean dilatation, or selective integration.
+    Dilatation(Split),
+    /// Q4 of Pian and Sumihara: five stresses beside the displacements.
+    Hybrid,
 }
 
 /// A quadrature point of an element.
@@ -42,20 +59,46 @@ pub(super) struct Point {
     pub weight: f64,
     /// |det J|.
     pub det: f64,
+    /// J, rows x and y, columns along the local directions.
+    pub jacobian: [[f64; 2]; 2],
     /// Gradients of the shape functions.
     pub gradients: Vec<[f64; 2]>,
 }
 
+/// Slopes of the shape functions at a place of the reference shape, one row a node.
+pub(super) type Slopes<'a> = &'a dyn Fn([f64; 2]) -> Vec<[f64; 2]>;
+
 impl Point {
     /// Its part Bᵀ D B w |det J| of the stiffness matrix per unit thickness.
     pub fn stiffness(&self, d: &Matrix3<f64>) -> DMatrix<f64> {
-        let mut b = DMatrix::zeros(3, 2 * self.gradients.len());
-        for (i, &[x, y]) in self.gradients.iter().enumerate() {
-            (b[(0, 2 * i)], b[(1, 2 * i + 1)]) = (x, y);
-            (b[(2, 2 * i)], b[(2, 2 * i + 1)]) = (y, x);
-        }
+        let b = strains(&self.gradients);
         b.transpose() * d * b * (self.weight * self.det)
     }
+
+    /// Sign of det J.
+    pub fn sign(&self) -> f64 {
+        det(&self.jacobian).signum()
+    }
+}
+
+/// B: strains (xx, yy, γ) of unknowns with these gradients, x and y of each in turn.
+fn strains(gradients: &[[f64; 2]]) -> DMatrix<f64> {
+    let mut b = DMatrix::zeros(3, 2 * gradients.len());
+    for (i, &[x, y]) in gradients.iter().enumerate() {
+        (b[(0, 2 * i)], b[(1, 2 * i + 1)]) = (x, y);
+        (b[(2, 2 * i)], b[(2, 2 * i + 1)]) = (y, x);
+    }
+    b
+}
+
+fn det(j: &[[f64; 2]; 2]) -> f64 {
+    j[0][0] * j[1][1] - j[0][1] * j[1][0]
+}
+
+/// J⁻ᵀ g.
+fn gradient(j: &[[f64; 2]; 2], g: &[f64; 2]) -> [f64; 2] {
+    let det = det(j);
+    [(j[1][1] * g[0] - j[1][0] * g[1]) / det, (j[0][0] * g[1] - j[0][1] * g[0]) / det]
 }
 
 /// Barycentric or bilinear place, and weight.
@@ -63,7 +106,7 @@ type Rule = Vec<([f64; 2], f64)>;
 
 impl Family {
     /// All of them.
-    pub const ALL: [Family; 3] = [Family::P1, Family::P2, Family::Q4];
+    pub const ALL: [Family; 4] = [Family::P1, Family::P2, Family::Q4, Family::Q8];
 
     /// What it is called.
     pub fn words(self) -> &'static str {
@@ -71,6 +114,7 @@ impl Family {
             Family::P1 => "linear triangle P1",
             Family::P2 => "quadratic triangle P2",
             Family::Q4 => "bilinear quadrilateral Q4",
+            Family::Q8 => "serendipity quadrilateral Q8",
         }
     }
 
@@ -80,6 +124,17 @@ impl Family {
             Family::P1 => vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
             Family::P2 => vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]],
             Family::Q4 => vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
+            Family::Q8 => {
+                vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]]
+            }
+        }
+    }
+
+    /// How many of its nodes are corners: three, or four.
+    pub fn corners(self) -> usize {
+        match self {
+            Family::P1 | Family::P2 => 3,
+            Family::Q4 | Family::Q8 => 4,
         }
     }
 
@@ -95,15 +150,18 @@ impl Family {
         match (outline.corners.len(), nodes.len(), middles) {
             (3, 3, _) => Some((Family::P1, outline.corners.clone())),
             (4, 4, _) => Some((Family::Q4, outline.corners.clone())),
-            (3, 6, Some(middles)) if outline.sides.iter().all(|s| is_middle(s)) => {
-                Some((Family::P2, [outline.corners.clone(), middles].concat()))
+            (corners @ (3 | 4), count, Some(middles))
+                if count == 2 * corners && outline.sides.iter().all(|s| is_middle(s)) =>
+            {
+                let family = if corners == 3 { Family::P2 } else { Family::Q8 };
+                Some((family, [outline.corners.clone(), middles].concat()))
             }
             _ => None,
         }
     }
 
     /// Gradients of the shape functions on the reference shape.
-    fn slopes(self, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
+    pub(super) fn slopes(self, [s, t]: [f64; 2]) -> Vec<[f64; 2]> {
         let (l, d) = ([1.0 - s - t, s, t], [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]);
         match self {
             Family::P1 => d.to_vec(),
@@ -114,17 +172,34 @@ impl Family {
                 corner.chain(middle).collect()
             }
             Family::Q4 => vec![[t - 1.0, s - 1.0], [1.0 - t, -s], [t, s], [-t, 1.0 - s]],
+            Family::Q8 => {
+                let (x, y) = (2.0 * s - 1.0, 2.0 * t - 1.0);
+                let corner = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]: [f64; 2]| {
+                    let (p, q) = (1.0 + a * x, 1.0 + b * y);
+                    [0.5 * a * q * (2.0 * a * x + b * y), 0.5 * b * p * (2.0 * b * y + a * x)]
+                });
+                let along = |b: f64| [-2.0 * x * (1.0 + b * y), b * (1.0 - x * x)];
+                let across = |a: f64| [a * (1.0 - y * y), -2.0 * y * (1.0 + a * x)];
+                [&corner[..], &[along(-1.0), across(1.0), along(1.0), across(-1.0)]].concat()
+            }
         }
     }
 
     fn rule(self, variant: Variant) -> Rule {
-        match (self, variant) {
-            (Family::Q4, Variant::OnePoint) => vec![([0.5, 0.5], 1.0)],
+        let usual = if self == Family::Q8 { 3 } else { 2 };
+        match (self.corners(), variant) {
+            (4, Variant::OnePoint) => vec![([0.5, 0.5], 1.0)],
             (_, Variant::OnePoint) => vec![([1.0 / 3.0, 1.0 / 3.0], 0.5)],
-            (Family::Q4, variant) => {
-                let points = if let Variant::Points(n) = variant { n.max(1) } else { 2 };
+            (4, variant) => {
+                let points = match variant {
+                    Variant::Points(n) | Variant::Incompatible(_, n) => n.max(1),
+                    _ => usual,
+                };
                 let line = segment_rule(2 * points - 1);
                 line.iter().flat_map(|&(s, v)| line.iter().map(move |&(t, w)| ([s, t], v * w))).collect()
+            }
+            (_, Variant::Inner) => {
+                [[1.0, 1.0], [4.0, 1.0], [1.0, 4.0]].map(|at| (at.map(|x| x / 6.0), 1.0 / 6.0)).into()
             }
             _ => triangle_rule(2).iter().map(|(l, w)| ([l[1], l[2]], 0.5 * w)).collect(),
         }
@@ -146,7 +221,23 @@ impl Family {
             return Err(format!("{} nodes, but the {} has {n}", nodes.len(), self.words()));
         }
         let points = self.points(nodes, variant)?;
-        Ok(points.iter().fold(DMatrix::zeros(2 * n, 2 * n), |k, p| k + p.stiffness(d) * thickness))
+        let k = match variant {
+            Variant::Incompatible(correction, _) => {
+                enhanced::incompatible(&points, &self.middle(nodes)?, d, correction)?
+            }
+            Variant::Hybrid => enhanced::hybrid(&points, &self.middle(nodes)?, d)?,
+            Variant::Dilatation(split) => dilatation::split(&points, &self.middle(nodes)?, d, split),
+            _ => points.iter().fold(DMatrix::zeros(2 * n, 2 * n), |k, p| k + p.stiffness(d)),
+        };
+        Ok(k * thickness)
+    }
+
+    /// The middle of the reference shape as a quadrature point.
+    ///
+    /// # Errors
+    /// The Jacobian vanishes there.
+    pub(super) fn middle(self, nodes: &[[f64; 2]]) -> Result<Point, String> {
+        self.points(nodes, Variant::OnePoint).map(|mut points| points.swap_remove(0))
     }
 
     /// The quadrature points with the gradients there, nodes in the order of the family.
@@ -154,19 +245,40 @@ impl Family {
     /// # Errors
     /// The Jacobian vanishes at one of them.
     pub(super) fn points(self, nodes: &[[f64; 2]], variant: Variant) -> Result<Vec<Point>, String> {
+        let slopes = |at| self.slopes(at);
+        let mut points = self.points_by(nodes, variant, &slopes, &slopes)?;
+        if variant == Variant::Transposed {
+            for p in &mut points {
+                let [[a, b], [c, d]] = p.jacobian;
+                let slopes = self.slopes(p.at);
+                p.gradients = slopes.iter().map(|g| gradient(&[[a, c], [b, d]], g)).collect();
+            }
+        }
+        Ok(points)
+    }
+
+    /// The same by other slopes: those that make the Jacobian, and those that it carries to gradients.
+    ///
+    /// # Errors
+    /// The Jacobian vanishes at a point.
+    pub(super) fn points_by(
+        self,
+        nodes: &[[f64; 2]],
+        variant: Variant,
+        of_jacobian: Slopes,
+        of_gradients: Slopes,
+    ) -> Result<Vec<Point>, String> {
         let mut points = Vec::new();
         for (at, weight) in self.rule(variant) {
-            let slopes = self.slopes(at);
-            let jacobian = |c: usize, a: usize| nodes.iter().zip(&slopes).map(|(x, g)| x[c] * g[a]).sum::<f64>();
-            let j = [[jacobian(0, 0), jacobian(0, 1)], [jacobian(1, 0), jacobian(1, 1)]];
-            let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+            let slopes = of_jacobian(at);
+            let entry = |c: usize, a: usize| nodes.iter().zip(&slopes).map(|(x, g)| x[c] * g[a]).sum::<f64>();
+            let jacobian = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
+            let det = det(&jacobian);
             if det == 0.0 || !det.is_finite() {
                 return Err("the Jacobian vanishes at a quadrature point".into());
             }
-            let (p, q) = if variant == Variant::Transposed { (j[0][1], j[1][0]) } else { (j[1][0], j[0][1]) };
-            // J⁻ᵀ: x from (y_t, −y_s), y from (−x_t, x_s).
-            let gradient = |g: &[f64; 2]| [(j[1][1] * g[0] - p * g[1]) / det, (j[0][0] * g[1] - q * g[0]) / det];
-            points.push(Point { at, weight, det: det.abs(), gradients: slopes.iter().map(gradient).collect() });
+            let gradients = of_gradients(at).iter().map(|g| gradient(&jacobian, g)).collect();
+            points.push(Point { at, weight, det: det.abs(), jacobian, gradients });
         }
         Ok(points)
     }

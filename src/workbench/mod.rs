@@ -7,6 +7,7 @@
 //! that explains it.
 
 pub mod diagnosis;
+mod digits;
 pub mod displacement;
 mod finding;
 pub mod formulas;
@@ -20,7 +21,7 @@ mod scene;
 mod shipped;
 pub mod stress;
 
-pub use displacement::{DisplacementElement, Order};
+pub use displacement::{DisplacementElement, Order, precision};
 pub use finding::{Fault, Finding, Measured, Property};
 pub use material::Material;
 pub use outline::Outline;

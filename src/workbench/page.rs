@@ -48,6 +48,12 @@ fn failures(report: &Report) -> Markup {
         @if let Some(diagnosis) = &report.diagnosis {
             div.card.asked { h3 { "Diagnosis" } p { (clean(&diagnosis.sentence)) } }
         }
+        @if let Some(hint) = &report.hint {
+            div.card.asked { h3 { "Digits" } p { (clean(hint)) } }
+        }
+        @if let Some(untold) = &report.untold {
+            div.card.asked { h3 { "One shape" } p { (clean(untold)) } }
+        }
         @if !missing.is_empty() {
             section.failures aria-label="what is missing" {
                 ol { @for finding in missing { li {

@@ -6,7 +6,8 @@ use quick_junit::{NonSuccessKind, Report as JunitReport, TestCase, TestCaseStatu
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::diagnosis::{Diagnosis, diagnose};
+use super::diagnosis::{Diagnosis, diagnose, known, untold};
+use super::digits::Rounded;
 use super::displacement::{self, DisplacementElement};
 use super::finding::{Finding, Property};
 use super::material::{Material, Written};
@@ -66,6 +67,10 @@ pub struct Report {
     pub verdict: String,
     /// Which mistake explains the matrix, where it is not that of its reference.
     pub diagnosis: Option<Diagnosis>,
+    /// What to say of the input so that it is taken for what it is, or nothing.
+    pub hint: Option<String>,
+    /// What a matrix of one shape cannot tell; nothing for a formula.
+    pub untold: Option<String>,
     /// Property by property.
     pub findings: Vec<Finding>,
 }
@@ -76,14 +81,36 @@ pub fn schema() -> serde_json::Value {
     written.into_generator().into_root_schema_for::<Report>().to_value()
 }
 
+/// Where what is missing is no more than the rounding of entries of few digits: how to say how many they have.
+fn hint(e: &DisplacementElement, findings: &[Finding]) -> Option<String> {
+    let rounded = Rounded::of(&e.matrix)?;
+    let precision = rounded.precision();
+    let of_rounding = |f: &Finding| f.is_missing() && f.value.is_some_and(|v| v > e.precision && v < 30.0 * precision);
+    (e.precision < precision && findings.iter().any(of_rounding)).then(|| {
+        format!(
+            "The entries of K have {}, and what is missing is of the size of their rounding. Say so with --precision {precision:e} \
+             (from Python precision={precision:e}); a mistake smaller than that is not seen then.",
+            rounded.words()
+        )
+    })
+}
+
 impl Report {
     /// Looks at every property of a displacement element.
     pub fn of_displacement(e: &DisplacementElement, options: &Options) -> Self {
-        let find = |p: &Property<DisplacementElement>| p.find(e, options.claims(p));
-        let findings = displacement::PROPERTIES.iter().map(find).collect();
+        // Incompatible modes and selective integration are no mistake, and their energies may lie below the bound.
+        let may_be_below = known(e).is_some_and(|r| !r.is_conforming());
+        let claims = |p: &Property<DisplacementElement>| {
+            let is_said = options.claimed.iter().any(|name| name == p.name);
+            options.claims(p) && (is_said || !(may_be_below && p.name == displacement::BOUND))
+        };
+        let find = |p: &Property<DisplacementElement>| p.find(e, claims(p));
+        let findings: Vec<Finding> = displacement::PROPERTIES.iter().map(find).collect();
         Report {
             nodes: e.nodes.clone(),
             material: e.material,
+            hint: hint(e, &findings),
+            untold: untold(e),
             ..Self::new(&e.name, "displacement", findings, diagnose(e))
         }
     }
@@ -124,6 +151,8 @@ impl Report {
             passed: missing.is_empty(),
             verdict: verdict + ".",
             diagnosis,
+            hint: None,
+            untold: None,
             findings,
         }
     }

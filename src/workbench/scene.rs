@@ -96,6 +96,11 @@ impl Exact {
     pub fn guaranteed(&self, energy: f64) -> f64 {
         ((energy - self.lower).max(0.0) / self.strain).sqrt()
     }
+
+    /// The same of an energy on either side of the exact one: √(|𝓛(u_h) − 𝓛(u)| / 𝒮), which is no bound.
+    pub fn apart(&self, energy: f64) -> f64 {
+        ((energy - 0.5 * (self.lower + self.upper)).abs() / self.strain).sqrt()
+    }
 }
 
 #[cfg(test)]

@@ -33,6 +33,8 @@ pub struct Shipped {
     pub about: &'static str,
     /// Properties that are usual and that it does not claim.
     pub lacks: &'static [&'static str],
+    /// Properties that it claims beside the usual ones.
+    pub adds: &'static [&'static str],
     make: fn() -> Result<Subject, String>,
 }
 
@@ -53,7 +55,9 @@ impl Shipped {
             Ok(Subject::Stress(_)) => stress.collect(),
             _ => displacement.collect(),
         };
-        all.into_iter().filter(|(name, usual)| *usual && !self.lacks.contains(name)).map(|(name, _)| name).collect()
+        let is_claimed =
+            |(name, usual): &(&str, bool)| self.adds.contains(name) || *usual && !self.lacks.contains(name);
+        all.into_iter().filter(is_claimed).map(|(name, _)| name).collect()
     }
 }
 
@@ -76,60 +80,70 @@ pub const SHIPPED: &[Shipped] = &[
         name: "block-1",
         about: "equilibrium block of Watwood and Hartz, linear stresses on three subtriangles",
         lacks: &[],
+        adds: &[],
         make: || stresses(SolverElement(block(1))),
     },
     Shipped {
         name: "block-2",
         about: "equilibrium block of degree 2",
         lacks: &[],
+        adds: &[],
         make: || stresses(SolverElement(block(2))),
     },
     Shipped {
         name: "block-3",
         about: "equilibrium block of degree 3",
         lacks: &[],
+        adds: &[],
         make: || stresses(SolverElement(block(3))),
     },
     Shipped {
         name: "block-4",
         about: "equilibrium block of degree 4",
         lacks: &[],
+        adds: &[],
         make: || stresses(SolverElement(block(4))),
     },
     Shipped {
         name: "single-triangle",
         about: "linear equilibrium triangle without subdivision, which has spurious modes",
         lacks: &["dimension", "traction-rank"],
+        adds: &[],
         make: || stresses(Composite::SINGLE),
     },
     Shipped {
         name: "johnson-mercier",
         about: "linear stresses of Johnson and Mercier with continuous tractions, which need not balance themselves",
         lacks: &["dimension", "divergence", "self-equilibrium"],
+        adds: &[],
         make: || stresses(Composite::JOHNSON_MERCIER),
     },
     Shipped {
         name: "p1",
         about: "linear displacement triangle, which locks as ν → ½",
-        lacks: &["incompressible"],
+        lacks: &[],
+        adds: &[],
         make: || family(Family::P1, Variant::Right, "P1"),
     },
     Shipped {
         name: "p2",
         about: "quadratic displacement triangle",
         lacks: &[],
+        adds: &["incompressible"],
         make: || family(Family::P2, Variant::Right, "P2"),
     },
     Shipped {
         name: "q4",
         about: "bilinear displacement quadrilateral, fully integrated, which locks as ν → ½",
-        lacks: &["incompressible"],
+        lacks: &[],
+        adds: &[],
         make: || family(Family::Q4, Variant::Right, "Q4"),
     },
     Shipped {
         name: "q4-reduced",
         about: "bilinear displacement quadrilateral with one quadrature point, which has hourglass modes",
         lacks: &["rank", "bound", "convergence"],
+        adds: &["incompressible"],
         make: || family(Family::Q4, Variant::OnePoint, "Q4, one point"),
     },
 ];

@@ -120,7 +120,7 @@ fn nothing_to_solve_for_is_no_failure() {
     assert!(residual(&two.equilibrium) <= ALLOWED);
     let mut one = clamped().without(|[x, y]| y > x).build();
     for condition in &mut one.conditions {
-        *condition = Condition::Clamped([0.0; 2]);
+        *condition = Condition::Clamped([[0.0; 2]; 2]);
     }
     let one = solved(&one, Condensed::default());
     assert_eq!(one.unknowns, 0);

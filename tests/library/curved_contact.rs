@@ -212,11 +212,14 @@ fn a_finer_mesh_that_keeps_its_edges_bounds_the_same_problem() {
         for (k, pair) in kept.interfaces[0].pairs.iter().enumerate() {
             let parts = [&finer.interfaces[0].pairs[2 * k], &finer.interfaces[0].pairs[2 * k + 1]];
             assert_eq!([parts[0].gap[0], parts[1].gap[1]], pair.gap);
-            assert_eq!([parts[0].gap[1], parts[1].gap[0]], [0.5 * (pair.gap[0] + pair.gap[1]); 2]);
+            let middle = pair.gap_at(0.5);
+            assert!(parts[0].gap[1] == parts[1].gap[0] && (parts[0].gap[1] - middle).abs() <= 1e-12 * middle.abs());
         }
         let lower = |p: &Problem| Bracket::new(p, &solve(p, &Condensed::default())).lower();
         assert!(lower(&finer) >= lower(&kept), "{} after {}", lower(&finer), lower(&kept));
-        // Following the curve changes the problem: rounder rings are stiffer or softer, but not the same.
-        assert_ne!(lower(&follows), lower(&finer));
+        // Following curved edges changes the problem: rounder rings are stiffer or softer, but not the same. A curved gap is the
+        // same on every mesh.
+        let same = (lower(&follows) - lower(&finer)).abs() <= 1e-12 * lower(&finer).abs();
+        assert_eq!(same, text == touching);
     }
 }

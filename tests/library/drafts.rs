@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hypercircle::scene::{
-    Body, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource, Polygon,
+    Affine, Body, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource, Polygon,
     Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
 };
 
@@ -23,10 +23,13 @@ fn square() -> Draft {
     Draft {
         title: "A \u{201c}square\u{201d}\\ \u{1}".into(),
         bodies: vec![Body { name: "block \"a\"".into(), young: 0.1 + 0.2, poisson: -0.25, body_force: [0.0, -1e-300] }],
-        supports: vec![Support { on: "wall".into(), kind: SupportKind::Clamped { displacement: [1.0 / 3.0, 0.0] } }],
+        supports: vec![Support {
+            on: "wall".into(),
+            kind: SupportKind::Clamped { displacement: Affine::constant([1.0 / 3.0, 0.0]) },
+        }],
         tractions: vec![Traction {
             on: "top".into(),
-            load: Load::Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] },
+            load: Load::Affine(Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] }),
         }],
         contacts: vec![Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))],
         quantities: vec![

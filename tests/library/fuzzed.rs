@@ -153,6 +153,7 @@ fn fields_and_meshes_from_meshio() {
 /// The targets go as deep as they claim: the honest files of the corpora are accepted, solved and reported.
 #[test]
 fn honest_inputs_are_accepted() {
+    use hypercircle::primal::Space;
     use hypercircle::primal::exchange::parse_solution;
     use hypercircle::study::ForeignField;
 
@@ -162,7 +163,7 @@ fn honest_inputs_are_accepted() {
         bytes
     };
     for (file, degree) in [("p1.json", 1), ("p2.json", 2)] {
-        parse_solution(&read("exchange", file), degree, problem).expect("an honest result");
+        parse_solution(&read("exchange", file), Space::on_triangles(degree), problem).expect("an honest result");
     }
     for (file, degree) in [("linear.json", 1), ("quadratic.json", 2)] {
         let field =

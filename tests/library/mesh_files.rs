@@ -16,7 +16,7 @@ fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4
     let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
     let draft = Draft {
         bodies: bodies.map(body).into(),
-        supports: vec![Support { on: wall.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }],
+        supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],
         tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
         contacts: vec![Contact::new(
             ContactSides::Between([first.into(), second.into()]),

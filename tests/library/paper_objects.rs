@@ -198,7 +198,7 @@ fn multipliers_of_a_motion_give_back_its_moments() {
     let motion: Vec<[f64; 2]> = problem.mesh.points.iter().map(|&p| u(p)).collect();
     let (z_d, z_e) = multipliers(&problem, &rows, &motion);
     for (e, m) in rows.moments(&problem, &z_d, &z_e).iter().enumerate() {
-        if !matches!(problem.conditions[e], Condition::Clamped(_) | Condition::Roller) {
+        if !matches!(problem.conditions[e], Condition::Clamped(_) | Condition::Roller { .. }) {
             let (length, _) = problem.mesh.edge_frame(e);
             let [a, b] = problem.mesh.edges[e].vertices.map(|v| motion[v]);
             for c in 0..2 {
@@ -253,13 +253,13 @@ fn auxiliary_field_balances_everything() {
                     assert!(largest([own[end][0] + other[end][0], own[end][1] + other[end][1]]) < 1e-11);
                 }
                 Condition::Traction(p) => assert!(largest([own[end][0] - p[end][0], own[end][1] - p[end][1]]) < 1e-11),
-                Condition::Roller => assert!(tt.abs() < 1e-11),
+                Condition::Roller { .. } => assert!(tt.abs() < 1e-11),
                 Condition::Contact { .. } => assert!((tn - g).abs() < 1e-11 && tt.abs() < 1e-11),
                 Condition::Clamped(_) => {}
             }
             match condition {
                 Condition::Contact { .. } if left => (0..2).for_each(|c| on_contact[c] += 0.5 * length * own[end][c]),
-                Condition::Roller => on_roller += 0.5 * length * own[end][1],
+                Condition::Roller { .. } => on_roller += 0.5 * length * own[end][1],
                 _ => {}
             }
         }

@@ -14,9 +14,9 @@ use hypercircle::scene::*;
 use proptest::prelude::*;
 
 /// P = value + gradient · x on a boundary.
-type Affine = ([f64; 2], [[f64; 2]; 2]);
+type Parts = ([f64; 2], [[f64; 2]; 2]);
 
-fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]) -> Scene {
+fn scene(supports: Vec<Support>, loads: &[(&str, Parts)], forces: [[f64; 2]; 2]) -> Scene {
     let body = |name: &str, young, poisson, body_force| Body { name: name.to_string(), young, poisson, body_force };
     let draft = Draft {
         bodies: vec![body("left", 1.0, 0.3, forces[0]), body("right", 5.0, 0.1, forces[1])],
@@ -25,7 +25,7 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Affine)], forces: [[f64; 2]; 2]
             .iter()
             .map(|(on, (value, gradient))| Traction {
                 on: on.to_string(),
-                load: Load::Affine { value: *value, gradient: *gradient },
+                load: Load::Affine(Affine { value: *value, gradient: *gradient }),
             })
             .collect(),
         contacts: vec![Contact::new(
@@ -68,12 +68,12 @@ fn resultant(problem: &Problem, stress: &StressField, side: &str) -> ([f64; 2], 
 }
 
 /// ∫ P ds over a straight side.
-fn total((value, gradient): Affine, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+fn total((value, gradient): Parts, a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let (length, m) = ((b[0] - a[0]).hypot(b[1] - a[1]), [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
     [0, 1].map(|c| length * (value[c] + gradient[c][0] * m[0] + gradient[c][1] * m[1]))
 }
 
-fn affine() -> impl Strategy<Value = Affine> {
+fn affine() -> impl Strategy<Value = Parts> {
     let part = || prop::array::uniform2(-1.0..1.0_f64);
     (part(), part(), part()).prop_map(|(value, x, y)| (value, [x, y]))
 }
@@ -96,7 +96,7 @@ proptest! {
         let volume = |f: [f64; 2]| f.map(|v| v * area);
         // The push on the west side is raised until V_1 = `extra`, as (2.4) asks.
         let mut west = west;
-        let sum = |west: Affine| {
+        let sum = |west: Parts| {
             let parts = [volume(own), total(west, [0.0, 1.0], [0.0, 0.0]), total(north, head, [0.0, 1.0])];
             [0, 1].map(|c| parts.iter().map(|p| p[c]).sum::<f64>())
         };
@@ -105,8 +105,8 @@ proptest! {
         prop_assert!((v[0] - extra).abs() < 1e-12);
 
         let supports = vec![
-            Support { on: "left_south".to_string(), kind: SupportKind::Roller },
-            Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0, 0.0] } },
+            Support { on: "left_south".to_string(), kind: SupportKind::ROLLER },
+            Support { on: "right_east".to_string(), kind: SupportKind::CLAMPED },
         ];
         let loads = [("left_west", west), ("left_north", north), ("right_north", far)];
         let contact = |t: f64| 1.2 - 0.4 * t;
@@ -144,7 +144,7 @@ proptest! {
         // A linear pressure that does not pull has its resultant a third of an edge inside the contact, or farther.
         let third = 1.0 / 12.0;
         prop_assume!(v2 < -0.1 && (third + 0.01..1.0 - third - 0.01).contains(&place));
-        let supports = vec![Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }];
+        let supports = vec![Support { on: "right_east".to_string(), kind: SupportKind::CLAMPED }];
         let loads = [("left_west", ([0.0, value], [[0.0, 0.0], [slope, 0.0]]))];
         let (problem, stress) = solve(scene(supports, &loads, [[0.0, weight], [0.3, -0.2]]), |block, [s, t]| {
             [t, if block == 0 { 2.0 - s } else { 1.0 - s }]

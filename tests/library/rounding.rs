@@ -9,7 +9,7 @@ use hypercircle::bounds::{Bracket, complementary, mid_field};
 use hypercircle::dual::{self, Condensed, DualSolution, Equilibrium, Options};
 use hypercircle::element::{Elements, StressField, block};
 use hypercircle::problem::{Condition, Problem};
-use hypercircle::scene::{Gap, Scene, SupportKind};
+use hypercircle::scene::{Affine, Gap, Scene, SupportKind};
 use hypercircle::stability::regime;
 use hypercircle::study::{StudyError, certify};
 
@@ -239,7 +239,7 @@ fn a_body_that_is_moved_has_no_stress_in_any_degree() {
             let mut scene = given.clone();
             if k > 0 {
                 let (sin, cos) = (0.4 + f64::from(k)).sin_cos();
-                let kind = SupportKind::Clamped { displacement: [0.48 * cos, 0.48 * sin] };
+                let kind = SupportKind::Clamped { displacement: Affine::constant([0.48 * cos, 0.48 * sin]) };
                 scene = scene.changed(|draft| draft.supports[0].kind = kind).expect("a valid scene");
             }
             let problem = Problem::load(scene).expect("a problem");

@@ -219,7 +219,7 @@ fn a_file_that_cannot_be_used_is_refused_in_one_message() {
     let cases: Vec<(String, &[&str])> = vec![
         (other.vtk(), &["triangle 1 with the corners", "not in the mesh", "[mesh]"]),
         (spoilt(&|f| drop(f.cells.pop())), &["of the scene's mesh is not in it", "[mesh]"]),
-        (spoilt(&|f| f.cells.push(f.cells[0].clone())), &["there twice, as triangle 1"]),
+        (spoilt(&|f| f.cells.push(f.cells[0].clone())), &["there twice, as cell 1"]),
         (spoilt(&|f| f.values[3][1] = f64::NAN), &["no finite displacement at point 4 ("]),
         (spoilt(&|f| f.values[3] = [0.0, f64::INFINITY]), &["no finite displacement at point 4 ("]),
         (spoilt(&|f| f.points[2][0] += 0.01), &["is not in the mesh"]),

@@ -13,16 +13,28 @@ mod element;
 mod fields;
 mod hostile;
 mod jobs;
+mod labels;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;
 mod many_bodies;
 mod memory;
+mod mesh;
 mod named_mistakes;
+mod own_mesh;
+#[path = "../support/pages.rs"]
+mod pages;
 mod printed;
+mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
 mod schemas;
+mod spoiled;
 mod stability;
+mod stale;
+mod statics;
+#[path = "../support/validate.rs"]
+mod validate;
+mod words;

@@ -1,49 +1,73 @@
 //! What README and docs show of the program's output, compared with what it prints, digit by digit.
 
-use std::path::Path;
+use crate::pages::{blocks, needs_reference, pages, read, replay};
 
-use crate::command::{case, hypercircle, run, said};
-
-/// The page `name` of the repository.
-fn page(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-    std::fs::read_to_string(path).expect("part of the repository")
+#[test]
+fn sessions_on_the_pages_are_those_of_the_program() {
+    let mut commands = 0;
+    for page in pages() {
+        let text = read(&page);
+        if needs_reference(&text) {
+            continue;
+        }
+        let (count, wrong) = replay(&page, &text);
+        commands += count;
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+    assert!(commands > 1, "only {commands} commands are shown with what they print");
 }
 
-/// What stands in the first block in `language` of `text`, and the text behind it.
-fn block<'a>(text: &'a str, language: &str) -> (&'a str, &'a str) {
-    let (_, rest) = text.split_once(&format!("```{language}\n")).expect("a block");
-    rest.split_once("```").expect("an end of the block")
+/// A block of plain text is what a program printed: it is behind a program of Python, which `tests/python` runs, or in a section
+/// that names the commit which it was measured at.
+#[test]
+fn no_page_shows_output_that_nothing_runs() {
+    for page in pages() {
+        let text = read(&page);
+        let lines: Vec<&str> = text.lines().collect();
+        let mut before = "";
+        let blocks = blocks(&text);
+        for block in &blocks {
+            let section = lines[..block.line].iter().rposition(|line| line.starts_with('#')).unwrap_or(0);
+            let measured = lines[section..block.line].iter().any(|line| line.contains("at commit `"));
+            assert!(
+                block.language != "text" || before == "python" || measured,
+                "{page}:{}: nothing compares this with what is printed; make it a session (`console`)",
+                block.line
+            );
+            assert!(
+                matches!(block.language.as_str(), "console" | "text")
+                    || !block.text.lines().any(|line| line.starts_with("$ ")),
+                "{page}:{}: a session is a block of `console`",
+                block.line
+            );
+            before = &block.language;
+        }
+    }
 }
 
-/// Solves `scene` and asserts that the program prints every line of `shown`, in this order.
+/// Runs one session and says what differs from it.
 #[track_caller]
-fn prints(scene: &str, shown: &str) {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("scene.toml"), scene).expect("writable");
-    let output = run(hypercircle(folder.path(), ["solve", "scene.toml"]));
-    assert!(output.status.success(), "{}", said(&output));
-    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(
-        !shown.trim().is_empty() && printed.contains(shown),
-        "the page has\n{shown}\nthe program prints\n{printed}"
-    );
+fn differs(session: &str) -> String {
+    let (count, wrong) = replay("page.md", &format!("# Page\n\n```console\n{session}\n```\n"));
+    assert!(count > 0);
+    wrong.join("\n")
 }
 
 #[test]
-fn the_quantities_of_the_readme_are_those_of_the_program() {
-    let readme = page("README.md");
-    let (_, section) = readme.split_once("## Answers, not energies").expect("a section");
-    let (quantities, rest) = block(section, "toml");
-    let blocks = std::fs::read_to_string(case("two_blocks")).expect("part of the repository");
-    prints(&format!("{blocks}\n{quantities}"), block(rest, "text").0);
-}
-
-#[test]
-fn the_verdict_of_the_python_page_is_that_of_the_program() {
-    let python = page("docs/python.md");
-    let (_, section) = python.split_once("## A scene and its bounds").expect("a section");
-    let (program, rest) = block(section, "python");
-    let scene = program.split("\"\"\"").nth(1).expect("a scene in the program");
-    prints(scene, block(rest, "text").0);
+fn what_differs_from_a_page_is_seen() {
+    assert_eq!(differs("$ echo 1.25; echo b\n1.25\nb"), "");
+    assert_eq!(differs("$ printf '1\\n2\\n3\\n'\n[…]\n3"), "");
+    assert_eq!(differs("$ echo 'took 0.31 s, 1 … 2'\ntook […] s, 1 … 2"), "");
+    assert_eq!(differs("$ echo a > kept\n$ cat \\\n  kept nothing\na\ncat: nothing: […]"), "");
+    for wrong in [
+        "$ echo 1.25\n1.26",
+        "$ echo 1.25",
+        "$ echo 1.25\n1.25\n1.25",
+        "$ echo 1.25\n1.25\n[…]",
+        "$ true\n1.25",
+        "$ echo 'took 0.31 s, 1 … 2'\ntook […] s, 1 … 3",
+        "$ echo 'took s'\ntook […]s",
+    ] {
+        assert!(differs(wrong).contains("page.md:4: `"), "{wrong}");
+    }
 }

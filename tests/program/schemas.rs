@@ -2,42 +2,9 @@
 //! Python's jsonschema.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use crate::command::{case, hypercircle, run, said};
-
-/// Validates files against a schema, and says which do not fit: SCHEMA FILE...
-const VALIDATE: &str = r#"
-import json, sys, tomllib
-from jsonschema import Draft202012Validator
-
-schema = json.load(open(sys.argv[1]))
-Draft202012Validator.check_schema(schema)
-validator = Draft202012Validator(schema)
-wrong = 0
-for path in sys.argv[2:]:
-    with open(path, "rb") as file:
-        text = file.read().decode("utf-8-sig")
-    content = tomllib.loads(text) if path.endswith(".toml") else json.loads(text)
-    for error in validator.iter_errors(content):
-        wrong = 1
-        print(f"{path}: {error.json_path}: {error.message[:200]}")
-sys.exit(wrong)
-"#;
-
-/// What does not fit the schema called `name`; nothing where all `files` do.
-fn misfits(folder: &Path, name: &str, files: &[PathBuf]) -> String {
-    let printed = run(hypercircle(folder, ["schema", name]));
-    let schema = folder.join(format!("{name}.schema.json"));
-    std::fs::write(&schema, printed.stdout).expect("writable");
-    let mut python = Command::new("/usr/bin/python3");
-    let output = python.args(["-c", VALIDATE]).arg(schema).args(files).output().expect("Python");
-    let lines = String::from_utf8_lossy(&output.stdout).into_owned();
-    match output.status.success() {
-        true => String::new(),
-        false => format!("{lines}{}", String::from_utf8_lossy(&output.stderr)),
-    }
-}
+use crate::validate::misfits;
 
 /// The files of `folder` in the repository that end with `.toml`.
 fn scenes(folder: &str) -> Vec<PathBuf> {
@@ -104,4 +71,31 @@ fn written_reports_fit_their_schemas() {
     let element = path("element/report.json");
     assert!(element.is_file(), "{}", said(&output));
     assert_eq!(misfits(folder.path(), "element", &[element]), "");
+}
+
+/// A solver that tells nothing but displacements: zeros, which are no solution.
+const ZEROS: &str = r#"
+import json, sys
+points = json.load(open(sys.argv[1]))["points"]
+answer = {"format": "hypercircle-primal", "version": 1, "degree": 1, "vertex_displacement": [[0, 0]] * len(points)}
+json.dump(answer, open(sys.argv[2] + "/primal-P1.json", "w"))
+"#;
+
+#[test]
+fn what_a_solver_does_not_tell_is_missing_and_not_zero() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("zeros.py"), ZEROS).expect("writable");
+    let blocks = case("two_blocks").display().to_string();
+    let solver = format!("/usr/bin/python3 {}/zeros.py {{problem}} {{out}}", folder.path().display());
+    let words = ["verify", &blocks, "--reference", &solver, "--quiet", "--out", "out"];
+    let output = run(hypercircle(folder.path(), words));
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let file = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).expect("written");
+    let report: serde_json::Value = serde_json::from_str(&file("report.json")).expect("JSON");
+    let model = &report["primal"][0];
+    assert!(model["unknowns"].is_null() && model["iterations"].is_null(), "{model}");
+    let summary = file("summary.md");
+    let row = summary.lines().find(|line| line.contains(" P1 |")).unwrap_or_else(|| panic!("{summary}"));
+    assert!(row.ends_with("| – |"), "{row}");
+    assert_eq!(misfits(folder.path(), "report", &[folder.path().join("out/report.json")]), "");
 }

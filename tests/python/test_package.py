@@ -25,6 +25,16 @@ def test_a_scene_says_what_it_is(hypercircle):
     assert "left, right" in repr(scene)
 
 
+def test_quadrilaterals_of_the_mesh_file_are_told(hypercircle):
+    mesh = hypercircle.Scene(CASES / "quadrilaterals.toml").problem(refine=1)
+    cells, points = mesh["quadrilaterals"], mesh["points"]
+    assert cells.shape == (800, 4) and len(mesh["triangles"]) == 1600
+    x, y = points[cells].transpose(2, 0, 1)
+    areas = 0.5 * np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
+    assert areas == pytest.approx(np.full(800, 1 / 400), rel=1e-12)
+    assert hypercircle.Scene(CASES / "two_blocks.toml").problem()["quadrilaterals"].shape == (0, 4)
+
+
 @pytest.mark.parametrize("degree", [1, 3])
 def test_places_of_stresses_are_theirs(hypercircle, degree):
     """The exact stress of this scene is linear on each body, and every degree finds it."""

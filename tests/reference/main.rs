@@ -9,7 +9,14 @@ mod command;
 mod engine;
 #[path = "../support/lame.rs"]
 mod lame;
+#[allow(dead_code)]
+#[path = "../support/pages.rs"]
+mod pages;
 mod planted;
+mod printed;
 mod random_scenes;
+mod schemas;
 #[path = "../support/mod.rs"]
 mod support;
+#[path = "../support/validate.rs"]
+mod validate;

@@ -66,15 +66,15 @@ impl Blocks {
         let draft = Draft {
             bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],
             supports: vec![
-                Support { on: "right_east".to_string(), kind: SupportKind::Clamped { displacement: [0.0, 0.0] } },
-                Support { on: "left_south".to_string(), kind: SupportKind::Roller },
+                Support { on: "right_east".to_string(), kind: SupportKind::CLAMPED },
+                Support { on: "left_south".to_string(), kind: SupportKind::ROLLER },
             ],
             tractions: vec![Traction {
                 on: "left_west".to_string(),
-                load: Load::Affine {
+                load: Load::Affine(Affine {
                     value: [self.load.0, 0.0],
                     gradient: [[0.0, self.load.1 / self.size], [0.0, 0.0]],
-                },
+                }),
             }],
             contacts: vec![Contact::new(
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),

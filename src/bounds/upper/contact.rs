@@ -45,7 +45,7 @@ pub fn mean_excess(problem: &Problem, moments: &SideValues<[f64; 2]>, pair: &Con
     let [c, d] = pair.direction.shares;
     let own = pair.edges[0].map_or(0.0, |e| total(e, pair.first[0], c));
     let other = pair.edges[1].zip(pair.second).map_or(0.0, |(e, second)| total(e, second[0], d));
-    (own - other) / pair.length - 0.5 * (pair.gap[0] + pair.gap[1])
+    (own - other) / pair.length - pair.mean_gap()
 }
 
 /// A contact pair whose jump is being changed.

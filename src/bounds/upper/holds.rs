@@ -48,6 +48,18 @@ impl Hold {
         }
     }
 
+    /// This hold on the way to one of the same kind.
+    fn towards(&self, end: &Hold, t: f64) -> Hold {
+        let between = |a: f64, b: f64| if a == b { a } else { a + t * (b - a) };
+        match (*self, *end) {
+            (Hold::Fixed(a), Hold::Fixed(b)) => Hold::Fixed([between(a[0], b[0]), between(a[1], b[1])]),
+            (Hold::Line { normal, value: a }, Hold::Line { value: b, .. }) => {
+                Hold::Line { normal, value: between(a, b) }
+            }
+            _ => *self,
+        }
+    }
+
     /// Adds a condition u · normal = value; `None` where it contradicts what holds already.
     fn with_line(self, normal: [f64; 2], value: f64, size: f64) -> Option<Hold> {
         match self {
@@ -82,15 +94,27 @@ const PARALLEL: f64 = 1e-10;
 pub struct Holds {
     /// Of every vertex.
     pub vertices: Vec<Hold>,
-    /// Of every edge: of its midpoint and of every coefficient inside.
-    pub edges: Vec<Hold>,
+    /// Of every edge at its two ends, linear between.
+    pub edges: Vec<[Hold; 2]>,
 }
 
 impl Holds {
     /// The holds of all nodes.
-    pub fn of_nodes<'a>(&'a self, nodes: &'a Nodes) -> impl Iterator<Item = &'a Hold> {
-        let inside = |(e, hold)| std::iter::repeat_n(hold, nodes.inside(e).len());
-        self.vertices.iter().chain(self.edges.iter().enumerate().flat_map(inside))
+    pub fn of_nodes<'a>(&'a self, nodes: &'a Nodes) -> impl Iterator<Item = Hold> + 'a {
+        let inside = |e: usize| self.inside(e, nodes.inside(e).len());
+        self.vertices.iter().copied().chain((0..self.edges.len()).flat_map(inside))
+    }
+
+    /// The holds of the coefficients inside an edge that has so many.
+    pub fn inside(&self, e: usize, count: usize) -> impl Iterator<Item = Hold> + use<> {
+        let [from, to] = self.edges[e];
+        (1..=count).map(move |k| from.towards(&to, k as f64 / (count + 1) as f64))
+    }
+
+    /// What holds in the middle of an edge.
+    pub fn middle(&self, e: usize) -> Hold {
+        let [from, to] = self.edges[e];
+        from.towards(&to, 0.5)
     }
 }
 
@@ -99,9 +123,9 @@ impl Holds {
 /// # Errors
 /// [`NoUpperBound::SupportsDisagree`].
 pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
-    holds_at(problem, |e, _| match problem.conditions[e] {
-        Condition::Clamped(u0) => u0,
-        _ => [0.0; 2],
+    holds_at(problem, |e, v| {
+        let ends = problem.conditions[e].prescribed().unwrap_or_default();
+        if v == problem.mesh.edges[e].vertices[0] { ends[0] } else { ends[1] }
     })
 }
 
@@ -112,24 +136,24 @@ pub fn holds(problem: &Problem) -> Result<Holds, NoUpperBound> {
 /// [`NoUpperBound::SupportsDisagree`].
 pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]) -> Result<Holds, NoUpperBound> {
     let mesh = &problem.mesh;
-    let normals = roller_normals(problem);
+    let normals = roller_directions(problem);
     let of = |e: usize, v: usize| match (problem.conditions[e], normals.get(&e)) {
         (Condition::Clamped(_), _) => Hold::Fixed(prescribed(e, v)),
-        (Condition::Roller, Some(normal)) => {
+        (Condition::Roller { .. }, Some(normal)) => {
             let u = prescribed(e, v);
             Hold::Line { normal: *normal, value: u[0] * normal[0] + u[1] * normal[1] }
         }
         _ => Hold::Free,
     };
     // Prescribed displacements are compared with each other, on the scale of the largest.
-    let supported =
-        problem.conditions.iter().enumerate().filter(|(_, c)| matches!(c, Condition::Clamped(_) | Condition::Roller));
+    let supported = problem.conditions.iter().enumerate().filter(|(_, c)| c.prescribed().is_some());
     let size = supported
         .flat_map(|(e, _)| mesh.edges[e].vertices.map(|v| prescribed(e, v)))
         .fold(0.0_f64, |m, u| m.max(u[0].abs()).max(u[1].abs()));
-    let mut holds = Holds { vertices: vec![Hold::Free; mesh.points.len()], edges: vec![Hold::Free; mesh.edges.len()] };
+    let mut holds =
+        Holds { vertices: vec![Hold::Free; mesh.points.len()], edges: vec![[Hold::Free; 2]; mesh.edges.len()] };
     for (e, edge) in mesh.edges.iter().enumerate() {
-        holds.edges[e] = of(e, edge.vertices[0]);
+        holds.edges[e] = edge.vertices.map(|v| of(e, v));
         for v in edge.vertices {
             let next = match of(e, v) {
                 Hold::Fixed(u0) => holds.vertices[v].with_point(u0, size),
@@ -186,15 +210,19 @@ pub fn jump_rounding(problem: &Problem, pair: &ContactPair, size: f64) -> f64 {
     (ROUNDED + of_coordinates / pair.length) * size + of_gap
 }
 
-/// The outward unit normal of every roller edge: that of the whole straight side which the edge is a part of.
+/// The direction of every roller edge: where it is the normal, that of the whole straight side which the edge is a part of.
 ///
 /// The ends of an edge are rounded, and the direction of one that is short beside its coordinates is known to few digits.
 /// Two such directions at a vertex would hold it in both, where the side lets it slide.
-fn roller_normals(problem: &Problem) -> HashMap<usize, [f64; 2]> {
+fn roller_directions(problem: &Problem) -> HashMap<usize, [f64; 2]> {
     let mesh = &problem.mesh;
-    let rollers: Vec<usize> = (0..mesh.edges.len()).filter(|&e| problem.conditions[e] == Condition::Roller).collect();
+    let of = |e: usize| match problem.conditions[e] {
+        Condition::Roller { direction, .. } => Some((e, mesh.edge_frame(e).0, direction)),
+        _ => None,
+    };
+    let rollers: Vec<(usize, f64, [f64; 2])> = (0..mesh.edges.len()).filter_map(of).collect();
     let mut at = HashMap::<usize, Vec<usize>>::new();
-    for (i, &e) in rollers.iter().enumerate() {
+    for (i, &(e, ..)) in rollers.iter().enumerate() {
         for v in mesh.edges[e].vertices {
             at.entry(v).or_default().push(i);
         }
@@ -202,7 +230,7 @@ fn roller_normals(problem: &Problem) -> HashMap<usize, [f64; 2]> {
     let mut sides = Sets::new(rollers.len());
     for (&v, meeting) in &at {
         let &[i, j] = meeting.as_slice() else { continue };
-        let [(l, n), (k, m)] = [i, j].map(|i| mesh.edge_frame(rollers[i]));
+        let [(_, l, n), (_, k, m)] = [i, j].map(|i| rollers[i]);
         let [x, y] = mesh.points[v];
         let rounding = 8.0 * f64::EPSILON * x.abs().max(y.abs()) / l.min(k);
         if (n[0] * m[1] - n[1] * m[0]).abs() <= PARALLEL + rounding {
@@ -210,11 +238,10 @@ fn roller_normals(problem: &Problem) -> HashMap<usize, [f64; 2]> {
         }
     }
     let mut sum = vec![[0.0; 2]; rollers.len()];
-    for (i, &e) in rollers.iter().enumerate() {
-        let (length, normal) = mesh.edge_frame(e);
+    for (i, &(_, length, normal)) in rollers.iter().enumerate() {
         let side = &mut sum[sides.root(i)];
         *side = [side[0] + length * normal[0], side[1] + length * normal[1]];
     }
     let unit = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
-    rollers.iter().enumerate().map(|(i, &e)| (e, unit(sum[sides.root(i)]))).collect()
+    rollers.iter().enumerate().map(|(i, &(e, ..))| (e, unit(sum[sides.root(i)]))).collect()
 }

@@ -41,7 +41,8 @@ pub fn lifted(
     if values.len() > MOST_NODES || values.iter().flatten().any(|x| !x.is_finite()) {
         return None;
     }
-    for (value, hold) in values.iter_mut().zip(holds.vertices.iter().chain(&holds.edges)) {
+    let middles = (0..holds.edges.len()).map(|e| holds.middle(e));
+    for (value, hold) in values.iter_mut().zip(holds.vertices.iter().copied().chain(middles)) {
         *value = hold.impose(*value);
     }
     let rows: Vec<Row> = match quadratic {
@@ -92,7 +93,7 @@ impl Elastic {
         let free = holds
             .vertices
             .iter()
-            .chain(holds.edges.iter().filter(|_| quadratic))
+            .chain(holds.edges.iter().map(|[first, _]| first).filter(|_| quadratic))
             .map(|hold| {
                 let own = directions(hold);
                 count += own.len();

@@ -137,8 +137,10 @@ fn relaxed(
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
         let inside = edges::inside(moments.of(e), mesh.edge_frame(e).0, ends);
-        for (value, found) in field.values[nodes.inside(e)].iter_mut().zip(inside) {
-            *value = holds.edges[e].impose(found);
+        let own = &mut field.values[nodes.inside(e)];
+        let held = holds.inside(e, own.len());
+        for ((value, found), hold) in own.iter_mut().zip(inside).zip(held) {
+            *value = hold.impose(found);
         }
     }
     contact::match_means(problem, moments, &mut field);

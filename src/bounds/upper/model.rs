@@ -118,9 +118,9 @@ impl Model {
 
 /// The directions in which each node may move.
 fn directions(holds: &Holds, nodes: &Nodes) -> Vec<Directions> {
-    let of = |hold: &Hold| match hold {
+    let of = |hold: Hold| match hold {
         Hold::Free => Directions { count: 2, unit: [[1.0, 0.0], [0.0, 1.0]] },
-        Hold::Line { normal: [x, y], .. } => Directions { count: 1, unit: [[-y, *x]; 2] },
+        Hold::Line { normal: [x, y], .. } => Directions { count: 1, unit: [[-y, x]; 2] },
         Hold::Fixed(_) => Directions { count: 0, unit: [[0.0; 2]; 2] },
     };
     holds.of_nodes(nodes).map(of).collect()

@@ -55,8 +55,10 @@ impl<'a> Nearest<'a> {
         for e in 0..self.problem.mesh.edges.len() {
             let ends = self.problem.mesh.edges[e].vertices.map(|v| field.values[v]);
             let inside = edges::inside(moments.of(e), self.problem.mesh.edge_frame(e).0, ends);
-            for (value, found) in field.values[self.nodes.inside(e)].iter_mut().zip(inside) {
-                *value = self.holds.edges[e].impose(found);
+            let own = &mut field.values[self.nodes.inside(e)];
+            let held = self.holds.inside(e, own.len());
+            for ((value, found), hold) in own.iter_mut().zip(inside).zip(held) {
+                *value = hold.impose(found);
             }
         }
         field

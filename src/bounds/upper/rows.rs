@@ -68,7 +68,7 @@ pub fn of_pair(pair: &ContactPair, sides: &[Option<Vec<usize>>; 2]) -> Vec<Row> 
         sides.iter().zip([1.0, -1.0]).filter_map(term)
     };
     let degree = if pair.direction.is_constant() { k } else { k + 1 };
-    let gap = |j: usize| pair.gap[0] + (pair.gap[1] - pair.gap[0]) * (j as f64 / degree as f64);
+    let gap = pair.gap_below(degree);
     let row = |j: usize| {
         let terms = if pair.direction.is_constant() {
             jump(j, first, 1.0).collect()
@@ -79,8 +79,7 @@ pub fn of_pair(pair: &ContactPair, sides: &[Option<Vec<usize>>; 2]) -> Vec<Row> 
             let before = (j > 0).then(|| jump(j - 1, last, part(j))).into_iter().flatten();
             own.chain(before).collect()
         };
-        let gap = if j == degree { pair.gap[1] } else { gap(j) };
-        Row { terms, gap }
+        Row { terms, gap: gap[j] }
     };
     (0..=degree).map(row).collect()
 }

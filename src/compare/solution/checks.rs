@@ -1,8 +1,8 @@
 //! The checks of a field that claims to be a discrete solution.
 
-use super::digits::Allowance;
 use super::{SOLVER, Site, Solution, Weak};
 use crate::bounds::Hold;
+use crate::compare::ceiling::Allowance;
 use crate::compare::{Allowances, Basis, Check};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::Scales;
@@ -55,8 +55,10 @@ impl Solution<'_> {
             ),
             false => String::new(),
         };
+        let rule =
+            self.points.map_or(String::new(), |n| format!(", integrated with {n} × {n} points in each quadrilateral"));
         let what = format!(
-            "The stresses of a discrete solution balance the loads on every basis function of degree {}, together with forces of \
+            "The stresses of a discrete solution balance the loads on every basis function of degree {}{rule}, together with forces of \
              supports and along contacts: what is left of the nodal forces, relative to all of them.{places}{digits}",
             self.candidate.degree
         );
@@ -88,7 +90,7 @@ impl Solution<'_> {
     }
 
     /// `length` relative to the largest displacement, or to what the problem allows where the field is larger.
-    fn relative(&self, length: f64) -> f64 {
+    pub(super) fn relative(&self, length: f64) -> f64 {
         if self.reference > 0.0 { length / self.reference } else { length }
     }
 
@@ -133,7 +135,7 @@ impl Solution<'_> {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let nodes = 0..self.rest.len();
         let work: f64 = nodes.clone().map(|n| dot(self.forces.load[n], self.candidate.value(n))).sum();
-        let prescribed = |n: usize| match *self.hold(n) {
+        let prescribed = |n: usize| match self.hold(n) {
             Hold::Free => [0.0; 2],
             Hold::Line { normal, value } => normal.map(|x| value * x),
             Hold::Fixed(value) => value,
@@ -144,7 +146,8 @@ impl Solution<'_> {
         let distance =
             |(site, excess): (&Site, &f64)| site.gap + if weak[site.interface] { *excess } else { excess.max(0.0) };
         let distances = self.sites.list.iter().zip(&self.excess).map(distance);
-        let gaps: f64 = distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum();
+        let gaps: f64 =
+            distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum::<f64>() + self.on_gaps;
         let beside: f64 = self.beside.iter().enumerate().map(|(n, f)| dot(*f, self.candidate.value(n))).sum();
         let (left, right) = (2.0 * self.strain, work + supports - gaps + beside);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
@@ -226,7 +229,7 @@ impl Solution<'_> {
         if self.is_pushed() {
             return [(0.0, String::new()), (0.0, String::new())];
         }
-        let total = self.applied().max(self.carried(interface));
+        let total = self.applied().max(self.larger * self.carried(interface));
         let share = |force: f64| if total > 0.0 { force / total } else { force };
         let rounding = self.of_displacements(1.0);
         let open = -2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference;
@@ -245,7 +248,7 @@ impl Solution<'_> {
     }
 
     /// A check of `value` ≤ `allowance`.
-    fn claimed(&self, name: &str, value: f64, allowance: Allowance, why: String) -> Check {
+    pub(super) fn claimed(&self, name: &str, value: f64, allowance: Allowance, why: String) -> Check {
         let made = |allowed| Check::at_most(name, value, 0.0, allowed, Basis::Claimed, why.as_str());
         self.with_digits(allowance, made)
     }

@@ -5,50 +5,17 @@
 //! wrong one where the same digits would hide a mistake worth finding: the check is then not made, and has not passed.
 
 use super::{SOLVER, Solution};
-use crate::compare::{Basis, Check};
-
-/// The mistake that a check has to be able to tell: this part of the modulus, the loads or the displacement.
-const MISTAKE: f64 = 0.05;
-/// Rounding may leave this part of what the mistake leaves.
-const PART: f64 = 0.5;
-/// Of the largest displacement of the stress side, that of a correct field is at most so many times as large, but for motions that
-/// nothing holds.
-const LARGER: f64 = 2.0;
-/// Loads below this part of the forces at supports and contacts are not what the solution consists of.
-const BESIDE: f64 = 0.1;
-
-/// What the problem says of the size of its solution, whatever the field: from λ_h and the displacement that belongs to it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
-    /// Strain energy of λ_h.
-    pub strain: f64,
-    /// Largest displacement of the admissible field made from λ_h; infinite where there is none.
-    pub displacement: f64,
-}
-
-/// An allowance in two parts, in the units of a check.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Allowance {
-    /// What a solver may leave.
-    pub exact: f64,
-    /// What the rounding of a correct field can leave at most.
-    pub digits: f64,
-    /// What it may leave where the check is to tell a mistake.
-    pub ceiling: f64,
-}
+use crate::compare::Check;
+use crate::compare::ceiling::{Allowance, Extent, MISTAKE, PART};
 
 impl Solution<'_> {
     /// Takes the size of the solution from `extent` where the field is larger.
     pub fn within(mut self, extent: Extent) -> Self {
-        if extent.displacement > 0.0 {
-            self.reference = self.largest.min(LARGER * extent.displacement);
-        }
+        self.reference = extent.reference(self.largest);
+        self.larger = extent.of_forces(self.strain);
         let supported = self.forces.energy_size(|i| self.forces.left[i][0].hypot(self.forces.left[i][1]));
-        let larger = if self.strain > extent.strain { (extent.strain.max(0.0) / self.strain).sqrt() } else { 1.0 };
-        let supported = larger * supported;
         let load = self.forces.energy_size(|i| self.forces.load[i][0].hypot(self.forces.load[i][1]));
-        let carried = if load > BESIDE * supported { load } else { supported };
-        self.ceiling = PART * MISTAKE * carried / self.scale;
+        self.ceiling = extent.rounding_of_forces(load, supported, self.strain) / self.scale;
         self
     }
 
@@ -66,17 +33,7 @@ impl Solution<'_> {
     /// The check `made` with `allowance`: it is not made where the field may owe to its digits alone that it passes, and they are
     /// too few to tell a mistake.
     pub(super) fn with_digits(&self, allowance: Allowance, made: impl Fn(f64) -> Check) -> Check {
-        let exact = made(allowance.exact);
-        if exact.passed {
-            return exact;
-        }
-        let check = made(allowance.exact + allowance.digits);
-        if !check.passed || allowance.digits <= allowance.ceiling {
-            return check;
-        }
-        let told = made(allowance.exact + allowance.ceiling).allowed;
-        let why = format!("{} {}", check.why, self.too_few(allowance));
-        Check::not_made(&check.name, told, Basis::Claimed, why)
+        allowance.check(made, || self.too_few(allowance))
     }
 
     /// How many digits the check would need.

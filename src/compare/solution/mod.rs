@@ -8,15 +8,17 @@
 
 mod checks;
 mod digits;
+mod nonmatching;
 mod sites;
 mod weak;
 
-pub use digits::Extent;
+pub use nonmatching::Nonmatching;
 pub use sites::{Site, Sites, Span};
 pub use weak::{Law, Shape, Station, Weak};
 
 use super::balance::Balance;
 use super::candidate::Candidate;
+use super::cells;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Compliance;
@@ -34,6 +36,8 @@ pub struct Numbering {
     pub triangles: Vec<Option<usize>>,
     /// Where a field comes in several files: of each the name and its first point and triangle.
     pub files: Vec<(String, [usize; 2])>,
+    /// Whether the file has the triangles of [`Problem::uncut`], from before contact cut some of them.
+    pub uncut: bool,
 }
 
 impl Numbering {
@@ -66,6 +70,8 @@ pub struct Solution<'a> {
     pub candidate: &'a Candidate,
     /// Nodal forces: what stresses ask for, less the loads.
     pub forces: NodalForces,
+    /// Points in each direction of the rule on quadrilaterals, where there are such.
+    pub points: Option<usize>,
     /// What supports and contacts cannot take of them, node by node.
     pub rest: Vec<[f64; 2]>,
     /// What supports hold at vertices, then at edge midpoints.
@@ -84,6 +90,10 @@ pub struct Solution<'a> {
     pub largest: f64,
     /// What displacements are relative to: the largest one, or what the problem allows where the field is larger.
     pub reference: f64,
+    /// What contact does on gaps beside what acts at [`Self::sites`].
+    on_gaps: f64,
+    /// By what forces of the field are multiplied so that they are those of a solution at most.
+    larger: f64,
     /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
     ceiling: f64,
     /// What the closed Bernstein coefficients, pushing alone, leave over: relative to `scale`.
@@ -108,18 +118,35 @@ impl<'a> Solution<'a> {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
-        let forces = NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle);
+        let made = |points| Self::by_rule(problem, candidate, strain, points);
+        let tried = cells::rules(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
+        let best = tried.into_iter().min_by(|a, b| a.residual().total_cmp(&b.residual()));
+        best.map_or_else(|| made(None), Ok)
+    }
+
+    /// The same by one of the rules that the program may have used on quadrilaterals.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other.
+    pub fn by_rule(
+        problem: &'a Problem,
+        candidate: &'a Candidate,
+        strain: f64,
+        points: Option<usize>,
+    ) -> Result<Self, NoUpperBound> {
         let holds = holds(problem)?;
         let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
         let nodes = Nodes::new(problem.mesh.points.len(), inside);
         let sites = Sites::new(problem, candidate.degree, &holds);
+        let forces = NodalForces::by_rule(problem, candidate, points);
+        let strain = if points.is_some() { 0.5 * forces.energy(candidate) } else { strain };
         let mut rest = forces.unsupported(&holds, &nodes);
         let unsupported = rest.clone();
         let pressing = sites.pressing(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);
         let excess = sites.list.iter().map(|site| site.excess(value)).collect();
-        let balance = Balance::new(problem, candidate, strain)?;
+        let balance = Balance::of_forces(problem, candidate, strain, &forces)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
         let mut solution = Solution {
@@ -133,10 +160,13 @@ impl<'a> Solution<'a> {
             strain,
             largest: candidate.largest(),
             reference: candidate.largest(),
+            on_gaps: 0.0,
+            larger: 1.0,
             ceiling: f64::INFINITY,
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
             rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
             sites,
+            points,
             forces,
             unsupported,
             materials: problem.materials(),
@@ -144,8 +174,11 @@ impl<'a> Solution<'a> {
             claims_weak: false,
             beside: Vec::new(),
         };
-        solution.recognise();
-        solution.accept();
+        // These laws are read off the stresses of triangles.
+        if solution.points.is_none() {
+            solution.recognise();
+            solution.accept();
+        }
         Ok(solution)
     }
 
@@ -191,9 +224,9 @@ impl<'a> Solution<'a> {
     }
 
     /// The hold of a node.
-    pub fn hold(&self, node: usize) -> &Hold {
+    pub fn hold(&self, node: usize) -> Hold {
         let vertices = self.holds.vertices.len();
-        if node < vertices { &self.holds.vertices[node] } else { &self.holds.edges[node - vertices] }
+        if node < vertices { self.holds.vertices[node] } else { self.holds.middle(node - vertices) }
     }
 
     /// Where a node is.
@@ -219,11 +252,11 @@ impl<'a> Solution<'a> {
         sites.filter(|(s, _)| s.interface == interface).map(|(_, f)| f.abs()).sum()
     }
 
-    /// What forces are relative to: the loads, and what supports carry.
+    /// What forces are relative to: the loads, and what supports carry, as far as a solution can ask for it.
     pub fn applied(&self) -> f64 {
         let size = |f: [f64; 2]| f[0].hypot(f[1]);
         let loads: f64 = self.forces.load.iter().map(|f| size(*f)).sum();
-        loads.max((0..self.rest.len()).map(|n| size(self.supported(n))).sum())
+        loads.max(self.larger * (0..self.rest.len()).map(|n| size(self.supported(n))).sum::<f64>())
     }
 }
 

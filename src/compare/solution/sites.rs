@@ -121,7 +121,7 @@ impl Sites {
                     first: vertices + own,
                     second: pair.edges[1].map(|e| vertices + e),
                     normal: pair.direction.at(0.5),
-                    gap: 0.5 * (pair.gap[0] + pair.gap[1]),
+                    gap: pair.gap_at(0.5),
                     weight: 4.0 * part,
                     turned,
                 });
@@ -192,7 +192,8 @@ impl Group {
 }
 
 fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
-    let all: Vec<&Hold> = holds.vertices.iter().chain(&holds.edges).collect();
+    let middles = (0..holds.edges.len()).map(|e| holds.middle(e));
+    let all: Vec<Hold> = holds.vertices.iter().copied().chain(middles).collect();
     let mut sets = DisjointSets::new(all.len());
     for site in list {
         if let Some(second) = site.second {

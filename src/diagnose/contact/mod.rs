@@ -8,6 +8,7 @@ use super::words::number;
 use super::{Energies, Finding};
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
+use crate::scene::counted;
 
 pub use tangential::trials;
 pub use weak::in_the_mean;
@@ -110,9 +111,9 @@ impl<'a> Along<'a> {
         if let Some(most) = pulling.iter().copied().min_by(|a, b| forces[*a].total_cmp(&forces[*b])) {
             let sum: f64 = pulling.iter().map(|s| -forces[*s]).sum();
             let sentence = format!(
-                "contact {} pulls, as if glued, at {} nodes with {} together, most at {}",
+                "contact {} pulls, as if glued, at {} with {} together, most at {}",
                 self.name,
-                pulling.len(),
+                counted(pulling.len(), "node"),
                 number(sum),
                 self.solution.named(self.solution.sites.list[most].first)
             );
@@ -127,9 +128,9 @@ impl<'a> Along<'a> {
         let sentence = match self.constant_gap(&open) {
             Some(gap) => format!("contact {} closes {} too early: its gap is smaller by that", self.name, number(-gap)),
             None => format!(
-                "contact {} pushes at {} open nodes, at {} over a distance of {}{}",
+                "contact {} pushes at {}, at {} over a distance of {}{}",
                 self.name,
-                open.len(),
+                counted(open.len(), "open node"),
                 self.solution.named(self.solution.sites.list[widest].first),
                 number(-self.depth(widest)),
                 self.turned(self.depth(widest))

@@ -161,8 +161,8 @@ impl Constraints {
                         }
                     }
                     Condition::Clamped(_) => {}
-                    Condition::Roller => {
-                        all.equality(Meaning::RollerShear { edge, basis }, 0.0, vec![term(0, tangent)]);
+                    Condition::Roller { direction: [x, y], .. } => {
+                        all.equality(Meaning::RollerShear { edge, basis }, 0.0, vec![term(0, [-y, *x])]);
                     }
                     Condition::Contact { .. } => {
                         all.equality(Meaning::ContactShear { edge, basis }, 0.0, vec![term(0, tangent)]);

@@ -89,10 +89,9 @@ pub fn dependences(problem: &Problem, constraints: &Constraints) -> Vec<Dependen
             if mesh.edges[e].triangles[0].is_none_or(|t| parts[t] != part) {
                 continue;
             }
-            let (_, normal) = mesh.edge_frame(e);
             let directions: &[[f64; 2]] = match condition {
                 Condition::Clamped(_) => &[[1.0, 0.0], [0.0, 1.0]],
-                Condition::Roller => &[normal],
+                Condition::Roller { direction, .. } => &[*direction],
                 _ => &[],
             };
             for v in mesh.edges[e].vertices {

@@ -8,7 +8,7 @@ use super::rows::SparseRows;
 use crate::dual::DualError;
 use crate::element::subtriangle::Matrix;
 use crate::element::{StressField, quadrature::triangle_rule};
-use crate::problem::{Condition, Problem, Scales};
+use crate::problem::{Problem, Scales};
 
 /// What is kept of a block once Q has been found.
 #[derive(Debug, Clone)]
@@ -73,10 +73,8 @@ impl Program {
         let rows = constraints.d.stack(&constraints.e);
         let mut g = auxiliary.excess.clone();
         g.extend(&auxiliary.normal_traction);
-        let gap_moments = problem
-            .pairs()
-            .flat_map(|p| [0, 1].map(|end| p.length * (2.0 * p.gap[end] + p.gap[1 - end]) / 6.0))
-            .collect();
+        let gap_moments =
+            problem.pairs().flat_map(|p| p.gap_moments(1).into_iter().map(|moment| p.length * moment)).collect();
         let scales = Scales::new(problem);
         let b = Vec::new();
         let mut program = Program { blocks, constraints, dependences, auxiliary, b, rows, g, scales, gap_moments };
@@ -111,12 +109,16 @@ impl Program {
             }
         }
         for (e, condition) in problem.conditions.iter().enumerate() {
-            let (Condition::Clamped(u0), Some(t)) = (condition, mesh.edges[e].triangles[0]) else { continue };
+            let (Some(ends), Some(t)) = (condition.prescribed(), mesh.edges[e].triangles[0]) else { continue };
             let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
             let (length, _) = mesh.edge_frame(e);
             for k in 0..9 {
-                let mean = [external[t][(4 * sub, k)], external[t][(4 * sub + 2, k)]];
-                b[9 * t + k] -= length * (mean[0] * u0[0] + mean[1] * u0[1]);
+                // T = mean + p slope and u0 = middle + p half, p from −1 to 1.
+                let work = (0..2).map(|c| {
+                    let [middle, half] = [0.5 * (ends[0][c] + ends[1][c]), 0.5 * (ends[1][c] - ends[0][c])];
+                    external[t][(4 * sub + 2 * c, k)] * middle + external[t][(4 * sub + 2 * c + 1, k)] * half / 3.0
+                });
+                b[9 * t + k] -= length * work.sum::<f64>();
             }
         }
         let gap: Vec<f64> = self.gap_moments.iter().map(|m| -m).collect();

@@ -56,12 +56,10 @@ impl Reaction {
         let v = applied(problem, bodies[second]);
         let mut direction: Option<[f64; 2]> = None;
         for (e, condition) in problem.conditions.iter().enumerate() {
-            if *condition != Condition::Roller
-                || mesh.edges[e].triangles[0].map(|t| mesh.body[t]) != Some(bodies[second])
-            {
+            let Condition::Roller { direction: n, .. } = *condition else { continue };
+            if mesh.edges[e].triangles[0].map(|t| mesh.body[t]) != Some(bodies[second]) {
                 continue;
             }
-            let (_, n) = mesh.edge_frame(e);
             let along = [-n[1], n[0]];
             if direction.is_some_and(|d| cross(d, along).abs() > PARALLEL) {
                 return Reaction::Free;

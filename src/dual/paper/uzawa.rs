@@ -11,7 +11,7 @@ use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
-use crate::element::SideValues;
+use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
 
 /// The paper's method.
@@ -166,9 +166,9 @@ fn moments(problem: &Problem, program: &Program, z: &[f64]) -> SideValues<[f64; 
     let z_e: Vec<f64> = z[p1..].iter().zip(&program.gap_moments).map(|(v, gap)| gap - v).collect();
     let mut moments = program.constraints.moments(problem, &z_d, &z_e);
     for (e, condition) in problem.conditions.iter().enumerate() {
-        if let crate::problem::Condition::Clamped(u0) = condition {
-            let half = 0.5 * problem.mesh.edge_frame(e).0;
-            moments.of_mut(e).fill(u0.map(|u| half * u));
+        if let Some(ends) = condition.prescribed() {
+            let given = side::linear_moments(ends, problem.mesh.edge_frame(e).0, 1);
+            moments.of_mut(e).iter_mut().zip(given).for_each(|(m, of)| *m = [m[0] + of[0], m[1] + of[1]]);
         }
     }
     moments

@@ -59,7 +59,7 @@ impl Blocks {
             for (out, part) in raised.chunks_exact_mut(sides.len()).zip(parts) {
                 sides.raise(part, out);
             }
-            let matrix = all.push_turned(problem, unknowns, &sides, &raised);
+            let matrix = all.push_turned(unknowns, &sides, &raised);
             all.matrix.push(write(&matrix)?);
         }
         Ok(all)
@@ -79,8 +79,8 @@ impl Blocks {
     }
 
     /// Any triangle; `raised` has the coefficients of the particular field and of every mode. Returns B, mode by mode.
-    fn push_turned(&mut self, problem: &Problem, unknowns: &Unknowns, sides: &Sides, raised: &[f64]) -> Vec<f64> {
-        let rows: Vec<_> = sides.rows(&problem.mesh, unknowns).collect();
+    fn push_turned(&mut self, unknowns: &Unknowns, sides: &Sides, raised: &[f64]) -> Vec<f64> {
+        let rows: Vec<_> = sides.rows(unknowns).collect();
         let all = || rows.iter().flat_map(|(at, both)| both.iter().map(move |component| (*at, component)));
         let mut own: Vec<usize> = all().flat_map(|(_, c)| c.terms().iter().map(|&(unknown, _)| unknown)).collect();
         own.sort_unstable();

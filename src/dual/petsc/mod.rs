@@ -136,7 +136,7 @@ impl DualMethod for Petsc {
                 Some(exchange::read_owner(&folder, problem.mesh.triangles.len(), self.ranks).map_err(failed)?);
         }
         let stress = modes.stresses(problem, &found.parameters);
-        let moments = unknowns.moments(problem, &found.unknowns);
+        let moments = unknowns.moments(&found.unknowns);
         let residual = Equilibrium::measure(problem, &stress, &moments).residual();
         let answer = &found.answer;
         if !residual.is_finite() || residual > self.accuracy() {

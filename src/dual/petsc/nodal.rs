@@ -36,7 +36,7 @@ impl Nodal {
                 for k in 0..=unknowns.degree(e) {
                     let mut m = [0.0; 2];
                     m[c] = moments_of_ends(problem, unknowns, e, k)[end];
-                    unknowns.project_moment(problem, e, k, m, &mut x);
+                    unknowns.project_moment(e, k, m, &mut x);
                 }
                 for i in own.iter().map(|&b| unknowns.blocks[b]).flat_map(|b| b.start..b.start + b.len) {
                     let weight = std::mem::take(&mut x[i]);

@@ -1,8 +1,7 @@
-//! Native reader of Gmsh's MSH 2.2 and 4.1, text and binary.
+//! Native reader of Gmsh's MSH 2.0 to 2.2, 4.0 and 4.1, text and binary.
 //!
 //! A physical surface is a body and a physical curve a boundary, by name, or by number where there is no name.
 
-pub(super) mod content;
 mod cursor;
 #[cfg(test)]
 mod tests;
@@ -11,9 +10,9 @@ mod v4;
 
 use std::path::Path;
 
-use content::Content;
 use cursor::{Cursor, Encoding, shortened};
 
+use super::content::Content;
 use super::{MeshError, RawMesh};
 use crate::scene::Note;
 
@@ -39,8 +38,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
         cursor.section = format!("${section}");
         match (section, version) {
             ("PhysicalNames", _) => cursor.in_text(|cursor| physical_names(cursor, &mut content))?,
-            ("Entities", Version::V4) => v4::entities(&mut cursor, &mut content)?,
-            ("PartitionedEntities", Version::V4) => {
+            ("Entities", Version::V4(minor)) => v4::entities(&mut cursor, &mut content, minor)?,
+            ("PartitionedEntities", Version::V4(_)) => {
                 return Err(cursor.fault("the mesh is partitioned", "save it without partitions"));
             }
             ("Nodes" | "Elements", _) => {
@@ -50,9 +49,9 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
                 }
                 match (section, version) {
                     ("Nodes", Version::V2) => v2::nodes(&mut cursor, &mut content)?,
-                    ("Nodes", Version::V4) => v4::nodes(&mut cursor, &mut content)?,
+                    ("Nodes", Version::V4(minor)) => v4::nodes(&mut cursor, &mut content, minor)?,
                     (_, Version::V2) => v2::elements(&mut cursor, &mut content)?,
-                    (_, Version::V4) => v4::elements(&mut cursor, &mut content)?,
+                    (_, Version::V4(minor)) => v4::elements(&mut cursor, &mut content, minor)?,
                 }
             }
             // $Periodic, $NodeData, comments and the like.
@@ -78,7 +77,14 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
     V2,
-    V4,
+    V4(Minor),
+}
+
+/// Versions 4.0 and 4.1 order the same numbers differently, and have other widths for them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Minor {
+    Zero,
+    One,
 }
 
 /// Reads up to `$EndMeshFormat`; sets the encoding.
@@ -99,9 +105,10 @@ fn header(cursor: &mut Cursor) -> Result<Version, MeshError> {
     let line = cursor.full_line().unwrap_or_default();
     let words: Vec<&str> = line.split_whitespace().collect();
     let (version, binary, size) = match words.as_slice() {
-        ["2.2", binary @ ("0" | "1"), size] => (Version::V2, *binary, *size),
-        ["4.1", binary @ ("0" | "1"), size] => (Version::V4, *binary, *size),
-        [version, ..] if version.parse::<f64>().is_ok() && !["2.2", "4.1"].contains(version) => {
+        ["2" | "2.0" | "2.1" | "2.2", binary @ ("0" | "1"), size] => (Version::V2, *binary, *size),
+        ["4" | "4.0", binary @ ("0" | "1"), size] => (Version::V4(Minor::Zero), *binary, *size),
+        ["4.1", binary @ ("0" | "1"), size] => (Version::V4(Minor::One), *binary, *size),
+        [version, ..] if version.parse::<f64>().is_ok() && !version.starts_with('2') && !version.starts_with('4') => {
             return Err(cursor.fault(format!("this is MSH version {version}"), SAVE_AGAIN));
         }
         _ => {
@@ -111,7 +118,7 @@ fn header(cursor: &mut Cursor) -> Result<Version, MeshError> {
     };
     cursor.size_bytes = match size {
         "8" => 8,
-        "4" if version == Version::V4 => 4,
+        "4" if version == Version::V4(Minor::One) => 4,
         _ => return Err(cursor.fault(format!("the data size is '{}'", shortened(size)), SAVE_AGAIN)),
     };
     if binary == "1" {

@@ -1,8 +1,9 @@
-//! `$Nodes` and `$Elements` of MSH 2.2. The counts are text in binary files too.
+//! `$Nodes` and `$Elements` of MSH 2. The counts are text in binary files too.
 
-use super::content::{Content, Element, element_type};
 use super::cursor::{Cursor, Encoding};
 use crate::mesh::MeshError;
+use crate::mesh::content::{Content, Element, element_type};
+use crate::mesh::solids::solid_type;
 
 pub(super) fn nodes(cursor: &mut Cursor, content: &mut Content) -> Result<(), MeshError> {
     let count = text_count(cursor)?;
@@ -21,7 +22,11 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
         let text = cursor.encoding == Encoding::Text;
         let first_tag = if text { Some(tag(cursor)?) } else { None };
         let number = cursor.int()?;
-        let (kind, node_count) = element_type(number).map_err(|(what, remedy)| cursor.fault(what, remedy))?;
+        let solid = solid_type(number);
+        let (kind, node_count) = match solid {
+            Some((_, nodes)) => (None, nodes),
+            None => element_type(number).map_err(|(what, remedy)| cursor.fault(what, remedy))?,
+        };
         let run = if text { 1 } else { u64::try_from(cursor.int()?).unwrap_or(0) };
         if run == 0 || run > left {
             let what = format!("a run of {run} elements where {left} are left");
@@ -33,17 +38,22 @@ pub(super) fn elements(cursor: &mut Cursor, content: &mut Content) -> Result<(),
                 Some(tag) => tag,
                 None => tag(cursor)?,
             };
-            let mut physical = 0;
+            let (mut physical, mut entity) = (0, None);
             for i in 0..tags {
                 let value = cursor.int()?;
-                if i == 0 {
-                    physical = value;
+                match i {
+                    0 => physical = value,
+                    1 => entity = Some(value),
+                    _ => {}
                 }
             }
             let nodes = (0..node_count).map(|_| tag(cursor)).collect::<Result<Vec<_>, _>>()?;
+            if let Some((name, _)) = solid {
+                content.solid(name, &nodes);
+            }
             if let Some(kind) = kind {
                 let physical = if physical == 0 { Vec::new() } else { vec![physical.saturating_abs()] };
-                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical: physical.into() });
+                content.elements.push(Element { kind, tag: tag_of_element, nodes, physical: physical.into(), entity });
             }
         }
         left -= run;

@@ -56,9 +56,18 @@ pub fn deformed(
     }
     if mesh.triangles.len() <= MESH_SHOWN {
         let mut d = String::new();
-        for t in 0..mesh.triangles.len() {
-            d.push_str(&polyline(&[0, 1, 2].map(|k| view.at(moved(t, k, field)))));
+        let corner = |t: usize, v: usize| mesh.triangles[t].iter().position(|w| *w == v).unwrap_or(0);
+        let mut cell = |corners: &[(usize, usize)]| {
+            let points: Vec<[f64; 2]> = corners.iter().map(|(t, k)| view.at(moved(*t, *k, field))).collect();
+            d.push_str(&polyline(&points));
             d.push('z');
+        };
+        for quadrilateral in mesh.quadrilaterals() {
+            let ([a, b, c, e], [t, u]) = (quadrilateral.corners, quadrilateral.triangles);
+            cell(&[(t, corner(t, a)), (t, corner(t, b)), (u, corner(u, c)), (t, corner(t, e))]);
+        }
+        for t in mesh.lone_triangles() {
+            cell(&[0, 1, 2].map(|k| (t, k)));
         }
         svg.path(look::MESH, r#"stroke-width="0.6""#, &d);
     }
@@ -189,7 +198,7 @@ fn curved_outline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::sample::{Sample, Verdict, assert_well_formed};
+    use crate::report::sample::{Sample, Verdict, assert_well_formed, with_quadrilaterals};
 
     #[test]
     fn both_sides_of_a_contact_are_marked() {
@@ -200,6 +209,23 @@ mod tests {
         let text = deformed(&sample.problem, "<free>", fields[0], &fields, &drawn, &[]);
         assert_well_formed(&text);
         assert_eq!(text.matches("class=\"contact\"").count(), 2);
+    }
+
+    #[test]
+    fn quadrilaterals_are_drawn_without_their_diagonals() {
+        let mut sample = Sample::new(3, Verdict::Agree);
+        let drawn = |sample: &Sample| {
+            let dossier = sample.dossier();
+            let fields: Vec<&Displacement> = dossier.displacements.iter().map(|d| d.1).collect();
+            let drawn = Drawn::of(&sample.problem, &fields);
+            let text = deformed(&sample.problem, "free", fields[0], &fields, &drawn, &[]);
+            assert_well_formed(&text);
+            text.matches('z').count()
+        };
+        let triangles = drawn(&sample);
+        with_quadrilaterals(&mut sample.problem.mesh);
+        assert_eq!(sample.problem.mesh.cells.len(), 18);
+        assert_eq!(triangles - drawn(&sample), 18);
     }
 
     #[test]

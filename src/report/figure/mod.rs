@@ -10,6 +10,7 @@ pub mod drawn;
 pub mod history;
 pub mod map;
 pub mod mark;
+pub mod mesh;
 pub(crate) mod outline;
 pub mod pressure;
 pub mod quantity;

@@ -61,19 +61,19 @@ fn supports(svg: &mut Svg, problem: &Problem, view: &View) {
     for line in page_chains(problem, view, &edges_where(problem, |c| matches!(c, Condition::Clamped(_)))) {
         symbols::clamped(svg, &line);
     }
-    for line in page_chains(problem, view, &edges_where(problem, |c| matches!(c, Condition::Roller))) {
+    for line in page_chains(problem, view, &edges_where(problem, |c| matches!(c, Condition::Roller { .. }))) {
         symbols::roller(svg, &line);
     }
-    let moved = edges_where(problem, |c| matches!(c, Condition::Clamped(u) if u[0].hypot(u[1]) > 0.0));
+    let moved = edges_where(problem, Condition::is_moved);
     for line in page_chains(problem, view, &moved) {
         // Where one support meets another with a different value, the first edge of the chain speaks for it.
         let value = moved.iter().find_map(|&e| match problem.conditions[e] {
-            Condition::Clamped(u) if view.at(problem.mesh.points[problem.mesh.edges[e].vertices[0]]) == line[0] => {
-                Some(u)
+            condition if view.at(problem.mesh.points[problem.mesh.edges[e].vertices[0]]) == line[0] => {
+                condition.prescribed().map(|ends| [0, 1].map(|c| 0.5 * (ends[0][c] + ends[1][c])))
             }
             _ => None,
         });
-        if let (Some(u), Some(station)) = (value, stations(&line, 1e9).first()) {
+        if let (Some(u), Some(station)) = (value.filter(|u| *u != [0.0; 2]), stations(&line, 1e9).first()) {
             let d = u[0].hypot(u[1]);
             symbols::arrow(svg, look::LOAD, station.0, [30.0 * u[0] / d, -30.0 * u[1] / d], true);
         }

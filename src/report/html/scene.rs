@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
-use crate::scene::{Gap, Load, Scene, SupportKind};
+use crate::scene::{Affine, Gap, Load, Scene, SupportKind};
 
 /// The box with everything a reader has to know of the scene.
 pub(super) fn card(dossier: &Dossier) -> Markup {
@@ -42,13 +42,17 @@ fn loads(scene: &Scene) -> Markup {
                 bdi { (clean(&traction.on)) } ": "
                 @match traction.load {
                     Load::Pressure(p) => { "pressure " (significant(p, 5)) }
-                    Load::Affine { value, gradient } => {
-                        (vector(value, 5))
-                        @if gradient != [[0.0; 2]; 2] { " + [" (vector(gradient[0], 5)) ", " (vector(gradient[1], 5)) "] · x" }
-                    }
+                    Load::Affine(load) => (affine(load)),
                 }
             } } }
         }
+    }
+}
+
+fn affine(Affine { value, gradient }: Affine) -> Markup {
+    html! {
+        (vector(value, 5))
+        @if gradient != [[0.0; 2]; 2] { " + [" (vector(gradient[0], 5)) ", " (vector(gradient[1], 5)) "] · x" }
     }
 }
 
@@ -58,9 +62,15 @@ fn supports(scene: &Scene) -> Markup {
             ul { @for support in &scene.supports { li {
                 bdi { (clean(&support.on)) } ": "
                 @match support.kind {
-                    SupportKind::Roller => "roller",
-                    SupportKind::Clamped { displacement } if displacement == [0.0; 2] => "clamped",
-                    SupportKind::Clamped { displacement } => { "clamped, moved by " (vector(displacement, 5)) }
+                    SupportKind::Clamped { displacement } if displacement == Affine::default() => "clamped",
+                    SupportKind::Clamped { displacement } => { "clamped, moved by " (affine(displacement)) }
+                    SupportKind::Roller { direction, displacement } => {
+                        "roller"
+                        @if let Some(d) = direction { " that holds along " (vector(d, 5)) }
+                        @if displacement != 0.0 {
+                            ", moved by " (significant(displacement, 5)) (if direction.is_none() { " along its normal" } else { "" })
+                        }
+                    }
                 }
             } } }
         }
@@ -90,6 +100,8 @@ fn counts(report: &Report, problem: &Problem) -> Markup {
             ", " (grouped(dual.unknowns)) " unknowns in stresses of degree " (dual.degree_min)
             @if dual.degree_max > dual.degree_min { " to " (dual.degree_max) }
         }
-        @for primal in &report.primal { ", " (grouped(primal.unknowns)) " in " (clean(&primal.name)) }
+        @for primal in &report.primal { @if let Some(unknowns) = primal.unknowns {
+            ", " (grouped(unknowns)) " in " (clean(&primal.name))
+        } }
     }
 }

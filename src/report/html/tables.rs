@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 
 use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
-use crate::report::words::upper_from;
-use crate::report::{DualSummary, Energy, Report};
+use crate::report::words::{mean_in_words, upper_from};
+use crate::report::{DualSummary, Energy, PrimalSummary, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
     html! {
@@ -65,8 +65,11 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
         ("guaranteed", guaranteed.to_string(), "whether the bracket holds for the scene as written"),
     ];
-    let primal_meaning =
-        |admissible| if admissible { "admissible: an upper bound" } else { "not admissible everywhere: no bound" };
+    let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
+        (false, _) => "not admissible everywhere: no bound",
+        (true, true) => "admissible, but the energy is that of a quadrature: no bound",
+        (true, false) => "admissible: an upper bound",
+    };
     html! {
         (scroll("energies", html! {
             table {
@@ -78,7 +81,7 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                     @for primal in &report.primal {
                         tr {
                             td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
-                            td.why { (primal_meaning(primal.admissible)) }
+                            td.why { (primal_meaning(primal)) }
                         }
                     }
                 }
@@ -121,6 +124,12 @@ fn contacts(report: &Report) -> Markup {
                 } }
             }
         }))
+        @if report.contact.iter().any(|contact| contact.pressure_mean.is_some()) {
+            p { "A largest pressure is the value at one point, which no energy bounds; a mean around that point is bounded:" }
+            ul { @for contact in &report.contact { @if let Some(mean) = &contact.pressure_mean {
+                li { code { (clean(&contact.name)) } ": " (mean_in_words(mean, report.is_guaranteed())) }
+            } } }
+        }
     }
 }
 
@@ -162,7 +171,7 @@ fn solvers(report: &Report) -> Markup {
                     tbody { @for primal in &report.primal { tr {
                         td.long { (clean(&primal.name)) }
                         td { (clean(&primal.solver)) " " (clean(&primal.version)) } td.n { (primal.degree) }
-                        td.n { (grouped(primal.unknowns)) } td.n { (primal.iterations) }
+                        td.n { (primal.unknowns.map_or("–".to_string(), grouped)) } td.n { (primal.iterations.map_or("–".to_string(), grouped)) }
                         td { @if primal.admissible { "yes" } @else { "no" } }
                         td.n { (primal.relative_error_bound.map_or("–".to_string(), percent)) }
                         td.n { (optional(primal.seconds.get("total").copied(), 3)) }

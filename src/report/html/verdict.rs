@@ -157,6 +157,8 @@ fn distance(report: &Report) -> Markup {
                         @if !primal.admissible { " is not admissible and has no bound; the nearest field that is" }
                         ": at most " b { (percent(bound)) } "."
                     }
+                } @else if primal.is_of_quadrature() {
+                    p { (clean(&primal.name)) ": no bound, its energy is that of a quadrature on quadrilaterals that are no parallelograms." }
                 } @else {
                     p { (clean(&primal.name)) ": no bound, its energy does not lie above the lower bound or it is not admissible." }
                 }

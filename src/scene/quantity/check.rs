@@ -5,13 +5,13 @@ use std::ops::Range;
 
 use super::fault::KINDS;
 use super::{Component, Extent, Holder, Quantity, QuantityFault, RawQuantity, Region, Target};
-use crate::scene::conditions::{Conditions, edge_names};
+use crate::scene::conditions::Conditions;
 use crate::scene::error::{Fault, SceneError};
 use crate::scene::fault::names;
 use crate::scene::raw::{At, RawScene};
 use crate::scene::source::Source;
 use crate::scene::text::acts;
-use crate::scene::{Body, BoundaryUse, MeshSource};
+use crate::scene::{Body, BoundaryUse};
 
 /// What quantities may name.
 pub(super) struct Named<'a> {
@@ -24,12 +24,12 @@ pub(super) struct Named<'a> {
 /// Checks the list, in the order of the file.
 pub(in crate::scene) fn quantities(
     raw: &RawScene,
-    mesh: &MeshSource,
+    edges: Option<Vec<String>>,
     bodies: &[Body],
     conditions: &Conditions,
     source: &Source,
 ) -> Result<Vec<Quantity>, SceneError> {
-    let named = Named { bodies, conditions, edges: edge_names(mesh) };
+    let named = Named { bodies, conditions, edges };
     let mut taken: HashMap<&str, (usize, Range<usize>)> = HashMap::new();
     let mut quantities = Vec::with_capacity(raw.quantities.len());
     for (i, raw) in raw.quantities.iter().enumerate() {

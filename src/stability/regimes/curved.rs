@@ -9,7 +9,7 @@ use super::super::known::Known;
 use super::super::scenes::{Lift, Sketch, steps};
 use super::{PLAIN, Regime};
 use crate::problem::Problem;
-use crate::scene::{Gap, Load, Normals, Traction};
+use crate::scene::{Affine, Gap, Load, Normals, Traction};
 
 /// Two blocks whose common side is a half-wave of height `rise`: the left one is convex, and hollow below zero.
 fn wave(rise: f64, normals: Normals) -> Result<Problem, String> {
@@ -53,7 +53,7 @@ fn bore(couple: f64, normals: Normals) -> Result<Problem, String> {
     ring(&mut model, "plate", [1.0, 2.0], ["bore", "wall"]);
     let area = 0.375 * FACETS as f64 * (TAU / FACETS as f64).sin();
     model.scene.bodies[0].body_force = [0.0, -WEIGHT / area];
-    let turning = Load::Affine { value: [0.0; 2], gradient: [[0.0, -couple], [couple, 0.0]] };
+    let turning = Load::Affine(Affine { value: [0.0; 2], gradient: [[0.0, -couple], [couple, 0.0]] });
     model.scene.tractions.push(Traction { on: "hub".into(), load: turning });
     let mut model = model.clamp("wall").contact("rim", "bore", Gap::Table(vec![[0.0, 0.0]]));
     model.scene.contacts[0].normals = normals;

@@ -91,7 +91,7 @@ fn slit(shear: f64) -> Result<Problem, String> {
         .contact("slit_lower", "slit_upper", crate::scene::Gap::Constant(0.0));
     model.scene.tractions.push(crate::scene::Traction {
         on: "upper_top".into(),
-        load: crate::scene::Load::Affine { value: [shear, -1.0], gradient: [[0.0; 2]; 2] },
+        load: crate::scene::Load::Affine(crate::scene::Affine { value: [shear, -1.0], gradient: [[0.0; 2]; 2] }),
     });
     // Names that bonded edges no longer need would only be remarked on.
     model.raw.segments.retain(|(_, name)| name != "lower_top" && name != "upper_bottom");

@@ -1,7 +1,7 @@
 //! Scenes put together by hand.
 
 use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 use std::collections::HashMap;
 
@@ -138,6 +138,7 @@ impl Build {
             edges,
             triangle_edges,
             names: Vec::new(),
+            cells: crate::mesh::FileCells::default(),
         };
         let boundary = |body: usize, line: [Point; 2]| -> Vec<usize> {
             let on = |e: &usize| {
@@ -155,10 +156,12 @@ impl Build {
             .map(|edge| if edge.is_boundary() { Condition::Traction([[0.0; 2]; 2]) } else { Condition::Interior })
             .collect();
         for (body, line) in &self.clamped {
-            boundary(*body, *line).into_iter().for_each(|e| conditions[e] = Condition::Clamped([0.0; 2]));
+            boundary(*body, *line).into_iter().for_each(|e| conditions[e] = Condition::Clamped([[0.0; 2]; 2]));
         }
         for (body, line) in &self.rollers {
-            boundary(*body, *line).into_iter().for_each(|e| conditions[e] = Condition::Roller);
+            boundary(*body, *line).into_iter().for_each(|e| {
+                conditions[e] = Condition::Roller { direction: mesh.edge_frame(e).1, displacement: 0.0 };
+            });
         }
         for (body, line, [p, q]) in &self.tractions {
             for e in boundary(*body, *line) {
@@ -193,7 +196,17 @@ impl Build {
                     });
                     let (edges, second) = ([Some(e), partner.map(|p| p.0)], partner.map(|p| p.1));
                     let direction = Direction::constant(normal);
-                    ContactPair { edges, first, second, normal, direction, length, arc: first.map(key), gap: [0.0; 2] }
+                    ContactPair {
+                        edges,
+                        first,
+                        second,
+                        normal,
+                        direction,
+                        length,
+                        arc: first.map(key),
+                        gap: [0.0; 2],
+                        bow: Bow::default(),
+                    }
                 })
                 .collect();
             pairs.sort_by(|p, q| p.arc[0].total_cmp(&q.arc[0]));
@@ -210,7 +223,7 @@ impl Build {
         let source = MeshSource::File("test.msh".into());
         let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };
         let scene = Scene::unchecked(draft);
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
     }
 }
 
@@ -236,8 +249,10 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
         body.body_force = turn(body.body_force).map(|f| f * force / length);
     }
     for condition in &mut problem.conditions {
-        if let Condition::Traction(values) = condition {
-            *values = values.map(|p| turn(p).map(|f| f * force));
+        match condition {
+            Condition::Traction(values) => *values = values.map(|p| turn(p).map(|f| f * force)),
+            Condition::Roller { direction, .. } => *direction = turn(*direction),
+            _ => {}
         }
     }
     for pair in problem.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs) {

@@ -22,11 +22,10 @@ fn largest_work(problem: &Problem) -> f64 {
     let row = |v: usize, d: [f64; 2]| units.iter().map(move |u| u[v][0] * d[0] + u[v][1] * d[1]).collect::<Vec<_>>();
     let mut held = Vec::new();
     for (e, condition) in problem.conditions.iter().enumerate() {
-        let (_, normal) = problem.mesh.edge_frame(e);
         for v in problem.mesh.edges[e].vertices {
             match condition {
                 Condition::Clamped(_) => held.extend([row(v, [1.0, 0.0]), row(v, [0.0, 1.0])]),
-                Condition::Roller => held.push(row(v, normal)),
+                Condition::Roller { direction, .. } => held.push(row(v, *direction)),
                 _ => {}
             }
         }

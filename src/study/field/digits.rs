@@ -2,25 +2,31 @@
 
 /// Fewer numbers than this say nothing about the digits of a file.
 const ENOUGH: usize = 24;
-/// Of the numbers of a file with so many digits, this part needs all of them; nine tenths of arbitrary ones do.
-const USED: f64 = 0.8;
+/// So many different last digits among the longest numbers of a file are the work of a writer that cuts them. Multiples of a half, a
+/// quarter, an eighth end with a 5, whatever their length.
+const LAST: usize = 3;
 /// Numbers of a file that keeps more digits than this are as good as those of the machine.
 const MOST: usize = 12;
+
+/// The part of numbers in single precision that use its last bits.
+const FULL: f64 = 0.8;
 
 /// Rounding relative to their size that `values` carry, where a file keeps a few decimal digits of them, or single precision.
 pub(super) fn precision(values: impl Iterator<Item = f64>, single: bool) -> f64 {
     let values: Vec<f64> = values.filter(|x| *x != 0.0).collect();
     let machine = if single || are_single(&values) { f64::from(f32::EPSILON) } else { f64::EPSILON };
-    let mut counts = [0; MOST + 1];
+    let mut ends = [[false; 10]; MOST + 1];
     let mut all = 0;
     for x in values {
-        let Some(digits) = (1..=MOST).find(|d| format!("{x:.*e}", d - 1).parse() == Ok(x)) else { return machine };
-        counts[digits] += 1;
+        let written = (1..=MOST).map(|d| format!("{x:.*e}", d - 1)).enumerate().find(|(_, text)| text.parse() == Ok(x));
+        let Some((before, text)) = written else { return machine };
+        let last = text.split('e').next().and_then(|digits| digits.chars().last()?.to_digit(10)).unwrap_or(0);
+        ends[before + 1][last as usize] = true;
         all += 1;
     }
-    let most = (1..=MOST).rev().find(|d| counts[*d] > 0).unwrap_or(MOST);
-    let used = counts[most] as f64 >= USED * all as f64;
-    if all >= ENOUGH && used { (0.5 * 10f64.powi(1 - most as i32)).max(machine) } else { machine }
+    let most = (1..=MOST).rev().find(|d| ends[*d] != [false; 10]).unwrap_or(MOST);
+    let cut = ends[most].iter().filter(|there| **there).count() >= LAST;
+    if all >= ENOUGH && cut { (0.5 * 10f64.powi(1 - most as i32)).max(machine) } else { machine }
 }
 
 /// Whether numbers in double precision are those of single precision, of which most use all digits.
@@ -29,7 +35,7 @@ fn are_single(values: &[f64]) -> bool {
     let full = |x: &&f64| (**x as f32).to_bits() & 0x7f != 0;
     let used = values.iter().filter(full).count();
     values.len() >= ENOUGH
-        && used as f64 >= USED * values.len() as f64
+        && used as f64 >= FULL * values.len() as f64
         && values.iter().all(|x| f64::from(*x as f32) == *x)
 }
 

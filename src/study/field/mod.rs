@@ -1,7 +1,10 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
+mod cells;
+mod curved;
 mod digits;
 mod matching;
+mod places;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,7 +18,7 @@ use crate::mesh::meshio;
 use crate::problem::{Note, Problem};
 
 const SCRIPT: &str = include_str!("read.py");
-const INSTEAD: &str = "write it as VTU, with triangles and the displacement as point data";
+const INSTEAD: &str = "write it as VTU, with triangles or quadrilaterals and the displacement as point data";
 /// What programs call a displacement, in lower case.
 const USUAL: [&str; 3] = ["displacement", "u", "disp"];
 /// Largest third component, in parts of the largest displacement, that counts as none.
@@ -33,17 +36,20 @@ pub struct FieldError {
     pub remedy: String,
 }
 
-/// A displacement on triangles of its own: whatever program it comes from, nothing about it is taken on trust.
+/// A displacement on cells of its own: whatever program it comes from, nothing about it is taken on trust.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignField {
     file: PathBuf,
     sha256: String,
     /// Coordinates of every point.
     points: Vec<[f64; 2]>,
-    /// Of every file its name and its first point and triangle.
+    /// Of every file its name and its first point and cell.
     files: Vec<(String, [usize; 2])>,
-    /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
-    triangles: Vec<Vec<usize>>,
+    /// Point indices of each cell, three or six of a triangle, four, eight or nine of a quadrilateral: corners, then the middles of
+    /// (0, 1), (1, 2), …, then the centre.
+    cells: Vec<Vec<usize>>,
+    /// Triangles, and quadrilaterals cut along a diagonal.
+    triangles: Vec<Part>,
     /// Displacement of every point; `None` where the file has no finite number.
     values: Vec<Option<[f64; 2]>>,
     /// Whether the displacement is stored in single precision.
@@ -54,12 +60,22 @@ pub struct ForeignField {
     far: f64,
 }
 
+/// A triangle of a file, or a part of a quadrilateral.
+#[derive(Debug, Clone, PartialEq)]
+struct Part {
+    /// The cell.
+    cell: usize,
+    /// Its nodes: of a triangle all of them, of a part of a quadrilateral its corners.
+    nodes: Vec<usize>,
+}
+
 /// A displacement as a program hands it over.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FieldArrays {
     /// Two or three coordinates of every point.
     pub points: Vec<Vec<f64>>,
-    /// Point indices of each triangle, three or six: corners, then the middles of (0, 1), (1, 2), (2, 0).
+    /// Point indices of each cell, three or six of a triangle, four, eight or nine of a quadrilateral: corners, then the middles of
+    /// (0, 1), (1, 2), …, then the centre.
     pub triangles: Vec<Vec<usize>>,
     /// Two or three components of the displacement of every point.
     pub displacement: Vec<Vec<f64>>,
@@ -74,7 +90,7 @@ struct Content {
     /// Whether it is a file of this program, where a linear field has no values at the middles of edges.
     #[serde(default)]
     own: bool,
-    triangles: Vec<Vec<usize>>,
+    cells: Vec<Vec<usize>>,
     others: Vec<String>,
     fields: BTreeMap<String, Data>,
 }
@@ -114,7 +130,7 @@ impl ForeignField {
     pub fn parse(text: &[u8], file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
         let content =
-            serde_json::from_slice(text).map_err(|e| fault(format!("meshio gave no triangles ({e})"), INSTEAD))?;
+            serde_json::from_slice(text).map_err(|e| fault(format!("meshio gave no cells ({e})"), INSTEAD))?;
         Self::checked(content, file, sha256, name)
     }
 
@@ -138,7 +154,7 @@ impl ForeignField {
         }
         let fields = BTreeMap::from([("displacement".to_string(), Data { values: Some(values), single })]);
         let content =
-            Content { points: finite(points), single: false, own: false, triangles, others: Vec::new(), fields };
+            Content { points: finite(points), single: false, own: false, cells: triangles, others: Vec::new(), fields };
         Self::checked(content, Path::new(name), sha256, None)
     }
 
@@ -146,17 +162,20 @@ impl ForeignField {
         let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
         if let Some(kind) = content.others.first() {
             let what = format!("it has cells of the kind '{kind}'");
-            return Err(fault(what, "write the field on straight triangles with three or six nodes"));
+            return Err(fault(
+                what,
+                "write the field on triangles with three or six nodes, or quadrilaterals with four, eight or nine",
+            ));
         }
-        if content.triangles.is_empty() {
-            return Err(fault("there is no triangle in it".into(), INSTEAD));
+        if content.cells.is_empty() {
+            return Err(fault("there is no triangle and no quadrilateral in it".into(), INSTEAD));
         }
         let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
         let rows = data.values.as_deref().unwrap_or_default();
         if content.own && rows.len() < content.points.len() {
             // A linear field: vertices come first.
             content.points.truncate(rows.len());
-            content.triangles.iter_mut().for_each(|nodes| nodes.truncate(3));
+            content.cells.iter_mut().for_each(|nodes| nodes.truncate(3));
         }
         let points: Option<Vec<[f64; 2]>> =
             content.points.iter().map(|p| Some([*p.first()?.as_ref()?, *p.get(1)?.as_ref()?])).collect();
@@ -167,15 +186,16 @@ impl ForeignField {
             let what = format!("'{name}' has {} values for {} points", rows.len(), points.len());
             return Err(fault(what, "write one value for every point"));
         }
-        if let Some(nodes) = content.triangles.iter().find(|nodes| ![3, 6].contains(&nodes.len())) {
-            let what = format!("it has a triangle with {} nodes", nodes.len());
+        if let Some(nodes) = content.cells.iter().find(|nodes| ![3, 4, 6, 8, 9].contains(&nodes.len())) {
+            let what = format!("it has a cell with {} nodes", nodes.len());
             return Err(fault(what, INSTEAD));
         }
-        let damaged = content.triangles.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));
+        let damaged = content.cells.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));
         if let Some(t) = damaged {
-            let what = format!("triangle {} refers to a point beyond the {} of the file", t + 1, points.len());
+            let what = format!("cell {} refers to a point beyond the {} of the file", t + 1, points.len());
             return Err(fault(what, "write the file again"));
         }
+        let triangles = cells::parts(&mut content.cells, &points).map_err(|what| fault(what, cells::REMEDY))?;
         let size = rows.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         if let Some(i) = rows.iter().position(|r| matches!(r.get(2), Some(Some(w)) if w.abs() > FLAT * size)) {
             let what = format!("'{name}' has a third component at point {} that is not zero", i + 1);
@@ -199,7 +219,8 @@ impl ForeignField {
             file: file.into(),
             sha256,
             points,
-            triangles: content.triangles,
+            triangles,
+            cells: content.cells,
             values,
             single,
             precision,
@@ -209,9 +230,12 @@ impl ForeignField {
 
     /// This field and that of another file, which has other bodies of the scene.
     pub fn and(mut self, other: ForeignField) -> Self {
-        let first = [self.points.len(), self.triangles.len()];
+        let first = [self.points.len(), self.cells.len()];
+        let after = |nodes: Vec<usize>| nodes.iter().map(|n| n + first[0]).collect();
         self.files.extend(other.files.into_iter().map(|(name, at)| (name, [at[0] + first[0], at[1] + first[1]])));
-        self.triangles.extend(other.triangles.into_iter().map(|nodes| nodes.iter().map(|n| n + first[0]).collect()));
+        let triangles = other.triangles.into_iter();
+        self.triangles.extend(triangles.map(|part| Part { cell: part.cell + first[1], nodes: after(part.nodes) }));
+        self.cells.extend(other.cells.into_iter().map(after));
         self.points.extend(other.points);
         self.values.extend(other.values);
         self.single |= other.single;
@@ -275,7 +299,11 @@ impl ForeignField {
                 off / self.far
             ))
         }));
-        let nodes = if matched.degree == 2 { matched.middle.len() } else { 0 } + matched.vertex.len();
+        notes.extend(matched.curved.map(|curved| curved.told(&self.name())));
+        let nodes = match &matched.higher {
+            None => matched.vertex.len() + if matched.degree == 2 { matched.middle.len() } else { 0 },
+            Some(_) => matched.numbering.nodes.iter().flatten().count(),
+        };
         let candidate = Candidate {
             name: self.name(),
             solver: "displacement file".into(),
@@ -283,13 +311,15 @@ impl ForeignField {
             degree: matched.degree,
             vertex: matched.vertex,
             middle: matched.middle,
-            higher: None,
+            higher: matched.higher,
+            cells: matched.cells,
+            on_quadrilaterals: None,
             reported: None,
             reported_strain: None,
             is_solution: false,
             reactions: None,
-            iterations: 0,
-            unknowns: 2 * nodes,
+            iterations: None,
+            unknowns: Some(2 * nodes),
             seconds: BTreeMap::from([("total".to_string(), seconds)]),
             precision: self.precision,
             numbering: Some(matched.numbering),

@@ -1,4 +1,4 @@
-"""Prints the triangles and the point data of a file as JSON. Needs meshio."""
+"""Prints the cells and the point data of a file as JSON. Needs meshio."""
 
 import contextlib
 import io
@@ -81,12 +81,14 @@ def rows(array):
 
 
 points, cells, data, own = read()
-shapes = {"triangle": 3, "triangle6": 6, "VTK_LAGRANGE_TRIANGLE": None}
-triangles, others = [], []
+# Nodes of a cell: corners, the middles of the sides from corner to corner, the centre of a quadrilateral.
+shapes = {"triangle": (3,), "triangle6": (6,), "VTK_LAGRANGE_TRIANGLE": (3, 6),
+          "quad": (4,), "quad8": (8,), "quad9": (9,), "VTK_LAGRANGE_QUADRILATERAL": (4, 9)}
+kept, others = [], []
 for block in cells:
     nodes = block.data
-    if block.type in shapes and nodes.ndim == 2 and nodes.shape[1] in (3, 6):
-        triangles.extend(nodes.tolist())
+    if nodes.ndim == 2 and nodes.shape[1] in shapes.get(block.type, ()):
+        kept.extend(nodes.tolist())
     elif block.type not in ("vertex", "line", "line3"):
         others.append(block.type)
 fields = {}
@@ -101,7 +103,7 @@ with open(target, "w", encoding="utf-8") as out:
         "points": rows(points),
         "single": points.dtype.itemsize < 8,
         "own": own,
-        "triangles": triangles,
+        "cells": kept,
         "others": others,
         "fields": fields,
     }, out)

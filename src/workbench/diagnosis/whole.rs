@@ -1,11 +1,10 @@
-//! Mistakes made on the whole matrix: half of it, axes not rotated back, the shape of another element.
+//! Mistakes made on the whole matrix: half of it, axes not rotated back.
 
 use nalgebra::DMatrix;
 
 use super::{Reference, Trial};
-use crate::workbench::formulas::Variant;
 
-/// Half a matrix, local axes, other coordinates.
+/// Half a matrix, a diagonal that counts twice, local axes.
 pub(super) fn trials(r: &Reference) -> Vec<Trial> {
     let mut all = Vec::new();
     let mut push = |rank, cause, sentence: String, matrix| all.push(Trial { rank, cause, sentence, matrix });
@@ -13,7 +12,9 @@ pub(super) fn trials(r: &Reference) -> Vec<Trial> {
     let upper = DMatrix::from_fn(size, size, |i, j| if i <= j { r.matrix[(i, j)] } else { 0.0 });
     push(1, "triangle-only", "K holds its upper triangle only".into(), upper.clone());
     push(1, "triangle-only", "K holds its lower triangle only".into(), upper.transpose());
-    let corners = r.family.nodes().len().min(if r.family == crate::workbench::formulas::Family::Q4 { 4 } else { 3 });
+    let text = "the diagonal counts twice: K is the sum of a triangle and its transpose, both with the diagonal";
+    push(1, "diagonal-twice", text.into(), &upper + upper.transpose());
+    let corners = r.family.corners();
     for i in 0..corners {
         let (a, b) = (r.nodes[i], r.nodes[(i + 1) % corners]);
         let length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -30,13 +31,10 @@ pub(super) fn trials(r: &Reference) -> Vec<Trial> {
         let [from, to] = [r.order[i], r.order[(i + 1) % corners]];
         let text = format!("K is in local axes along the side from node {from} to {to} and was not rotated back");
         push(2, "local-axes", text, &q * &r.matrix * q.transpose());
-    }
-    let swapped: Vec<[f64; 2]> = r.nodes.iter().map(|[x, y]| [*y, *x]).collect();
-    let others = [(r.family.nodes(), "the reference element"), (swapped, "nodes with x and y exchanged")];
-    for (nodes, whose) in others {
-        if let Ok(k) = r.family.stiffness(&nodes, &r.hooke, 1.0, Variant::Right) {
-            push(2, "other-coordinates", format!("K is that of other coordinates: {whose}"), r.placed(&k));
-        }
+        let text =
+            format!("K is rotated from the axes along the side from node {from} to {to} on one of its sides only");
+        push(2, "local-axes", text.clone(), &q * &r.matrix);
+        push(2, "local-axes", text, &r.matrix * q.transpose());
     }
     all
 }

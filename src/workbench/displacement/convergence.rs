@@ -5,6 +5,7 @@
 
 use super::{DisplacementElement, mesh::Patch};
 use crate::report::number::{percent, significant};
+use crate::workbench::diagnosis::known;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::formulas::Family;
 use crate::workbench::material::Material;
@@ -94,16 +95,20 @@ fn bound(e: &DisplacementElement) -> Result<Measured, Fault> {
 fn rate(e: &DisplacementElement) -> Result<Measured, Fault> {
     let (exact, levels) = solved(e)?;
     let material = e.material()?;
-    if levels.iter().any(|l| below(exact, l) > ROUNDING) {
+    // The energy of an element that does not conform may lie on either side.
+    let conforms = known(e).is_none_or(|r| r.is_conforming());
+    if conforms && levels.iter().any(|l| below(exact, l) > ROUNDING) {
         return Err(Fault::Failed("The energy lies below the guaranteed bound: there is no error to fall.".into()));
     }
-    let errors: Vec<f64> = levels.iter().map(|l| exact.guaranteed(l.energy)).collect();
+    let error = |l: &Level| if conforms { exact.guaranteed(l.energy) } else { exact.apart(l.energy) };
+    let errors: Vec<f64> = levels.iter().map(error).collect();
     let (Some([before, last]), Some(level)) = (errors.last_chunk::<2>(), levels.last()) else {
         return Err(Fault::NotMade("two meshes would have too many unknowns".into()));
     };
     let (rate, wanted) = ((before / last).log2(), e.outline.degree().min(SMOOTH) as f64);
+    let kind = if conforms { "guaranteed error" } else { "error, from the energy on either side of the exact one," };
     let text = format!(
-        "The guaranteed error falls to {} on {2} × {2} cells, at the end like h^{1}; of the expected h^{wanted} this much is missing",
+        "The {kind} falls to {} on {2} × {2} cells, at the end like h^{1}; of the expected h^{wanted} this much is missing",
         percent(*last),
         significant(rate, 3),
         level.cells

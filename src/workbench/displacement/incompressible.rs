@@ -11,7 +11,7 @@ use crate::workbench::scene;
 pub const INCOMPRESSIBLE: Property<DisplacementElement> = Property {
     name: "incompressible",
     asks: "a square of elements keeps its flexibility as ν → ½ in plane strain: the element does not lock",
-    usual: true,
+    usual: false,
     measure,
 };
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{DisplacementElement, nodes_on};
+use super::{DisplacementElement, nodes_on, skyline};
 use crate::workbench::finding::Fault;
 use crate::workbench::material::Material;
 use crate::workbench::outline::side_weights;
@@ -114,7 +114,7 @@ impl Patch {
         let is_free = |i: &usize| self.nodes[i / 2][i % 2] > SAME;
         let free: Vec<usize> = (0..k.nrows()).filter(is_free).collect();
         let (k, f) = (k.select_rows(&free).select_columns(&free), forces.select_rows(&free));
-        let u = k.cholesky().map(|factor| factor.solve(&f)).filter(|u| u.iter().all(|u| u.is_finite()));
+        let u = skyline::solve(&k, &f).filter(|u| u.iter().all(|u| u.is_finite()));
         let text = "the matrix of a supported square of elements is not definite: there is no solution";
         let u = u.ok_or_else(|| Fault::Failed(text.into()))?;
         Ok((-0.5 * f.dot(&u), free.len()))

@@ -11,6 +11,7 @@ mod rank;
 mod reference;
 mod rigid;
 mod shapes;
+mod skyline;
 mod symmetry;
 
 use std::cell::OnceCell;
@@ -18,7 +19,7 @@ use std::cell::OnceCell;
 use nalgebra::DMatrix;
 
 pub(super) use patch::{hooke_seen, material_words};
-pub(super) use rank::spurious;
+pub(super) use rank::{silent_motions, spurious};
 pub(super) use rigid::{motions, within};
 pub(super) use shapes::{Shape, sweep};
 
@@ -51,8 +52,28 @@ pub const PROPERTIES: &[Property<DisplacementElement>] = &[
     reference::REFERENCE,
 ];
 
+/// The name of the property that only conforming elements with exact integrals have.
+pub const BOUND: &str = convergence::BOUND.name;
+
 /// What a matrix may differ from one without rounding, where nothing else is said: relative to its largest entry.
 pub const PRECISION: f64 = 1e-9;
+
+/// The largest that may be said: entries of two digits tell no mistake from rounding.
+const LARGEST_PRECISION: f64 = 1e-2;
+
+/// How exact entries are said to be, relative to the largest one.
+///
+/// # Errors
+/// It is none, or so large that nothing could fail.
+pub fn precision(given: f64) -> Result<f64, String> {
+    if given > 0.0 && given <= LARGEST_PRECISION {
+        return Ok(given);
+    }
+    Err(format!(
+        "a precision of {given}: give a number above 0 and at most {LARGEST_PRECISION}, relative to the largest entry; \
+         entries of fewer than three digits do not tell a mistake from rounding"
+    ))
+}
 
 /// How the unknowns of a matrix are numbered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -148,6 +169,49 @@ impl DisplacementElement {
     /// The same with entries that are exact to this part of the largest one.
     pub fn with_precision(self, precision: f64) -> Self {
         DisplacementElement { precision, ..self }
+    }
+
+    /// Whether it can be looked at on other shapes.
+    pub fn has_formula(&self) -> bool {
+        self.formula.is_some()
+    }
+
+    /// The same as a matrix alone.
+    pub(super) fn matrix_only(&self) -> Self {
+        DisplacementElement {
+            name: self.name.clone(),
+            nodes: self.nodes.clone(),
+            outline: self.outline.clone(),
+            material: self.material,
+            matrix: self.matrix.clone(),
+            precision: self.precision,
+            formula: None,
+            solved: OnceCell::new(),
+        }
+    }
+
+    /// What the formula gives on two shapes without symmetry, of another size and place, as matrices; nothing where there is no formula or it
+    /// fails there.
+    pub(super) fn elsewhere(&self) -> Vec<Self> {
+        let (Ok(layout), Ok(material), Ok(_)) = (self.layout(), self.material(), self.formula()) else {
+            return Vec::new();
+        };
+        let corners = self.outline.corners.len();
+        let on = |corners: Vec<[f64; 2]>| {
+            let nodes = nodes_on(&layout, &corners);
+            let k = self.stiffness(&nodes, &material).ok()?;
+            let there = Self::of_matrix(&self.name, &k, nodes, Order::Interleaved, Some(material)).ok()?;
+            Some(there.with_precision(self.precision))
+        };
+        [shapes::irregular(corners), shapes::lopsided(corners)].into_iter().filter_map(on).collect()
+    }
+
+    /// Whether K is symmetric and right for rigid motions and constant strains; without a material, of the one that it shows.
+    pub(super) fn is_consistent(&self) -> bool {
+        let is_symmetric = (&self.matrix - self.matrix.transpose()).amax() <= self.precision * self.size();
+        is_symmetric
+            && patch::is_exact(self)
+            && (&self.matrix * motions(&self.nodes)).amax() <= self.precision * self.size()
     }
 
     /// The material.

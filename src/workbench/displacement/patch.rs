@@ -68,6 +68,15 @@ fn forces_off(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, hooke: &M
     off / size.max(f64::MIN_POSITIVE)
 }
 
+/// Whether nodal forces of constant strains are those of the material, or of the one that K shows where none is given.
+pub fn is_exact(e: &DisplacementElement) -> bool {
+    let hooke = match e.material {
+        Some(m) => m.hooke() * m.thickness,
+        None => hooke_seen(&e.matrix, &e.nodes, &e.outline),
+    };
+    forces_off(&e.matrix, &e.nodes, &e.outline, &hooke) <= e.precision
+}
+
 fn energy_off(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, material: &Material) -> f64 {
     let exact = material.hooke() * material.thickness;
     (hooke_seen(k, nodes, outline) - exact).amax() / exact.amax()

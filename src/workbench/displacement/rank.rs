@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{DisplacementElement, motions, within};
 use crate::report::number::significant;
+use crate::workbench::diagnosis::Reference;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::picture;
 
@@ -14,22 +15,29 @@ pub const RANK: Property<DisplacementElement> = Property {
     measure,
 };
 
+/// Entries that are less exact may hide a soft motion.
+const FEW_DIGITS: f64 = 1e-7;
 /// A part of a motion that counts.
 const PART: f64 = 0.1;
 
+/// An orthonormal basis of the motions without forces: singular values up to this part of the largest one.
+pub fn silent_motions(matrix: &DMatrix<f64>, zero: f64) -> DMatrix<f64> {
+    let values = matrix.clone().singular_values();
+    let count = values.iter().filter(|v| **v <= zero * values.max()).count();
+    // Vectors of equal singular values are safer from the symmetric problem.
+    let eigen = matrix.tr_mul(matrix).symmetric_eigen();
+    let mut order: Vec<usize> = (0..matrix.ncols()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    eigen.eigenvectors.select_columns(&order[..count])
+}
+
 /// An orthonormal basis of the motions that store nothing and are orthogonal to the rigid ones.
 pub fn spurious(matrix: &DMatrix<f64>, rigid: &DMatrix<f64>, zero: f64) -> DMatrix<f64> {
-    let svd = matrix.clone().svd(false, true);
-    let least = zero * svd.singular_values.max();
-    let Some(v_t) = svd.v_t else { return DMatrix::zeros(matrix.ncols(), 0) };
-    let silent: Vec<DVector<f64>> = (0..svd.singular_values.len())
-        .filter(|&k| svd.singular_values[k] <= least)
-        .map(|k| v_t.row(k).transpose())
-        .collect();
-    if silent.is_empty() {
-        return DMatrix::zeros(matrix.ncols(), 0);
+    let silent = silent_motions(matrix, zero);
+    if silent.ncols() == 0 {
+        return silent;
     }
-    let [_, rest] = within(&DMatrix::from_columns(&silent), rigid);
+    let [_, rest] = within(&silent, rigid);
     let svd = rest.svd(true, false);
     let Some(u) = svd.u else { return DMatrix::zeros(matrix.ncols(), 0) };
     let kept: Vec<usize> = (0..svd.singular_values.len()).filter(|&k| svd.singular_values[k] > PART).collect();
@@ -51,6 +59,14 @@ fn hourglass(e: &DisplacementElement) -> Option<DMatrix<f64>> {
 
 fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
     let rigid = motions(&e.nodes);
+    if let Some(reference) = Reference::of(e).ok().filter(|_| e.precision > FEW_DIGITS) {
+        let [at_few, at_all] = [e.precision, FEW_DIGITS].map(|zero| spurious(reference.matrix(), &rigid, zero).ncols());
+        if at_few > at_all {
+            let text =
+                "the entries have too few digits to tell motions that store little from those that store nothing";
+            return Err(Fault::NotMade(text.into()));
+        }
+    }
     let found = spurious(&e.matrix, &rigid, e.precision);
     let singular = e.matrix.clone().singular_values();
     let count = found.ncols();

@@ -22,6 +22,14 @@ pub fn irregular(corners: usize) -> Vec<[f64; 2]> {
     }
 }
 
+/// Another one, larger and elsewhere.
+pub fn lopsided(corners: usize) -> Vec<[f64; 2]> {
+    match corners {
+        3 => vec![[0.2, 0.3], [2.3, -0.4], [1.1, 1.9]],
+        _ => vec![[0.3, 0.2], [2.2, -0.3], [1.8, 1.9], [-0.4, 1.3]],
+    }
+}
+
 fn mapped(name: impl Into<String>, corners: &[[f64; 2]], map: impl Fn([f64; 2]) -> [f64; 2]) -> Shape {
     Shape { name: name.into(), corners: corners.iter().map(|x| map(*x)).collect() }
 }

@@ -69,7 +69,7 @@ pub fn scaled(problem: &Problem, length: f64, force: f64, young: f64) -> Problem
     for condition in &mut p.conditions {
         match condition {
             Condition::Traction(t) => t.as_flattened_mut().iter_mut().for_each(|t| *t *= force),
-            Condition::Clamped(u) => u.iter_mut().for_each(|u| *u *= displacement),
+            Condition::Clamped(u) => u.as_flattened_mut().iter_mut().for_each(|u| *u *= displacement),
             _ => {}
         }
     }

@@ -7,7 +7,7 @@ pub mod blocks;
 use std::collections::HashMap;
 
 use hypercircle::mesh::{Edge, Triangulation};
-use hypercircle::problem::{Condition, ContactPair, Direction, Interface, Problem};
+use hypercircle::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 /// What holds on a named side.
@@ -157,8 +157,10 @@ impl Setup {
             .map(|e| match roles.get(name(e)) {
                 _ if !edges[e].is_boundary() => Condition::Interior,
                 None => Condition::Traction([[0.0; 2]; 2]),
-                Some(Role::Clamped(u)) => Condition::Clamped(*u),
-                Some(Role::Roller) => Condition::Roller,
+                Some(Role::Clamped(u)) => Condition::Clamped([*u; 2]),
+                Some(Role::Roller) => {
+                    Condition::Roller { direction: outward(&points, edges[e].vertices), displacement: 0.0 }
+                }
                 Some(Role::Load(p)) => Condition::Traction(edges[e].vertices.map(|v| p(points[v]))),
             })
             .collect();
@@ -209,6 +211,7 @@ impl Setup {
                     length,
                     arc: [arc, arc + length],
                     gap: [gap(arc), gap(arc + length)],
+                    bow: Bow::default(),
                 });
                 arc += length;
             }
@@ -218,8 +221,16 @@ impl Setup {
         let draft = Draft { bodies, ..Draft::new("test", kinematics, MeshSource::File("made".into())) };
         let scene = Scene::new(draft).expect("a valid scene");
         let (triangles, body) = triangles.into_iter().unzip();
-        let mesh = Triangulation { points, triangles, body, edges, triangle_edges, names: Vec::new() };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default() }
+        let mesh = Triangulation {
+            points,
+            triangles,
+            body,
+            edges,
+            triangle_edges,
+            names: Vec::new(),
+            cells: Default::default(),
+        };
+        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
     }
 }
 
@@ -242,4 +253,11 @@ pub fn lift_off(n: usize) -> Problem {
 /// Two blocks with traction (1.5 − 1.8y, 0): the contact stays closed.
 pub fn pressed(n: usize) -> Problem {
     two_blocks(n, |[_, y]| [1.5 - 1.8 * y, 0.0]).build()
+}
+
+/// The unit vector to the right of the way from `a` to `b`, which is out of the triangle on its left.
+fn outward(points: &[[f64; 2]], [a, b]: [usize; 2]) -> [f64; 2] {
+    let [dx, dy] = [0, 1].map(|c| points[b][c] - points[a][c]);
+    let length = dx.hypot(dy);
+    [dy / length, -dx / length]
 }

@@ -15,6 +15,10 @@ fn nodes(family: Family) -> Vec<[f64; 2]> {
         Family::P1 => corners[..3].to_vec(),
         Family::P2 => [&corners[..3], &[middle(0, 1), middle(1, 2), middle(2, 0)]].concat(),
         Family::Q4 => corners.to_vec(),
+        Family::Q8 => {
+            let middles = [(0, 1), (1, 2), (2, 3), (3, 0)].map(|(i, j)| middle(i, j));
+            [&corners[..], &middles[..]].concat()
+        }
     }
 }
 
@@ -89,7 +93,7 @@ fn a_wrong_sign_is_named() {
 
 #[test]
 fn one_point_quadrature_is_named() {
-    for family in [Family::P2, Family::Q4] {
+    for family in [Family::P2, Family::Q4, Family::Q8] {
         let k = family.stiffness(&nodes(family), &MATERIAL.hooke(), MATERIAL.thickness, Variant::OnePoint);
         named(family, &k.expect("regular"), "rank", "one-point-quadrature");
     }

@@ -10,9 +10,9 @@ use hypercircle::workbench::{Options, Report, SHIPPED, Shipped};
 /// The reports on all elements that come with the program.
 static REPORTS: LazyLock<Vec<(&'static str, Report)>> = LazyLock::new(|| {
     let of = |element: &'static Shipped| {
-        let waived = element.lacks.iter().map(|name| name.to_string()).collect();
+        let names = |list: &[&str]| list.iter().map(|name| name.to_string()).collect();
         let subject = element.subject().expect("can be made");
-        (element.name, subject.examine(&Options { waived, claimed: Vec::new() }))
+        (element.name, subject.examine(&Options { waived: names(element.lacks), claimed: names(element.adds) }))
     };
     SHIPPED.iter().map(of).collect()
 });

@@ -8,7 +8,9 @@ mod discs;
 mod exact;
 mod failures;
 mod half_planes;
+mod near_vertices;
 mod own_solver;
+mod quadrilaterals;
 mod repeatable;
 mod run;
 mod sabotage;
@@ -24,6 +26,7 @@ fn every_case_is_asserted_and_listed() {
         include_str!("statics.rs"),
         include_str!("half_planes.rs"),
         include_str!("curved.rs"),
+        include_str!("quadrilaterals.rs"),
     ]
     .concat();
     let mut count = 0;

@@ -89,7 +89,7 @@ pub fn sound(name: &str) -> Report {
     let checks = report.0["checks"].as_array().into_iter().flatten().filter_map(|c| c["name"].as_str());
     let contacts = report.0["contact"].as_array().into_iter().flatten().filter_map(|c| c["name"].as_str());
     let contacts: Vec<String> = contacts.map(String::from).collect();
-    let fields = ["FEniCSx P1", "FEniCSx P2", "free bound"].map(String::from);
+    let fields = ["FEniCSx P1", "FEniCSx P2", "FEniCSx Q1", "FEniCSx Q2", "free bound"].map(String::from);
     let known = hypercircle::compare::names_of_checks(&contacts, &fields);
     for check in checks {
         assert!(known.iter().any(|name| name == check), "--allow {check} would be refused before the solve");

@@ -4,7 +4,7 @@ use super::Made;
 use super::conditions::{Condition, Manner, conditions, displacements, meet};
 use super::frame::{Frame, gap, load};
 use super::layout::{Layout, Side};
-use super::msh;
+use super::msh::{self, Cells};
 use crate::support::random::Random;
 use crate::support::toml::Toml;
 
@@ -20,7 +20,27 @@ pub fn crowd(random: &mut Random) -> Made {
     let general = random.chance(0.5);
     let (aside, frame) = (random.aside(), Frame::random(random));
     let layout = Layout::crowded(random);
-    complete(random, aside, frame, layout, general)
+    complete(random, aside, frame, layout, Drawn { general, sheared: false, cells: None })
+}
+
+/// The same in a mesh file with quadrilaterals: rectangles, other parallelograms, distorted ones, or triangles beside them.
+pub fn quadrilaterals(random: &mut Random) -> Made {
+    let cells = random.pick(&[Cells::Quadrilaterals, Cells::Quadrilaterals, Cells::Distorted, Cells::Mixed]);
+    let (general, sheared) = random.pick(&[(false, false), (true, false), (true, true)]);
+    let (aside, frame) = (random.aside(), Frame::random(random));
+    let layout = Layout::random(random, general);
+    complete(random, aside, frame, layout, Drawn { general, sheared, cells: Some(cells) })
+}
+
+/// How a lattice is drawn.
+#[derive(Clone, Copy)]
+struct Drawn {
+    /// Its sides need not be at right angles.
+    general: bool,
+    /// Its cells are parallelograms all the same.
+    sheared: bool,
+    /// The cells of a mesh file, where there has to be one.
+    cells: Option<Cells>,
 }
 
 /// Polygons: a lattice with displaced points, bodies of several cells that need not be convex.
@@ -41,14 +61,18 @@ fn scene(random: &mut Random, general: bool) -> Made {
     let frame = Frame::random(random);
     let grown = general || random.chance(0.15);
     let layout = Layout::random(random, grown);
-    complete(random, aside, frame, layout, general)
+    complete(random, aside, frame, layout, Drawn { general, sheared: false, cells: None })
 }
 
-fn complete(random: &mut Random, mut aside: Random, frame: Frame, mut layout: Layout, general: bool) -> Made {
+fn complete(random: &mut Random, mut aside: Random, frame: Frame, mut layout: Layout, drawn: Drawn) -> Made {
+    let Drawn { general, sheared, cells } = drawn;
     let equal = random.chance(0.4);
     let (x, y) = (lines(random, layout.columns(), equal), lines(random, layout.rows(), equal));
     layout.lines(&x, &y);
-    if general {
+    if sheared {
+        let [right, up] = [random.between(-0.4, 0.4), random.between(-0.3, 0.3)];
+        layout.points.iter_mut().for_each(|p| *p = [p[0] + right * p[1], p[1] + up * p[0]]);
+    } else if general {
         let shake = random.between(0.02, 0.16);
         for p in &mut layout.points {
             *p = p.map(|x| x + shake * random.between(-1.0, 1.0));
@@ -62,7 +86,7 @@ fn complete(random: &mut Random, mut aside: Random, frame: Frame, mut layout: La
     };
     let sides = layout.sides(general && random.chance(0.3));
     let mut conditions = conditions(random, &layout, &sides, manner);
-    let meshed = aside.chance(0.25);
+    let meshed = aside.chance(0.25) || cells.is_some();
     let bonded = meshed && bond(&mut aside, &layout, &sides, &mut conditions);
     let mut moved = displacements(random, &frame, &layout, (&sides, &conditions), general, manner);
     if bonded {
@@ -107,7 +131,14 @@ fn complete(random: &mut Random, mut aside: Random, frame: Frame, mut layout: La
     toml = tables(toml, random, &frame, &layout, (&sides, &conditions, &moved), manner);
     let mesh = meshed.then(|| {
         let size = 1 + aside.below(4);
-        msh::text(&layout, size, place, |body| format!("b{body}"), &sides, |k| name(&sides, k))
+        msh::text(
+            &layout,
+            (size, cells.unwrap_or(Cells::Triangles)),
+            place,
+            |body| format!("b{body}"),
+            &sides,
+            |k| name(&sides, k),
+        )
     });
     let farthest = moved.iter().flatten().fold(frame.load * frame.length, |m, u| m.max(u.abs()));
     Made { toml, mesh, energy: thickness * stiffest * farthest * farthest, rounds: false }

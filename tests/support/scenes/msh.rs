@@ -6,11 +6,23 @@ use std::fmt::Write;
 
 use super::layout::{Layout, Side};
 
-/// `divisions` squares along each side of a cell, each cut in two; `place` gives the point of the scene from one of the
-/// lattice.
+/// What the squares of a cell of the lattice become.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cells {
+    /// Two triangles each.
+    Triangles,
+    /// Quadrilaterals like the cell.
+    Quadrilaterals,
+    /// Quadrilaterals whose corners inside the cell are moved.
+    Distorted,
+    /// Quadrilaterals, and a pair of triangles here and there.
+    Mixed,
+}
+
+/// `divisions` squares along each side of a cell; `place` gives the point of the scene from one of the lattice.
 pub fn text(
     layout: &Layout,
-    divisions: usize,
+    (divisions, cells): (usize, Cells),
     place: impl Fn([f64; 2]) -> [f64; 2],
     body: impl Fn(usize) -> String,
     sides: &[Side],
@@ -23,14 +35,30 @@ pub fn text(
             let [column, row] = layout.place_of(cell);
             let key = [column * divisions + i, row * divisions + j];
             *nodes.entry(key).or_insert_with(|| {
-                points.push(place(layout.within(cell, [i, j].map(|k| k as f64 / divisions as f64))));
+                let inside = |k: usize| k > 0 && k < divisions;
+                let moved = if cells == Cells::Distorted && inside(i) && inside(j) { 0.2 } else { 0.0 };
+                let beside = |k: usize, turn: f64| {
+                    (k as f64 + moved * (3.0 * i as f64 + 5.0 * j as f64 + turn + cell as f64).sin()) / divisions as f64
+                };
+                points.push(place(layout.within(cell, [beside(i, 0.0), beside(j, 2.0)])));
                 points.len()
             })
         };
         for j in 0..divisions {
             for i in 0..divisions {
                 let [a, b, c, d] = [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)];
-                // Now one diagonal, now the other; and either orientation is allowed.
+                let whole = match cells {
+                    Cells::Triangles => false,
+                    Cells::Mixed => (i + 2 * j + cell) % 3 != 0,
+                    Cells::Quadrilaterals | Cells::Distorted => true,
+                };
+                // Either orientation is allowed.
+                if whole {
+                    let [b, d] = if (i + cell) % 3 == 0 { [d, b] } else { [b, d] };
+                    elements.push(format!("3 2 {0} {0} {a} {b} {c} {d}", owner + 1));
+                    continue;
+                }
+                // Now one diagonal, now the other.
                 let cut = if (i + j) % 2 == 0 { [[a, b, c], [a, d, c]] } else { [[a, b, d], [b, c, d]] };
                 elements.extend(cut.map(|[a, b, c]| format!("2 2 {0} {0} {a} {b} {c}", owner + 1)));
             }

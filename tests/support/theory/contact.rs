@@ -80,12 +80,12 @@ impl Solution {
         };
         let support = |on: &str, kind| Support { on: on.to_string(), kind };
         let other = match self {
-            Solution::Pressed(_) => support("right_east", SupportKind::Clamped { displacement: [0.0, 0.0] }),
-            Solution::LiftOff(_) => support("right_south", SupportKind::Roller),
+            Solution::Pressed(_) => support("right_east", SupportKind::CLAMPED),
+            Solution::LiftOff(_) => support("right_south", SupportKind::ROLLER),
         };
         let draft = Draft {
             bodies: vec![body(0, "left"), body(1, "right")],
-            supports: vec![support("left_south", SupportKind::Roller), other],
+            supports: vec![support("left_south", SupportKind::ROLLER), other],
             tractions: Vec::new(),
             contacts: vec![Contact::new(
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),

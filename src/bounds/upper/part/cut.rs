@@ -4,7 +4,7 @@ use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::Holds;
 use crate::bounds::upper::nodes::Nodes;
 use crate::element::{SideValues, StressField};
-use crate::mesh::{Edge, Triangulation};
+use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// Which triangles, edges, vertices and nodes of a problem there are, each kind in the order that it has there.
@@ -67,11 +67,13 @@ impl Cut {
                     .map(|t| mesh.triangle_edges[*t].map(|e| place(&self.edges, e)))
                     .collect(),
                 names: mesh.names.clone(),
+                cells: FileCells::default(),
             },
             conditions: self.edges.iter().map(|e| problem.conditions[*e]).collect(),
             interfaces: problem.interfaces.iter().map(of).collect(),
             notes: Vec::new(),
             refinement: problem.refinement,
+            uncut: None,
         }
     }
 

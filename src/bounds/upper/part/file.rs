@@ -9,8 +9,8 @@ use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
 use crate::element::{SideValues, StressField};
-use crate::mesh::{Edge, Triangulation};
-use crate::problem::{Condition, ContactPair, Direction, Interface, Problem, Refinement};
+use crate::mesh::{Edge, FileCells, Triangulation};
+use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 impl Part {
@@ -25,7 +25,7 @@ impl Part {
         write_conditions(&mut out, &self.problem.conditions)?;
         write_contacts(&mut out, &self.problem.interfaces)?;
         write_holds(&mut out, &self.holds.vertices)?;
-        write_holds(&mut out, &self.holds.edges)?;
+        write_holds(&mut out, self.holds.edges.as_flattened())?;
         out.indices((0..self.stress.len()).map(|t| self.stress.degree(t)))?;
         out.numbers(self.stress.values().iter().flatten().copied())?;
         out.indices(self.moments.iter().map(<[_]>::len))?;
@@ -54,8 +54,11 @@ impl Part {
             interfaces: read_contacts(&mut from)?,
             notes: Vec::new(),
             refinement: Refinement::default(),
+            uncut: None,
         };
-        let holds = Holds { vertices: read_holds(&mut from)?, edges: read_holds(&mut from)? };
+        let vertices = read_holds(&mut from)?;
+        let edges = read_holds(&mut from)?.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect();
+        let holds = Holds { vertices, edges };
         let mut stress = StressField::of_degrees(from.indices()?);
         let values = from.vectors()?;
         if values.len() != stress.values().len() {
@@ -167,6 +170,7 @@ fn read_mesh(from: &mut Reader<impl Read>) -> io::Result<Triangulation> {
         edges: edges.map(|(vertices, triangles)| Edge { vertices, triangles, name: None }).collect(),
         triangle_edges: from.tuples()?,
         names: Vec::new(),
+        cells: FileCells::default(),
     })
 }
 
@@ -174,8 +178,8 @@ fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> i
     let told = |condition: &Condition| match *condition {
         Condition::Interior => ([0; 4], [0.0; 4]),
         Condition::Traction([a, b]) => ([1, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
-        Condition::Clamped([x, y]) => ([2, 0, 0, 0], [x, y, 0.0, 0.0]),
-        Condition::Roller => ([3, 0, 0, 0], [0.0; 4]),
+        Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
+        Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
         Condition::Contact { interface, pair, side } => ([4, interface, pair, side], [0.0; 4]),
     };
     out.indices(conditions.iter().flat_map(|condition| told(condition).0))?;
@@ -187,8 +191,8 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
     let of = |([kind, interface, pair, side], [a, b, c, d]): ([usize; 4], [f64; 4])| match kind {
         0 => Ok(Condition::Interior),
         1 => Ok(Condition::Traction([[a, b], [c, d]])),
-        2 => Ok(Condition::Clamped([a, b])),
-        3 => Ok(Condition::Roller),
+        2 => Ok(Condition::Clamped([[a, b], [c, d]])),
+        3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
         4 => Ok(Condition::Contact { interface, pair, side }),
         _ => Err(io::ErrorKind::InvalidData.into()),
     };
@@ -201,16 +205,17 @@ fn write_contacts(out: &mut Writer<impl Write>, interfaces: &[Interface]) -> io:
     let second = |pair: &ContactPair| [0, 1].map(|end| pair.second.map(|second| second[end]));
     out.some_indices(pairs().flat_map(|p| p.edges.into_iter().chain(p.first.map(Some)).chain(second(p))))?;
     let direction = |p: &ContactPair| p.direction.ends.into_iter().flatten().chain(p.direction.shares);
-    let numbers =
-        |p: &ContactPair| p.normal.into_iter().chain(direction(p)).chain([p.length]).chain(p.arc).chain(p.gap);
+    let numbers = |p: &ContactPair| {
+        p.normal.into_iter().chain(direction(p)).chain([p.length]).chain(p.arc).chain(p.gap).chain(p.bow.numbers())
+    };
     out.numbers(pairs().flat_map(|p| numbers(p).collect::<Vec<_>>()))
 }
 
 fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
     let counts = from.indices()?;
     let (places, numbers) = (grouped(&from.some_indices()?)?, from.vectors()?);
-    let of = |([e, f, a, b, c, d], numbers): ([Option<usize>; 6], [f64; 13])| {
-        let [x, y, m, n, o, p, own, other, length, begin, end, g, h] = numbers;
+    let of = |([e, f, a, b, c, d], numbers): ([Option<usize>; 6], [f64; 13 + Bow::NUMBERS])| {
+        let [x, y, m, n, o, p, own, other, length, begin, end, g, h, bow @ ..] = numbers;
         Some(ContactPair {
             edges: [e, f],
             first: [a?, b?],
@@ -220,6 +225,7 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
             length,
             arc: [begin, end],
             gap: [g, h],
+            bow: Bow::from_numbers(bow)?,
         })
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();

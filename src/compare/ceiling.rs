@@ -1,0 +1,153 @@
+//! How much a tolerance may be at most: its ceiling comes from the problem and never from the answer.
+//!
+//! What rounding, or a solver that works relative to the size of its displacements, can leave is known, and a correct field leaves
+//! no more. It says nothing about a wrong field where the same tolerance would hide a mistake worth finding: a displacement far
+//! larger than its strains loses every digit of them. The check is then not made, and has not passed.
+
+use super::Check;
+use super::pressure::{dual_pressure, resultant};
+use super::resultant::forces;
+use crate::bounds::Bracket;
+use crate::dual::DualSolution;
+use crate::problem::{Problem, Scales};
+
+/// The mistake that a check has to be able to tell: this part of the modulus, the loads or the displacement.
+pub(super) const MISTAKE: f64 = 0.05;
+/// Rounding may leave this part of what the mistake leaves.
+pub(super) const PART: f64 = 0.5;
+/// Of the largest displacement of the stress side, that of a correct field is at most so many times as large, but for motions that
+/// nothing holds.
+const LARGER: f64 = 2.0;
+/// Loads below this part of the forces at supports and contacts are not what the solution consists of.
+const BESIDE: f64 = 0.1;
+/// What rounding may leave in any case, relative to what the data of a problem stand for: where they strain nothing at all, everything
+/// is rounding.
+const OF_DATA: f64 = 1e-9;
+
+/// What the problem says of the size of its solution, whatever the field: from λ_h and the displacement that belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Strain energy of λ_h.
+    pub strain: f64,
+    /// Largest displacement of the admissible field made from λ_h; infinite where there is none.
+    pub displacement: f64,
+}
+
+impl Extent {
+    /// From the two bounds of the stress side.
+    pub fn of(bracket: &Bracket) -> Self {
+        let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
+            let field = &free.displacement;
+            (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
+        });
+        Extent { strain: bracket.complementary.strain, displacement }
+    }
+
+    /// `largest` displacement, or the largest that a correct field has where that is less.
+    pub fn reference(&self, largest: f64) -> f64 {
+        if self.displacement > 0.0 { largest.min(LARGER * self.displacement) } else { largest }
+    }
+
+    /// How many times as large as any correct field one with the displacement `largest` is; 1 where it is not larger.
+    pub fn larger(&self, largest: f64) -> f64 {
+        let reference = self.reference(largest);
+        if reference > 0.0 { largest / reference } else { 1.0 }
+    }
+
+    /// By what forces of a field of strain energy `strain` are to be multiplied so that they are those of a solution at most.
+    pub fn of_forces(&self, strain: f64) -> f64 {
+        if strain > self.strain { (self.strain.max(0.0) / strain).sqrt() } else { 1.0 }
+    }
+
+    /// What rounding may leave of nodal forces: `load` and `supported` are the sizes of those of loads and of what supports and
+    /// contacts give to a field of strain energy `strain`.
+    pub fn rounding_of_forces(&self, load: f64, supported: f64, strain: f64) -> f64 {
+        let supported = self.of_forces(strain) * supported;
+        PART * MISTAKE * if load > BESIDE * supported { load } else { supported }
+    }
+}
+
+/// The ceilings of all tolerances of a comparison.
+#[derive(Debug, Clone, Copy)]
+pub struct Ceilings {
+    /// How large a solution can be.
+    pub extent: Extent,
+    /// Of an energy.
+    pub energy: f64,
+    /// Of a force.
+    pub force: f64,
+    /// Of a nodal force as the root of an energy, where data cause no stress.
+    pub of_data: f64,
+}
+
+impl Ceilings {
+    /// Of `problem`, from its data and λ_h.
+    pub fn new(problem: &Problem, scales: &Scales, (dual, bracket): (&DualSolution, &Bracket)) -> Self {
+        let contact = problem.interfaces.iter().enumerate().map(|(index, interface)| {
+            let (force, _) = resultant(problem, interface, &dual_pressure(dual, index));
+            force[0].hypot(force[1])
+        });
+        let part = PART * MISTAKE;
+        let of_data = OF_DATA * scales.data.energy;
+        Ceilings {
+            extent: Extent::of(bracket),
+            energy: part * bracket.complementary.strain.max(0.0) + of_data,
+            force: part * (forces(problem) + contact.sum::<f64>()) + OF_DATA * scales.data.force,
+            of_data: (2.0 * of_data).sqrt(),
+        }
+    }
+}
+
+/// A tolerance in two parts, in the units of a check.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowance {
+    /// What a solver may leave of a field of the size that the problem allows.
+    pub exact: f64,
+    /// What the size of the field adds: rounding of its values, and what its solver leaves.
+    pub digits: f64,
+    /// What that may be where the check is to tell a mistake.
+    pub ceiling: f64,
+}
+
+impl Allowance {
+    /// The check `made` with this tolerance. It is not made, which `told` gives the reason of, where the field may owe to
+    /// [`Self::digits`] alone that it passes and these could hide a mistake.
+    pub fn check(&self, made: impl Fn(f64) -> Check, told: impl FnOnce() -> String) -> Check {
+        let exact = made(self.exact);
+        if exact.passed {
+            return if self.digits <= self.ceiling { made(self.exact + self.digits) } else { exact };
+        }
+        let check = made(self.exact + self.digits);
+        if !check.passed || self.digits <= self.ceiling {
+            return check;
+        }
+        let allowed = made(self.exact + self.ceiling).allowed;
+        Check::not_made(&check.name, allowed, check.basis, format!("{} {}", check.why, told()))
+    }
+
+    /// The same, where the reason is that the displacements are too large.
+    pub fn check_of_large(&self, made: impl Fn(f64) -> Check) -> Check {
+        self.check(made, || TOO_LARGE.to_string())
+    }
+}
+
+/// Why a check could not be made of a field whose displacements are large beside what they strain the bodies by.
+pub(super) const TOO_LARGE: &str = "This could not be decided: the displacements are so large beside those that the loads and supports \
+     ask for that rounding of them could hide 5 % of E; hold the motion that nothing holds, and solve again.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::Basis;
+
+    #[test]
+    fn rounding_beyond_its_ceiling_makes_no_check_pass() {
+        let check = |value: f64, digits: f64| {
+            Allowance { exact: 1e-6, digits, ceiling: 0.025 }
+                .check_of_large(|allowed| Check::at_most("x", value, 0.0, allowed, Basis::RoundOff, "Why."))
+        };
+        let outcomes = [check(1e-7, 1e9), check(1e-4, 1e-3), check(1e-4, 1e-5), check(0.5, 0.7), check(0.9, 0.7)];
+        assert_eq!(outcomes.each_ref().map(|c| c.passed), [true, true, false, false, false]);
+        assert_eq!(outcomes.each_ref().map(|c| c.value.is_none()), [false, false, false, true, false]);
+    }
+}

@@ -1,0 +1,215 @@
+//! Values of displacement models and of printouts beside the intervals of quantities: rows of the report, and checks.
+
+use super::Certified;
+use super::adaptive::Wanted;
+use super::answers::Answer;
+use crate::bounds::Bracket;
+use crate::compare::{Allowances, Basis, Check, Comparison, Judged, weighted_reactions};
+use crate::problem::{Problem, Scales};
+use crate::quantity::{Functional, Interval, value_of};
+use crate::report::{QuantityOfModel, QuantitySummary};
+
+/// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
+const OWN_ERROR: f64 = 2.0;
+
+/// What solvers leave of a value, relative to what such a quantity can be.
+const SOLVED: f64 = 1e-8;
+
+/// A value of a quantity that comes without a field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GivenValue {
+    /// Name of the quantity.
+    pub name: String,
+    /// The value.
+    pub value: f64,
+}
+
+/// The rows of the report: every answer with the values of the displacement models that were `compared`.
+pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Comparison) -> Vec<QuantitySummary> {
+    let summary = |answer: &Answer| {
+        let Interval { ends: [lower, upper], first_order, value, exact_by_statics, rounding, reasons, .. } =
+            &answer.interval;
+        let known = answer.interval.has_an_end();
+        let primal = |(judged, told): (&Judged, Result<Told, String>)| {
+            let (value, reason) = match told {
+                Ok(Told { value, remark }) => (Some(value), remark),
+                Err(reason) => (None, Some(reason)),
+            };
+            QuantityOfModel {
+                solver: judged.candidate.name.clone(),
+                degree: judged.candidate.degree,
+                value,
+                reason,
+                inside: value.filter(|_| known).map(|v| answer.interval.outside(v) == 0.0),
+            }
+        };
+        QuantitySummary {
+            name: answer.name.clone(),
+            kind: answer.kind.name().to_string(),
+            value: *value,
+            lower: *lower,
+            upper: *upper,
+            first_order: *first_order,
+            exact_by_statics: *exact_by_statics,
+            rounding: *rounding,
+            primal: comparison.judged.iter().zip(values_in(certified, answer, comparison)).map(primal).collect(),
+            reason: reasons.iter().flatten().next().cloned(),
+        }
+    };
+    answers.iter().map(summary).collect()
+}
+
+/// The values of a quantity in the displacement models, on their own mesh, or why they have none.
+fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) -> Vec<Result<Told, String>> {
+    let problem = &certified.problem;
+    let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
+    let functional = quantity.map(|quantity| Functional::new(problem, quantity));
+    let value = |judged: &Judged| match &functional {
+        Some(Ok(functional)) => told(problem, functional, judged),
+        Some(Err(error)) => Err(error.to_string()),
+        None => Err("the scene has no quantity of this name".to_string()),
+    };
+    comparison.judged.iter().map(value).collect()
+}
+
+/// The value of a displacement model.
+struct Told {
+    value: f64,
+    /// What it is worth, where its reactions tell it.
+    remark: Option<String>,
+}
+
+/// The value of a quantity that the displacement tells, or its reactions where no displacement of the mesh moves a contact alone.
+fn told(problem: &Problem, functional: &Functional, judged: &Judged) -> Result<Told, String> {
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    let of_contact = functional.load.weights.iter().any(|w| !w.is_empty());
+    let reactions = judged.candidate.reactions.as_ref().filter(|_| functional.is_of_contact_alone());
+    let carried =
+        || finite(reactions.and_then(|reactions| weighted_reactions(problem, &functional.load.weights, reactions)));
+    // What lifts a force is linear on triangles, and no displacement on quadrilaterals.
+    let on_quadrilaterals = judged.candidate.on_quadrilaterals.is_some() && functional.kind.is_carried();
+    if let Some(value) = carried().filter(|_| on_quadrilaterals) {
+        return Ok(Told { value, remark: None });
+    }
+    if let Some(value) = finite(value_of(problem, functional, &judged.field.displacement)) {
+        let remark =
+            "the value is that of its stresses on a motion that is linear on triangles, not of its nodal forces";
+        return Ok(Told { value, remark: on_quadrilaterals.then(|| remark.to_string()) });
+    }
+    if functional.lift.is_some() || !of_contact {
+        return Err("the displacement has no finite value of it".to_string());
+    }
+    let shared = "the contact shares a vertex with a support or another contact, or its direction turns";
+    match carried() {
+        Some(value) => {
+            let remark = format!("{shared}: the value is that of the reactions as the model shares them out");
+            Ok(Told { value, remark: Some(remark) })
+        }
+        None => Err(format!(
+            "{shared}: no displacement of the mesh moves it alone, and how they share the force there is not told"
+        )),
+    }
+}
+
+/// How a value outside an interval is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Meant {
+    /// A discrete solution on this mesh: what its own energy leaves open is allowed.
+    Discrete,
+    /// The exact value.
+    Exact,
+}
+
+/// One check for every quantity and displacement model; `sharpest` is the bracket that is known best of the scene.
+pub fn quantity_checks(
+    certified: &Certified,
+    sharpest: &Bracket,
+    answers: &[Answer],
+    comparison: &Comparison,
+    meant: Meant,
+    allow: &Allowances,
+) -> Vec<Check> {
+    let mut checks = Vec::new();
+    let scales = Scales::new(&certified.problem);
+    for answer in answers.iter().filter(|answer| answer.interval.has_an_end()) {
+        for (judged, value) in comparison.judged.iter().zip(values_in(certified, answer, comparison)) {
+            let field = &judged.candidate.name;
+            // What reactions tell of a vertex that is shared is bounded by no energy.
+            let Ok(Told { value, remark: None }) = value else { continue };
+            let own = match meant {
+                Meant::Exact => 0.0,
+                Meant::Discrete => OWN_ERROR * own_error(sharpest, answer, judged),
+            };
+            if !own.is_finite() {
+                continue;
+            }
+            let whose = if own > 0.0 {
+                format!("{field} may miss it by what its own energy leaves open")
+            } else {
+                format!("no correct value lies outside, and that of {field} has to lie inside")
+            };
+            let allowed = own + SOLVED * answer.kind.size(&certified.problem, &scales.data);
+            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
+        }
+    }
+    allow.apply(&mut checks);
+    checks
+}
+
+/// One check for every value that was given.
+pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
+    let check = |given: &GivenValue| {
+        let name = format!("quantity/{}/given", given.name);
+        match answers.iter().find(|answer| answer.name == given.name) {
+            Some(answer) if answer.interval.has_an_end() => {
+                inside(&name, answer, given.value, 0.0, "no correct value lies outside")
+            }
+            Some(answer) => {
+                let reason = answer.interval.reasons.iter().flatten().next().cloned().unwrap_or_default();
+                Check::not_made(&name, 0.0, Basis::Guaranteed, format!("There is no interval for it: {reason}."))
+            }
+            None => Check::not_made(&name, 0.0, Basis::Guaranteed, "The scene has no quantity of this name."),
+        }
+    };
+    let mut checks: Vec<Check> = given.iter().map(check).collect();
+    allow.apply(&mut checks);
+    checks
+}
+
+/// One check for every quantity that was to be known more closely.
+pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
+    let check = |wanted: &Wanted| {
+        let name = format!("quantity/{}/tolerance", wanted.name);
+        match answers.iter().find(|answer| answer.name == wanted.name) {
+            Some(Answer { interval, .. }) if interval.half_width().is_finite() => Check::at_most(
+                &name,
+                interval.half_width() / interval.value.abs(),
+                0.0,
+                wanted.tolerance,
+                Basis::Asked,
+                "The half-width of the interval, relative to the value, against the tolerance that was asked for.",
+            ),
+            _ => Check::not_made(&name, wanted.tolerance, Basis::Asked, "There is no interval with two ends."),
+        }
+    };
+    let mut checks: Vec<Check> = wanted.iter().map(check).collect();
+    allow.apply(&mut checks);
+    checks
+}
+
+/// A check that `value` lies in the interval, or outside by no more than `allowed`.
+fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) -> Check {
+    let [lower, upper] = answer.interval.ends;
+    let nearest = value.max(lower).min(upper);
+    let why = format!(
+        "The exact {} '{}' lies between {lower:.9e} and {upper:.9e}; {whose}.",
+        answer.kind.name(),
+        answer.name
+    );
+    Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
+}
+
+/// What the energy of a displacement leaves open of its value.
+fn own_error(sharpest: &Bracket, answer: &Answer, judged: &Judged) -> f64 {
+    answer.sensitivity * (judged.admissible.upper() - sharpest.lower()).max(0.0).sqrt()
+}
