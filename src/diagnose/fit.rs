@@ -67,20 +67,6 @@ impl<'a> Terms<'a> {
         pairs.filter(Trial::is_possible).collect()
     }
 
-    pub fn series(&self) -> (f64, f64) {
-        let mut order: Vec<(f64, &Term<'a>)> = self.list.iter().map(|t| (self.trial(&[t]).left, t)).collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        order.truncate(PAIRED);
-        let pairs = (0..order.len()).flat_map(|i| (i + 1..order.len()).map(move |j| (i, j)));
-        let mut r = (f64::INFINITY, f64::INFINITY);
-        for (i, j) in pairs {
-            let left = self.trial(&[order[i].1, order[j].1]).left;
-            r.0 = r.0.min(left);
-            r.1 = r.1.min(left / order[i].0.min(order[j].0));
-        }
-        r
-    }
-
     /// Whether each of two terms that are fitted together takes a part of the residual that is worth the name.
     fn both_move(&self, terms: [&Term<'a>; 2]) -> bool {
         let columns: Vec<&[f64]> = terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect();

@@ -178,7 +178,7 @@ fn names(diagnosis: Option<&Diagnosis>) -> Vec<&str> {
     diagnosis.map_or(Vec::new(), |d| d.findings.iter().map(|f| f.name.as_str()).collect())
 }
 
-const SEEDS: u64 = 40;
+const SEEDS: u64 = 10;
 
 #[test]
 fn noise_smooth_errors_and_random_residuals_have_no_name() {
