@@ -19,6 +19,10 @@ pub enum Kind {
     Local,
     /// Displacements at the wrong nodes.
     Values,
+    /// The mesh has moved.
+    Moved,
+    /// Numbers of too few digits.
+    Precision,
     /// Equilibrium is missing for a reason that is not known.
     Equilibrium,
     /// An energy that is reported.
@@ -43,10 +47,17 @@ impl Kind {
             "thickness" => Kind::Thickness,
             "integration" => Kind::Element,
             "displacement" | "value" => Kind::Values,
+            "points" => Kind::Moved,
+            "precision" => Kind::Precision,
             "boundary" if name.ends_with("/forces") => Kind::Load,
             "boundary" if name.ends_with("/clamped") => Kind::Support,
             _ => Kind::Local,
         }
+    }
+
+    /// Whether one place shows it better than another.
+    pub fn has_place(self) -> bool {
+        !matches!(self, Kind::Thickness | Kind::Moved | Kind::Precision)
     }
 
     /// Whether it is wrong at the place that is named, and not only seen best there.
@@ -83,6 +94,11 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Contact is enforced by a penalty, which gives way.",
             "Raise the stiffness until the penetration no longer matters, or use multipliers.",
         ],
+        (Kind::Contact, "weak") => [
+            "Contact holds in the mean and not at the nodes, which is no mistake of a method that asks for no more; where it begins or ends, its \
+             integration rule or an unfinished iteration leaves the rest.",
+            "Hand the field in with `--contact weak`, and let that program iterate until its contact forces no longer change.",
+        ],
         (Kind::Contact, "glued" | "pulling") => [
             "The constraint is an equation where it should be an inequality.",
             "Look at the active set: nodes whose force pulls have to leave it.",
@@ -103,6 +119,14 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "The support is not in the system, or on other nodes.",
             "Look whether its boundary was found by name and its nodes collected, and whether a later step overwrites them.",
         ],
+        (Kind::Load, "lumped-edges" | "lumped-bodies" | "lumped-all") => [
+            "The sum of the nodal forces is that of the load, and their distribution is not ∫P·φ.",
+            "Integrate the load with the shape functions of the element: ends of a quadratic edge have 1/6, its middle has 2/3.",
+        ],
+        (Kind::Load, "forces") => [
+            "Nodal forces along one boundary are not those of its load; all equations elsewhere are met.",
+            "Print the nodal forces on this boundary and compare each with ∫P·φ along its edges, ends and corners first.",
+        ],
         (Kind::Load, _) => [
             "The right-hand side is not that of the scene.",
             "Compare the sum of the nodal forces with the resultant of the load; then sign, direction, unit and thickness.",
@@ -110,6 +134,11 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Material, "kinematics") => [
             "The stiffness is that of the other plane state.",
             "Look at `kinematics` of the scene, and which λ the model uses.",
+        ],
+        (Kind::Material, "thickness-strain") => [
+            "In such a layer the stress across the thickness vanishes in the mean around a node and not in every point; its fields are no \
+             solutions of plane stress, and differ less the finer the mesh is.",
+            "Compare in plane strain (CPE elements), refine the mesh, or take elements of plane stress from another program.",
         ],
         (Kind::Material, "lambda" | "shear") => [
             "The elastic law in the stiffness has a wrong sign or factor.",
@@ -123,9 +152,29 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Displacements do not depend on the thickness where it multiplies stiffness and loads alike; energies and forces do.",
             "Multiply energies, loads and reactions by `thickness` of the scene.",
         ],
+        (Kind::Moved, _) => [
+            "The mesh was written after it moved, and the scene was made of it.",
+            "Write the mesh as it was before (Elmer: `Displace Mesh = False`), or subtract the displacement from the points of both files.",
+        ],
+        (Kind::Precision, _) => [
+            "Nothing but rounding separates the field from a solution.",
+            "Assemble and solve in double precision, and write the displacements in it.",
+        ],
+        (Kind::Values, "value") => [
+            "One value is off, and all others belong to a solution.",
+            "Look at what writes or changes the displacement of this node after the solve: a constraint, a cast, an output filter.",
+        ],
         (Kind::Values, _) => [
             "The displacements are those of a solution, but not at the nodes they are given for.",
             "Compare numbering of nodes and order of components of the two programs.",
+        ],
+        (Kind::Local, "material") => [
+            "One triangle has other elastic constants than its body.",
+            "Print the material that the marked triangle is given; look at what maps elements to materials there.",
+        ],
+        (Kind::Local, "equation") => [
+            "One equation is not that of the scene: a force or a support acts at this node alone.",
+            "Look for a point load, a constraint or an overwritten row at the marked node.",
         ],
         (Kind::Element, "reduced") => [
             "The equations are those of fewer points: a field may have motions that store no energy at these, seen as hourglass patterns.",

@@ -125,6 +125,9 @@ fn failed(check: &Check) -> String {
         ("contact", name, "penetration") => {
             format!("A node of {name} penetrates by {value} of the largest displacement; {allowed} at most.")
         }
+        ("contact", name, "penetration-at-nodes") => {
+            format!("A node of {name}, which holds in the mean, penetrates by {value} of the largest displacement.")
+        }
         ("contact", name, "pulling") => format!("Contact {name} pulls with {value} of all forces; {allowed} at most."),
         ("contact", name, "pressure-where-open") => {
             format!("Contact {name} pushes with {value} of all forces where it is open; {allowed} at most.")

@@ -12,12 +12,19 @@ use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
 use super::session::{DualRun, Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
-use crate::compare::{Candidate, Comparison, compare};
+use crate::compare::{Basis, Candidate, Comparison, compare};
 use crate::problem::{Note, Problem};
 use crate::process::limit;
 use crate::study::{
     self, FieldError, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
 };
+
+/// How contact of a field is claimed to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ContactClaim {
+    /// In the mean over edges
+    Weak,
+}
 
 /// Options of `certify`.
 #[derive(Debug, clap::Args)]
@@ -40,6 +47,10 @@ pub struct Args {
     /// Claim that the field is the discrete solution of a displacement method on this mesh, and hold it to that
     #[arg(long)]
     pub solution: bool,
+    /// Claim that contact holds in the mean over edges, as mortar and Nitsche methods have it: what nodes then penetrate is a
+    /// remark
+    #[arg(long, value_enum, value_name = "HOW", requires = "displacement")]
+    pub contact: Option<ContactClaim>,
     /// How to solve.
     #[command(flatten)]
     pub solve: SolveOptions,
@@ -144,7 +155,7 @@ fn held(
         session.progress.phase("holding the field to its claim");
         let (problem, bracket) = (&certified.problem, &certified.bracket);
         let claim = match &before {
-            None => study::claim(problem, judged, bracket, &allow),
+            None => study::claim(problem, judged, bracket, args.contact.is_some(), &allow),
             Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, &allow),
         };
         let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
@@ -154,6 +165,17 @@ fn held(
         comparison.checks.extend(claim.checks.iter().cloned());
         claimed = Some(claim);
     }
+    let mut in_the_mean = Vec::new();
+    if let (true, false, Some(judged)) = (args.contact.is_some(), args.solution, comparison.judged.first()) {
+        let admissible = format!("admissible/{}", judged.candidate.name);
+        let notes = study::weak_contact(&certified.problem, judged);
+        let check = comparison.checks.iter_mut().find(|check| check.name == admissible);
+        if let (Some(notes), Some(check)) = (notes, check.filter(|check| allow.given(&check.name).is_none())) {
+            check.basis = Basis::Chosen;
+            in_the_mean = notes;
+        }
+    }
+    in_the_mean.extend(claimed.iter().flat_map(|claim| claim.notes.clone()));
     let (sharpened, enough) = session.sharpen(run, &mut comparison, &args.solve, &args.limits, &allow)?;
     if let Some(wanted) = args.solve.tolerance {
         let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
@@ -177,7 +199,7 @@ fn held(
         sharpened,
         enough: Some(enough),
         answers,
-        notes: repairs(&comparison).into_iter().chain(rounded).collect(),
+        notes: repairs(&comparison).into_iter().chain(rounded).chain(in_the_mean).collect(),
         seconds: vec![("reading the displacement", reading)],
         components: vec![(field.name(), format!("sha256:{}", field.sha256()))],
         diagnosis: claimed.iter().filter_map(|claim| claim.diagnosis.clone()).collect(),

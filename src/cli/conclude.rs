@@ -145,7 +145,10 @@ impl Session {
                 say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
             }
             for remark in report.remarks.iter().filter(|c| !c.passed) {
-                say::line(&format!("  worth a look: {}: {}", remark.name, told(remark)));
+                // What a method does by design is said on the spot.
+                let by_design = remark.name.ends_with("/penetration-at-nodes") && !remark.why.is_empty();
+                let why = if by_design { remark.why.clone() } else { told(remark) };
+                say::line(&format!("  worth a look: {}: {why}", remark.name));
             }
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {

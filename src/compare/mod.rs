@@ -26,6 +26,7 @@ pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
 pub use ceiling::Extent;
 pub use check::{Basis, Check};
+pub use forces::NodalForces;
 pub use mean::MeanPressure;
 pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};

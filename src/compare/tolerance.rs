@@ -24,7 +24,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 27] = [
+const NAMES: [&str; 28] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -50,6 +50,7 @@ const NAMES: [&str; 27] = [
     "solution/reactions",
     "solution/energy-identity",
     "solution/contact/{contact}/penetration",
+    "solution/contact/{contact}/penetration-at-nodes",
     "solution/contact/{contact}/pulling",
     "solution/contact/{contact}/pressure-where-open",
 ];

@@ -10,10 +10,14 @@
 mod contact;
 mod fit;
 mod integration;
+mod layer;
 mod loads;
 mod local;
+mod lumped;
 mod material;
+mod moved;
 mod physical;
+mod single;
 mod space;
 mod supports;
 mod values;
@@ -24,13 +28,21 @@ use serde::Serialize;
 
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
+pub use contact::in_the_mean;
 use fit::Terms;
 use space::Space;
 
 /// Of the squared residual what an explanation may leave: a hundredth of the residual.
 const LEFT: f64 = 1e-4;
+/// The part that a solver may have left counts as explained where it is no larger than this part of the squared residual: beyond it,
+/// whatever explains a little would explain all.
+const FLOOR: f64 = 1e-2;
 /// Of the squared residual what the nearest hypothesis has to explain to be worth a name.
 const NAMED: f64 = 0.5;
+/// The same of a hypothesis that asks nothing of whole places: on a coarse mesh they hold half of any residual.
+const NAMED_PLACE: f64 = 0.9;
+/// Hypotheses of this rank and above are such.
+const PLACES: usize = 7;
 /// Explanations that leave less than this times what the best leaves are as good.
 const AS_GOOD: f64 = 10.0;
 
@@ -141,6 +153,9 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         let space = Space::new(solution);
         let mut trials = values::trials(&space);
         trials.extend(material::trials(&space));
+        trials.extend(layer::trials(&space));
+        trials.extend(moved::trial(&space));
+        trials.extend(lumped::trials(&space));
         trials.extend(local::trials(&space));
         trials.extend(integration::trials(&space));
         trials.extend(contact::trials(&space));
@@ -154,6 +169,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         let told: Vec<&str> = diagnosis.findings.iter().map(|finding| finding.name.as_str()).collect();
         trials.retain(|trial| !trial.findings.iter().any(|finding| finding.is_of_contact_in(&told)));
         let floor = (solution.allowed() / solution.residual()).powi(2);
+        let floor = if floor <= FLOOR { floor } else { 0.0 };
         let found = simplest(trials, floor).or_else(|trials| {
             let together = terms.together();
             diagnosis.tried += together.len();
@@ -165,10 +181,15 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
                 diagnosis.findings.retain(|finding| trial.leaves(finding));
                 diagnosis.findings.extend(trial.findings);
             }
+            Err(_) if single::finding(solution).is_some() => {
+                diagnosis.explained = Some(1.0);
+                diagnosis.findings.extend(single::finding(solution));
+            }
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
                 nearest = trials.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
-                nearest = nearest.filter(|trial| 1.0 - trial.left >= NAMED);
+                nearest =
+                    nearest.filter(|trial| 1.0 - trial.left >= if trial.rank >= PLACES { NAMED_PLACE } else { NAMED });
             }
         }
     }

@@ -1,9 +1,11 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
-use crate::compare::{Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells};
-use crate::diagnose::{Diagnosis, Energies, diagnose};
-use crate::problem::{Problem, Scales};
+use crate::compare::{
+    ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells,
+};
+use crate::diagnose::{Diagnosis, Energies, diagnose, in_the_mean};
+use crate::problem::{Note, Problem, Scales};
 
 /// What holding a field to its claim gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,25 +16,50 @@ pub struct Claim {
     pub diagnosis: Option<Diagnosis>,
     /// The residual, triangle by triangle.
     pub residual: Vec<f64>,
+    /// One remark for each contact that holds in the mean and not at nodes.
+    pub notes: Vec<Note>,
 }
 
 /// A field whose guaranteed relative error is larger than this is no solution of anything.
 const NO_SOLUTION: f64 = 1.0;
 
 /// Holds a field against everything that is true of a discrete solution of its degree on its mesh; `bracket` is that of the stress
-/// side, which says how large a solution can be.
+/// side, which says how large a solution can be. With `weak` its contact claims to hold in the mean over edges.
 ///
 /// # Errors
 /// [`NoUpperBound`] where supports contradict each other.
-pub fn claim(problem: &Problem, judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Result<Claim, NoUpperBound> {
-    let solution =
-        Solution::new(problem, &judged.candidate, judged.field.potential.strain)?.within(Extent::of(bracket));
-    let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
+pub fn claim(
+    problem: &Problem,
+    judged: &Judged,
+    bracket: &Bracket,
+    weak: bool,
+    allow: &Allowances,
+) -> Result<Claim, NoUpperBound> {
+    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?;
+    let solution = solution.within(Extent::of(bracket)).with_weak_contact(weak);
+    let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
-        .any(|c| (!c.passed && c.value.is_some()) || c.excused)
+        .any(|c| (!c.passed && c.decides() && c.value.is_some()) || c.excused)
         .then(|| explained(problem, judged, &solution, bracket));
-    Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), checks })
+    let notes = weak_notes(&solution, || energies(problem, judged));
+    let at_nodes = checks.iter_mut().filter(|check| check.name.ends_with("/penetration-at-nodes"));
+    at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
+    Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), notes, checks })
+}
+
+fn weak_notes(solution: &Solution<'_>, energies: impl Fn() -> Energies) -> Vec<Note> {
+    let sentences = in_the_mean(solution, energies);
+    sentences.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect()
+}
+
+/// One remark for each contact of a field that claims to hold in the mean and not at nodes; `None` where a support or a contact of it
+/// holds neither way.
+pub fn weak_contact(problem: &Problem, judged: &Judged) -> Option<Vec<Note>> {
+    let solution =
+        Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?.with_weak_contact(true);
+    let contacts = (0..problem.interfaces.len()).all(|i| solution.is_met(i) || solution.holds_weakly(i).is_some());
+    (judged.violation.support <= ADMISSIBLE && contacts).then(|| weak_notes(&solution, || energies(problem, judged)))
 }
 
 /// The same for the solution of a method whose contact sides have different vertices: `own` is it on the triangles of its file,
@@ -50,7 +77,7 @@ pub fn claim_before_contact(
     let solution = Solution::new(before, own, judged.field.potential.strain)?.within(Extent::of(bracket));
     let solution = Nonmatching::new(solution, problem);
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
-    Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle() })
+    Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
 }
 
 /// What explains a field best: on quadrilaterals by whichever rule its program may have used.

@@ -35,7 +35,7 @@ pub use admission::Admission;
 pub use answers::{Answer, answers, refuse_quantities, sharper};
 pub use baseline::{Baseline, BaselineError};
 pub use certified::{Certified, StudyError, certify};
-pub use claim::{Claim, claim, claim_before_contact, diagnoses, error_check};
+pub use claim::{Claim, claim, claim_before_contact, diagnoses, error_check, weak_contact};
 pub use curves::remarks as curve_remarks;
 pub use date::today;
 pub use dossier::{Findings, assemble, infeasible};

@@ -13,6 +13,7 @@ mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
 mod degrees;
+mod diagnosis_of_nothing;
 mod drafts;
 mod dual_limits;
 mod dual_methods;

@@ -13,7 +13,7 @@ fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
     let body = |name: &&str| Body { name: (*name).into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
     let draft = Draft {
         bodies: bodies.iter().map(body).collect(),
-        supports: vec![Support { on: wall.into(), kind: SupportKind::Clamped { displacement: [0.0; 2] } }],
+        supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],
         tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
         ..Draft::new("plate", Kinematics::PlaneStrain, MeshSource::File(mesh))
     };

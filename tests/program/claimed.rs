@@ -53,12 +53,17 @@ fn scene() -> String {
 
 /// Writes the scene and its fields of both degrees; `false` where numpy or scipy is missing.
 fn prepared(folder: &Path, names: &[&str]) -> bool {
+    prepared_on(folder, &scene(), names)
+}
+
+/// The same for a scene of two blocks or of its own.
+pub fn prepared_on(folder: &Path, scene: &str, names: &[&str]) -> bool {
     let has = Command::new(python()).args(["-c", "import numpy, scipy.sparse"]).output();
     if !has.is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: {} has no numpy and scipy", python().display());
         return false;
     }
-    std::fs::write(folder.join("scene.toml"), scene()).expect("writable");
+    std::fs::write(folder.join("scene.toml"), scene).expect("writable");
     let problem = Problem::load(Scene::read(&folder.join("scene.toml")).expect("a scene")).expect("a mesh");
     write_problem(&problem, &[], folder).expect("writable");
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement/fields.py");
@@ -74,7 +79,7 @@ fn prepared(folder: &Path, names: &[&str]) -> bool {
 }
 
 /// The exit code and the report on a field that is claimed to be a solution.
-fn certified(folder: &Path, field: &str, more: &[&str]) -> (i32, Value) {
+pub fn certified(folder: &Path, field: &str, more: &[&str]) -> (i32, Value) {
     let out = format!("out/{field}-{}", more.len());
     let file = format!("{field}.vtk");
     let usual = ["certify", "scene.toml", "--displacement", &file, "--solution", "--quiet", "--out", &out];
@@ -84,7 +89,7 @@ fn certified(folder: &Path, field: &str, more: &[&str]) -> (i32, Value) {
     (output.status.code().expect("a code"), serde_json::from_slice(&text).expect("JSON"))
 }
 
-fn check<'a>(report: &'a Value, name: &str) -> &'a Value {
+pub fn check<'a>(report: &'a Value, name: &str) -> &'a Value {
     let checks = report["checks"].as_array().expect("checks");
     checks.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("no check {name}"))
 }

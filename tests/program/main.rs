@@ -8,6 +8,7 @@ mod claimed;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;
+mod contact_in_the_mean;
 mod diff;
 mod element;
 mod fields;
@@ -20,6 +21,7 @@ mod malformed_meshes;
 mod many_bodies;
 mod memory;
 mod mesh;
+mod named_mistakes;
 mod own_mesh;
 #[path = "../support/pages.rs"]
 mod pages;

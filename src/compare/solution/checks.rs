@@ -1,6 +1,6 @@
 //! The checks of a field that claims to be a discrete solution.
 
-use super::{SOLVER, Site, Solution};
+use super::{SOLVER, Site, Solution, Weak};
 use crate::bounds::Hold;
 use crate::compare::ceiling::Allowance;
 use crate::compare::{Allowances, Basis, Check};
@@ -17,6 +17,10 @@ impl Solution<'_> {
             vec![self.residual_check(), self.supports_check(), self.reactions_check(scales), self.energy_check(scales)];
         for (index, interface) in self.problem.interfaces.iter().enumerate() {
             let name = |what: &str| format!("solution/contact/{}/{what}", interface.name);
+            if let Some(weak) = self.holds_weakly(index) {
+                checks.extend(self.weak_checks(index, weak, name));
+                continue;
+            }
             checks.push(self.penetration_check(index, &name("penetration")));
             let [(pulling, pulled), (open, opened)] = self.complementarity(index);
             let forces = self.of_forces();
@@ -138,11 +142,14 @@ impl Solution<'_> {
         };
         let supports: f64 = nodes.map(|n| dot(self.supported(n), prescribed(n))).sum();
         // What contact does on a penetration has a check of its own.
-        let distance = |(site, excess): (&Site, &f64)| site.gap + excess.max(0.0);
+        let weak: Vec<bool> = (0..self.problem.interfaces.len()).map(|i| self.holds_weakly(i).is_some()).collect();
+        let distance =
+            |(site, excess): (&Site, &f64)| site.gap + if weak[site.interface] { *excess } else { excess.max(0.0) };
         let distances = self.sites.list.iter().zip(&self.excess).map(distance);
         let gaps: f64 =
             distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum::<f64>() + self.on_gaps;
-        let (left, right) = (2.0 * self.strain, work + supports - gaps);
+        let beside: f64 = self.beside.iter().enumerate().map(|(n, f)| dot(*f, self.candidate.value(n))).sum();
+        let (left, right) = (2.0 * self.strain, work + supports - gaps + beside);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
         self.with_digits(self.of_forces(), |part| {
             Check::equal(
@@ -155,6 +162,46 @@ impl Solution<'_> {
                  prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",
             )
         })
+    }
+
+    /// Checks of contact `interface` in the mean, with a remark on its nodes.
+    fn weak_checks(&self, interface: usize, weak: &Weak, name: impl Fn(&str) -> String) -> Vec<Check> {
+        let total = self.applied().max(self.carried(interface));
+        let share = |force: f64| if total > 0.0 { force / total } else { force };
+        let law = weak.in_words();
+        let part = self.weak_part(interface);
+        let depth = self.deepest(interface).map_or(0.0, |site| self.excess[site].max(0.0));
+        let mut nodes = self.penetration_check(interface, &name("penetration-at-nodes"));
+        nodes.basis = Basis::Chosen;
+        nodes.why = format!(
+            "Contact holds {law}. At the nodes the sides overlap by up to {depth:.3e}, which is no mistake of such a method; the bounds of \
+             this report are those of the field made admissible."
+        );
+        vec![
+            self.claimed(
+                &name("penetration"),
+                self.relative(weak.penetration),
+                self.of_displacements(2.0),
+                format!("Contact holds {law}: the largest of these means of the penetration, relative to the largest displacement."),
+            ),
+            Check::at_most(
+                &name("pulling"),
+                share(weak.pulling),
+                0.0,
+                part,
+                Basis::Claimed,
+                "Contact pushes and never pulls: the sum of the forces of its law that pull, relative to all forces.",
+            ),
+            Check::at_most(
+                &name("pressure-where-open"),
+                weak.misfit,
+                0.0,
+                part,
+                Basis::Claimed,
+                format!("Contact holds {law}: what of the contact forces does not follow this law, relative to all of this contact."),
+            ),
+            nodes,
+        ]
     }
 
     fn penetration_check(&self, interface: usize, name: &str) -> Check {

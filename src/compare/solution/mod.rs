@@ -10,15 +10,18 @@ mod checks;
 mod digits;
 mod nonmatching;
 mod sites;
+mod weak;
 
 pub use nonmatching::Nonmatching;
 pub use sites::{Site, Sites, Span};
+pub use weak::{Law, Shape, Station, Weak};
 
 use super::balance::Balance;
 use super::candidate::Candidate;
 use super::cells;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
+use crate::element::Compliance;
 use crate::problem::{Problem, ROUND_OFF};
 
 /// What a solver may leave in the equations that it solves, relative to what they balance.
@@ -97,6 +100,16 @@ pub struct Solution<'a> {
     pushed: f64,
     /// What rounding of the displacements, to the digits that the file keeps, can leave of the residual.
     pub rounding: f64,
+    /// What supports leave of the nodal forces, contact forces among them.
+    unsupported: Vec<[f64; 2]>,
+    /// Material of every body.
+    materials: Vec<Compliance>,
+    /// How every contact holds in the mean, where it does and not at the nodes.
+    pub weak: Vec<Option<Weak>>,
+    /// Whether contact is claimed to hold in the mean.
+    claims_weak: bool,
+    /// Forces at nodes that contact in the mean exerts beside pressures.
+    beside: Vec<[f64; 2]>,
 }
 
 impl<'a> Solution<'a> {
@@ -128,6 +141,7 @@ impl<'a> Solution<'a> {
         let forces = NodalForces::by_rule(problem, candidate, points);
         let strain = if points.is_some() { 0.5 * forces.energy(candidate) } else { strain };
         let mut rest = forces.unsupported(&holds, &nodes);
+        let unsupported = rest.clone();
         let pressing = sites.pressing(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);
@@ -135,7 +149,7 @@ impl<'a> Solution<'a> {
         let balance = Balance::of_forces(problem, candidate, strain, &forces)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
-        Ok(Solution {
+        let mut solution = Solution {
             problem,
             candidate,
             rest,
@@ -154,7 +168,18 @@ impl<'a> Solution<'a> {
             sites,
             points,
             forces,
-        })
+            unsupported,
+            materials: problem.materials(),
+            weak: Vec::new(),
+            claims_weak: false,
+            beside: Vec::new(),
+        };
+        // These laws are read off the stresses of triangles.
+        if solution.points.is_none() {
+            solution.recognise();
+            solution.accept();
+        }
+        Ok(solution)
     }
 
     /// The residual of the whole field, relative to its scale.

@@ -52,6 +52,8 @@ pub struct Sites {
     pub list: Vec<Site>,
     /// The places of every pair of edges with one direction.
     pub spans: Vec<Span>,
+    /// The places of every pair of edges, also where the direction turns.
+    pub edges: Vec<Span>,
     groups: Vec<Group>,
 }
 
@@ -64,6 +66,10 @@ pub struct Span {
     pub middle: Option<usize>,
     /// Its length.
     pub length: f64,
+    /// Index into [`Problem::interfaces`].
+    pub interface: usize,
+    /// The pair of this interface.
+    pub pair: usize,
 }
 
 /// Places that share nodes, with an orthonormal basis of the forces that contact can exert there.
@@ -79,10 +85,10 @@ impl Sites {
     /// Those of `problem` for nodes of the given degree; of degrees above 2, for those of degree 2.
     pub fn new(problem: &Problem, degree: usize, holds: &Holds) -> Self {
         let vertices = problem.mesh.points.len();
-        let mut sites = Sites { list: Vec::new(), spans: Vec::new(), groups: Vec::new() };
+        let mut sites = Sites { list: Vec::new(), spans: Vec::new(), edges: Vec::new(), groups: Vec::new() };
         for (interface, contact) in problem.interfaces.iter().enumerate() {
             let mut known: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
-            for pair in &contact.pairs {
+            for (number, pair) in contact.pairs.iter().enumerate() {
                 let part = pair.length / if degree > 1 { 6.0 } else { 2.0 };
                 let mut at_ends = [0; 2];
                 for (end, at) in at_ends.iter_mut().enumerate() {
@@ -102,8 +108,10 @@ impl Sites {
                 }
                 let middle = (degree > 1 && pair.edges[0].is_some()).then_some(sites.list.len());
                 let turned = !pair.direction.is_constant();
+                let span = Span { ends: at_ends, middle, length: pair.length, interface, pair: number };
+                sites.edges.push(span);
                 if !turned {
-                    sites.spans.push(Span { ends: at_ends, middle, length: pair.length });
+                    sites.spans.push(span);
                 }
                 let (2.., Some(own)) = (degree, pair.edges[0]) else { continue };
                 let [n, m] = pair.direction.ends;
@@ -151,6 +159,16 @@ impl Sites {
             }
         }
         pressing
+    }
+
+    /// Whether supports hold both sides of a place along the direction of contact, so that nothing shows its force.
+    pub fn is_held(&self, site: usize) -> bool {
+        let own = |group: &&Group| group.sites.binary_search(&site).is_ok();
+        let row = self.groups.iter().find(own).and_then(|group| {
+            let place = group.sites.binary_search(&site).ok()?;
+            Some(group.rows.column(place).norm())
+        });
+        row.is_none_or(|length| length <= SPENT)
     }
 
     /// Forces and gaps in Bernstein coefficients, in which every pressure ≥ 0 is a list of forces ≥ 0.

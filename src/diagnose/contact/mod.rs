@@ -2,6 +2,7 @@
 
 mod penalty;
 mod tangential;
+mod weak;
 
 use super::words::number;
 use super::{Energies, Finding};
@@ -10,6 +11,7 @@ use crate::compare::solution::SOLVER;
 use crate::scene::counted;
 
 pub use tangential::trials;
+pub use weak::in_the_mean;
 
 /// Rounded displacements that meet in the force of a node: all may be off the same way.
 const MEETING: f64 = 16.0;
@@ -27,6 +29,7 @@ pub fn findings(solution: &Solution<'_>, energies: Energies) -> Vec<Finding> {
 /// The nodes of one contact.
 struct Along<'a> {
     solution: &'a Solution<'a>,
+    interface: usize,
     name: &'a str,
     sites: Vec<usize>,
     /// What counts as closed.
@@ -41,6 +44,7 @@ impl<'a> Along<'a> {
         let total = solution.applied().max(solution.carried(index));
         Along {
             solution,
+            interface: index,
             name: &solution.problem.interfaces[index].name,
             sites,
             enough: 2.0 * (SOLVER + solution.candidate.precision) * solution.largest,
@@ -58,6 +62,9 @@ impl<'a> Along<'a> {
 
     fn finding(&self, energies: Energies) -> Option<Finding> {
         let name = |what: &str| format!("contact/{}/{what}", self.name);
+        if self.solution.holds_weakly(self.interface).is_some() {
+            return None;
+        }
         let deepest = self.sites.iter().copied().max_by(|a, b| self.depth(*a).total_cmp(&self.depth(*b)))?;
         let depth = self.depth(deepest);
         let place = self.solution.named(self.solution.sites.list[deepest].first);
@@ -71,6 +78,9 @@ impl<'a> Along<'a> {
                     number(depth)
                 );
                 return Some(Finding::new(name("missing"), Some(depth), Some(0.0), sentence));
+            }
+            if let Some(finding) = self.weak(energies) {
+                return Some(finding);
             }
             if let Some(gap) = self.constant_gap(&carrying) {
                 let sentence =
@@ -108,6 +118,15 @@ impl<'a> Along<'a> {
                 self.solution.named(self.solution.sites.list[most].first)
             );
             return Some(Finding::new(name("glued"), Some(sum), Some(0.0), sentence));
+        }
+        // Straight edges may overlap a curve between nodes that are open.
+        if self.solution.is_curved(self.interface) && !carrying.is_empty() {
+            if let Some(finding) = self.weak(energies) {
+                return Some(finding);
+            }
+            if let Some(penalty) = self.penalty(&carrying) {
+                return Some(self.told_penalty(name("penalty"), &penalty, deepest, energies));
+            }
         }
         let pushes_open = |s: &usize| {
             let at_node = self.depth(*s) < -self.enough && self.pressing(*s) > self.least;

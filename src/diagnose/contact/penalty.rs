@@ -1,9 +1,12 @@
-//! Contact held by springs: their stiffness, and what they cost.
+//! Contact held by springs, at nodes or at quadrature points: their stiffness, and what they cost.
 
 use super::super::words::number;
 use super::super::{Energies, Finding};
 use super::Along;
+use crate::compare::solution::Shape;
 
+/// Degrees of the rules by which other programs may integrate a penalty.
+const RULES: [usize; 5] = [0, 2, 4, 6, 30];
 /// How well forces have to follow penetrations.
 const FOLLOWS: f64 = 0.1;
 
@@ -40,11 +43,34 @@ impl Along<'_> {
         };
         let mass = self.consistent();
         let consistent = |s: usize| self.sites.binary_search(&s).map_or(0.0, |place| thickness * mass[place]);
-        let kinds = [(Kind::Area, fit(&lumped)), (Kind::Area, fit(&consistent)), (Kind::Node, fit(&alone))];
+        let mut kinds = vec![(Kind::Area, fit(&lumped)), (Kind::Area, fit(&consistent)), (Kind::Node, fit(&alone))];
+        let shapes = if self.solution.is_curved(self.interface) {
+            vec![Shape::Chords, Shape::Curve]
+        } else {
+            vec![Shape::Chords]
+        };
+        for (shape, rule) in shapes.into_iter().flat_map(|shape| RULES.map(|rule| (shape, rule))) {
+            let sums = self.integrated(shape, rule);
+            kinds.push((Kind::Area, fit(&|s| self.sites.binary_search(&s).map_or(0.0, |place| sums[place]))));
+        }
         // Nothing follows a list of zeros.
         let known = kinds.into_iter().filter(|(_, (_, miss))| miss.is_finite());
         let (kind, (stiffness, miss)) = known.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
         (miss <= FOLLOWS && stiffness > 0.0).then_some(Penalty { kind, stiffness })
+    }
+
+    /// ∫ [d]₊ φ ds times the thickness at every node of this contact, as a rule for integrands of degree `rule` has it, d the
+    /// penetration at its points.
+    fn integrated(&self, shape: Shape, rule: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; self.sites.len()];
+        for station in self.solution.stations(self.interface, rule, shape) {
+            for (site, value) in station.sites {
+                if let Ok(place) = self.sites.binary_search(&site) {
+                    sums[place] += station.weight * station.excess.max(0.0) * value;
+                }
+            }
+        }
+        sums
     }
 
     /// ∫ d φ ds at every node of this contact, d the penetration interpolated between nodes that penetrate.
@@ -102,14 +128,20 @@ impl Along<'_> {
                 None => "for each node".to_string(),
             },
         };
+        let depth = self.depth(deepest);
+        let gives = match depth > 0.0 {
+            true => format!(
+                "gives way by up to {} ({:.1e} of the largest displacement) at {}",
+                number(depth),
+                depth / self.solution.largest,
+                self.solution.named(self.solution.sites.list[deepest].first)
+            ),
+            false => "gives way between the nodes, which are open".to_string(),
+        };
         let sentence = format!(
-            "contact {} is a penalty with the stiffness {} {unit}; it gives way by up to {} ({:.1e} of the largest displacement) at {}, \
-             {costs}",
+            "contact {} is a penalty with the stiffness {} {unit}; it {gives}, {costs}",
             self.name,
             number(penalty.stiffness),
-            number(self.depth(deepest)),
-            self.depth(deepest) / self.solution.largest,
-            self.solution.named(self.solution.sites.list[deepest].first)
         );
         Finding::new(name, Some(penalty.stiffness), None, sentence)
     }

@@ -8,12 +8,16 @@ const LAST: usize = 3;
 /// Numbers of a file that keeps more digits than this are as good as those of the machine.
 const MOST: usize = 12;
 
+/// The part of numbers in single precision that use its last bits.
+const FULL: f64 = 0.8;
+
 /// Rounding relative to their size that `values` carry, where a file keeps a few decimal digits of them, or single precision.
 pub(super) fn precision(values: impl Iterator<Item = f64>, single: bool) -> f64 {
-    let machine = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let values: Vec<f64> = values.filter(|x| *x != 0.0).collect();
+    let machine = if single || are_single(&values) { f64::from(f32::EPSILON) } else { f64::EPSILON };
     let mut ends = [[false; 10]; MOST + 1];
     let mut all = 0;
-    for x in values.filter(|x| *x != 0.0) {
+    for x in values {
         let written = (1..=MOST).map(|d| format!("{x:.*e}", d - 1)).enumerate().find(|(_, text)| text.parse() == Ok(x));
         let Some((before, text)) = written else { return machine };
         let last = text.split('e').next().and_then(|digits| digits.chars().last()?.to_digit(10)).unwrap_or(0);
@@ -23,6 +27,16 @@ pub(super) fn precision(values: impl Iterator<Item = f64>, single: bool) -> f64 
     let most = (1..=MOST).rev().find(|d| ends[*d] != [false; 10]).unwrap_or(MOST);
     let cut = ends[most].iter().filter(|there| **there).count() >= LAST;
     if all >= ENOUGH && cut { (0.5 * 10f64.powi(1 - most as i32)).max(machine) } else { machine }
+}
+
+/// Whether numbers in double precision are those of single precision, of which most use all digits.
+fn are_single(values: &[f64]) -> bool {
+    // Sixteen of its bits in 23, and simple numbers do without the last seven.
+    let full = |x: &&f64| (**x as f32).to_bits() & 0x7f != 0;
+    let used = values.iter().filter(full).count();
+    values.len() >= ENOUGH
+        && used as f64 >= FULL * values.len() as f64
+        && values.iter().all(|x| f64::from(*x as f32) == *x)
 }
 
 #[cfg(test)]
@@ -36,6 +50,7 @@ mod tests {
         assert_eq!(precision(values(), false), f64::EPSILON);
         assert_eq!(precision(rounded(6), false), 0.5e-5);
         assert_eq!(precision(rounded(9), true), f64::from(f32::EPSILON));
+        assert_eq!(precision(values().map(|x| f64::from(x as f32)), false), f64::from(f32::EPSILON));
         // Short because they are simple, not because they were cut.
         assert_eq!(precision((1..200).map(|k| f64::from(k) / 8.0), false), f64::EPSILON);
         assert_eq!(precision([0.123, 0.456].into_iter(), false), f64::EPSILON);

@@ -9,6 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import weak  # noqa: E402
 from model import Model  # noqa: E402
 
 import numpy as np  # noqa: E402
@@ -84,9 +85,53 @@ WAYS = {
     "triangle": {"spoil": "triangle"},
 }
 
+def changed_model(model, change):
+    return Model(changed(model.problem, change), model.degree)
+
+
+def lumped(model):
+    """Half of each edge at its own value for the ends of a linear edge, a third for each node of a quadratic one."""
+    f = np.zeros((model.count, 2))
+    for entry in model.problem["tractions"]:
+        nodes = model.along(entry["edge"])
+        values = np.array(entry["values"])
+        length = model.problem["thickness"] * np.linalg.norm(model.points[nodes[1]] - model.points[nodes[0]])
+        shares = values / 2 if model.degree == 1 else np.array([values.mean(axis=0) / 3] * 3)
+        for node, share in zip(nodes, shares):
+            f[node] += length * share
+    model.loads = f.ravel
+    return model.solve()
+
+
+def single_precision(model):
+    """Assembled and solved in it."""
+    k, f = model.stiffness(), model.loads()
+    held = model.matrix([r[0] for r in model.held()])
+    free = weak.null_space(held)
+    a = (free.T @ k @ free).toarray().astype(np.float32)
+    u = np.linalg.solve(a, (free.T @ f).astype(np.float32)).astype(np.float32)
+    return np.asarray(free @ u.astype(float)).reshape(-1, 2)
+
+
+WEAK = {
+    "mortar_hats": lambda model: weak.mortar(model, "hats"),
+    "mortar_edges": lambda model: weak.mortar(model, "edges"),
+    "mortar_quadratic": lambda model: weak.mortar(model, "quadratic"),
+    "nitsche": lambda model: weak.nitsche(model),
+    "nitsche_unsymmetric": lambda model: weak.nitsche(model, theta=-1, gamma=0.1),
+    "nitsche_incomplete": lambda model: weak.nitsche(model, theta=0, gamma=0.1),
+    "nitsche_modulus": lambda model: weak.nitsche(changed_model(model, modulus)),
+    "mortar_modulus": lambda model: weak.mortar(changed_model(model, modulus)),
+    "penalty_on_a_parabola": lambda model: weak.penalty(model, 1e4, gap=lambda x: x[0] ** 2),
+    "penalty_quadrature": lambda model: weak.penalty(model, 50.0),
+    "augmented": lambda model: weak.augmented(model, "hats"),
+}
+
 
 def made(model, name):
     """The values at the nodes."""
+    if name in WEAK:
+        return WEAK[name](model)
     if name in WAYS:
         ways = dict(WAYS[name])
         if ways.get("spoil") == "triangle":
@@ -96,6 +141,10 @@ def made(model, name):
             del ways["spoil"]
             model.of_lambda = -1.0
         return model.solve(**ways)
+    if name == "lumped":
+        return lumped(model)
+    if name == "single_precision":
+        return single_precision(model)
     u = model.solve()
     largest = np.abs(u).max()
     if name == "value":

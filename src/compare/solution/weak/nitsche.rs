@@ -1,0 +1,280 @@
+//! Nitsche's method: the pressure is [(j − g)/γ − σ_n]₊, and σ_n(φ) is tested against θ max(j − g, γσ_n).
+//!
+//! With v_n the jump of a displacement, ∫ σ(u):e(v) − L(v) = −∫ [(j − g)/γ − σ_n]₊ v_n + θ ∫ max(j − g, γσ_n) σ_n(v), where γ is a
+//! constant times a length of the mesh. The constant is sought on a line, θ follows from it by least squares.
+
+use std::collections::BTreeMap;
+
+use super::super::Solution;
+use super::stations::{Shape, Station};
+use super::{Law, Limits, Weak};
+use crate::vector::distance;
+
+/// Degrees of the rules that are tried; the first is the one by which all else is chosen.
+const RULES: [usize; 6] = [4, 0, 2, 6, 8, 24];
+/// Powers of ten of γE over a length, and the step between those that are tried.
+const POWERS: [f64; 3] = [-5.0, 1.0, 0.125];
+/// Steps of the golden section.
+const STEPS: usize = 60;
+/// A law whose forces miss those of the field by more, before its rule is known, is another one.
+const NEAR: f64 = 0.2;
+
+/// Penetrations and normal stresses each have to explain this many times what is left without them.
+const MATTERS: f64 = 10.0;
+
+/// The length that γ is proportional to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Size {
+    Edge,
+    Diameter,
+    One,
+}
+
+/// What all quadrature points give, on the nodes that take part.
+struct Terms {
+    /// Of every point: weight, excess, normal stress, length, and whether the edge carries a force.
+    points: Vec<(f64, f64, f64, f64, bool)>,
+    /// Shape functions of the jump and of the normal stress: (entry of the vectors, value).
+    jumps: Vec<Vec<(usize, f64)>>,
+    stresses: Vec<Vec<(usize, f64)>>,
+    /// Nodes, whose entries are 2i and 2i + 1.
+    nodes: Vec<usize>,
+    /// Projected nodal forces, each over √K_ii.
+    wanted: Vec<f64>,
+}
+
+/// A law of the family.
+#[derive(Clone, Copy)]
+struct Fit {
+    power: f64,
+    theta: f64,
+    misfit: f64,
+}
+
+/// How stations are weighed.
+#[derive(Clone, Copy)]
+struct Variant {
+    size: Size,
+    shares: [f64; 2],
+    signed: bool,
+    shape: Shape,
+}
+
+/// Nitsche's law nearest to the forces along contact `interface`.
+pub fn nitsche(solution: &Solution<'_>, interface: usize, limits: &Limits, shapes: &[Shape]) -> Option<Weak> {
+    let rigid = solution.problem.interfaces[interface].pairs.iter().all(|pair| pair.second.is_none());
+    let shares: &[[f64; 2]] = if rigid { &[[1.0, 0.0]] } else { &[[0.5, 0.5], [1.0, 0.0], [0.0, 1.0]] };
+    let mut best: Option<(Variant, Fit)> = None;
+    for &shape in shapes {
+        for signed in [false, true] {
+            for size in [Size::Edge, Size::Diameter, Size::One] {
+                for &shares in shares {
+                    let variant = Variant { size, shares, signed, shape };
+                    let fit = Terms::new(solution, interface, RULES[0], variant, limits).fit(solution, signed);
+                    if best.as_ref().is_none_or(|(_, known)| fit.misfit < known.misfit) {
+                        best = Some((variant, fit));
+                    }
+                    if fit.misfit <= limits.part {
+                        return weak(solution, interface, RULES[0], variant, fit, limits);
+                    }
+                }
+            }
+        }
+    }
+    let (variant, _) = best.filter(|(_, fit)| fit.misfit <= NEAR)?;
+    let fit =
+        |rule: usize| (rule, Terms::new(solution, interface, rule, variant, limits).fit(solution, variant.signed));
+    let (rule, fit) = RULES.map(fit).into_iter().min_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit))?;
+    weak(solution, interface, rule, variant, fit, limits)
+}
+
+fn weak(
+    solution: &Solution<'_>,
+    interface: usize,
+    rule: usize,
+    variant: Variant,
+    fit: Fit,
+    limits: &Limits,
+) -> Option<Weak> {
+    let terms = Terms::new(solution, interface, rule, variant, limits);
+    let gamma = 10.0_f64.powf(fit.power);
+    if MATTERS * fit.misfit > terms.misfit_of_less(solution) {
+        return None;
+    }
+    let (_, against) = terms.vectors(gamma, variant.signed);
+    let forces = terms
+        .nodes
+        .iter()
+        .enumerate()
+        .map(|(i, node)| (*node, [fit.theta * against[2 * i], fit.theta * against[2 * i + 1]]));
+    let pulling = terms.points.iter().map(|point| point.0 * (-pressure(point, gamma, variant.signed)).max(0.0)).sum();
+    Some(Weak {
+        law: Law::Nitsche { theta: fit.theta, gamma, per_length: variant.size != Size::One },
+        penetration: 0.0,
+        misfit: fit.misfit,
+        pulling,
+        terms: forces.collect(),
+    })
+}
+
+/// [(j − g)/γ − σ_n]₊, or without the bracket where the edge carries a force.
+fn pressure(&(_, excess, stress, length, carries): &(f64, f64, f64, f64, bool), gamma: f64, signed: bool) -> f64 {
+    let pressed = excess / (gamma * length) - stress;
+    match signed {
+        true if carries => pressed,
+        true => 0.0,
+        false => pressed.max(0.0),
+    }
+}
+
+impl Terms {
+    fn new(solution: &Solution<'_>, interface: usize, rule: usize, variant: Variant, limits: &Limits) -> Self {
+        let stations = solution.stations(interface, rule, variant.shape);
+        let mut known: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut terms = Terms {
+            points: Vec::new(),
+            jumps: Vec::new(),
+            stresses: Vec::new(),
+            nodes: Vec::new(),
+            wanted: Vec::new(),
+        };
+        for station in &stations {
+            let trace = solution.trace(station, variant.shares);
+            let carries = station.sites.iter().all(|(site, _)| solution.pressing[*site].abs() > limits.force);
+            let length = length(solution, station, variant.size);
+            terms.points.push((station.weight, station.excess, trace.stress, length, carries));
+            let mut entry = |node: usize, value: [f64; 2]| {
+                let next = known.len();
+                let i = *known.entry(node).or_insert(next);
+                if i == next {
+                    terms.nodes.push(node);
+                }
+                [(2 * i, value[0]), (2 * i + 1, value[1])]
+            };
+            let span = &solution.sites.edges[station.edge];
+            let n = solution.problem.interfaces[span.interface].pairs[span.pair].direction.at(station.at);
+            let mut jump = Vec::new();
+            for (site, value) in &station.sites {
+                let site = &solution.sites.list[*site];
+                for (node, sign) in [(Some(site.first), 1.0), (site.second, -1.0)] {
+                    if let Some(node) = node {
+                        jump.extend(entry(node, n.map(|x| sign * value * x)));
+                    }
+                }
+            }
+            let stress = trace.rows.into_iter().flat_map(|(node, row)| entry(node, row)).collect();
+            terms.jumps.push(jump);
+            terms.stresses.push(stress);
+        }
+        let forces: Vec<f64> = terms.nodes.iter().flat_map(|node| solution.unsupported[*node]).collect();
+        terms.wanted = terms.weighed(solution, &forces);
+        terms
+    }
+
+    /// What supports leave of nodal forces, each over √K_ii.
+    fn weighed(&self, solution: &Solution<'_>, forces: &[f64]) -> Vec<f64> {
+        let of = |(i, node): (usize, &usize)| {
+            let free = solution.hold(*node).project([forces[2 * i], forces[2 * i + 1]]);
+            free.map(|f| f / solution.forces.stiffness[*node].max(f64::MIN_POSITIVE).sqrt())
+        };
+        self.nodes.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Nodal forces of the pressure, and those that θ multiplies.
+    fn vectors(&self, gamma: f64, signed: bool) -> (Vec<f64>, Vec<f64>) {
+        let (mut pressed, mut against) = (vec![0.0; 2 * self.nodes.len()], vec![0.0; 2 * self.nodes.len()]);
+        for ((point, jump), stress) in self.points.iter().zip(&self.jumps).zip(&self.stresses) {
+            let &(weight, excess, normal, length, carries) = point;
+            let p = weight * pressure(point, gamma, signed);
+            jump.iter().for_each(|(i, value)| pressed[*i] -= p * value);
+            let tested = match signed {
+                true => {
+                    if carries {
+                        excess
+                    } else {
+                        0.0
+                    }
+                }
+                false => excess.max(gamma * length * normal),
+            };
+            stress.iter().for_each(|(i, value)| against[*i] += weight * tested * value);
+        }
+        (pressed, against)
+    }
+
+    fn at(&self, solution: &Solution<'_>, power: f64, signed: bool) -> Fit {
+        let (pressed, against) = self.vectors(10.0_f64.powf(power), signed);
+        let [pressed, against] = [pressed, against].map(|forces| self.weighed(solution, &forces));
+        let left: Vec<f64> = self.wanted.iter().zip(&pressed).map(|(r, p)| r - p).collect();
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let square = sum(&against, &against);
+        let theta = if square > 0.0 { sum(&left, &against) / square } else { 0.0 };
+        let rest: f64 = left.iter().zip(&against).map(|(r, b)| (r - theta * b).powi(2)).sum();
+        Fit { power, theta, misfit: (rest / sum(&self.wanted, &self.wanted)).sqrt() }
+    }
+
+    /// What is left without penetrations, where the pressure is the normal stress whatever the sides do, or without normal stresses,
+    /// which is a penalty; the smaller of the two.
+    fn misfit_of_less(&self, solution: &Solution<'_>) -> f64 {
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let all = sum(&self.wanted, &self.wanted);
+        let of = |pressure: fn(f64, f64) -> f64, free: bool| {
+            let mut forces = vec![0.0; 2 * self.nodes.len()];
+            for ((weight, excess, stress, ..), jump) in self.points.iter().zip(&self.jumps) {
+                let p = weight * pressure(*excess, *stress);
+                jump.iter().for_each(|(i, value)| forces[*i] -= p * value);
+            }
+            let forces = self.weighed(solution, &forces);
+            let square = sum(&forces, &forces);
+            let factor = if free && square > 0.0 { sum(&forces, &self.wanted) / square } else { 1.0 };
+            let rest: f64 = self.wanted.iter().zip(&forces).map(|(r, f)| (r - factor * f).powi(2)).sum();
+            (rest / all).sqrt()
+        };
+        of(|_, stress| (-stress).max(0.0), false).min(of(|excess, _| excess.max(0.0), true))
+    }
+
+    /// The γ that brings the forces nearest.
+    fn fit(&self, solution: &Solution<'_>, signed: bool) -> Fit {
+        let young = solution.problem.scene.bodies.iter().map(|body| body.young).fold(f64::INFINITY, f64::min);
+        let [low, high, step] = POWERS;
+        let count = ((high - low) / step) as usize;
+        let tried = (0..=count).map(|k| self.at(solution, low + step * k as f64 - young.log10(), signed));
+        let worst = Fit { power: low - young.log10(), theta: 0.0, misfit: f64::INFINITY };
+        let best = tried.fold(worst, |best, fit| if fit.misfit < best.misfit { fit } else { best });
+        if best.misfit > 2.0 * NEAR {
+            return best;
+        }
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let (mut a, mut b) = (best.power - step, best.power + step);
+        let inner = |a: f64, b: f64| [b - golden * (b - a), a + golden * (b - a)];
+        let mut fits = inner(a, b).map(|power| self.at(solution, power, signed));
+        for _ in 0..STEPS {
+            if fits[0].misfit < fits[1].misfit {
+                b = fits[1].power;
+                fits = [self.at(solution, inner(a, b)[0], signed), fits[0]];
+            } else {
+                a = fits[0].power;
+                fits = [fits[1], self.at(solution, inner(a, b)[1], signed)];
+            }
+        }
+        if fits[0].misfit < fits[1].misfit { fits[0] } else { fits[1] }
+    }
+}
+
+/// The length of the mesh at a station.
+fn length(solution: &Solution<'_>, station: &Station, size: Size) -> f64 {
+    let span = &solution.sites.edges[station.edge];
+    let mesh = &solution.problem.mesh;
+    let pair = &solution.problem.interfaces[span.interface].pairs[span.pair];
+    match size {
+        Size::One => 1.0,
+        Size::Edge => span.length,
+        Size::Diameter => {
+            let triangle = pair.edges[0].and_then(|e| mesh.edges[e].triangles[0]);
+            triangle.map_or(span.length, |t| {
+                let [a, b, c] = mesh.corners(t);
+                distance(a, b).max(distance(b, c)).max(distance(c, a))
+            })
+        }
+    }
+}
