@@ -22,10 +22,10 @@ fn sparse_and_dense_cones_give_the_same_verdicts() {
                 let runs = restraint::runs(&problem, &components, &|_| 1);
                 let clamped = restraint::clamped(&problem, &components);
                 for group in restraint::groups(&components, &clamped, &runs) {
-                    let few = Verdict::from_cones(&problem, &group, &loads, |rows, points| {
+                    let few = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
                         Box::new(DenseCone::new(&group, rows, points)) as Box<dyn Cone>
                     });
-                    let many = Verdict::from_cones(&problem, &group, &loads, |rows, points| {
+                    let many = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
                         Box::new(SparseCone::new(&group, rows, points)) as Box<dyn Cone>
                     });
                     let (few, many) = (few.unwrap(), many.unwrap());
