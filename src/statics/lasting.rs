@@ -1,15 +1,15 @@
 //! What a finer mesh leaves as it is: how the loads rest on supports and contacts that have not changed.
 //!
-//! A mesh only says how close to the ends of contact its pressures can act. Everything else follows from where straight contacts begin
-//! and end, from supports and from the sums of the loads.
+//! A mesh only says how close to the ends of contact its pressures can act. Everything else follows from where straight
+//! contacts begin and end, from supports and from the sums of the loads.
 
 use nalgebra::DVector;
 
 use super::restraint::{Group, Part};
 use crate::vector::long::largest;
 
-/// Numbers that differ by less, relative to the largest of their kind, are those of the same scene: sums over other triangles round
-/// differently. What counts as a balanced load is a hundred times more.
+/// Numbers that differ by less, relative to the largest of their kind, are those of the same scene: sums over other triangles
+/// round differently. What counts as a balanced load is a hundred times more.
 const SAME: f64 = 1e-12;
 
 /// A verdict without what depends on the mesh.

@@ -3,8 +3,9 @@
 //! Supports are taken out piece by piece: what they leave of (a, b, s ω) are the coordinates here, so that projections
 //! stay orthogonal. The projection of the loads is found by an interior point and made exact (`interior`). Where that does not
 //! hold, elimination decides: pieces are numbered along the contacts (Cuthill & McKee), so that it fills in little, and
-//! primal–dual active sets begin from closed contacts; where these come back to a state they have been in, the proximal-point method leads to a better start, and from there single rows change in the manner of
-//! Lawson and Hanson, as for small groups, should blocks not settle there either.
+//! primal–dual active sets begin from closed contacts; where these come back to a state they have been in, the proximal-point
+//! method leads to a better start, and from there single rows change in the manner of Lawson and Hanson, as for small groups,
+//! should blocks not settle there either.
 
 use std::collections::{HashSet, VecDeque};
 
