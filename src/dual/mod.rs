@@ -4,6 +4,7 @@
 //! nothing else, so every one of them is tested against the others.
 
 mod active_set;
+mod clearing;
 mod condensed;
 mod contact_moments;
 mod dissection;
@@ -91,6 +92,9 @@ pub struct DualSolution {
 pub struct Phases {
     /// Reading or making the mesh.
     pub read: f64,
+    /// How the loads rest on supports and contacts, on every mesh that was tried.
+    #[serde(default)]
+    pub statics: f64,
     /// Element matrices and the sparse system.
     pub assemble: f64,
     /// Sparse factorisation, symbolic and numeric.
@@ -99,7 +103,10 @@ pub struct Phases {
     pub contact: f64,
     /// Stresses, equilibrium residual and refinement.
     pub recover: f64,
-    /// The whole dual solve with its bracket.
+    /// The upper bound, as far as nothing else was done beside it.
+    #[serde(default)]
+    pub bounds: f64,
+    /// Statics, dual solve and bracket.
     pub total: f64,
 }
 

@@ -30,8 +30,10 @@ pub struct ContactState {
     pub steps: usize,
 }
 
-/// Steps of block pivoting before the proximal-point method takes over.
+/// Steps of block pivoting before the proximal-point method takes over: many, as long as fewer ends change than ever before, but
+/// few without that (Júdice & Pires 1994).
 const BLOCK_STEPS: usize = 60;
+const WITHOUT_GAIN: usize = 4;
 /// Springs of the proximal-point method, relative to the diagonal of S: from one that lets no open set move far to one that
 /// moves what is held by contact no more than round-off does.
 const PROXIMAL: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10];
@@ -86,11 +88,13 @@ struct Pivoted {
 }
 
 impl Proximal<'_> {
-    /// Primal–dual steps from `closed`, until the state settles, comes back, leaves a body without hold, or `most` are done.
+    /// Primal–dual steps from `closed`, until the state settles, comes back, comes no nearer, leaves a body without hold, or
+    /// `most` are done.
     fn block_pivoting(&self, mut closed: Vec<bool>, most: usize) -> Pivoted {
         let mut seen = HashSet::new();
         let mut jumps = Vec::new();
-        while seen.len() < most && seen.insert(closed.clone()) {
+        let (mut fewest, mut patience) = (usize::MAX, WITHOUT_GAIN);
+        while seen.len() < most && patience > 0 && seen.insert(closed.clone()) {
             let Some(found) = self.with_closed(&closed) else { break };
             jumps = found;
             let slack = slack(self.s, self.c, &jumps, &closed);
@@ -98,6 +102,8 @@ impl Proximal<'_> {
             if next == closed {
                 return Pivoted { state: ContactState { jumps, closed, steps: seen.len() }, settled: true };
             }
+            let changes = next.iter().zip(&closed).filter(|(next, now)| next != now).count();
+            (fewest, patience) = if changes < fewest { (changes, WITHOUT_GAIN) } else { (fewest, patience - 1) };
             closed = next;
         }
         Pivoted { state: ContactState { jumps, closed, steps: seen.len() }, settled: false }

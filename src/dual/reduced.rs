@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 
+use super::clearing::cleared;
 use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
 use super::hybrid::{Motion, explain, held_unknowns};
 use super::long_contact::LongContact;
@@ -16,9 +17,6 @@ use crate::vector::long::largest;
 
 /// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
 const BROKEN: f64 = 1e-9;
-
-/// What is left of a vector beside others, relative to its length, that is round-off.
-const DEPENDENT: f64 = 1e-10;
 
 /// Bytes for each entry of S while the contact is solved: S twice, its open part and the factor of that.
 const DENSE: f64 = 32.0;
@@ -180,11 +178,7 @@ impl<'a> Schur<'a> {
             }
         }
         let unresisted = unresisted(MOST_CLEARING / (m * m).max(1));
-        let basis = orthonormal(unresisted.iter().map(|z| over(z, &unit)));
-        let mut cleared = (!basis.is_empty()).then(|| matrix.clone());
-        if let Some(s) = &mut cleared {
-            basis.iter().for_each(|q| give_no_traction(s, q));
-        }
+        let cleared = cleared(&matrix, unresisted.iter().map(|z| over(z, &unit)));
         Schur::Dense(Dense { matrix, cleared, unit })
     }
 
@@ -233,38 +227,6 @@ impl<'a> Schur<'a> {
                 "the contact has {m} ends, more than are solved with a dense matrix: its state was found iteratively \
                  (MPRGP, {steps} steps)"
             )],
-        }
-    }
-}
-
-/// An orthonormal basis of what `vectors` span, those that vanish left out.
-fn orthonormal(vectors: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    for mut v in vectors {
-        let length = dot(&v, &v).sqrt();
-        // Twice is enough.
-        for q in basis.iter().chain(&basis) {
-            let part = dot(q, &v);
-            v.iter_mut().zip(q).for_each(|(v, q)| *v -= part * q);
-        }
-        let left = dot(&v, &v).sqrt();
-        if left > DEPENDENT * length {
-            v.iter_mut().for_each(|v| *v /= left);
-            basis.push(v);
-        }
-    }
-    basis
-}
-
-/// (I − q qᵀ) S (I − q qᵀ) in place of S.
-fn give_no_traction(s: &mut Mat<f64>, q: &[f64]) {
-    let zero = vec![0.0; q.len()];
-    let v = qp::gradient(s, &zero, q);
-    let both: f64 = v.iter().zip(q).map(|(v, q)| v * q).sum();
-    for k in 0..q.len() {
-        for i in 0..q.len() {
-            s[(i, k)] -= q[i] * v[k] + v[i] * q[k] - both * q[i] * q[k];
         }
     }
 }

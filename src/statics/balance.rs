@@ -3,6 +3,7 @@
 use super::StaticsError;
 use super::cone;
 use super::few::DenseCone;
+use super::lasting::{Lasting, Question};
 use super::loads::LoadResultants;
 use super::many::SparseCone;
 use super::restraint::{Group, Part, Points};
@@ -29,11 +30,19 @@ pub(super) struct Verdict {
     pub one_way: Option<DVector<f64>>,
     /// The motion that the pressures of the mesh cannot stop, see [`super::Solvability::Possible`].
     pub beyond_mesh: Option<DVector<f64>>,
+    /// What of it a finer mesh leaves as it is.
+    pub lasting: Option<Lasting>,
 }
 
 impl Verdict {
-    pub fn of(problem: &Problem, group: &Group, loads: &LoadResultants) -> Result<Self, StaticsError> {
-        Self::from_cones(problem, group, loads, |vanishing, points| {
+    /// The verdict on `group`; what is known of it from `before`, a coarser mesh, is taken from there.
+    pub fn of(
+        problem: &Problem,
+        group: &Group,
+        loads: &LoadResultants,
+        before: &[Lasting],
+    ) -> Result<Self, StaticsError> {
+        Self::from_cones(problem, group, loads, before, |vanishing, points| {
             if group.members.len() > MANY {
                 Box::new(SparseCone::new(group, vanishing, points))
             } else {
@@ -47,6 +56,7 @@ impl Verdict {
         problem: &Problem,
         group: &Group,
         loads: &LoadResultants,
+        before: &[Lasting],
         cone: impl Fn(&[Part], Points) -> Box<dyn Cone + 'a>,
     ) -> Result<Self, StaticsError> {
         let undecided = |_: cone::Unsettled| StaticsError::Undecided { bodies: words::all_names(group) };
@@ -60,6 +70,13 @@ impl Verdict {
         let tolerance = total * round_off(group);
 
         let rollers = group.rollers(problem);
+        let question = Question::new(group, &rollers, &load, total);
+        if let Some(known) = before.iter().find(|known| known.answers(&question)) {
+            let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &load, tolerance).map_err(undecided)?;
+            let Lasting { held, one_way, .. } = known.clone();
+            let lasting = Some(known.clone());
+            return Ok(Verdict { held, driven: None, one_way, beyond_mesh, lasting });
+        }
         let allowed = cone(&rollers, Points::Ends);
         let parts = allowed.unbalanced(&load).map_err(undecided)?;
         let [both, one] = &parts;
@@ -75,19 +92,26 @@ impl Verdict {
                 let motion = if work_free { allowed.without_sliding(part) } else { part };
                 Driven { motion, work }
             });
-            return Ok(Verdict { held: allowed.held(), driven, one_way: None, beyond_mesh: None });
+            return Ok(Verdict { held: allowed.held(), driven, one_way: None, beyond_mesh: None, lasting: None });
         }
 
-        let carried = cone(&rollers, Points::Reach);
-        let [_, beyond] = carried.unbalanced(&load).map_err(undecided)?;
+        let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &load, tolerance).map_err(undecided)?;
         let one_way = borderline(&*allowed, &load, total).map_err(undecided)?;
-        Ok(Verdict {
-            driven: None,
-            one_way: one_way.map(|motion| allowed.without_sliding(motion)),
-            beyond_mesh: (beyond.norm() > tolerance).then(|| carried.without_sliding(beyond)),
-            held: allowed.held(),
-        })
+        let one_way = one_way.map(|motion| allowed.without_sliding(motion));
+        let held = allowed.held();
+        let lasting = Some(Lasting { question, held: held.clone(), one_way: one_way.clone() });
+        Ok(Verdict { held, driven: None, one_way, beyond_mesh, lasting })
     }
+}
+
+/// The motion that the pressures of the mesh, which `carried` knows the reach of, cannot stop.
+fn beyond_mesh(
+    carried: &dyn Cone,
+    load: &DVector<f64>,
+    tolerance: f64,
+) -> Result<Option<DVector<f64>>, cone::Unsettled> {
+    let [_, beyond] = carried.unbalanced(load)?;
+    Ok((beyond.norm() > tolerance).then(|| carried.without_sliding(beyond)))
 }
 
 /// A motion and the work of the loads in it.

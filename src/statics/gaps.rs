@@ -46,7 +46,7 @@ pub(super) fn free_while_open(
     if found.driven.is_some() || group.members.len() > MANY || with_gap().next().is_none() {
         return Ok(Vec::new());
     }
-    let alone = Verdict::of(problem, &without_gaps(problem, group), loads)?;
+    let alone = Verdict::of(problem, &without_gaps(problem, group), loads, &[])?;
     if alone.driven.is_some() {
         return Ok(Vec::new());
     }

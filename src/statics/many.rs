@@ -1,10 +1,11 @@
 //! The cone of allowed motions of a group of many pieces, with sparse rows.
 //!
 //! Supports are taken out piece by piece: what they leave of (a, b, s ω) are the coordinates here, so that projections
-//! stay orthogonal. Pieces are numbered along the contacts (Cuthill & McKee), and elimination fills in little. The
-//! projection of the loads is found by primal–dual active sets from closed contacts; where these come back to a state
-//! they have been in, the proximal-point method leads to a better start, and from there single rows change in the manner of
-//! Lawson and Hanson, as for small groups, should blocks not settle there either.
+//! stay orthogonal. The projection of the loads is found by an interior point and made exact (`interior`). Where that does not
+//! hold, elimination decides: pieces are numbered along the contacts (Cuthill & McKee), so that it fills in little, and
+//! primal–dual active sets begin from closed contacts; where these come back to a state they have been in, the proximal-point
+//! method leads to a better start, and from there single rows change in the manner of Lawson and Hanson, as for small groups,
+//! should blocks not settle there either.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -12,6 +13,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::balance::{Cone, RANK};
 use super::cone::Unsettled;
+use super::interior::{self, left_of};
 use super::restraint::{Group, Part, Points, along};
 use super::span::Span;
 use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, norm, transposed};
@@ -71,7 +73,9 @@ impl<'a> SparseCone<'a> {
         }
         let mut cone = SparseCone { group, points, start, free, coordinates, held: Vec::new(), rows: Vec::new() };
         let ties: Vec<Row> = group.runs.iter().flat_map(|run| group.ties(run)).map(|row| cone.row(&row)).collect();
-        cone.held = Triangular::of(coordinates, &ties).null_vectors();
+        if !interior::see_every_motion(&ties, coordinates) {
+            cone.held = Triangular::of(coordinates, &ties).null_vectors();
+        }
         let jumps = group.runs.iter().flat_map(|run| points.of(run).map(|point| group.jump(run, point)));
         cone.rows = jumps.map(|row| cone.row(&row)).filter(|row| norm(row) > RANK).map(unit).collect();
         cone.rows.sort_by_key(|row| row.last().map(|entry| entry.0));
@@ -143,10 +147,31 @@ impl<'a> SparseCone<'a> {
     /// What is left of `load` beside all forces that rows can carry, see [`super::cone::unbalanced`].
     fn unbalanced_rest(&self, load: &[f64]) -> Result<Vec<f64>, Unsettled> {
         let size = load.iter().fold(0.0, |m: f64, v| m.hypot(*v));
-        self.block_steps((0..self.rows.len()).collect(), load, size)
-            .or_else(|_| self.proximal_points(load, size))
+        if size == 0.0 || self.rows.is_empty() {
+            return Ok(load.to_vec());
+        }
+        self.interior_point(load, size)
+            .or_else(|| self.block_steps((0..self.rows.len()).collect(), load, size).ok())
+            .ok_or(())
+            .or_else(|()| self.proximal_points(load, size))
             .or_else(|active| self.block_steps(active, load, size))
             .or_else(|active| self.one_by_one(active, load, size))
+    }
+
+    /// What the loads leave by the interior point, where its forces are those of the projection to round-off.
+    fn interior_point(&self, load: &[f64], size: f64) -> Option<Vec<f64>> {
+        let forces = interior::forces(&self.rows, self.coordinates, load, 0.5 * ROUND_OFF * size)?;
+        let rest = left_of(load, &self.rows, &forces);
+        self.is_projection(&forces, &rest, size).then_some(rest)
+    }
+
+    /// Whether `forces` and what they leave fulfil what characterises the projection: no row is broken, and none that carries force
+    /// is left.
+    fn is_projection(&self, forces: &[f64], rest: &[f64], size: f64) -> bool {
+        self.rows.iter().zip(forces).all(|(row, force)| {
+            let pull = dot(row, rest);
+            pull <= ROUND_OFF * size && (*force == 0.0 || pull >= -ROUND_OFF * size)
+        })
     }
 
     /// Primal–dual steps of whole sets from the rows `active`. What the loads leave, or the set at which the steps came back
@@ -194,12 +219,8 @@ impl<'a> SparseCone<'a> {
             active = settled;
             centre.fill(0.0);
             active.iter().zip(&forces).for_each(|(i, force)| centre[*i] = force.max(0.0));
-            let rest = self.left_of(load, &centre);
-            let holds = |(row, force): (&Row, &f64)| {
-                let pull = dot(row, &rest);
-                pull <= ROUND_OFF * size && (*force == 0.0 || pull >= -ROUND_OFF * size)
-            };
-            if self.rows.iter().zip(&centre).all(holds) {
+            let rest = left_of(load, &self.rows, &centre);
+            if self.is_projection(&centre, &rest, size) {
                 return Ok(rest);
             }
         }
@@ -227,15 +248,6 @@ impl<'a> SparseCone<'a> {
         None
     }
 
-    /// `load` without the `forces` on all rows.
-    fn left_of(&self, load: &[f64], forces: &[f64]) -> Vec<f64> {
-        let mut rest = load.to_vec();
-        for (row, force) in self.rows.iter().zip(forces).filter(|(_, force)| **force != 0.0) {
-            row.iter().for_each(|(k, v)| rest[*k] -= v * force);
-        }
-        rest
-    }
-
     /// Forces μ on the `active` rows that minimise ½ |load − Σ μ_i g_i|² + ρ/2 |μ − centre|², and what they leave.
     fn proximal_forces(&self, active: &[usize], load: &[f64], centre: &[f64], rho: f64) -> (Vec<f64>, Vec<f64>) {
         let mut factor = Triangular::new(self.coordinates);
@@ -243,7 +255,7 @@ impl<'a> SparseCone<'a> {
         active.iter().for_each(|i| factor.insert(self.rows[*i].clone()));
         let mut kept = vec![0.0; self.rows.len()];
         active.iter().for_each(|i| kept[*i] = centre[*i]);
-        let rest = self.left_of(load, &kept);
+        let rest = left_of(load, &self.rows, &kept);
         let motion = factor.solve_normal(rest);
         let forces = active.iter().map(|i| centre[*i] + dot(&self.rows[*i], &motion)).collect();
         (forces, motion.iter().map(|v| rho * v).collect())

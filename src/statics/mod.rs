@@ -12,6 +12,8 @@ mod components;
 pub(crate) mod cone;
 mod few;
 mod gaps;
+mod interior;
+mod lasting;
 mod loads;
 mod many;
 mod pins;
@@ -31,6 +33,7 @@ pub use words::{MotionKind, Moving};
 
 use crate::problem::Problem;
 use balance::Verdict;
+use lasting::Lasting;
 use nalgebra::DVector;
 use restraint::Group;
 
@@ -56,9 +59,16 @@ pub struct Statics {
     pub equilibrium: Solvability,
     /// What a report should say: motions that stay free, borderline loads, pressure too concentrated for the mesh.
     pub notes: Vec<String>,
+    /// What of the verdicts on groups of pieces stays on a finer mesh.
+    lasting: Vec<Lasting>,
 }
 
 impl Statics {
+    /// Whether no pressure on this mesh balances the loads, though there is an equilibrium.
+    pub fn is_beyond_mesh(&self) -> bool {
+        matches!(self.equilibrium, Solvability::Possible { beyond_mesh: Some(_), .. })
+    }
+
     /// The motions of `held` as displacements of every vertex.
     pub fn held_at_vertices(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
         self.held.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
@@ -125,6 +135,20 @@ pub fn check(problem: &Problem) -> Result<Statics, StaticsError> {
 /// # Errors
 /// [`StaticsError`] where round-off or the mesh leaves the question open; no scene is known to lead there.
 pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) -> Result<Statics, StaticsError> {
+    check_after(problem, degree, None)
+}
+
+/// [`check_with_degrees`], with what is known from a coarser mesh of the same scene.
+///
+/// # Errors
+/// As there.
+pub fn check_after(
+    problem: &Problem,
+    degree: &dyn Fn(usize) -> usize,
+    coarser: Option<&Statics>,
+) -> Result<Statics, StaticsError> {
+    let before = coarser.map_or(&[][..], |statics| &statics.lasting);
+    let mut lasting = Vec::new();
     let components = Components::new(problem);
     let loads = LoadResultants::new(problem, &components);
     let runs = restraint::runs(problem, &components, degree);
@@ -134,7 +158,8 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
     let (mut both_ways, mut one_way, mut beyond_mesh, mut impossible) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for group in restraint::groups(&components, &clamped, &runs) {
-        let found = Verdict::of(problem, &group, &loads)?;
+        let mut found = Verdict::of(problem, &group, &loads, before)?;
+        lasting.extend(found.lasting.take());
         let words = |motion: &RigidMotion| words::moving(problem, &group, &loads, motion);
         vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held)?);
         edge_pins.extend(pins::edge_pins(problem, &group, &found.held)?);
@@ -192,7 +217,7 @@ pub fn check_with_degrees(problem: &Problem, degree: &dyn Fn(usize) -> usize) ->
             .unwrap_or(RigidMotion { component: vec![[0.0; 3]; components.count()] });
         (Solvability::Impossible { motion, work, bodies, sentence }, Vec::new())
     };
-    Ok(Statics { components, loads, held, vertex_pins, edge_pins, equilibrium, notes })
+    Ok(Statics { components, loads, held, vertex_pins, edge_pins, equilibrium, notes, lasting })
 }
 
 /// The motion of the pieces for a vector of group unknowns, scaled to largest displacement 1, and the factor that took.

@@ -67,22 +67,51 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let size = Size::of_degrees(&problem, &options.elements);
-    if let Err(excess) = Admission::new(method, options.budget).admit(size, None) {
-        let reason = format!("a solve on {} triangles does not fit: about {excess}", problem.mesh.triangles.len());
-        return Err(DualError::TooLarge { reason }.into());
-    }
-    let statics = balance(&problem, &options.elements)?;
+    admit(&problem, method, options)?;
+    let statics = Balanced::new(&problem, &options.elements, None)?;
     solve_balanced(problem, statics, method, options, None)
 }
 
-/// The statics of a problem that has an equilibrium, on this mesh with these elements or on a finer one.
+/// Refuses a solve for which there is no memory.
+pub(super) fn admit(problem: &Problem, method: &dyn DualMethod, options: &Options) -> Result<(), StudyError> {
+    let size = Size::of_degrees(problem, &options.elements);
+    let admitted = Admission::new(method, options.budget).admit(size, None);
+    admitted.map_err(|excess| {
+        let reason = format!("a solve on {} triangles does not fit: about {excess}", problem.mesh.triangles.len());
+        DualError::TooLarge { reason }.into()
+    })
+}
+
+/// The statics of a problem that has an equilibrium, and the seconds that they took.
+pub(super) struct Balanced {
+    pub statics: Statics,
+    pub seconds: f64,
+}
+
+impl Balanced {
+    /// The statics of `problem`; `coarser` are those on a coarser mesh.
+    ///
+    /// # Errors
+    /// As [`balance`].
+    pub fn new(problem: &Problem, elements: &Elements, coarser: Option<&Statics>) -> Result<Self, StudyError> {
+        let began = Instant::now();
+        let statics = balance(problem, elements, coarser)?;
+        Ok(Balanced { statics, seconds: began.elapsed().as_secs_f64() })
+    }
+}
+
+/// The statics of a problem that has an equilibrium, on this mesh with these elements or on a finer one; `coarser` are those
+/// of a coarser mesh.
 ///
 /// # Errors
 /// [`StudyError::Contradiction`], [`StudyError::NoEquilibrium`], or the question could not be decided.
-pub(super) fn balance(problem: &Problem, elements: &Elements) -> Result<Statics, StudyError> {
+pub(super) fn balance(
+    problem: &Problem,
+    elements: &Elements,
+    coarser: Option<&Statics>,
+) -> Result<Statics, StudyError> {
     supports_agree(problem)?;
-    let statics = statics::check_with_degrees(problem, &|t| elements.degree(t))?;
+    let statics = statics::check_after(problem, &|t| elements.degree(t), coarser)?;
     match &statics.equilibrium {
         Solvability::Impossible { motion, work, sentence, .. } => Err(StudyError::NoEquilibrium {
             sentence: sentence.clone(),
@@ -110,13 +139,13 @@ fn may_prepare_beside(problem: &Problem, method: &dyn DualMethod, options: &Opti
 /// [`StudyError::BeyondMesh`], [`StudyError::Dual`].
 pub(super) fn solve_balanced(
     problem: Problem,
-    statics: Statics,
+    Balanced { statics, seconds }: Balanced,
     method: &dyn DualMethod,
     options: &Options,
     start: Option<NodalValues>,
 ) -> Result<Certified, StudyError> {
     let began = Instant::now();
-    if let Solvability::Possible { beyond_mesh: Some(_), .. } = &statics.equilibrium {
+    if statics.is_beyond_mesh() {
         let part = match options.elements.largest_degree() {
             1 => "third".to_string(),
             2 => "quarter".to_string(),
@@ -137,6 +166,7 @@ pub(super) fn solve_balanced(
             (solve()?, None)
         };
         let mut dual = without_stress(&problem, dual);
+        let bracketing = Instant::now();
         let divided = dual.divided.take().filter(|_| divides);
         let bracket = match (divided, ground) {
             (Some(divided), _) => {
@@ -147,9 +177,11 @@ pub(super) fn solve_balanced(
             (None, Some(ground)) => Bracket::on(ground, &problem, &dual, start, options.keep_factor),
             (None, None) => Bracket::from_start(&problem, &dual, start, options.keep_factor),
         };
+        dual.seconds.bounds = bracketing.elapsed().as_secs_f64();
         Ok::<_, DualError>((dual, bracket))
     })?;
-    dual.seconds.total = began.elapsed().as_secs_f64();
+    dual.seconds.statics = seconds;
+    dual.seconds.total = seconds + began.elapsed().as_secs_f64();
     Ok(Certified { problem, statics, dual, bracket })
 }
 

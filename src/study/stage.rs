@@ -1,6 +1,6 @@
 //! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
 
-use super::certified::{Certified, StudyError, balance, certify, solve_balanced};
+use super::certified::{Balanced, Certified, StudyError, admit, solve_balanced};
 use super::curves::divide_evenly_what_slides;
 use super::trend::Way;
 use super::warm_start::{carried, closed_coefficients};
@@ -8,7 +8,6 @@ use crate::dual::{DualMethod, Options, Size, contact_coefficients};
 use crate::element::{Elements, MAX_DEGREE};
 use crate::mesh::bisect::RefinementEdges;
 use crate::problem::{Note, Problem, Refinement};
-use crate::statics::{Solvability, Statics};
 
 /// Solves and brackets `problem`, on a mesh that is divided at the ends of contact where the loads press on less than its
 /// own edges there can express. Edges and gaps that stand for a curve stay as they are.
@@ -16,13 +15,16 @@ use crate::statics::{Solvability, Statics};
 /// # Errors
 /// [`StudyError`].
 pub fn certify_divided(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let outcome = certify(problem.clone(), method, options);
-    let Err(StudyError::BeyondMesh { .. }) = outcome else { return outcome };
+    admit(&problem, method, options)?;
+    let balanced = Balanced::new(&problem, &options.elements, None)?;
+    if !balanced.statics.is_beyond_mesh() {
+        return solve_balanced(problem, balanced, method, options, None);
+    }
     let (given, refinement) = (problem.mesh.triangles.len(), problem.refinement);
     let edges = RefinementEdges::longest(&problem.mesh);
     let kept = Problem { refinement: Refinement::KeepsEdges, ..problem };
     let (Stage { mut problem, elements, .. }, statics) =
-        Stage::new(kept, edges, options.elements.clone()).expressible()?;
+        Stage::new(kept, edges, options.elements.clone()).expressible(balanced)?;
     let options = Options { elements, ..options.clone() };
     problem.refinement = refinement;
     problem.notes.push(Note {
@@ -96,7 +98,8 @@ impl Stage {
         options: &Options,
         before: Option<&Certified>,
     ) -> Result<Solved, StudyError> {
-        let (stage, statics) = self.expressible()?;
+        let balanced = Balanced::new(&self.problem, &self.elements, before.map(|solved| &solved.statics))?;
+        let (stage, statics) = self.expressible(balanced)?;
         let mut options = Options { elements: stage.elements.clone(), ..options.clone() };
         let mut start = None;
         if let Some(Certified { problem, dual, bracket, .. }) = before {
@@ -113,18 +116,19 @@ impl Stage {
         Ok(Solved { certified, refinement, parent, elements, ways })
     }
 
-    /// Bisects the ends of contact until the mesh can express the pressure that balances the loads.
-    fn expressible(mut self) -> Result<(Stage, Statics), StudyError> {
+    /// Bisects the ends of contact until the mesh can express the pressure that balances the loads, as `balanced` tells for this
+    /// one.
+    fn expressible(mut self, mut balanced: Balanced) -> Result<(Stage, Balanced), StudyError> {
         for round in 0..MOST_AT_ENDS {
-            let statics = balance(&self.problem, &self.elements)?;
-            divide_evenly_what_slides(&mut self.problem, &statics);
-            if !matches!(statics.equilibrium, Solvability::Possible { beyond_mesh: Some(_), .. }) {
-                return Ok((self, statics));
+            divide_evenly_what_slides(&mut self.problem, &balanced.statics);
+            if !balanced.statics.is_beyond_mesh() {
+                break;
             }
             self = self.bisect(&contact_ends(&self.problem, round < MOST_WHERE_IT_TURNS))?.0;
+            let finer = Balanced::new(&self.problem, &self.elements, Some(&balanced.statics))?;
+            balanced = Balanced { seconds: balanced.seconds + finer.seconds, ..finer };
         }
-        let statics = balance(&self.problem, &self.elements)?;
-        Ok((self, statics))
+        Ok((self, balanced))
     }
 }
 

@@ -186,8 +186,11 @@ fn folders_of_elmer() {
     check(&folder.0.path().join("plate/mesh.header"), &["block"], ["wall", "load"]);
 }
 
+/// Name, dimensions, name of a set, type and bytes of a variable.
+type Variable<'a> = (&'a str, &'a [u32], &'a str, u32, Vec<u8>);
+
 /// A classic netCDF file: dimensions, and variables with their dimensions, an attribute, the type, and the bytes.
-fn netcdf(dimensions: &[(&str, u32)], variables: &[(&str, &[u32], &str, u32, Vec<u8>)]) -> Vec<u8> {
+fn netcdf(dimensions: &[(&str, u32)], variables: &[Variable]) -> Vec<u8> {
     let padded = |bytes: &[u8]| [bytes, &[0; 3][..(4 - bytes.len() % 4) % 4]].concat();
     let word = |n: u32| n.to_be_bytes().to_vec();
     let name = |s: &str| [word(s.len() as u32), padded(s.as_bytes())].concat();
@@ -225,7 +228,7 @@ fn exodus_files() {
     let reals = |c: usize| POINTS.iter().flat_map(|p| p[c].to_be_bytes()).collect::<Vec<u8>>();
     let texts = |list: &[&str]| list.iter().flat_map(|s| format!("{s:\0<8}").into_bytes()).collect::<Vec<u8>>();
     let dimensions = [("len", 8), ("num_nodes", 6), ("one", 1), ("two", 2), ("three", 3), ("four", 4)];
-    let variables: Vec<(&str, &[u32], &str, u32, Vec<u8>)> = vec![
+    let variables: Vec<Variable> = vec![
         ("coordx", &[1], "", 6, reals(0)),
         ("coordy", &[1], "", 6, reals(1)),
         ("eb_names", &[3, 0], "", 2, texts(&["left", "right"])),

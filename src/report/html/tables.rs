@@ -194,10 +194,12 @@ fn dual_solver(dual: &DualSummary) -> Markup {
     };
     let names = [
         ("read", s.read),
+        ("statics", s.statics),
         ("assemble", s.assemble),
         ("factor", s.factor),
         ("contact", s.contact),
         ("recover", s.recover),
+        ("bounds", s.bounds),
         ("total", s.total),
     ];
     html! {

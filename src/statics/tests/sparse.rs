@@ -7,7 +7,7 @@ use crate::statics::balance::{Cone, Verdict};
 use crate::statics::few::DenseCone;
 use crate::statics::many::SparseCone;
 use crate::statics::sparse::{Row, Triangular, dense, least_squares};
-use crate::statics::{Components, LoadResultants, MotionKind, Solvability, check, restraint};
+use crate::statics::{Components, LoadResultants, MotionKind, Solvability, Statics, check, check_after, restraint};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
@@ -22,10 +22,10 @@ fn sparse_and_dense_cones_give_the_same_verdicts() {
                 let runs = restraint::runs(&problem, &components, &|_| 1);
                 let clamped = restraint::clamped(&problem, &components);
                 for group in restraint::groups(&components, &clamped, &runs) {
-                    let few = Verdict::from_cones(&problem, &group, &loads, |rows, points| {
+                    let few = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
                         Box::new(DenseCone::new(&group, rows, points)) as Box<dyn Cone>
                     });
-                    let many = Verdict::from_cones(&problem, &group, &loads, |rows, points| {
+                    let many = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
                         Box::new(SparseCone::new(&group, rows, points)) as Box<dyn Cone>
                     });
                     let (few, many) = (few.unwrap(), many.unwrap());
@@ -37,6 +37,30 @@ fn sparse_and_dense_cones_give_the_same_verdicts() {
                     let (a, b) = (work(&few), work(&many));
                     assert!((a > 0.0) == (b > 0.0) && (a - b).abs() <= 1e-6 * a, "{what}: {a:e} {b:e}");
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_coarser_mesh_told_changes_no_verdict() {
+    let kind = |statics: &Statics| match &statics.equilibrium {
+        Solvability::Possible { one_way, beyond_mesh, .. } => (true, one_way.is_some(), beyond_mesh.is_some()),
+        Solvability::Impossible { .. } => (false, false, false),
+    };
+    for case in cases() {
+        for excess in [-0.3, -1e-6, 0.0, 1e-6, 0.5] {
+            let given = (case.scene)(excess);
+            let finer = given.refine_uniform(1).unwrap();
+            let anew = check(&finer).unwrap();
+            // From the same scene, from one that is loaded otherwise, and from one that is turned.
+            let turned = transformed((case.scene)(excess), 0.7, 1.0, 1.0, [0.0; 2]);
+            for coarser in [given, (case.scene)(-0.2), (case.scene)(0.4), turned] {
+                let found = check_after(&finer, &|_| 1, Some(&check(&coarser).unwrap())).unwrap();
+                let what = format!("{} at {excess}", case.name);
+                assert_eq!(kind(&found), kind(&anew), "{what}");
+                assert_eq!(found.held.len(), anew.held.len(), "{what}");
+                assert_eq!(found.notes, anew.notes, "{what}");
             }
         }
     }
