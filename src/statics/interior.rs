@@ -122,7 +122,7 @@ fn exact(rows: &[Row], columns: usize, load: &[f64], forces: &mut [f64], round_o
             }
         }
         // Digits that are not won by a new factor are lost.
-        if (most.is_nan() || most > 0.1 * before) && most > round_off {
+        if most > 0.1 * before && most > round_off {
             return None;
         }
     }
