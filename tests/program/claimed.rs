@@ -393,7 +393,7 @@ fn a_field_out_of_its_plane_and_a_missing_package_are_told() {
     ended("tilted", &run(hypercircle(folder, arguments)), 2, &["not in one plane", "0.25", "z = 0"]);
     let mut command = hypercircle(folder, arguments);
     command.env("HYPERCIRCLE_PYTHON", script(folder.join("python"), "echo h5py >&2; exit 45"));
-    ended("h5py", &run(command), 2, &["needs the Python package h5py", "pip install h5py", "python3-h5py"]);
+    ended("h5py", &run(command), 2, &["read with the Python package h5py", "pip install h5py", "python3-h5py"]);
 }
 
 /// A shifted body without stress, whose few digits would excuse any residual, and a modulus 5 % off in four digits.

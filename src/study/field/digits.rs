@@ -1,5 +1,7 @@
 //! How many digits the numbers of a file keep.
 
+use std::path::Path;
+
 /// Fewer numbers than this say nothing about the digits of a file.
 const ENOUGH: usize = 24;
 /// So many different last digits among the longest numbers of a file are the work of a writer that cuts them. Multiples of a half, a
@@ -10,6 +12,16 @@ const MOST: usize = 12;
 
 /// The part of numbers in single precision that use its last bits.
 const FULL: f64 = 0.8;
+
+/// Rounding relative to their size that a format leaves in its numbers, however few there are: results of CalculiX have six or
+/// seven digits.
+pub(super) fn of_format(file: &Path) -> f64 {
+    match file.extension().map(|end| end.to_ascii_lowercase()) {
+        Some(end) if end == "frd" => 0.5e-5,
+        Some(end) if end == "dat" => 0.5e-6,
+        _ => 0.0,
+    }
+}
 
 /// Rounding relative to their size that `values` carry, where a file keeps a few decimal digits of them, or single precision.
 pub(super) fn precision(values: impl Iterator<Item = f64>, single: bool) -> f64 {
@@ -42,6 +54,13 @@ fn are_single(values: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn results_of_calculix_have_the_digits_of_their_format() {
+        assert_eq!(of_format(Path::new("out/job.FRD")), 0.5e-5);
+        assert_eq!(of_format(Path::new("job.dat")), 0.5e-6);
+        assert_eq!(of_format(Path::new("frd.vtu")), 0.0);
+    }
 
     #[test]
     fn digits_are_those_that_the_numbers_need() {

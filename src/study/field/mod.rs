@@ -224,7 +224,8 @@ impl ForeignField {
         let values: Vec<Option<[f64; 2]>> =
             rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
         let single = data.single || content.single;
-        let precision = digits::precision(values.iter().flatten().flatten().copied(), single);
+        let numbers = values.iter().flatten().flatten().copied();
+        let precision = digits::precision(numbers, single).max(digits::of_format(file));
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         Ok(ForeignField {
             files: vec![(name, [0; 2])],
