@@ -49,13 +49,28 @@ pub fn causes(
     let mut causes = Vec::new();
     let own = taken(&mut failing, |check| check.name == "dual/equilibrium" || check.name.ends_with("/free bound"));
     causes.extend(of_stresses(problem, &own));
+    let of_fields = causes.len();
     causes.extend(field::causes(problem, comparison, diagnosis, &mut failing));
     let stored = taken(&mut failing, |check| check.name.starts_with("baseline/"));
-    let missing = taken(&mut failing, |check| check.difference.is_none());
+    let mut missing = taken(&mut failing, |check| check.difference.is_none());
+    with_causes(&mut causes[of_fields..], &mut missing);
     causes.extend(of_baseline(&stored));
     causes.extend(missing.into_iter().map(not_made));
     causes.extend(failing.into_iter().map(|check| alone(check, refinement)));
     causes
+}
+
+/// Gives the causes of failed checks the checks that could not be made of the same fields: what is wrong with a field stands in
+/// their way.
+fn with_causes(causes: &mut [Cause], missing: &mut Vec<&Check>) {
+    let model = |name: &str| name.rsplit('/').next().map(str::to_owned);
+    missing.retain(|check| {
+        let same = |cause: &Cause| {
+            check.name.starts_with("contact/") || cause.checks.iter().any(|own| model(own) == model(&check.name))
+        };
+        let cause = causes.iter_mut().find(|cause| same(cause));
+        cause.map(|cause| cause.checks.push(check.name.clone())).is_none()
+    });
 }
 
 /// Removes from `failing` the checks for which `is` holds.

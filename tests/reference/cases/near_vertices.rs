@@ -42,7 +42,7 @@ fn the_largest_pressure_is_that_of_one_vertex() {
             let [found, expected] =
                 [&two, &one].map(|report| report.number(&format!("/contact/0/pressure_max/{model}")));
             // The two meshes are not the same: polygons are cut by their corners.
-            assert!((found / expected - 1.0).abs() < 0.05, "{off:e} {model}: {found} and {expected}");
+            assert!((found / expected - 1.0).abs() < 0.1, "{off:e} {model}: {found} and {expected}");
         }
     }
 }
