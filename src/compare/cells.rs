@@ -119,7 +119,7 @@ impl NodalForces {
             let Some(&t) = cell.triangles.first() else { continue };
             let body = problem.mesh.body[t];
             let (material, thickness) = (&materials[body], problem.scene.thickness);
-            let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
+            let modulus = material.stiffest();
             let values = cell.values(candidate);
             let own = self::forces(&cell.field, &values, points, |e| material.stress(e));
             for (node, f) in cell.nodes.iter().zip(own) {

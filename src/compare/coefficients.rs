@@ -17,13 +17,7 @@ impl NodalForces {
     pub fn of_coefficients(problem: &Problem, field: &PlainDisplacement) -> Self {
         let mesh = &problem.mesh;
         let (k, count) = (field.degree(), field.values().len());
-        let mut forces = NodalForces {
-            left: vec![[0.0; 2]; count],
-            load: vec![[0.0; 2]; count],
-            size: vec![0.0; count],
-            stiffness: vec![0.0; count],
-            triangle: vec![0; count],
-        };
+        let mut forces = NodalForces::zeros(count);
         let terms: Vec<Term> = triangle::indices(k)
             .enumerate()
             .flat_map(|(alpha, index)| {
@@ -38,7 +32,7 @@ impl NodalForces {
         let mut stiffest = vec![0.0; count];
         for t in 0..mesh.triangles.len() {
             let material = &materials[mesh.body[t]];
-            let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
+            let modulus = material.stiffest();
             let area = problem.scene.thickness * mesh.area(t);
             let g = gradients(mesh.corners(t)).map(|d| d.map(|x| k as f64 * x));
             let long = g.map(|d| d[0].hypot(d[1]));

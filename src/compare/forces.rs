@@ -1,6 +1,7 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
 use crate::bounds::{Hold, Holds, Nodes};
+use crate::element::Compliance;
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::{Condition, Problem};
 
@@ -31,6 +32,44 @@ impl NodalForces {
         forces
     }
 
+    /// None at so many nodes.
+    pub(super) fn zeros(count: usize) -> Self {
+        NodalForces {
+            left: vec![[0.0; 2]; count],
+            load: vec![[0.0; 2]; count],
+            size: vec![0.0; count],
+            stiffness: vec![0.0; count],
+            triangle: vec![0; count],
+        }
+    }
+
+    /// Adds what the stress at one point of a cell, which counts `weight`, asks for at its nodes, whose functions have `gradients`
+    /// there and the values `u`; gives strain and stress.
+    pub(super) fn add_stress(
+        &mut self,
+        (material, weight): (&Compliance, f64),
+        nodes: &[usize],
+        gradients: &[[f64; 2]],
+        u: &[[f64; 2]],
+    ) -> [[f64; 3]; 2] {
+        let (mut e, mut spread) = ([0.0; 3], 0.0);
+        for (d, value) in gradients.iter().zip(u) {
+            // Differences from one node: a rigid translation leaves no trace.
+            let (x, y) = (value[0] - u[0][0], value[1] - u[0][1]);
+            e[0] += d[0] * x;
+            e[1] += d[1] * y;
+            e[2] += 0.5 * (d[1] * x + d[0] * y);
+            spread += d[0].hypot(d[1]) * value[0].hypot(value[1]);
+        }
+        let (s, modulus) = (material.stress(e), material.stiffest());
+        for (&node, d) in nodes.iter().zip(gradients) {
+            self.left[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+            self.left[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+            self.size[node] += weight * modulus * d[0].hypot(d[1]) * spread;
+        }
+        [e, s]
+    }
+
     /// The forces of stresses and body forces on the triangles that are `counted`.
     pub(super) fn on(
         problem: &Problem,
@@ -42,20 +81,13 @@ impl NodalForces {
         let mesh = &problem.mesh;
         let vertices = mesh.points.len();
         let count = vertices + if degree == 2 { mesh.edges.len() } else { 0 };
-        let mut forces = NodalForces {
-            left: vec![[0.0; 2]; count],
-            load: vec![[0.0; 2]; count],
-            size: vec![0.0; count],
-            stiffness: vec![0.0; count],
-            triangle: vec![0; count],
-        };
+        let mut forces = NodalForces::zeros(count);
         let mut stiffest = vec![0.0; count];
         let materials = problem.materials();
         let t = problem.scene.thickness;
         for (k, corners) in mesh.triangles.iter().enumerate().filter(|(k, _)| counted(*k)) {
             let material = &materials[mesh.body[k]];
-            // λ + 2μ, and no less than either eigenvalue of c.
-            let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
+            let modulus = material.stiffest();
             let area = t * mesh.area(k);
             let g = gradients(mesh.corners(k));
             let quadratic = [0, 1, 2].map(|i| vertices + mesh.triangle_edges[k][i]);
@@ -68,21 +100,9 @@ impl NodalForces {
             for at in 0..MIDPOINTS {
                 let shape = if degree == 2 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
                 let weight = area / MIDPOINTS as f64;
-                let (mut e, mut spread) = ([0.0; 3], 0.0);
-                for (d, value) in shape.iter().zip(&u) {
-                    // Differences from one node: a rigid translation leaves no trace.
-                    let (x, y) = (value[0] - u[0][0], value[1] - u[0][1]);
-                    e[0] += d[0] * x;
-                    e[1] += d[1] * y;
-                    e[2] += 0.5 * (d[1] * x + d[0] * y);
-                    spread += d[0].hypot(d[1]) * value[0].hypot(value[1]);
-                }
-                let s = material.stress(e);
+                forces.add_stress((material, weight), &nodes, &shape, &u);
                 for (&node, d) in nodes.iter().zip(&shape) {
                     let long = d[0].hypot(d[1]);
-                    forces.left[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
-                    forces.left[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
-                    forces.size[node] += weight * modulus * long * spread;
                     let part = weight * modulus * long * long;
                     forces.stiffness[node] += part;
                     if part > stiffest[node] {

@@ -17,13 +17,7 @@ impl NodalForces {
         let mesh = &problem.mesh;
         let (k, values) = (field.degree(), field.values());
         let count = values.len();
-        let mut forces = NodalForces {
-            left: vec![[0.0; 2]; count],
-            load: vec![[0.0; 2]; count],
-            size: vec![0.0; count],
-            stiffness: vec![0.0; count],
-            triangle: vec![0; count],
-        };
+        let mut forces = NodalForces::zeros(count);
         let mut stiffest = vec![0.0; count];
         let mut strain = 0.0;
         let materials = problem.materials();
@@ -31,7 +25,7 @@ impl NodalForces {
         for cell in mesh.quadrilaterals() {
             let body = mesh.body[cell.triangles[0]];
             let material = &materials[body];
-            let modulus = material.stress([1.0, 0.0, 0.0])[0].abs().max(material.stress([0.0, 0.0, 1.0])[2].abs());
+            let modulus = material.stiffest();
             let map = Bilinear::new(cell.points(mesh));
             let nodes = nodes(mesh, k, &cell);
             let u: Vec<[f64; 2]> = nodes.iter().map(|&n| values[n]).collect();
@@ -40,22 +34,10 @@ impl NodalForces {
             for (at, weight) in rule.iter().flat_map(|(x, v)| rule.iter().map(move |(y, w)| ([*x, *y], v * w))) {
                 let weight = weight * problem.scene.thickness * map.determinant(at);
                 let (shape, gradients) = (bilinear::values(k, at), map.gradients(k, at));
-                let (mut e, mut spread) = ([0.0; 3], 0.0);
-                for (d, value) in gradients.iter().zip(&u) {
-                    // Differences from one node: a rigid translation leaves no trace.
-                    let (x, y) = (value[0] - u[0][0], value[1] - u[0][1]);
-                    e[0] += d[0] * x;
-                    e[1] += d[1] * y;
-                    e[2] += 0.5 * (d[1] * x + d[0] * y);
-                    spread += d[0].hypot(d[1]) * value[0].hypot(value[1]);
-                }
-                let s = material.stress(e);
+                let [e, s] = forces.add_stress((material, weight), &nodes, &gradients, &u);
                 strain += 0.5 * weight * (s[0] * e[0] + s[1] * e[1] + 2.0 * s[2] * e[2]);
                 for (i, (&node, d)) in nodes.iter().zip(&gradients).enumerate() {
                     let long = d[0].hypot(d[1]);
-                    forces.left[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
-                    forces.left[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
-                    forces.size[node] += weight * modulus * long * spread;
                     parts[i] += weight * modulus * long * long;
                     forces.load[node] = [0, 1].map(|c| forces.load[node][c] + weight * shape[i] * f[c]);
                 }

@@ -46,6 +46,11 @@ impl Compliance {
         [self.young * (mean + half), self.young * (mean - half), self.young * 2.0 * e[2] / self.gamma]
     }
 
+    /// λ + 2μ or 2μ, whichever is larger: no less than any eigenvalue of c but that of pressure.
+    pub fn stiffest(&self) -> f64 {
+        self.stress([1.0, 0.0, 0.0])[0].abs().max(self.stress([0.0, 0.0, 1.0])[2].abs())
+    }
+
     /// c e:d for two strains (xx, yy, xy).
     pub fn strain_product(&self, e: [f64; 3], d: [f64; 3]) -> f64 {
         let volume = 0.25 / self.kappa * (e[0] + e[1]) * (d[0] + d[1]);

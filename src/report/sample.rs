@@ -11,6 +11,18 @@ use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
 
+/// Of every phase of the stress side.
+pub const SECONDS: Phases = Phases {
+    read: 0.01,
+    statics: 0.01,
+    assemble: 0.02,
+    factor: 0.05,
+    contact: 0.01,
+    recover: 0.02,
+    bounds: 0.03,
+    total: 0.15,
+};
+
 /// Something to make a dossier from.
 pub(crate) struct Sample {
     pub problem: Problem,
@@ -268,16 +280,7 @@ fn dual(problem: &Problem) -> DualSolution {
         closed: SideValues::filled(vec![2; problem.interfaces[0].pairs.len()], true),
         equilibrium: Equilibrium { jump: 3e-15, applied: 1e-15, resultant: 0.0, tension: 0.0, scale: 4.0, work: 0.0 },
         accuracy: 1e-9,
-        seconds: Phases {
-            read: 0.01,
-            statics: 0.01,
-            assemble: 0.02,
-            factor: 0.05,
-            contact: 0.01,
-            recover: 0.02,
-            bounds: 0.03,
-            total: 0.15,
-        },
+        seconds: SECONDS,
         factorised: None,
         divided: None,
         notes: Vec::new(),
