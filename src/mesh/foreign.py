@@ -14,6 +14,8 @@ GROUPING = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to
 # Words in what other programs call such integers, and numbers that are something else.
 TELLING = ["physical", "material", "entity", "entities", "geometryid", "region", "domain", "subdomain", "boundar", "marker", "label", "group", "tag", "block", "part", "zone"]
 NO_GROUPS = {"gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType", "partition", "rank", "GlobalElementId", "GlobalCellIds", "ids", "vtkIdFilter_Ids"}
+# Suffixes of Nastran decks.
+NASTRAN = (".bdf", ".nas", ".fem")
 # Suffixes that meshio does not know and Gmsh reads.
 ONLY_GMSH = {".geo", ".diff", ".p3d", ".neu"}
 
@@ -30,11 +32,26 @@ def whole_numbers(blocks):
     return found
 
 
+def read_nastran(source):
+    """A Nastran deck; one without its first words, as Gmsh writes it, is bulk data from its first line on."""
+    import meshio
+
+    with open(source, encoding="utf-8", errors="replace") as file:
+        text = file.read()
+    if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
+        return meshio.read(source)
+    with tempfile.TemporaryDirectory() as folder:
+        whole = os.path.join(folder, "whole.bdf")
+        with open(whole, "w", encoding="utf-8") as out:
+            out.write("BEGIN BULK\n" + text)
+        return meshio.read(whole)
+
+
 def from_meshio(source):
     """Points, blocks, node sets and numbers of groups, as meshio has them."""
     import meshio
 
-    mesh = meshio.read(source)
+    mesh = meshio.read(source) if not source.lower().endswith(NASTRAN) else read_nastran(source)
     blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
     whole = [name for name, found in blocks.items() if found is not None]
     # Of several numbers, those that the format has for groups, then those that are called so, then the only ones that differ.

@@ -79,6 +79,35 @@ fn unv(groups: &str) -> String {
     )
 }
 
+/// Quadrilaterals of nine nodes, which UNV does not have: Gmsh writes corners first, others go around.
+#[test]
+fn nine_nodes_of_unv_are_told_by_where_they_lie() {
+    let folder = Folder::new();
+    let corners = [[0.0, 0.0], [2.0, 0.2], [1.8, 1.0], [0.1, 1.1]];
+    let middle = |i: usize| [0, 1].map(|c| 0.5 * (corners[i][c] + corners[(i + 1) % 4][c]));
+    let points: Vec<[f64; 2]> = corners.into_iter().chain((0..4).map(middle)).chain([[1.0, 0.6]]).collect();
+    let area: f64 =
+        (0..4).map(|i| (corners[i], corners[(i + 1) % 4])).map(|(p, q)| 0.5 * (p[0] * q[1] - p[1] * q[0])).sum();
+    for (name, order) in [("gmsh", [1, 2, 3, 4, 5, 6, 7, 8, 9]), ("around", [1, 5, 2, 6, 3, 7, 4, 8, 9])] {
+        let mut text = "    -1\n  2411\n".to_string();
+        for (n, [x, y]) in (1..).zip(&points) {
+            let _ = write!(text, "{n:10}         1         1        11\n{x:25.16}{y:25.16}{:25.16}\n", 0.0);
+        }
+        text += "    -1\n    -1\n  2412\n         1        94         1         1         7         9\n";
+        order.iter().for_each(|n: &usize| text += &format!("{n:10}"));
+        text += "\n    -1\n";
+        let path = folder.write(&format!("{name}.unv"), text);
+        let draft = Draft {
+            bodies: vec![Body { name: "plate".into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] }],
+            ..Draft::new("plate", Kinematics::PlaneStrain, MeshSource::File(path))
+        };
+        let problem =
+            Problem::load(Scene::new(draft).expect("a valid scene")).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let found: f64 = (0..problem.mesh.triangles.len()).map(|t| problem.mesh.area(t)).sum();
+        assert!((found - area).abs() < 1e-12, "{name}: {found} and {area}");
+    }
+}
+
 fn unv_groups(dataset: &str) -> String {
     let member = |kind: usize, tag: usize| format!("{kind:10}{tag:10}         0         0");
     let group = |number: usize, name: &str, count: usize| {
@@ -304,6 +333,9 @@ fn nastran_decks() {
     let folder = Folder::new();
     check(&folder.write("plate.bdf", &text), &["plate"], ["7", "8"]);
     check(&folder.write("plate.nas", &text), &["1"], ["7", "8"]);
+    // As Gmsh writes it: bulk data from the first line on.
+    let (_, bulk) = text.split_once("BEGIN BULK\n").expect("bulk data");
+    check(&folder.write("gmsh.bdf", format!("$ Created by Gmsh\n{bulk}")), &["plate"], ["7", "8"]);
 }
 
 #[test]

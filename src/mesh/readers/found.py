@@ -3,6 +3,7 @@
 import gzip
 import os
 import sys
+import tempfile
 
 # Cells by shape and number of nodes, in Gmsh's order: corners, middles of sides, centre.
 PLANE = {("line", 2), ("line", 3), ("triangle", 3), ("triangle", 6), ("quadrilateral", 4), ("quadrilateral", 8), ("quadrilateral", 9)}

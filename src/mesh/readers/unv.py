@@ -5,8 +5,18 @@ UNV_PLANE = {"triangle": {41, 42, 51, 52, 61, 62, 71, 72, 74, 81, 82, 91, 92}, "
              "line": {11, 21, 22, 23, 24, 31}}
 UNV_SOLID = {111: "tetrahedron", 118: "tetrahedron with 10 nodes", 112: "prism", 113: "prism with 15 nodes", 115: "hexahedron",
              116: "hexahedron with 20 nodes", 101: "prism", 104: "hexahedron"}
-UNV_AROUND = {("line", 3): [0, 2, 1], ("triangle", 6): [0, 2, 4, 1, 3, 5], ("quadrilateral", 8): [0, 2, 4, 6, 1, 3, 5, 7],
-              ("quadrilateral", 9): [0, 2, 4, 6, 1, 3, 5, 7, 8]}
+UNV_AROUND = {("line", 3): [0, 2, 1], ("triangle", 6): [0, 2, 4, 1, 3, 5], ("quadrilateral", 8): [0, 2, 4, 6, 1, 3, 5, 7]}
+UNV_NINE = [0, 2, 4, 6, 1, 3, 5, 7, 8]
+
+
+def unv_nine(found, nodes):
+    """Nodes of a quadrilateral of nine, which UNV does not have: Gmsh writes its corners first, others go around."""
+    if not all(tag in found.index for tag in nodes):
+        return nodes
+    points = [found.points[found.index[tag]] for tag in nodes]
+    off = lambda order, i: sum((points[order[i]][c] + points[order[(i + 1) % 4]][c] - 2 * points[order[4 + i]][c]) ** 2 for c in range(2))
+    orders = (list(range(9)), UNV_NINE)
+    return [nodes[i] for i in min(orders, key=lambda order: sum(off(order, i) for i in range(4)))]
 
 
 def unv_ints(line):
@@ -72,9 +82,12 @@ def unv_cells(found, rows):
             if count > 2:
                 found.cell(f"kind {kind} of UNV", nodes, (), label)
             continue
-        order = UNV_AROUND.get((shape, count), range(count))
+        if (shape, count) == ("quadrilateral", 9):
+            nodes = unv_nine(found, nodes)
+        else:
+            nodes = [nodes[i] for i in UNV_AROUND.get((shape, count), range(count))]
         property_ = head[2] if len(head) == 6 else head[3]
-        found.cell(shape or UNV_SOLID[kind], [nodes[i] for i in order], (), label)
+        found.cell(shape or UNV_SOLID[kind], nodes, (), label)
         found.properties[label] = (shape, property_)
 
 
