@@ -71,6 +71,7 @@ pub mod job;
 mod lanes;
 pub mod measure;
 pub mod mesh;
+pub mod optimise;
 pub mod plot;
 pub mod primal;
 pub mod problem;

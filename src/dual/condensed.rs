@@ -12,10 +12,10 @@ use std::time::Instant;
 
 use super::ends::Ends;
 use super::hybrid::Motion;
-use super::qp::ContactState;
-use super::reduced::{Reduced, Schur};
+use super::reduced::Reduced;
 use super::refinement::Refined;
 use super::rigid::unsupported;
+use super::schur::{ContactState, Schur};
 use super::settling::Settling;
 use super::system::{Structured, System};
 use super::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
@@ -102,11 +102,12 @@ impl Condensed {
         seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
         let start = Instant::now();
-        let contact = Schur::new(&reduced, self.longest_dense, options.budget, |most| {
+        let contact = Schur::new(&system, &reduced, self.longest_dense, options.budget, |most| {
             unsupported(problem, &system.unknowns, most)
         });
         let (y, c) = reduced.condense(&system.rhs);
-        let warm = options.closed.as_ref().map(SideValues::values).filter(|closed| closed.len() == c.len());
+        let warm =
+            options.closed.as_ref().map(SideValues::values).filter(|closed| closed.len() == system.jump_bound.len());
         let mut state = contact.solve(&c, &system.jump_bound, warm)?;
         seconds.contact = start.elapsed().as_secs_f64();
 

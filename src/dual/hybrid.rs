@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::dissection::nested_dissection;
 use super::factor::{Breakdown, SymbolicFactor};
+use super::interface::Interface;
 use super::rows::Sides;
 use super::system::System;
 use super::unknowns::Unknowns;
@@ -21,7 +22,7 @@ pub fn ordering(problem: &Problem, unknowns: &Unknowns) -> Vec<usize> {
     blocks.flat_map(|block| block.start..block.start + block.len).collect()
 }
 
-/// Structure of the factor of K with its jumps last, when its values fit into memory.
+/// Structure of the factor of K with its jumps, or all unknowns of interfaces, last, when its values fit into memory.
 ///
 /// # Errors
 /// [`DualError::TooLarge`].
@@ -31,7 +32,18 @@ pub fn structure(
     pattern: SymbolicSparseColMatRef<'_, usize>,
     options: &Options,
 ) -> Result<SymbolicFactor, DualError> {
-    let symbolic = SymbolicFactor::new(pattern, unknowns.first_jump, ordering(problem, unknowns))
+    let interface = Interface::new(problem, unknowns);
+    let mut order = ordering(problem, unknowns);
+    let last: Vec<usize> = match &interface {
+        Some(interface) => interface.eliminated().collect(),
+        None => (unknowns.first_jump..unknowns.count).collect(),
+    };
+    let mut is_last = vec![false; unknowns.count];
+    last.iter().for_each(|&i| is_last[i] = true);
+    order.retain(|&i| !is_last[i]);
+    let leading = order.len();
+    order.extend(last);
+    let symbolic = SymbolicFactor::new(pattern, leading, order, interface)
         .map_err(|breakdown| explain(problem, unknowns, breakdown))?;
     match options.budget.admit_more(symbolic.memory(options.par(symbolic.numbers()))) {
         Ok(()) => Ok(symbolic),

@@ -10,7 +10,6 @@ use std::sync::Arc;
 
 use super::DualError;
 use super::hybrid::{parameters, residual};
-use super::reduced::{Dense, Schur};
 use super::refinement::{Refined, Refinement};
 use super::response::{Response, Responses};
 use super::system::System;
@@ -274,7 +273,7 @@ impl<'a> Loaded<'a> {
         let mut released = vec![false; closed.len()];
         let mut latest = None;
         for _ in 0..MOST_STEPS {
-            let load = |(i, c): (usize, &f64)| if released[i] { c + sign * floor[i] } else { *c };
+            let load = |(i, c): (usize, &f64)| if released.get(i) == Some(&true) { c + sign * floor[i] } else { *c };
             let loaded: Vec<f64> = self.start.c.iter().enumerate().map(load).collect();
             let held: Vec<bool> = closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
             let Some(jumps) = contact.with_closed(&loaded, &self.start.held, &held) else { break };
@@ -295,21 +294,21 @@ impl<'a> Loaded<'a> {
             latest = Some((std::mem::replace(&mut released, next), jumps));
         }
         let bounded = closed.iter().zip(floor).all(|(closed, floor)| !closed || floor.is_finite());
-        match contact {
-            Schur::Dense(dense) if bounded => self.released_one_by_one(dense, Bounds { closed, floor, sign }),
-            _ => latest.ok_or(DualError::ContactUndetermined),
+        if bounded && contact.is_direct() {
+            return self.released_at_once(Bounds { closed, floor, sign });
         }
+        latest.ok_or(DualError::ContactUndetermined)
     }
 
     /// [`Self::released`] where steps of many coefficients at a time do not end, as where contact alone holds a body: the same
-    /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, by steps that each lower it.
-    fn released_one_by_one(&self, contact: &Dense, bounds: Bounds<'_>) -> Result<Released, DualError> {
+    /// minimum, of ½ jᵀSj − (c + sign · floor)ᵀj under sign · (j − held) ≥ 0 where closed, as a contact problem.
+    fn released_at_once(&self, bounds: Bounds<'_>) -> Result<Released, DualError> {
         let Bounds { closed, floor, sign } = bounds;
-        let floored = |i: usize| if closed[i] { floor[i] } else { 0.0 };
+        let floored = |i: usize| if closed.get(i) == Some(&true) { floor[i] } else { 0.0 };
         let load: Vec<f64> = self.start.c.iter().enumerate().map(|(i, c)| -sign * c - floored(i)).collect();
         let bound = |i: usize| if closed[i] { -sign * self.start.held[i] } else { f64::INFINITY };
         let bound: Vec<f64> = (0..closed.len()).map(bound).collect();
-        let state = contact.solve(&load, &bound, None)?;
+        let state = self.responses.contact.solve(&load, &bound, None)?;
         let released = closed.iter().zip(&state.closed).map(|(closed, held)| *closed && !held).collect();
         Ok((released, state.jumps.into_iter().map(|j| -sign * j).collect()))
     }

@@ -1,38 +1,26 @@
-//! The factorised hybrid form with its jumps last, and the contact problem it leaves on Γ_K.
+//! The factorised hybrid form with the unknowns of its interfaces last.
 
 use std::sync::Arc;
 
-use faer::Mat;
-
-use super::clearing::cleared;
-use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
+use super::factor::{Breakdown, Factor, SymbolicFactor};
 use super::hybrid::{Motion, explain, held_unknowns};
-use super::long_contact::LongContact;
-use super::qp::{self, ContactState};
 use super::system::{System, isolate};
 use super::{DualError, Options};
-use crate::budget::Budget;
 use crate::problem::Problem;
 use crate::vector::long::largest;
 
 /// Residual of a solve that a working factorisation never reaches, relative to matrix and solution.
 const BROKEN: f64 = 1e-9;
 
-/// Bytes for each entry of S while the contact is solved: S twice, its open part and the factor of that.
-const DENSE: f64 = 32.0;
-
-/// Entries of S, times motions that it does not resist, up to which it is cleared of their rounding errors: many bodies in
-/// contact would make that cost more than everything else.
-const MOST_CLEARING: usize = 1_000_000_000;
-
-/// The factorised system with its jumps last.
+/// The factorised system, with the unknowns of its interfaces last: the jumps, and where many bodies touch the moments of
+/// second sides too, see [`super::interface`].
 #[derive(Debug)]
 pub struct Reduced {
-    factor: Factor,
+    pub(super) factor: Factor,
     held: Vec<usize>,
     first_jump: usize,
     /// What was added to the diagonal of each jump.
-    shift: Vec<f64>,
+    pub(super) shift: Vec<f64>,
 }
 
 impl Reduced {
@@ -58,24 +46,46 @@ impl Reduced {
         Some(explain(problem, &system.unknowns, Breakdown::NotPositive(self.factor.broken()?)))
     }
 
-    /// L⁻¹b, and the load c = b_J − K_J1 K_11⁻¹ b_1 on the jumps.
+    /// L⁻¹b, and the load c = b_J − K_J1 K_11⁻¹ b_1 on the unknowns J of interfaces, jumps first.
     pub fn condense(&self, b: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut b = b.to_vec();
         for &d in &self.held {
             b[d] = 0.0;
         }
         let y = self.factor.forward(&b);
-        let c = self.factor.trailing_times(&y[self.first_jump..]);
-        (y, c)
+        let c = self.factor.trailing_times(&y[self.leading()..]);
+        (y, self.in_interface_order(c))
     }
 
-    /// All unknowns, from L⁻¹b and the jumps.
+    /// All unknowns, from L⁻¹b and those of interfaces, jumps first.
     pub fn expand(&self, mut y: Vec<f64>, jumps: &[f64]) -> Vec<f64> {
         // L_JJᵀ j in place of the tail: back-substitution then reproduces j and solves for the rest.
-        y[self.first_jump..].copy_from_slice(&self.factor.trailing_transpose_times(jumps));
+        let leading = self.leading();
+        let interface = self.factor.interface();
+        let trailing = match interface {
+            Some(interface) => &interface.in_factor_order(jumps),
+            None => jumps,
+        };
+        y[leading..].copy_from_slice(&self.factor.trailing_transpose_times(trailing));
         let mut x = self.factor.backward(y);
-        x[self.first_jump..].copy_from_slice(jumps);
+        match interface {
+            Some(interface) => interface.unknowns.iter().zip(jumps).for_each(|(i, j)| x[*i] = *j),
+            None => x[leading..].copy_from_slice(jumps),
+        }
         x
+    }
+
+    /// Number of unknowns that are eliminated before those of interfaces.
+    fn leading(&self) -> usize {
+        self.first_jump + self.shift.len() - self.factor.trailing_len()
+    }
+
+    /// Values of the unknowns at the end of the factor, jumps first.
+    fn in_interface_order(&self, values: Vec<f64>) -> Vec<f64> {
+        match self.factor.interface() {
+            Some(interface) => interface.in_interface_order(&values),
+            None => values,
+        }
     }
 
     /// Which unknowns stay as they are while stresses are refined: held ones and closed jumps.
@@ -113,130 +123,6 @@ impl Reduced {
         );
         Err(DualError::Factorisation { reason })
     }
-}
-
-/// The problem on Γ_K, by the length of the contact.
-pub enum Schur<'a> {
-    /// S as a dense matrix.
-    Dense(Dense),
-    /// S as an operator, and the number of jumps.
-    Long(LongContact<'a>, usize),
-}
-
-/// S in units that make its diagonal about one.
-pub struct Dense {
-    /// As elimination gives it: where it solves for tractions, it keeps to those of the factor to the last digit.
-    matrix: Mat<f64>,
-    /// Cleared of what rounding has left of the motions that it does not resist, where there are any: the one to tell
-    /// how much a contact resists them.
-    cleared: Option<Mat<f64>>,
-    /// The units: powers of two u, so that jumps are u times the numbers that the matrix takes, and the numbers it gives
-    /// u times tractions.
-    unit: Vec<f64>,
-}
-
-impl Dense {
-    /// The jumps of least energy within `bound`, which may be infinite.
-    ///
-    /// # Errors
-    /// As [`qp::solve`].
-    pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
-        let Dense { matrix, cleared, unit } = self;
-        let (c, bound) = (times(c, unit), over(bound, unit));
-        let mut state = qp::solve(cleared.as_ref().unwrap_or(matrix), &c, &bound, warm)?;
-        if cleared.is_some()
-            && let Some(jumps) = qp::with_closed_or_springs(matrix, &c, &bound, &state.closed)
-        {
-            state.jumps = jumps;
-        }
-        state.jumps.iter_mut().zip(unit).for_each(|(j, u)| *j *= u);
-        Ok(state)
-    }
-}
-
-impl<'a> Schur<'a> {
-    /// `unresisted` gives jumps, of motions that no support resists, to which S gives no traction: none where they are
-    /// more than it is asked for. S is dense up to `longest_dense` jumps, and where `budget` has room for it.
-    pub fn new(
-        reduced: &'a Reduced,
-        longest_dense: usize,
-        budget: Budget,
-        unresisted: impl FnOnce(usize) -> Vec<Vec<f64>>,
-    ) -> Self {
-        let m = reduced.factor.trailing_len();
-        if m > longest_dense || budget.admit_more(DENSE * (m * m) as f64).is_err() {
-            return Schur::Long(LongContact::new(&reduced.factor, &reduced.shift), m);
-        }
-        let mut matrix = reduced.factor.trailing_product();
-        for i in 0..m {
-            matrix[(i, i)] -= reduced.shift[i];
-        }
-        let unit: Vec<f64> = (0..m).map(|i| power_of_two_near(matrix[(i, i)].abs())).collect();
-        for k in 0..m {
-            for i in 0..m {
-                matrix[(i, k)] *= unit[i] * unit[k];
-            }
-        }
-        let unresisted = unresisted(MOST_CLEARING / (m * m).max(1));
-        let cleared = cleared(&matrix, unresisted.iter().map(|z| over(z, &unit)));
-        Schur::Dense(Dense { matrix, cleared, unit })
-    }
-
-    pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
-        match self {
-            Schur::Dense(dense) => dense.solve(c, bound, warm),
-            Schur::Long(s, _) => s.solve(c, bound, warm),
-        }
-    }
-
-    /// S j − c.
-    pub fn gradient(&self, c: &[f64], jumps: &[f64]) -> Vec<f64> {
-        match self {
-            Schur::Dense(Dense { matrix: s, unit, .. }) => {
-                over(&qp::gradient(s, &times(c, unit), &over(jumps, unit)), unit)
-            }
-            Schur::Long(s, _) => s.apply(jumps).iter().zip(c).map(|(s, c)| s - c).collect(),
-        }
-    }
-
-    pub fn with_closed(&self, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
-        match self {
-            Schur::Dense(Dense { matrix: s, unit, .. }) => {
-                let jumps = qp::with_closed_or_springs(s, &times(c, unit), &over(bound, unit), closed)?;
-                Some(times(&jumps, unit))
-            }
-            Schur::Long(s, _) => Some(s.with_closed(c, bound, closed)),
-        }
-    }
-
-    /// Penetration that is `part` of the largest jump or gap, end by end.
-    pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
-        match self {
-            Schur::Dense(Dense { unit, .. }) => {
-                let depth = part * largest(&over(jumps, unit)).max(largest(&over(bound, unit)));
-                unit.iter().map(|u| u * depth).collect()
-            }
-            Schur::Long(..) => vec![part * largest(jumps).max(largest(bound)); jumps.len()],
-        }
-    }
-
-    pub fn notes(&self, steps: usize) -> Vec<String> {
-        match self {
-            Schur::Dense(..) => Vec::new(),
-            Schur::Long(_, m) => vec![format!(
-                "the contact has {m} ends, more than are solved with a dense matrix: its state was found iteratively \
-                 (MPRGP, {steps} steps)"
-            )],
-        }
-    }
-}
-
-fn times(a: &[f64], unit: &[f64]) -> Vec<f64> {
-    a.iter().zip(unit).map(|(a, u)| a * u).collect()
-}
-
-fn over(a: &[f64], unit: &[f64]) -> Vec<f64> {
-    a.iter().zip(unit).map(|(a, u)| a / u).collect()
 }
 
 /// Takes held unknowns out of K and shifts the diagonal of every jump by itself; returns the shifts.

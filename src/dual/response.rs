@@ -10,8 +10,9 @@ use std::sync::Arc;
 use super::hybrid::{Motion, residual};
 use super::loaded::{Loaded, Start};
 use super::modes::ModeTable;
-use super::reduced::{Reduced, Schur};
+use super::reduced::Reduced;
 use super::rigid::unsupported;
+use super::schur::Schur;
 use super::system::{Structured, System, jump_moments, load_of_tractions};
 use super::{DualError, Options};
 use crate::element::{SideValues, StressField, side};
@@ -49,7 +50,7 @@ impl Factorised {
         longest_dense: usize,
         options: &Options,
     ) -> Responses<'a> {
-        let contact = Schur::new(&self.reduced, longest_dense, options.budget, |most| {
+        let contact = Schur::new(&self.system, &self.reduced, longest_dense, options.budget, |most| {
             unsupported(problem, &self.system.unknowns, most)
         });
         let displaced = self.system.unknowns.project(|e, k| moments.of(e)[k]);

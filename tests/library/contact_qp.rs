@@ -2,7 +2,8 @@
 
 use crate::setup::{Role, Setup, lift_off, two_blocks};
 use faer::Mat;
-use hypercircle::dual::{self, Condensed, DualMethod, DualSolution, Motion, Options, qp};
+use hypercircle::dual::{self, Condensed, DualMethod, DualSolution, Motion, Options};
+use hypercircle::optimise::{self, Law, Program, Quadratic, State};
 use hypercircle::problem::Problem;
 use hypercircle::statics;
 
@@ -30,15 +31,69 @@ impl Random {
     }
 }
 
+/// Jumps, which of them are at their bound, and the steps that it took.
+struct Found {
+    jumps: Vec<f64>,
+    closed: Vec<bool>,
+    steps: usize,
+}
+
+fn laws(g: &[f64]) -> Vec<Law> {
+    g.iter().map(|g| Law::AtMost { bound: *g }).collect()
+}
+
+fn states(closed: &[bool]) -> Vec<State> {
+    closed.iter().map(|closed| if *closed { State::Held } else { State::Below }).collect()
+}
+
+fn solve(s: &Mat<f64>, c: &[f64], g: &[f64], start: Option<&[bool]>) -> Found {
+    let laws = laws(g);
+    let found = optimise::solve(&Program { form: s, load: c, laws: &laws }, start.map(states)).expect("a minimum");
+    let closed = found.states.iter().map(|state| *state == State::Held).collect();
+    Found { jumps: found.x, closed, steps: found.steps }
+}
+
+/// Jumps with the closed ones at their bound and the others in equilibrium, where these are determined.
+fn with_closed(s: &Mat<f64>, c: &[f64], g: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
+    let laws = laws(g);
+    Program { form: s, load: c, laws: &laws }.solved_in_state(&states(closed), None, 0.0)
+}
+
+/// The search of Lawson and Hanson from closed contact: the end under the largest tension opens, and what stops the way to the
+/// new equilibrium closes.
+fn one_by_one(s: &Mat<f64>, c: &[f64], g: &[f64]) -> Found {
+    let (mut jumps, mut closed) = (g.to_vec(), vec![true; g.len()]);
+    let rounding = 1e-12 * c.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    for steps in 1.. {
+        loop {
+            let target = with_closed(s, c, g, &closed).expect("a definite matrix");
+            let ratio = |i: usize| (g[i] - jumps[i]) / (target[i] - jumps[i]);
+            let beyond = (0..g.len()).filter(|&i| !closed[i] && target[i] > g[i]);
+            let stop = beyond.min_by(|a, b| ratio(*a).total_cmp(&ratio(*b)));
+            let part = stop.map_or(1.0, ratio);
+            jumps.iter_mut().zip(&target).for_each(|(j, t)| *j += part * (t - *j));
+            let Some(i) = stop else { break };
+            (closed[i], jumps[i]) = (true, g[i]);
+        }
+        let tension = s.gradient(c, &jumps);
+        let worst = (0..g.len()).filter(|&i| closed[i]).max_by(|a, b| tension[*a].total_cmp(&tension[*b]));
+        match worst.filter(|&i| tension[i] > rounding) {
+            Some(i) => closed[i] = false,
+            None => return Found { jumps, closed, steps },
+        }
+    }
+    unreachable!()
+}
+
 fn energy(s: &Mat<f64>, c: &[f64], j: &[f64]) -> f64 {
-    let tension = qp::gradient(s, c, j);
+    let tension = s.gradient(c, j);
     j.iter().zip(&tension).zip(c).map(|((j, t), c)| 0.5 * j * (t - c)).sum()
 }
 
 /// Violation of j ≤ g, T ≤ 0, T (g − j) = 0, relative to `c`.
 fn violation(s: &Mat<f64>, c: &[f64], g: &[f64], j: &[f64]) -> f64 {
     let scale = c.iter().fold(1e-300_f64, |m, v| m.max(v.abs()));
-    let tension = qp::gradient(s, c, j);
+    let tension = s.gradient(c, j);
     (0..c.len())
         .map(|i| {
             let open = g[i] - j[i];
@@ -54,7 +109,7 @@ fn enumerated(s: &Mat<f64>, c: &[f64], g: &[f64]) -> f64 {
     let mut best = f64::INFINITY;
     for state in 0..1_u32 << m {
         let closed: Vec<bool> = (0..m).map(|i| state >> i & 1 == 1).collect();
-        if let Some(j) = qp::with_closed(s, c, g, &closed)
+        if let Some(j) = with_closed(s, c, g, &closed)
             && j.iter().zip(g).all(|(j, g)| *j <= g + 1e-12)
         {
             best = best.min(energy(s, c, &j));
@@ -87,8 +142,8 @@ fn block_pivoting_cycles(s: &Mat<f64>, c: &[f64], g: &[f64]) -> bool {
     let mut closed = vec![true; c.len()];
     let mut seen = Vec::new();
     loop {
-        let Some(j) = qp::with_closed(s, c, g, &closed) else { return false };
-        let tension = qp::gradient(s, c, &j);
+        let Some(j) = with_closed(s, c, g, &closed) else { return false };
+        let tension = s.gradient(c, &j);
         let next: Vec<bool> = (0..c.len()).map(|i| if closed[i] { tension[i] <= 0.0 } else { j[i] > g[i] }).collect();
         if next == closed {
             return false;
@@ -111,11 +166,11 @@ fn reaches_the_least_energy_of_all_states_even_where_block_pivoting_cycles() {
         let s = random.gram(m, m, shift);
         let (c, g) = (random.vector(m), random.vector(m).iter().map(|g| g.abs()).collect::<Vec<_>>());
         cycles += usize::from(block_pivoting_cycles(&s, &c, &g));
-        let found = qp::solve(&s, &c, &g, None).expect("a contact state");
+        let found = solve(&s, &c, &g, None);
         assert!(violation(&s, &c, &g, &found.jumps) < 1e-8, "trial {trial}");
         let best = enumerated(&s, &c, &g);
         assert!((energy(&s, &c, &found.jumps) - best).abs() <= 1e-9 * (1.0 + best.abs()), "trial {trial}");
-        let careful = qp::one_by_one(&s, &c, &g, None).expect("a contact state");
+        let careful = one_by_one(&s, &c, &g);
         assert!((energy(&s, &c, &careful.jumps) - best).abs() <= 1e-9 * (1.0 + best.abs()), "trial {trial}");
     }
     println!("{cycles} of 3000 make block pivoting cycle");
@@ -128,7 +183,7 @@ fn agrees_with_projected_gauss_seidel() {
     for m in [20, 60] {
         let s = random.gram(m, m, 0.3 * m as f64);
         let (c, g) = (random.vector(m), vec![0.0; m]);
-        let found = qp::solve(&s, &c, &g, None).expect("a contact state");
+        let found = solve(&s, &c, &g, None);
         let other = gauss_seidel(&s, &c, &g);
         for (a, b) in found.jumps.iter().zip(&other) {
             assert!((a - b).abs() < 1e-10);
@@ -141,20 +196,20 @@ fn a_guess_changes_the_steps_and_not_the_state() {
     let mut random = Random(3);
     let s = random.gram(40, 40, 5.0);
     let (c, g) = (random.vector(40), vec![0.1; 40]);
-    let cold = qp::solve(&s, &c, &g, None).expect("a contact state");
-    let warm = qp::solve(&s, &c, &g, Some(&cold.closed)).expect("a contact state");
+    let cold = solve(&s, &c, &g, None);
+    let warm = solve(&s, &c, &g, Some(&cold.closed));
     assert_eq!((warm.steps, &warm.closed), (1, &cold.closed));
     let opposite: Vec<bool> = cold.closed.iter().map(|c| !c).collect();
-    assert_eq!(qp::solve(&s, &c, &g, Some(&opposite)).expect("a contact state").closed, cold.closed);
+    assert_eq!(solve(&s, &c, &g, Some(&opposite)).closed, cold.closed);
 }
 
 #[test]
 fn a_multiplier_of_exactly_zero_settles() {
     // Both ends sit at their bound without traction: c = S g.
     let s = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 } else { -1.0 });
-    let found = qp::solve(&s, &[0.5, 0.5], &[0.5, 0.5], None).expect("a contact state");
+    let found = solve(&s, &[0.5, 0.5], &[0.5, 0.5], None);
     assert!(found.jumps.iter().all(|j| (j - 0.5).abs() < 1e-15));
-    let open = qp::solve(&s, &[0.5, 0.5], &[0.5, 0.5], Some(&[false, false])).expect("a contact state");
+    let open = solve(&s, &[0.5, 0.5], &[0.5, 0.5], Some(&[false, false]));
     assert!(open.jumps.iter().all(|j| (j - 0.5).abs() < 1e-15));
 }
 
@@ -163,10 +218,10 @@ fn a_body_that_only_contact_holds() {
     // Two springs between ground and a free body: S is singular, the load presses both ends together or one of them.
     let s = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { -1.0 });
     for (c, closed) in [([0.3, 0.2], [true, true]), ([2.0, -1.0], [true, false])] {
-        let found = qp::solve(&s, &c, &[0.0, 0.0], None).expect("a contact state");
+        let found = solve(&s, &c, &[0.0, 0.0], None);
         assert_eq!(found.closed, closed);
         assert!(violation(&s, &c, &[0.0, 0.0], &found.jumps) < 1e-12);
-        let open = qp::solve(&s, &c, &[0.0, 0.0], Some(&[false, false])).expect("a contact state");
+        let open = solve(&s, &c, &[0.0, 0.0], Some(&[false, false]));
         assert_eq!(open.closed, closed);
     }
 }
@@ -189,8 +244,8 @@ fn one_at_a_time_costs_about_one_solve_for_each_open_end() {
     let s = Mat::from_fn(m, m, |i, j| s[(i, j)] + if i == j { 1.0 } else { 0.0 });
     let c: Vec<f64> = (0..m).map(|i| (std::f64::consts::TAU * i as f64 / m as f64).cos() - 0.2).collect();
     let g = vec![0.0; m];
-    let block = qp::solve(&s, &c, &g, None).expect("a contact state");
-    let careful = qp::one_by_one(&s, &c, &g, None).expect("a contact state");
+    let block = solve(&s, &c, &g, None);
+    let careful = one_by_one(&s, &c, &g);
     let open = block.closed.iter().filter(|c| !**c).count();
     println!("block {} steps, one by one {}, {open} open", block.steps, careful.steps);
     assert_eq!(block.closed, careful.closed);
@@ -199,7 +254,7 @@ fn one_at_a_time_costs_about_one_solve_for_each_open_end() {
 
 #[test]
 fn no_contact_at_all() {
-    let found = qp::solve(&Mat::zeros(0, 0), &[], &[], None).expect("a contact state");
+    let found = solve(&Mat::zeros(0, 0), &[], &[], None);
     assert!(found.jumps.is_empty());
 }
 

@@ -41,6 +41,7 @@ mod mesh_parts;
 mod mesh_selection;
 mod methods_on_cases;
 mod obstacles;
+mod optimise;
 mod own_element;
 mod paper_block;
 mod paper_objects;

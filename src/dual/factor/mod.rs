@@ -1,5 +1,6 @@
 //! Sparse Cholesky with the jumps ordered last, so that the end of the factor holds the Schur complement on Γ_K.
 
+mod complement;
 mod symbolic;
 mod trailing;
 
@@ -10,6 +11,7 @@ use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::{Conj, MatMut, Par};
 
 pub use self::symbolic::SymbolicFactor;
+use super::interface::Interface;
 
 /// Why a matrix could not be factorised.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -102,6 +104,11 @@ impl Factor {
     /// The unknown at which rounding left no pivot, where the diagonal was raised.
     pub fn broken(&self) -> Option<usize> {
         self.broken
+    }
+
+    /// The unknowns at its end, where they are more than the jumps.
+    pub fn interface(&self) -> Option<&Interface> {
+        self.symbolic.interface.as_ref()
     }
 
     /// Gives the symbolic part back, for another matrix of the same structure.
@@ -199,7 +206,7 @@ mod tests {
     fn loads_on_few_unknowns_and_on_all_are_solved_for() {
         let a = stencil();
         let n = SIDE * SIDE;
-        let symbolic = SymbolicFactor::new(a.symbolic(), n - 7, (0..n - 7).collect()).expect("room");
+        let symbolic = SymbolicFactor::new(a.symbolic(), n - 7, (0..n).collect(), None).expect("room");
         let factor = Factor::of_semidefinite(symbolic, a.as_ref(), Par::Seq).expect("a definite matrix");
         let dense: Vec<f64> = (0..n).map(|k| ((3 * k + 1) as f64).sin()).collect();
         for loaded in [vec![0], vec![n / 2, n / 2 + 5], vec![n - 1], vec![5, 40, 90, n - 3]] {

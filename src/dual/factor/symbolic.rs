@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::Breakdown;
 use crate::budget::{fallible, words};
+use crate::dual::interface::Interface;
 
 /// Symbolic factorisation: the fill-reducing ordering and the structure of the factor.
 #[derive(Debug)]
@@ -21,29 +22,29 @@ pub struct SymbolicFactor {
     pub(super) inner: Option<SymbolicCholesky<usize>>,
     pub(super) forward: Vec<usize>,
     pub(super) leading: usize,
+    /// What the unknowns from `leading` on are, where they are more than the jumps.
+    pub(super) interface: Option<Interface>,
 }
 
 impl SymbolicFactor {
-    /// Analyses the lower triangle `pattern`; unknowns from `leading` on keep their order and come last.
-    ///
-    /// `order` is a fill-reducing ordering of the unknowns before `leading`.
+    /// Analyses the lower triangle `pattern`; unknowns are eliminated as they are listed in `forward`, and those from place
+    /// `leading` on are those of `interface`, or jumps.
     ///
     /// # Errors
     /// [`Breakdown::TooLarge`].
     pub fn new(
         pattern: SymbolicSparseColMatRef<'_, usize>,
         leading: usize,
-        order: Vec<usize>,
+        forward: Vec<usize>,
+        interface: Option<Interface>,
     ) -> Result<Self, Breakdown> {
         let n = pattern.ncols();
-        let mut forward = order;
-        forward.extend(leading..n);
         let mut inverse = vec![0; n];
         for (new, &old) in forward.iter().enumerate() {
             inverse[old] = new;
         }
         if n == 0 {
-            return Ok(SymbolicFactor { inner: None, forward, leading });
+            return Ok(SymbolicFactor { inner: None, forward, leading, interface });
         }
         let inner = factorize_symbolic_cholesky(
             pattern,
@@ -55,7 +56,7 @@ impl SymbolicFactor {
             },
         )
         .map_err(|e| Breakdown::TooLarge(e.to_string()))?;
-        Ok(SymbolicFactor { inner: Some(inner), forward, leading })
+        Ok(SymbolicFactor { inner: Some(inner), forward, leading, interface })
     }
 
     /// Numbers in the factor.
