@@ -18,8 +18,9 @@ const BALANCED: f64 = 1e-9;
 /// Products of room and force at which a point that comes no further still tells the state.
 const NEARLY: f64 = 1e-7;
 
-/// The minimum to about as many digits as the factor has; nothing where it does not come near one.
-pub fn interior_point(program: &Program<'_>) -> Option<Solution> {
+/// The minimum to about as many digits as the factor has; nothing where it does not come near one. It ends where the mean product of
+/// room and force, for data of size one, is `enough`, or where it comes no further.
+pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
     let size = program.size();
     let n = program.load.len();
     let load: Vec<f64> = program.load.iter().map(|b| b / size).collect();
@@ -50,7 +51,7 @@ pub fn interior_point(program: &Program<'_>) -> Option<Solution> {
         if !left.is_finite() {
             return None;
         }
-        if mu <= TOLERANCES.identified && left <= BALANCED || all.is_empty() && left <= TOLERANCES.identified {
+        if mu <= enough && left <= BALANCED || all.is_empty() && left <= TOLERANCES.identified {
             break;
         }
         (least, patience) = if left < 0.9 * least { (left, PATIENCE) } else { (least, patience - 1) };

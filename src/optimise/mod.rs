@@ -71,7 +71,7 @@ pub fn solve(program: &Program<'_>, start: Option<Vec<State>>) -> Option<Solutio
     if first.settled {
         return Some(first);
     }
-    let inner = if direct { interior_point(program) } else { mprgp(program) }?;
+    let inner = if direct { interior_point(program, TOLERANCES.identified) } else { mprgp(program) }?;
     let about = direct.then(|| inner.x.clone());
     let last = active_sets(program, inner.states.clone(), about, SETTLING);
     let steps = first.steps + inner.steps + last.steps;

@@ -1,32 +1,28 @@
-//! The projection of the loads for many pieces: an interior point tells which rows carry force, and weighted least squares
-//! make the forces exact.
+//! The projection of the loads for many pieces, as a quadratic program for the forces.
 //!
-//! With unit rows g the projection r of a load L minimises ½|r|² − L·r under g · r ≤ 0, and the multipliers are forces. An
-//! interior point (Clarabel) comes near them in some twenty sparse factorisations, whatever the number of rows that depend on
-//! each other. From there forces μ > 0 change by μ (g · z) with (Σ μ g gᵀ) z = what is left of the load along these rows:
-//! each in proportion to itself, so that none changes its sign. What has been found is then held against the conditions of the
-//! projection themselves, by the caller: an interior point that stopped short costs time and no verdict.
+//! With unit rows g the forces μ ≥ 0 minimise ½|L − Σ μ g|², and what they leave of the load L is the projection: a quadratic form
+//! whose matrix has an entry for two rows that share a piece, with a bound for each unknown. Many rows depend on each other; an
+//! interior point does not mind, and comes to forces in the middle of those that are possible. What has been found is held against the
+//! conditions of the projection themselves, so that a search that stopped short costs time and no verdict.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::SupportedConeT::NonnegativeConeT;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver};
-use faer::linalg::solvers::Solve;
+use std::sync::Arc;
+
+use faer::Side;
 use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{Col, Side};
 
 use super::sparse::{Row, dot};
+use crate::optimise::{Law, Program, SparseForm, State, Structure, active_sets, interior_point};
 use crate::vector::long::largest;
 
-/// Duality gap and infeasibility that the interior point aims at, for a load of size one.
-const TOLERANCE: f64 = 1e-13;
-const ITERATIONS: u32 = 60;
-/// Sets of rows that are made exact before the search goes another way.
-const SETS: usize = 6;
-/// Corrections of the forces on one set.
-const CORRECTIONS: usize = 8;
-/// What is added to the diagonal of Σ μ g gᵀ, relative to its largest entry, where rows depend on each other.
-const SHIFTS: [f64; 3] = [1e-14, 1e-12, 1e-10];
+/// Mean product of force and slack that the interior point aims at, for a load of size one: that of rounding in both.
+const ENOUGH: f64 = 1e-22;
+/// Sets of rows that are tried from its point.
+const SETS: usize = 8;
+/// Rest of the load, relative to it, that is known to be one …
+const CERTAIN: f64 = 1e-6;
+/// … where the bound of its error is this part of it.
+const DOUBT: f64 = 0.01;
 /// Eigenvalues of Σ g gᵀ, for rows of length one, above which no motion is overlooked by all rows: rounding in its factor is
 /// a hundred times smaller, and [`super::balance::RANK`] squared smaller still.
 const DEFINITE: f64 = 1e-11;
@@ -37,22 +33,74 @@ pub(super) fn see_every_motion(rows: &[Row], columns: usize) -> bool {
     columns == 0 || normal(unit, columns, -DEFINITE).is_some()
 }
 
-/// Forces on `rows`, none of them negative, that leave of `load` what no forces can balance, to `round_off`; nothing where
-/// that was not reached.
-pub(super) fn forces(rows: &[Row], columns: usize, load: &[f64], round_off: f64) -> Option<Vec<f64>> {
+/// What no forces on `rows` can balance of `load`; nothing where that was not found to `round_off`, relative to the load.
+pub(super) fn projection(rows: &[Row], columns: usize, load: &[f64], round_off: f64) -> Option<Vec<f64>> {
     let size = load.iter().fold(0.0_f64, |m, v| m.hypot(*v));
-    let mut forces = near(rows, columns, load, size)?;
+    let unit: Vec<f64> = load.iter().map(|v| v / size).collect();
+    let form = products(rows, columns)?;
+    // The unknowns are −μ.
+    let pulls: Vec<f64> = rows.iter().map(|row| -dot(row, &unit)).collect();
+    let laws = vec![Law::AtMost { bound: 0.0 }; rows.len()];
+    let program = Program { form: &form, load: &pulls, laws: &laws };
+    let inner = interior_point(&program, ENOUGH)?;
+    let found = |x: &[f64], states: &[State]| {
+        let carrying = x.iter().zip(states).map(|(x, state)| if *state == State::Held { 0.0 } else { (-x).max(0.0) });
+        let forces: Vec<f64> = carrying.collect();
+        let rest = left_of(&unit, rows, &forces);
+        is_projection(rows, &forces, &rest, round_off).then_some(rest)
+    };
+    let (mut x, mut states) = (inner.x.clone(), inner.states);
+    let mut rest = found(&x, &states);
     for _ in 0..SETS {
-        let rest = exact(rows, columns, load, &mut forces, round_off)?;
-        let missed: Vec<usize> =
-            (0..rows.len()).filter(|i| forces[*i] == 0.0 && dot(&rows[*i], &rest) > round_off).collect();
-        if missed.is_empty() {
-            return Some(forces);
+        if rest.is_some() {
+            break;
         }
-        let share = forces.iter().sum::<f64>().max(size) / rows.len() as f64;
-        missed.into_iter().for_each(|i| forces[i] = 1e-3 * share);
+        let next = active_sets(&program, states.clone(), Some(x), 1);
+        rest = found(&next.x, &states);
+        (x, states) = (next.x, next.states);
     }
-    None
+    let rest = rest.or_else(|| certain(rows, &unit, &inner.x, round_off))?;
+    Some(rest.into_iter().map(|v| size * v).collect())
+}
+
+/// Whether `forces` and what they leave fulfil what characterises the projection: no row is broken, and none that carries force is left.
+pub(super) fn is_projection(rows: &[Row], forces: &[f64], rest: &[f64], round_off: f64) -> bool {
+    rows.iter().zip(forces).all(|(row, force)| {
+        let pull = dot(row, rest);
+        pull <= round_off && (*force == 0.0 || pull >= -round_off)
+    })
+}
+
+/// What is left of a load of size one beside the forces −`x`, where that is many times the largest error that it can have: the rest
+/// r of any forces μ that breaks no row is within √(2 Σ μ |g · r|) of the projection.
+fn certain(rows: &[Row], load: &[f64], x: &[f64], round_off: f64) -> Option<Vec<f64>> {
+    let forces: Vec<f64> = x.iter().map(|x| (-x).max(0.0)).collect();
+    let rest = left_of(load, rows, &forces);
+    let length = rest.iter().fold(0.0_f64, |m, v| m.hypot(*v));
+    let (mut work, mut broken) = (0.0, 0.0_f64);
+    for (row, force) in rows.iter().zip(&forces) {
+        let pull = dot(row, &rest);
+        broken = broken.max(pull);
+        work += force * pull.abs();
+    }
+    let sound = broken <= round_off && length >= CERTAIN && (2.0 * work).sqrt() <= DOUBT * length;
+    sound.then_some(rest)
+}
+
+/// The products of rows with each other.
+fn products(rows: &[Row], columns: usize) -> Option<SparseForm> {
+    let mut with_column = vec![Vec::new(); columns];
+    rows.iter().enumerate().for_each(|(i, row)| row.iter().for_each(|(k, _)| with_column[*k].push(i)));
+    let structure = Arc::new(Structure::of_cliques(rows.len(), &with_column)?);
+    let mut values = vec![0.0; structure.entries()];
+    let mut own = vec![0.0; columns];
+    for (k, row) in rows.iter().enumerate() {
+        row.iter().for_each(|(c, v)| own[*c] = *v);
+        let (start, others) = structure.column(k);
+        others.iter().enumerate().for_each(|(at, other)| values[start + at] = dot(&rows[*other], &own));
+        row.iter().for_each(|(c, _)| own[*c] = 0.0);
+    }
+    Some(SparseForm::new(structure, values))
 }
 
 /// What the `forces` leave of `load`.
@@ -62,71 +110,6 @@ pub(super) fn left_of(load: &[f64], rows: &[Row], forces: &[f64]) -> Vec<f64> {
         row.iter().for_each(|(k, v)| rest[*k] -= v * force);
     }
     rest
-}
-
-/// Forces where the interior point ends; none on rows from which the motion moves away.
-fn near(rows: &[Row], columns: usize, load: &[f64], size: f64) -> Option<Vec<f64>> {
-    let at = |i: usize| rows[i].iter().map(move |(k, v)| (i, *k, *v));
-    let mut entries: Vec<(usize, usize, f64)> = (0..rows.len()).flat_map(at).collect();
-    entries.sort_unstable_by_key(|(i, k, _)| (*k, *i));
-    let mut starts = vec![0; columns + 1];
-    entries.iter().for_each(|(_, k, _)| starts[k + 1] += 1);
-    (0..columns).for_each(|k| starts[k + 1] += starts[k]);
-    let (indices, values) = entries.iter().map(|(i, _, v)| (*i, *v)).unzip();
-    let matrix = CscMatrix::new(rows.len(), columns, starts, indices, values);
-    let q: Vec<f64> = load.iter().map(|v| -v / size).collect();
-    let settings = DefaultSettings {
-        max_iter: ITERATIONS,
-        verbose: false,
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
-        max_threads: 1,
-        equilibrate_enable: false,
-        ..DefaultSettings::default()
-    };
-    let (zero, cones) = (vec![0.0; rows.len()], [NonnegativeConeT(rows.len())]);
-    let mut solver = DefaultSolver::new(&CscMatrix::identity(columns), &q, &matrix, &zero, &cones, settings).ok()?;
-    solver.solve();
-    // However it ended, what it came to is a first guess.
-    let found = solver.solution.z.iter().zip(&solver.solution.s);
-    let forces: Vec<f64> = found.map(|(force, away)| if force > away { size * force } else { 0.0 }).collect();
-    forces.iter().all(|force| force.is_finite()).then_some(forces)
-}
-
-/// Makes the positive `forces` those that balance the most of `load`, dropping those that would turn negative; what they leave.
-fn exact(rows: &[Row], columns: usize, load: &[f64], forces: &mut [f64], round_off: f64) -> Option<Vec<f64>> {
-    let mut rest = left_of(load, rows, forces);
-    let pull = |forces: &[f64], rest: &[f64]| {
-        let carrying = rows.iter().zip(forces).filter(|(_, force)| **force > 0.0);
-        carrying.fold(0.0_f64, |m, (row, _)| m.max(dot(row, rest).abs()))
-    };
-    let mut most = pull(forces, &rest);
-    while most > round_off {
-        let before = most;
-        let factor = SHIFTS.into_iter().find_map(|shift| {
-            let weighted =
-                rows.iter().zip(&*forces).filter(|(_, force)| **force > 0.0).map(|(row, force)| (row, *force));
-            normal(weighted, columns, shift)
-        })?;
-        for _ in 0..CORRECTIONS {
-            let z = factor.solve(Col::from_fn(columns, |k| rest[k]));
-            let z: Vec<f64> = z.iter().copied().collect();
-            for (force, row) in forces.iter_mut().zip(rows).filter(|(force, _)| **force > 0.0) {
-                *force = (*force * (1.0 + dot(row, &z))).max(0.0);
-            }
-            rest = left_of(load, rows, forces);
-            most = pull(forces, &rest);
-            if most <= round_off {
-                break;
-            }
-        }
-        // Digits that are not won by a new factor are lost.
-        if most > 0.1 * before && most > round_off {
-            return None;
-        }
-    }
-    Some(rest)
 }
 
 /// The factor of Σ w g gᵀ with `shift` added to its diagonal, relative to the largest entry there.

@@ -1,11 +1,10 @@
 //! The cone of allowed motions of a group of many pieces, with sparse rows.
 //!
 //! Supports are taken out piece by piece: what they leave of (a, b, s ω) are the coordinates here, so that projections
-//! stay orthogonal. The projection of the loads is found by an interior point and made exact (`interior`). Where that does not
-//! hold, elimination decides: pieces are numbered along the contacts (Cuthill & McKee), so that it fills in little, and
-//! primal–dual active sets begin from closed contacts; where these come back to a state they have been in, the proximal-point
-//! method leads to a better start, and from there single rows change in the manner of Lawson and Hanson, as for small groups,
-//! should blocks not settle there either.
+//! stay orthogonal. The projection of the loads is found as a quadratic program (`interior`). Where that is not it to the last
+//! digits, elimination decides: pieces are numbered along the contacts (Cuthill & McKee), so that it fills in little, and
+//! primal–dual active sets begin from closed contacts; where these come back to a state they have been in, single rows change
+//! in the manner of Lawson and Hanson, as for small groups.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -13,7 +12,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::balance::{Cone, RANK};
 use super::cone::Unsettled;
-use super::interior::{self, left_of};
+use super::interior;
 use super::restraint::{Group, Part, Points, along};
 use super::span::Span;
 use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, norm, transposed};
@@ -21,18 +20,8 @@ use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, nor
 /// Forces and pulls below this fraction of the loads are round-off.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Steps of whole sets before the proximal-point method, and after it before single rows are changed.
-const BLOCK_STEPS: usize = 4;
-/// First ρ of the proximal-point method, for rows of length one, and the last.
-const FIRST_RHO: f64 = 1e-1;
-const LAST_RHO: f64 = 1e-9;
-/// What ρ is multiplied with after a subproblem whose blocks settle, and after one whose blocks do not.
-const WEAKER: f64 = 0.3;
-const STIFFER: f64 = 4.0;
-/// Subproblems.
-const PROXIMAL_STEPS: usize = 24;
-/// Block steps for one subproblem: it starts from the rows of the one before.
-const PROXIMAL_BLOCK_STEPS: usize = 12;
+/// Steps of whole sets before single rows are changed.
+const BLOCK_STEPS: usize = 12;
 
 /// The allowed motions of a group.
 pub(super) struct SparseCone<'a> {
@@ -150,28 +139,10 @@ impl<'a> SparseCone<'a> {
         if size == 0.0 || self.rows.is_empty() {
             return Ok(load.to_vec());
         }
-        self.interior_point(load, size)
-            .or_else(|| self.block_steps((0..self.rows.len()).collect(), load, size).ok())
+        interior::projection(&self.rows, self.coordinates, load, ROUND_OFF)
             .ok_or(())
-            .or_else(|()| self.proximal_points(load, size))
-            .or_else(|active| self.block_steps(active, load, size))
+            .or_else(|()| self.block_steps((0..self.rows.len()).collect(), load, size))
             .or_else(|active| self.one_by_one(active, load, size))
-    }
-
-    /// What the loads leave by the interior point, where its forces are those of the projection to round-off.
-    fn interior_point(&self, load: &[f64], size: f64) -> Option<Vec<f64>> {
-        let forces = interior::forces(&self.rows, self.coordinates, load, 0.5 * ROUND_OFF * size)?;
-        let rest = left_of(load, &self.rows, &forces);
-        self.is_projection(&forces, &rest, size).then_some(rest)
-    }
-
-    /// Whether `forces` and what they leave fulfil what characterises the projection: no row is broken, and none that carries force
-    /// is left.
-    fn is_projection(&self, forces: &[f64], rest: &[f64], size: f64) -> bool {
-        self.rows.iter().zip(forces).all(|(row, force)| {
-            let pull = dot(row, rest);
-            pull <= ROUND_OFF * size && (*force == 0.0 || pull >= -ROUND_OFF * size)
-        })
     }
 
     /// Primal–dual steps of whole sets from the rows `active`. What the loads leave, or the set at which the steps came back
@@ -201,64 +172,6 @@ impl<'a> SparseCone<'a> {
         active.iter().enumerate().for_each(|(k, i)| next[*i] = Some(force(k) >= -round_off));
         let stays = |i: usize| next[i].unwrap_or_else(|| violation(i) > round_off);
         (0..self.rows.len()).filter(|i| stays(*i)).collect()
-    }
-
-    /// What the loads leave by the proximal-point method (Rockafellar 1976): with ρ/2 |μ − μ_k|² added the forces μ are unique
-    /// and a few block steps find them; ρ falls from one step to the next. Where rows depend on each other it needs no choice
-    /// among them. The rows that carry force in the end, where that leaves more than round-off.
-    fn proximal_points(&self, load: &[f64], size: f64) -> Result<Vec<f64>, Vec<usize>> {
-        let mut active: Vec<usize> = (0..self.rows.len()).collect();
-        let mut centre = vec![0.0; self.rows.len()];
-        let mut rho = FIRST_RHO;
-        for _ in 0..PROXIMAL_STEPS {
-            let Some((settled, forces)) = self.settled(active.clone(), load, size, &centre, rho) else {
-                rho = (rho * STIFFER).min(FIRST_RHO);
-                continue;
-            };
-            rho = (rho * WEAKER).max(LAST_RHO);
-            active = settled;
-            centre.fill(0.0);
-            active.iter().zip(&forces).for_each(|(i, force)| centre[*i] = force.max(0.0));
-            let rest = left_of(load, &self.rows, &centre);
-            if self.is_projection(&centre, &rest, size) {
-                return Ok(rest);
-            }
-        }
-        Err(active)
-    }
-
-    /// The rows that carry force in the subproblem of `rho` and `centre`, and their forces: block steps from `active`.
-    fn settled(
-        &self,
-        mut active: Vec<usize>,
-        load: &[f64],
-        size: f64,
-        centre: &[f64],
-        rho: f64,
-    ) -> Option<(Vec<usize>, Vec<f64>)> {
-        for _ in 0..PROXIMAL_BLOCK_STEPS {
-            let (forces, rest) = self.proximal_forces(&active, load, centre, rho);
-            let pull = |i: usize| dot(&self.rows[i], &rest) + rho * centre[i];
-            let next = self.next_set(&active, |k| forces[k], pull, ROUND_OFF * size);
-            if next == active {
-                return Some((active, forces));
-            }
-            active = next;
-        }
-        None
-    }
-
-    /// Forces μ on the `active` rows that minimise ½ |load − Σ μ_i g_i|² + ρ/2 |μ − centre|², and what they leave.
-    fn proximal_forces(&self, active: &[usize], load: &[f64], centre: &[f64], rho: f64) -> (Vec<f64>, Vec<f64>) {
-        let mut factor = Triangular::new(self.coordinates);
-        (0..self.coordinates).for_each(|k| factor.insert(vec![(k, rho.sqrt())]));
-        active.iter().for_each(|i| factor.insert(self.rows[*i].clone()));
-        let mut kept = vec![0.0; self.rows.len()];
-        active.iter().for_each(|i| kept[*i] = centre[*i]);
-        let rest = left_of(load, &self.rows, &kept);
-        let motion = factor.solve_normal(rest);
-        let forces = active.iter().map(|i| centre[*i] + dot(&self.rows[*i], &motion)).collect();
-        (forces, motion.iter().map(|v| rho * v).collect())
     }
 
     /// The same from the rows `active`: one row joins at a time, and rows whose force would turn negative leave.

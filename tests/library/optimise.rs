@@ -101,7 +101,7 @@ fn every_law_is_met_at_the_minimum_whatever_the_rank() {
         let laws: Vec<Law> = (0..m).map(|_| random.law()).collect();
         let load = planted(&mut random, &a, &laws);
         let program = Program { form: &a, load: &load, laws: &laws };
-        let inner = optimise::interior_point(&program).unwrap_or_else(|| panic!("trial {trial}: {laws:?}"));
+        let inner = optimise::interior_point(&program, 1e-12).unwrap_or_else(|| panic!("trial {trial}: {laws:?}"));
         assert!(worst(&program, &inner.x) < 1e-4, "trial {trial}: {:e} {laws:?}", worst(&program, &inner.x));
         let found = optimise::solve(&program, None).unwrap_or_else(|| panic!("trial {trial}: {laws:?}"));
         let left = worst(&program, &found.x);
@@ -192,7 +192,7 @@ fn what_is_loose_stays_away_from_its_bounds() {
     });
     let laws = [Law::AtMost { bound: 0.0 }; 4];
     let program = Program { form: &a, load: &[1.0, 0.5, 0.0, 0.0], laws: &laws };
-    let Solution { x, states, .. } = optimise::interior_point(&program).expect("a minimum");
+    let Solution { x, states, .. } = optimise::interior_point(&program, 1e-12).expect("a minimum");
     assert_eq!(states, [State::Held, State::Held, State::Below, State::Below]);
     assert!(x[2] < -1e-3 && x[3] < -1e-3, "{x:?}");
 }
