@@ -12,6 +12,7 @@ mod on_ranks;
 mod pipe;
 mod ranks;
 mod rounding;
+mod springs;
 mod sum;
 mod terms;
 pub mod upper;

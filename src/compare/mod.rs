@@ -10,6 +10,7 @@ mod contact;
 mod energy;
 mod forces;
 mod forces_on_quadrilaterals;
+mod springs;
 mod mean;
 mod nodal;
 mod on_quadrilaterals;

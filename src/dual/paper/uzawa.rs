@@ -8,6 +8,7 @@
 use std::time::Instant;
 
 use super::program::Program;
+use crate::dual::method::without_springs;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
@@ -126,6 +127,7 @@ fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Re
             remedy: "use another method, or --degree 1",
         });
     }
+    without_springs(problem, method)?;
     let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
     let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
     Err(DualError::NotExpressible {
