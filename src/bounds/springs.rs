@@ -22,7 +22,7 @@ pub struct SpringEnergy {
 /// Σ ∫ t²/2k.
 pub fn complementary_of_springs(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> SpringEnergy {
     let of = |pair: &BedPair, stiffness: [f64; 2]| {
-        let forces = tractions(problem, stress, pair);
+        let forces = spring_tractions(problem, stress, pair);
         let along = forces.iter().zip(stiffness).filter(|(_, k)| *k > 0.0);
         along.map(|(t, k)| pair.length * side::integral(t, t) / (2.0 * k)).map(|e| [e, 2.0 * e]).collect()
     };
@@ -32,7 +32,7 @@ pub fn complementary_of_springs(problem: &Problem, stress: &StressField, counted
 /// Σ ½ ∫ k j².
 pub fn potential_of_springs(problem: &Problem, v: &Displacement, counted: Counted<'_>) -> SpringEnergy {
     let of = |pair: &BedPair, stiffness: [f64; 2]| {
-        let (jump, size) = jumps(problem, v, pair);
+        let (jump, size) = spring_jumps(problem, v, pair);
         let along = jump.iter().zip(size).zip(stiffness).filter(|(_, k)| *k > 0.0);
         along
             .map(|((j, size), k)| {
@@ -51,7 +51,7 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
         if !counted.boundary_edge(&problem.mesh, pair.edge) {
             return 0.0;
         }
-        let (forces, (jump, _)) = (tractions(problem, stress, pair), jumps(problem, v, pair));
+        let (forces, (jump, _)) = (spring_tractions(problem, stress, pair), spring_jumps(problem, v, pair));
         let along = forces.iter().zip(&jump).zip(stiffness).filter(|(_, k)| *k > 0.0);
         let term = |((t, j), k): ((&Vec<f64>, &Vec<f64>), f64)| {
             let degree = t.len().max(j.len()) - 1;
@@ -80,15 +80,18 @@ fn summed(
     SpringEnergy { value: t * value.value(), sensitivity: t * (sensitivity + value.magnitude()) }
 }
 
+/// On every pair of springs, one bed after the other, coefficients along its two axes.
+pub type OnSprings = Vec<[Vec<f64>; 2]>;
+
 /// The coefficients of the traction on the first side along both axes, from its first vertex to its second.
-pub fn tractions(problem: &Problem, stress: &StressField, pair: &BedPair) -> [Vec<f64>; 2] {
+pub fn spring_tractions(problem: &Problem, stress: &StressField, pair: &BedPair) -> [Vec<f64>; 2] {
     let degree = problem.mesh.edges[pair.edge].triangles[0].map_or(1, |t| stress.degree(t));
     let own = stress.edge_traction(&problem.mesh, pair.edge, 0, degree);
     pair.axes.map(|axis| own.iter().map(|t| dot(*t, axis)).collect())
 }
 
 /// The coefficients of the jump along both axes, and the size of the displacements that it is the difference of.
-pub fn jumps(problem: &Problem, v: &Displacement, pair: &BedPair) -> ([Vec<f64>; 2], [f64; 2]) {
+pub fn spring_jumps(problem: &Problem, v: &Displacement, pair: &BedPair) -> ([Vec<f64>; 2], [f64; 2]) {
     let own = side_coefficients(problem, v, pair.edge);
     let other: Vec<[f64; 2]> = match pair.opposite {
         Some(e) => side_coefficients(problem, v, e).into_iter().rev().collect(),

@@ -41,6 +41,8 @@ struct ProblemFile<'a> {
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
     contacts: Vec<ContactEntry<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<SpringEntry>,
     pins: Vec<PinEntry>,
 }
 
@@ -83,6 +85,15 @@ struct RollerEntry {
 struct TractionEntry {
     edge: usize,
     values: [[f64; 2]; 2],
+}
+
+/// An edge on springs, or on a side of an elastic layer.
+#[derive(Serialize)]
+struct SpringEntry {
+    edge: usize,
+    opposite: Option<usize>,
+    axes: [[f64; 2]; 2],
+    stiffness: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -177,6 +188,15 @@ impl<'a> ProblemFile<'a> {
                             gap_below: gap_below(pair),
                         })
                         .collect(),
+                })
+                .collect(),
+            springs: problem
+                .bed_pairs()
+                .map(|(pair, stiffness)| SpringEntry {
+                    edge: pair.edge,
+                    opposite: pair.opposite,
+                    axes: pair.axes,
+                    stiffness,
                 })
                 .collect(),
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),

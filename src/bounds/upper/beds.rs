@@ -4,6 +4,7 @@
 //! matrix. Jumps are taken before anything else, so that what both sides do together costs no digits.
 
 use super::nodes::{NodalValues, Nodes};
+use crate::bounds::springs::{OnSprings, spring_tractions};
 use crate::element::StressField;
 use crate::element::side::product;
 use crate::problem::{BedPair, Problem};
@@ -17,6 +18,9 @@ pub struct BedEnergy {
     axes: [[f64; 2]; 2],
     /// k l along both axes.
     stiffness: [f64; 2],
+    /// What pulls at the nodes of the first side, and at those of the second the other way.
+    load: Vec<[f64; 2]>,
+    length: f64,
 }
 
 /// Those of all pairs, one bed after the other.
@@ -27,8 +31,17 @@ pub fn energies(problem: &Problem, nodes: &Nodes) -> Vec<BedEnergy> {
         sides: [along(pair.edge, 0), pair.opposite.map_or_else(Vec::new, |e| along(e, 1))],
         axes: pair.axes,
         stiffness: stiffness.map(|k| k * pair.length),
+        load: Vec::new(),
+        length: pair.length,
     };
     problem.bed_pairs().map(of).collect()
+}
+
+/// Gives all of them what `springs` pull.
+pub fn reload(beds: &mut [BedEnergy], springs: Option<&OnSprings>) {
+    for (number, bed) in beds.iter_mut().enumerate() {
+        bed.reload(springs.map(|f| &f[number]));
+    }
 }
 
 impl BedEnergy {
@@ -36,6 +49,22 @@ impl BedEnergy {
     pub fn nodes(&self) -> impl Iterator<Item = (usize, f64, usize)> + '_ {
         let sides = self.sides.iter().zip([1.0, -1.0]);
         sides.flat_map(|(side, sign)| side.iter().enumerate().map(move |(i, node)| (*node, sign, i)))
+    }
+
+    /// Puts ∫ f j of the forces `f` along both axes in the place of what pulled before; none where there are none.
+    fn reload(&mut self, f: Option<&[Vec<f64>; 2]>) {
+        self.load.clear();
+        let (Some(f), k) = (f, self.degree()) else { return };
+        for i in 0..=k {
+            let mut force = [0.0; 2];
+            for (axis, f) in self.axes.iter().zip(f) {
+                let degree = f.len().max(1) - 1;
+                let along = f.iter().enumerate().map(|(j, f)| f * product(k, i, degree, j));
+                let along = self.length * along.sum::<f64>();
+                (0..2).for_each(|c| force[c] += along * axis[c]);
+            }
+            self.load.push(force);
+        }
     }
 
     fn degree(&self) -> usize {
@@ -52,8 +81,14 @@ impl BedEnergy {
         jump
     }
 
-    /// The forces of the springs on the nodes of the first side, those on the second being the opposite.
+    /// The forces on the nodes of the first side, of what pulls and of the springs; those on the second are the opposite.
     pub fn forces(&self, values: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut forces = self.elastic(values);
+        forces.iter_mut().zip(&self.load).for_each(|(f, load)| *f = [f[0] + load[0], f[1] + load[1]]);
+        forces
+    }
+
+    fn elastic(&self, values: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let (jump, k) = (self.jump(|node| values[node]), self.degree());
         let of = |i: usize| {
             let mut mean = [0.0; 2];
@@ -78,15 +113,24 @@ impl BedEnergy {
         product(k, i, k, j) * along.map(|(axis, stiffness)| stiffness * dot(*axis, p) * dot(*axis, q)).sum::<f64>()
     }
 
-    /// ½ k l jᵀMj.
+    /// ½ k l jᵀMj less the work of what pulls.
     pub fn energy(&self, values: &[[f64; 2]]) -> f64 {
-        0.5 * self.form(values, values)
+        0.5 * self.form(values, values) - self.work(values)
+    }
+
+    /// The work of what pulls.
+    pub fn work(&self, values: &[[f64; 2]]) -> f64 {
+        if self.load.is_empty() {
+            return 0.0;
+        }
+        let jump = self.jump(|node| values[node]);
+        self.load.iter().zip(jump).map(|(f, j)| dot(*f, j)).sum()
     }
 
     /// k l jᵀM i of the jumps of two displacements.
     pub fn form(&self, one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
         let jump = self.jump(|node| other[node]);
-        let forces = self.forces(one);
+        let forces = self.elastic(one);
         -forces.iter().zip(jump).map(|(f, j)| dot(*f, j)).sum::<f64>()
     }
 }
@@ -99,7 +143,7 @@ pub fn draw(problem: &Problem, stress: &StressField, field: &mut NodalValues) {
     for (pair, stiffness) in problem.bed_pairs() {
         let young = |e: usize| mesh.edges[e].triangles[0].map_or(0.0, |t| problem.scene.bodies[mesh.body[t]].young);
         let firm = pair.sides().map(|(_, e)| young(e)).fold(f64::INFINITY, f64::min);
-        let tractions = super::super::springs::tractions(problem, stress, pair);
+        let tractions = spring_tractions(problem, stress, pair);
         for ((axis, k), t) in pair.axes.iter().zip(stiffness).zip(&tractions) {
             if k * pair.length <= firm {
                 continue;

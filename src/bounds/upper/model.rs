@@ -1,6 +1,6 @@
 //! The energy of a continuous displacement as a function of its nodes, with what holds them.
 
-use super::beds::{BedEnergy, energies};
+use super::beds::{BedEnergy, energies, reload};
 use super::energies::{TriangleEnergies, TriangleEnergy};
 use super::groups::Group;
 use super::holds::{Hold, Holds};
@@ -57,12 +57,14 @@ impl Model {
             start.push(of_triangles.len());
         }
         let rows_at = rows_at(problem, groups);
+        let mut beds = energies(problem, nodes);
+        reload(&mut beds, pull.springs);
         Model {
             energies: TriangleEnergies::new(problem, nodes, pull, like),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
             rows_at,
-            beds: energies(problem, nodes),
+            beds,
             beds_at: beds_at(problem),
             of_triangles: (of_triangles, start),
             ends: (0..nodes.edges())
@@ -75,6 +77,7 @@ impl Model {
     /// The same with another load and other bounds on the jumps.
     pub fn with(&mut self, problem: &Problem, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
         self.energies.reload(problem, nodes, pull);
+        reload(&mut self.beds, pull.springs);
         self.rows = groups.iter().flatten().cloned().collect();
     }
 

@@ -52,7 +52,7 @@ impl Momentum {
         }
         for bed in &model.beds {
             for (i, moves) in [&sweep, &self.step].into_iter().enumerate() {
-                force[i] -= bed.form(values, moves);
+                force[i] += bed.work(moves) - bed.form(values, moves);
             }
             for (i, j) in [(0, 0), (0, 1), (1, 1)] {
                 let moves = [&sweep, &self.step];
