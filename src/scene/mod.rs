@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod bonds;
 mod centre;
 mod circle;
 mod conditions;
@@ -30,6 +31,8 @@ use std::path::PathBuf;
 
 use crate::elasticity::Elasticity;
 
+pub use bonds::Bond;
+pub(crate) use bonds::Joint;
 pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
