@@ -64,11 +64,7 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
     problem.bed_pairs().map(of).collect()
 }
 
-fn summed(
-    problem: &Problem,
-    counted: Counted<'_>,
-    of: impl Fn(&BedPair, [f64; 2]) -> Vec<[f64; 2]>,
-) -> SpringEnergy {
+fn summed(problem: &Problem, counted: Counted<'_>, of: impl Fn(&BedPair, [f64; 2]) -> Vec<[f64; 2]>) -> SpringEnergy {
     let (mut value, mut sensitivity) = (Sum::default(), 0.0);
     for (pair, stiffness) in problem.bed_pairs().filter(|(pair, _)| counted.boundary_edge(&problem.mesh, pair.edge)) {
         for [energy, moved] in of(pair, stiffness) {
@@ -98,9 +94,8 @@ pub fn spring_jumps(problem: &Problem, v: &Displacement, pair: &BedPair) -> ([Ve
         None => vec![[0.0; 2]],
     };
     let degree = own.len().max(other.len()) - 1;
-    let along = |u: &[[f64; 2]], axis: [f64; 2]| {
-        side::elevate(&u.iter().map(|u| dot(*u, axis)).collect::<Vec<_>>(), degree)
-    };
+    let along =
+        |u: &[[f64; 2]], axis: [f64; 2]| side::elevate(&u.iter().map(|u| dot(*u, axis)).collect::<Vec<_>>(), degree);
     let largest = |u: &[f64]| u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
     let both = pair.axes.map(|axis| {
         let (a, b) = (along(&own, axis), along(&other, axis));

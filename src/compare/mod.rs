@@ -10,7 +10,6 @@ mod contact;
 mod energy;
 mod forces;
 mod forces_on_quadrilaterals;
-mod springs;
 mod mean;
 mod nodal;
 mod on_quadrilaterals;
@@ -20,6 +19,7 @@ mod piece;
 pub mod pressure;
 mod resultant;
 pub mod solution;
+mod springs;
 mod stress;
 mod tolerance;
 
@@ -33,7 +33,7 @@ pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use pressure::weighted_reactions;
 pub use solution::{Nonmatching, Numbering, Solution};
-pub use stress::{primal_means, von_mises, von_mises_map};
+pub use stress::{primal_means, von_mises_map};
 pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
 
 use ceiling::Ceilings;

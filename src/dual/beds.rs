@@ -175,10 +175,8 @@ mod tests {
         for p in 1..MOST {
             let jump: Vec<f64> = (0..=p).map(|k| ((3 * k + 1) as f64).cos()).collect();
             let moments = side::moments(&jump, p);
-            let springs = Springs {
-                all: vec![Spring { first: 0, degree: p, stiffness: 4.0, parameter: 0 }],
-                parameters: p + 1,
-            };
+            let springs =
+                Springs { all: vec![Spring { first: 0, degree: p, stiffness: 4.0, parameter: 0 }], parameters: p + 1 };
             let x: Vec<f64> = moments.iter().flat_map(|m| [*m, 7.0]).collect();
             let mut s = vec![0.0; p + 1];
             springs.parameters_from(&x, &mut s);

@@ -67,7 +67,8 @@ pub trait DualMethod: Sync {
 /// [`DualError::NotExpressible`].
 pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
     let Some(bed) = problem.beds.first() else { return Ok(()) };
-    let what = if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
+    let what =
+        if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
     let remedy = "use --method condensed or active-set, without --engine";
     Err(DualError::NotExpressible { method, what, remedy })
 }

@@ -71,10 +71,7 @@ impl Bed {
 }
 
 /// The vertices of the second side opposite those of the first, for all layers.
-pub(crate) fn facing_vertices<'a>(
-    mesh: &'a Triangulation,
-    beds: &'a [Bed],
-) -> impl Iterator<Item = [usize; 2]> + 'a {
+pub(crate) fn facing_vertices<'a>(mesh: &'a Triangulation, beds: &'a [Bed]) -> impl Iterator<Item = [usize; 2]> + 'a {
     beds.iter().flat_map(|bed| &bed.pairs).flat_map(|pair| {
         let [a, b] = mesh.edges[pair.edge].vertices;
         let facing = pair.opposite.map(|f| mesh.edges[f].vertices);

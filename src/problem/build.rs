@@ -112,7 +112,9 @@ impl Problem {
                     },
                     Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
                     // Edges of contacts and springs are overwritten when they are paired.
-                    Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => Condition::Traction([[0.0; 2]; 2]),
+                    Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
+                        Condition::Traction([[0.0; 2]; 2])
+                    }
                 }
             })
             .collect();

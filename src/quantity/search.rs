@@ -201,7 +201,8 @@ impl Search<'_, '_> {
             })
             .collect();
         let adjoint = adjoint_of(known.problem, self.functional, &response.stress);
-        let less = |(q, m): (&[Vec<f64>; 2], &[Vec<f64>; 2])| [0, 1].map(|c| combined(sign, &q[c], -2.0 * weight, &m[c]));
+        let less =
+            |(q, m): (&[Vec<f64>; 2], &[Vec<f64>; 2])| [0, 1].map(|c| combined(sign, &q[c], -2.0 * weight, &m[c]));
         let springs: OnSprings = adjoint.iter().zip(&known.springs).map(less).collect();
         let pull = Pull { scene: 2.0 * weight, stress: Some(&stress), springs: Some(&springs) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };

@@ -139,9 +139,10 @@ impl BedEnergy {
 /// wrong by much more than the springs give.
 pub fn draw(problem: &Problem, stress: &StressField, field: &mut NodalValues) {
     let mesh = &problem.mesh;
+    let materials = problem.materials();
     let vertex = field.vertices_mut();
     for (pair, stiffness) in problem.bed_pairs() {
-        let young = |e: usize| mesh.edges[e].triangles[0].map_or(0.0, |t| problem.scene.bodies[mesh.body[t]].young);
+        let young = |e: usize| mesh.edges[e].triangles[0].map_or(0.0, |t| materials[mesh.body[t]].young()[1]);
         let firm = pair.sides().map(|(_, e)| young(e)).fold(f64::INFINITY, f64::min);
         let tractions = spring_tractions(problem, stress, pair);
         for ((axis, k), t) in pair.axes.iter().zip(stiffness).zip(&tractions) {

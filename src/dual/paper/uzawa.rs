@@ -8,9 +8,9 @@
 use std::time::Instant;
 
 use super::program::Program;
-use crate::dual::method::without_springs;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
+use crate::dual::method::without_springs;
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
