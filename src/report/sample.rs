@@ -167,6 +167,7 @@ fn two_blocks(n: usize) -> Problem {
         mesh,
         conditions,
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
+        beds: Vec::new(),
         notes,
         refinement: crate::problem::Refinement::default(),
         uncut: None,
@@ -283,7 +284,6 @@ fn dual(problem: &Problem) -> DualSolution {
         seconds: SECONDS,
         factorised: None,
         divided: None,
-        beds: Vec::new(),
         notes: Vec::new(),
     }
 }
