@@ -75,7 +75,7 @@ impl Search<'_, '_> {
         let balanced = square(problem, &neutral.stress);
         let square = if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
-        let pull = Pull { scene: 0.0, stress: Some(&sigma) };
+        let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma) };
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
         let distance = if rest > CANCELLED * square {
             rest.sqrt()
@@ -151,7 +151,7 @@ impl Search<'_, '_> {
             return false;
         }
         let sigma = self.stress(&begun.response.stress);
-        let filled = nearest.filled(&begun.nodes, Pull { scene: 0.0, stress: Some(&sigma) });
+        let filled = nearest.filled(&begun.nodes, Pull { scene: 0.0, initial: false, stress: Some(&sigma) });
         let pair = self.measured(&begun.response, (&filled, 1.0), 1.0);
         pair.pass.balanced <= NO_STRESS * natural
             && pair.pass.pair.square <= NO_STRAIN * natural
@@ -196,7 +196,7 @@ impl Search<'_, '_> {
                 open.iter().zip(weights).map(|(o, w)| ratio * o - sign * w).collect()
             })
             .collect();
-        let pull = Pull { scene: 2.0 * weight, stress: Some(&stress) };
+        let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(

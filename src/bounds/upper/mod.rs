@@ -126,7 +126,7 @@ fn relaxed(
     let mesh = &problem.mesh;
     let Groundwork { nodes, holds, rows, made } = ground;
     let mut field = NodalValues::zeros(nodes.clone());
-    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments));
+    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
     share.refresh(&mut field.values);
     let vertex = field.vertices_mut();
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
