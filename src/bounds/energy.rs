@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::counted::Counted;
 use super::jump::side_coefficients;
+use super::mid::stress_of;
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
-use crate::element::{Strains, elastic_degree};
 use crate::element::geometry::{sub_area, sub_corners};
 use crate::element::{Displacement, Material, Samples, StressField, contraction, side, triangle};
+use crate::element::{Strains, elastic_degree};
 use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -49,13 +50,7 @@ pub fn square_on(stress: &StressField, t: usize, material: &Material, third: f64
 }
 
 /// ∫ σ:ε0 on triangle `t`, a third of which has the area `third`, and the integral of its absolute value.
-pub fn initial_on(
-    stress: &StressField,
-    t: usize,
-    material: &Material,
-    corners: [[f64; 2]; 3],
-    third: f64,
-) -> [f64; 2] {
+pub fn initial_on(stress: &StressField, t: usize, material: &Material, corners: [[f64; 2]; 3], third: f64) -> [f64; 2] {
     let initial = material.initial();
     if initial.is_none() {
         return [0.0; 2];
@@ -259,6 +254,16 @@ pub fn initial_energy(problem: &Problem) -> f64 {
         mesh.area(t) / 6.0 * middles.map(at).iter().sum::<f64>()
     };
     problem.scene.thickness * (0..mesh.triangles.len()).map(of).sum::<f64>()
+}
+
+/// ∫ σ(v):ε0, thickness included.
+pub fn initial_work(problem: &Problem, v: &Displacement) -> f64 {
+    if problem.scene.bodies.iter().all(|body| body.initial.is_none()) {
+        return 0.0;
+    }
+    let (mesh, materials, stress) = (&problem.mesh, problem.materials(), stress_of(problem, v));
+    let of = |t: usize| initial_on(&stress, t, &materials[mesh.body[t]], mesh.corners(t), mesh.area(t) / 3.0)[0];
+    problem.scene.thickness * (0..mesh.triangles.len()).map(of).collect::<Sum>().value()
 }
 
 /// The work of the loads on `v`, ∫F·v + ∫P·v, per unit thickness.

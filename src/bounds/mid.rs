@@ -14,8 +14,8 @@
 use rayon::prelude::*;
 
 use super::UpperBound;
-use crate::element::{Strains, elastic_degree};
 use crate::element::{Displacement, StressField, triangle};
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// m = (λ + c e(v))/2, of the higher degree of the two; `None` where they are on different meshes.

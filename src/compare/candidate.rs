@@ -153,7 +153,9 @@ impl Judged {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             _ => field.potential,
         };
-        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain + initial_energy(problem)));
+        let balance = candidate
+            .is_solution
+            .then(|| Balance::new(problem, &candidate, field.potential.strain + initial_energy(problem)));
         let larger = extent.larger(candidate.largest());
         Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }

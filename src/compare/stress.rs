@@ -4,8 +4,8 @@ use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use crate::dual::DualSolution;
 use crate::element::geometry::sub_corners;
-use crate::element::{Strains, elastic_degree};
 use crate::element::{Samples, contraction};
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// Mean stress of the displacement solution on each triangle.
@@ -34,7 +34,8 @@ pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
 /// Von Mises stress of mean stresses.
 pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
     let materials = problem.materials();
-    let of = |(t, &s): (usize, &[f64; 3])| materials[problem.mesh.body[t]].von_mises(s, centroid(problem.mesh.corners(t)));
+    let of =
+        |(t, &s): (usize, &[f64; 3])| materials[problem.mesh.body[t]].von_mises(s, centroid(problem.mesh.corners(t)));
     means.iter().enumerate().map(of).collect()
 }
 

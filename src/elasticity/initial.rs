@@ -109,7 +109,8 @@ impl Elasticity {
         let Some(plane) = self.plane(strain) else { return InitialStrain::NONE };
         let [warm, out] = self.of_unit_temperature(&plane, initial);
         let [cold, stress_out] = of_stress(&plane, strain, initial.stress);
-        let components = |[trace, across, shear]: [f64; 3]| [0.5 * (trace + across), 0.5 * (trace - across), 0.5 * shear];
+        let components =
+            |[trace, across, shear]: [f64; 3]| [0.5 * (trace + across), 0.5 * (trace - across), 0.5 * shear];
         let (warm, cold) = (components(warm), components(cold));
         let slope = |c: usize| initial.gradient.map(|g| warm[c] * g);
         InitialStrain {

@@ -4,9 +4,9 @@ use super::functional::Functional;
 use super::pass::strained;
 use crate::bounds::{Sum, work, work_of};
 use crate::element::Displacement;
-use crate::element::{Strains, elastic_degree};
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
@@ -50,7 +50,9 @@ fn product(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 {
         for sub in 0..3 {
             of_v.elastic(corners, v, t, sub, &materials[problem.mesh.body[t]]);
             of_w.on(corners, w, t, sub);
-            for (l, weight) in triangle_rule(elastic_degree(v.degree(t), &materials[problem.mesh.body[t]]) + w.degree(t) - 1) {
+            for (l, weight) in
+                triangle_rule(elastic_degree(v.degree(t), &materials[problem.mesh.body[t]]) + w.degree(t) - 1)
+            {
                 let product = materials[problem.mesh.body[t]].strain_product(of_v.at(*l), of_w.at(*l));
                 sum.add(weight * sub_area(corners) * product);
             }

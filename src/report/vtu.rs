@@ -112,7 +112,12 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
     let steps = steps(dossier, lattice);
     if let Some(dual) = dual {
         let stress = |t, sub, l| dual.at(t, sub, l);
-        out.stresses("dual_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, sub, l, stress(t, sub, l))), &steps)?;
+        out.stresses(
+            "dual_stress",
+            &TENSOR,
+            &lattice.values(|t, sub, l| tensor(t, sub, l, stress(t, sub, l))),
+            &steps,
+        )?;
         out.stresses(
             "von_mises",
             &[],

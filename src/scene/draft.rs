@@ -111,7 +111,8 @@ impl Draft {
         for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, material, force) = (quoted(name), material(elasticity) + &initial_keys(initial), list(body_force));
+            let (name, material, force) =
+                (quoted(name), material(elasticity) + &initial_keys(initial), list(body_force));
             writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
         }
         let lists = [

@@ -118,7 +118,9 @@ pub(super) fn initial(
     let list = |values: Vec<f64>, start: usize, end: usize| At { value: values, start, end };
     if let Some(At { value, start, end }) = &raw.expansion {
         initial.expansion = match value {
-            RawExpansion::Isotropic(alpha) => source.vector(&list(vec![*alpha; 3], *start, *end), (label, "expansion"))?,
+            RawExpansion::Isotropic(alpha) => {
+                source.vector(&list(vec![*alpha; 3], *start, *end), (label, "expansion"))?
+            }
             RawExpansion::Axes(along) => three(&list(along.clone(), *start, *end), label, "expansion", source)?,
         };
     }

@@ -141,7 +141,12 @@ pub struct Body {
 impl Body {
     /// A body with Young's modulus E > 0 and Poisson's ratio ν in (−1, ½), without body force.
     pub fn isotropic(name: impl Into<String>, young: f64, poisson: f64) -> Self {
-        Body { name: name.into(), elasticity: Elasticity::Isotropic { young, poisson }, initial: Initial::default(), body_force: [0.0; 2] }
+        Body {
+            name: name.into(),
+            elasticity: Elasticity::Isotropic { young, poisson },
+            initial: Initial::default(),
+            body_force: [0.0; 2],
+        }
     }
 }
 
