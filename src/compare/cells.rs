@@ -126,6 +126,13 @@ impl NodalForces {
             for (node, f) in cell.nodes.iter().zip(own) {
                 (0..2).for_each(|c| forces.left[*node][c] += thickness * f[c]);
             }
+            if !material.initial().is_none() {
+                for (at, weight) in rule(points) {
+                    let (gradients, _) = cell.field.gradients(at);
+                    let held = material.held_back(cell.field.position(at));
+                    forces.add_initial(thickness * weight, held, &cell.nodes, &gradients);
+                }
+            }
             let f = problem.scene.bodies[body].body_force;
             for (node, weight) in cell.nodes.iter().zip(weights(&cell.field)) {
                 (0..2).for_each(|c| forces.load[*node][c] += thickness * weight * f[c]);

@@ -14,6 +14,7 @@ pub mod equilibrium;
 mod factor;
 mod footprint;
 mod hybrid;
+mod initial;
 mod interior;
 mod loaded;
 mod long_contact;

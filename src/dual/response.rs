@@ -113,7 +113,7 @@ impl Responses<'_> {
             (Cow::Owned(other), modes)
         };
         let external = load_of_tractions(&system.unknowns, load.tractions.iter().copied());
-        let mut system = System { modes, rhs: Vec::new(), external, ..system.clone() };
+        let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
         let start = system.strained(&problem, &load.strains);
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);

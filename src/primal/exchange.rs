@@ -51,6 +51,8 @@ struct BodyEntry<'a> {
     name: &'a str,
     #[serde(flatten)]
     material: MaterialEntry,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_strain: Option<[[f64; 3]; 3]>,
     body_force: [f64; 2],
 }
 
@@ -74,6 +76,14 @@ impl MaterialEntry {
             }
         }
     }
+}
+
+/// ε_xx, ε_yy and ε_xy of a body without stress, each by its value at the origin and its derivatives along x and y.
+fn initial_strain(problem: &Problem, body: usize) -> Option<[[f64; 3]; 3]> {
+    let material = problem.material(body);
+    let strain = material.initial();
+    let row = |c: usize| [strain.value[c], strain.gradient[c][0], strain.gradient[c][1]];
+    (!strain.is_none()).then(|| [0, 1, 2].map(row))
 }
 
 #[derive(Serialize)]
@@ -177,6 +187,7 @@ impl<'a> ProblemFile<'a> {
                 .map(|(i, body)| BodyEntry {
                     name: &body.name,
                     material: MaterialEntry::new(problem, i),
+                    initial_strain: initial_strain(problem, i),
                     body_force: body.body_force,
                 })
                 .collect(),

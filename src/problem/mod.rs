@@ -56,7 +56,12 @@ impl Problem {
 
     /// Material of one body of the scene.
     pub fn material(&self, body: usize) -> Material {
-        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
     }
 
     /// The pairs of all contacts, one interface after the other.

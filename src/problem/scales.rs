@@ -49,11 +49,12 @@ impl Scales {
         let scene = &problem.scene;
         let bodies = Extents::of_bodies(problem);
         let loads = Loads::new(problem, &bodies);
+        let materials = problem.materials();
         let imposed = match imposed(problem) {
             0.0 if loads.force == 0.0 => widest_gap(problem),
             imposed => imposed,
         };
-        let materials = problem.materials();
+        let imposed = imposed + initial(problem, &materials, &bodies);
         let modulus: Vec<f64> = materials.iter().map(Material::uniaxial).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let used = || materials.iter().zip(&bodies).filter(|(_, extent)| extent.any());
@@ -225,6 +226,22 @@ fn give(problem: &Problem) -> f64 {
         most = most.max(1.0 / (softest * length));
     }
     most
+}
+
+/// How far initial strains move the bodies that have one.
+fn initial(problem: &Problem, materials: &[Material], bodies: &[Extents]) -> f64 {
+    let of = |(material, extent): (&Material, &Extents)| {
+        let strain = material.initial();
+        if strain.is_none() || !extent.any() {
+            return 0.0;
+        }
+        let [low, high] = [extent.low, extent.high];
+        let corners = [low, high, [low[0], high[1]], [high[0], low[1]]];
+        let size = |p: [f64; 2]| strain.at(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        corners.map(size).into_iter().fold(0.0, f64::max) * extent.diameter()
+    };
+    debug_assert_eq!(materials.len(), problem.scene.bodies.len());
+    materials.iter().zip(bodies).map(of).fold(0.0, f64::max)
 }
 
 fn widest_gap(problem: &Problem) -> f64 {

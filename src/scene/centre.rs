@@ -42,6 +42,7 @@ impl Scene {
                 move_origin(load, middle);
             }
         }
+        self.draft.bodies.iter_mut().for_each(|body| body.initial = body.initial.about(middle));
         for support in &mut self.draft.supports {
             if let SupportKind::Clamped { displacement } = &mut support.kind {
                 move_origin(displacement, middle);

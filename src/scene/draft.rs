@@ -15,7 +15,7 @@ use super::{
     Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
     SupportKind, Target, Touching, Traction,
 };
-use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,10 +108,11 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, elasticity, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, material, force) = (quoted(name), material(elasticity), list(body_force));
+            let (name, material, force) =
+                (quoted(name), material(elasticity) + &initial_keys(initial), list(body_force));
             writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
         }
         let lists = [
@@ -246,6 +247,20 @@ pub(crate) fn quoted(text: &str) -> String {
 
 fn number(number: f64) -> String {
     Value::from(number).to_string()
+}
+
+/// The keys of initial strains and stresses, each behind a comma.
+fn initial_keys(initial: &Initial) -> String {
+    let Initial { expansion, temperature, gradient, stress } = initial;
+    let mut text = String::new();
+    if *expansion != [0.0; 3] || *temperature != 0.0 || *gradient != [0.0; 2] {
+        let (expansion, value, gradient) = (list(expansion), number(*temperature), list(gradient));
+        text += &format!(", expansion = {expansion}, temperature = {{ value = {value}, gradient = {gradient} }}");
+    }
+    if *stress != [0.0; 4] {
+        text += &format!(", initial_stress = {}", list(stress));
+    }
+    text
 }
 
 /// The keys of a material.

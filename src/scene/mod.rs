@@ -30,7 +30,7 @@ mod validate;
 
 use std::path::PathBuf;
 
-use crate::elasticity::Elasticity;
+use crate::elasticity::{Elasticity, Initial};
 
 pub use bonds::Bond;
 pub(crate) use bonds::Joint;
@@ -133,6 +133,8 @@ pub struct Body {
     pub name: String,
     /// What it is made of.
     pub elasticity: Elasticity,
+    /// What strains and stresses it has without load.
+    pub initial: Initial,
     /// Constant body force F (force per volume).
     pub body_force: [f64; 2],
 }
@@ -140,7 +142,12 @@ pub struct Body {
 impl Body {
     /// A body with Young's modulus E > 0 and Poisson's ratio ν in (−1, ½), without body force.
     pub fn isotropic(name: impl Into<String>, young: f64, poisson: f64) -> Self {
-        Body { name: name.into(), elasticity: Elasticity::Isotropic { young, poisson }, body_force: [0.0; 2] }
+        Body {
+            name: name.into(),
+            elasticity: Elasticity::Isotropic { young, poisson },
+            initial: Initial::default(),
+            body_force: [0.0; 2],
+        }
     }
 }
 

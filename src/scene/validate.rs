@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
-use super::material::elasticity;
+use super::material::{elasticity, initial};
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
@@ -87,7 +87,8 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
             Some(force) => source.vector(force, (&label, "body_force"))?,
         };
         cells.extend(selection::cells(raw, &label, index, source)?);
-        Ok(Body { name, elasticity, body_force })
+        let initial = initial(raw, &label, &elasticity, kinematics, source)?;
+        Ok(Body { name, elasticity, initial, body_force })
     };
     let bodies = bodies.into_iter().enumerate().map(body).collect::<Result<_, SceneError>>()?;
     Ok((bodies, cells))

@@ -26,6 +26,7 @@ mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
 mod gap_curves;
+mod initial_strain;
 mod inner_segments;
 mod intervals;
 mod invariance;

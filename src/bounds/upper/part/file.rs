@@ -8,7 +8,7 @@ use super::traffic::Traffic;
 use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
-use crate::elasticity::{Elasticity, NUMBERS};
+use crate::elasticity::{Elasticity, Initial, NUMBERS};
 use crate::element::{SideValues, StressField};
 use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
@@ -142,6 +142,7 @@ fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     out.indices([usize::from(scene.kinematics == Kinematics::PlaneStress)])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.elasticity.to_numbers()))?;
+    out.numbers(scene.bodies.iter().flat_map(|body| body.initial.to_numbers()))?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.body_force))
 }
 
@@ -149,12 +150,13 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
     let kinematics = if one(from.indices()?)? == 0 { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
     let [thickness, x, y] = one(from.vectors()?)?;
     let laws: Vec<[f64; NUMBERS]> = from.vectors()?;
+    let initial: Vec<[f64; 10]> = from.vectors()?;
     let forces: Vec<[f64; 2]> = from.vectors()?;
-    let body = |(law, body_force): (&[f64; NUMBERS], [f64; 2])| {
+    let body = |((law, initial), body_force): ((&[f64; NUMBERS], &[f64; 10]), [f64; 2])| {
         let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
-        Ok(Body { name: String::new(), elasticity, body_force })
+        Ok(Body { name: String::new(), elasticity, initial: Initial::from_numbers(initial), body_force })
     };
-    let bodies = laws.iter().zip(forces).map(body).collect::<io::Result<_>>()?;
+    let bodies = laws.iter().zip(&initial).zip(forces).map(body).collect::<io::Result<_>>()?;
     let none = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Ok(Scene { draft: Draft { thickness, origin: [x, y], bodies, ..Draft::new("", kinematics, none) } })
 }
