@@ -8,7 +8,7 @@ use clap::value_parser;
 use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
-use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
+use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions, positive};
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
@@ -39,6 +39,9 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// What travels with the report.
+    #[command(flatten)]
+    pub proof: ProofOptions,
     /// Degrees of the displacement model, each from 1 to 9, with commas between
     #[arg(
         long, value_name = "P,…", value_delimiter = ',', default_values_t = [1, 2],
@@ -192,6 +195,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         failure: failure.as_ref().map(ToString::to_string),
         baseline,
         notes: on_cells.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect(),
+        is_to_prove: args.proof.proof,
         ..Particulars::default()
     };
     let exit = session.conclude(&run, &comparison, particulars, &folder)?;
