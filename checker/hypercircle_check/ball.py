@@ -15,8 +15,9 @@ BITS = 320  # binary places of fixed-point numbers
 ONE = 1 << BITS
 
 
-def _up(radius):
-    return radius * (1 + 16 * EPS) + TINY
+def _up(radius, live=False):
+    """A radius computed in a few operations, rounded upwards; `live` where something may have underflowed. Exact zeros stay exact."""
+    return radius * (1 + 16 * EPS) + TINY * ((radius > 0) | live)
 
 
 class Ball:
@@ -24,7 +25,7 @@ class Ball:
 
     def __init__(self, mid, rad=None):
         self.mid = np.asarray(mid, float)
-        self.rad = np.zeros(self.mid.shape) if rad is None else np.broadcast_to(np.asarray(rad, float), self.mid.shape)
+        self.rad = np.zeros(self.mid.shape) if rad is None else np.asarray(rad, float)
 
     @staticmethod
     def of(x):
@@ -33,10 +34,11 @@ class Ball:
     def __getitem__(self, key):
         return Ball(self.mid[key], self.rad[key])
 
+    def writable(self):
+        return Ball(self.mid.copy(), self.rad.copy())
+
     def put(self, key, other):
         """Overwrites a part of an array."""
-        if not self.rad.flags.writeable:
-            self.rad = self.rad.copy()
         self.mid[key], self.rad[key] = other.mid, other.rad
 
     def reshape(self, *shape):
@@ -45,7 +47,7 @@ class Ball:
     def __add__(self, other):
         other = Ball.of(other)
         mid = self.mid + other.mid
-        return Ball(mid, _up(self.rad + other.rad + EPS * abs(mid)))
+        return Ball(mid, _up(self.rad + other.rad + EPS * abs(mid), mid != 0))
 
     def __neg__(self):
         return Ball(-self.mid, self.rad)
@@ -56,7 +58,7 @@ class Ball:
     def __mul__(self, other):
         other = Ball.of(other)
         mid, a, b = self.mid * other.mid, abs(self.mid), abs(other.mid)
-        return Ball(mid, _up(a * other.rad + self.rad * (b + other.rad) + EPS * abs(mid)))
+        return Ball(mid, _up(a * other.rad + self.rad * (b + other.rad) + EPS * abs(mid), (a + self.rad > 0) & (b + other.rad > 0)))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -66,7 +68,7 @@ class Ball:
         if np.any(size <= 2 * self.rad):
             raise ZeroDivisionError
         mid = 1 / self.mid
-        return Ball(mid, _up(self.rad / (size * (size - self.rad)) * (1 + 8 * EPS) + EPS * abs(mid)))
+        return Ball(mid, _up(self.rad / (size * (size - self.rad)) * (1 + 8 * EPS) + EPS * abs(mid), True))
 
     def square(self):
         return self * self
@@ -78,13 +80,15 @@ class Ball:
         mid, size = matrix.mid @ x, abs(matrix.mid) @ abs(x)
         rad = abs(matrix.mid) @ r + matrix.rad @ (abs(x) + r)
         # A sum of n products, in whatever order, is off by at most n EPS times the sum of their sizes.
-        rad = (rad + (n + 2) * EPS * size) * (1 + (4 * n + 16) * EPS) + n * TINY
+        rad = (rad + (n + 2) * EPS * size) * (1 + (4 * n + 16) * EPS) + n * TINY * (abs(x) + r).any(0)
         shape = [matrix.mid.shape[0]] + list(np.moveaxis(self.mid, axis, 0).shape[1:])
         return Ball(*(np.moveaxis(v.reshape(shape), 0, axis) for v in (mid, rad)))
 
     def sum(self):
         """The sum of all, as [lower, upper]."""
         mid, rad = fsum(self.mid.ravel()), fsum(self.rad.ravel())
+        if not self.mid.any() and not rad:
+            return [0.0, 0.0]
         rad = rad * (1 + 4 * EPS) + 2 * EPS * abs(mid) + TINY
         return [np.nextafter(mid - rad, -np.inf), np.nextafter(mid + rad, np.inf)]
 
@@ -102,7 +106,7 @@ def constants(rows):
 def of_fractions(values, shape=None):
     mid = np.array([float(x) for x in values], float)
     exact = np.array([Fraction(m) == x for m, x in zip(mid, values)], bool)
-    ball = Ball(mid, np.where(exact, 0.0, _up(EPS * abs(mid))))
+    ball = Ball(mid, np.where(exact, 0.0, _up(EPS * abs(mid), True)))
     return ball if shape is None else ball.reshape(shape)
 
 

@@ -22,31 +22,46 @@ ROUNDING = 1e-7  # changes beyond this part of the largest traction are no round
 ROUNDINGS = 4096  # fixed-point operations an edge or triangle takes part in, at most
 
 
+class Term:
+    """A coefficient of a roller or a contact, and the tractions (Legendre coefficients by edge) that belong to one of it."""
+
+    def __init__(self, value, presses, tractions):
+        self.value, self.presses, self.tractions = value, presses, tractions
+
+
 class Stress:
     def __init__(self, mesh, data):
-        self.mesh = mesh
+        self.mesh, self.extra, self.mended = mesh, 0.0, 0.0
         counts, values = data["traction_counts"].astype(int), data["tractions"]
-        self.pair_counts = data["pressure_counts"].astype(int)
-        if len(counts) != len(mesh.edges) or counts.sum() != len(values) or len(self.pair_counts) != len(mesh.pairs):
+        pair_counts, pressures = data["pressure_counts"].astype(int), data["pressures"]
+        fits = len(counts) == len(mesh.edges) and counts.sum() == len(values) and counts.min(initial=2) >= 2
+        if not fits or len(pair_counts) != len(mesh.pairs) or pair_counts.sum() != len(pressures) or len(data["stress_degrees"]) != len(mesh.triangles):
             raise Refused("the proof does not have a traction for every edge and contact pair")
-        if self.pair_counts.sum() != len(data["pressures"]) or counts.min(initial=2) < 2 or not np.isfinite(values).all():
-            raise Refused("the tractions of the proof are incomplete")
-        self.degrees = data["stress_degrees"].astype(int).copy()
-        most = max([counts.max() - 1, self.degrees.max(), 1] + [n - 1 + p.turns() for n, p in zip(self.pair_counts, mesh.pairs)])
-        self.most = int(most)
-        self.tau = Ball(np.zeros((len(counts), self.most + 1, 2)))
-        self.tau.rad = np.zeros(self.tau.mid.shape)
+        if not np.isfinite(values).all() or not np.isfinite(pressures).all():
+            raise Refused("a traction of the proof is no number")
+        self.most = int(max([counts.max() - 1, 1] + [n - 1 + p.turns() for n, p in zip(pair_counts, mesh.pairs)]))
+        self.tau = Ball(np.zeros((len(counts), self.most + 1, 2))).writable()
         self.force = np.zeros((len(counts), 3), object)  # force and moment about the origin, fixed point
         self._candidates(counts, values)
-        self._given()
-        self._contacts(data["pressures"])
-        self._raise_degrees()
-        self.size = max(1.0, float(np.abs(mesh.points).max()))
+        self._contacts(np.split(pressures, np.cumsum(pair_counts)[:-1]), np.abs(pressures).max(initial=0.0))
+        self._set_terms()
         self.scale = float(np.abs(self.tau.mid).max(initial=0.0))
-        self.error = 0.0  # of the forces of trees, in absolute numbers
+        size = 1 + float(np.abs(mesh.points).max())
+        largest = 1 + max(float(abs(x)) for body in mesh.scene.bodies.values() for x in body[2])
+        # What all roundings in fixed point can add up to, in any force or moment.
+        self.error = ROUNDINGS * (len(mesh.edges) + len(mesh.triangles)) * size**2 * (1 + self.scale) * largest / 2.0**BITS
         residual = self._residuals()
-        residual = self._float_bodies(residual)
-        self._mend(residual)
+        if not residual.any() and not self.scale:
+            self.error = 0.0  # nothing acts, exactly
+        order, floating = self._forest()
+        if floating:
+            residual = self._balance(residual, floating)
+        if self.error:
+            self._mend(order, residual, 64 * self.error * size)
+        there = (np.abs(self.tau.mid).max(2) + self.tau.rad.max(2)) > 0
+        needed = np.where(there.any(1), self.most - there[:, ::-1].argmax(1), 0)
+        # Any field with the tractions will do; it needs their degree.
+        self.degrees = np.maximum(np.maximum(data["stress_degrees"].astype(int), 1), needed[mesh.sides].max(1))
 
     # 1. Tractions of edges.
 
@@ -55,14 +70,13 @@ class Stress:
         return (a + b) >> 1, b - a
 
     def _set_forces(self, which, first, second):
-        """Force and moment from the fixed-point coefficients tau_0 and tau_1."""
         mid, d = self._vectors(which)
         cross = lambda x, y: times(x[:, 0], y[:, 1]) - times(x[:, 1], y[:, 0])
         self.force[which, :2] = first
         self.force[which, 2] = cross(mid, first) + cross(d, second) // 6
 
     def _candidates(self, counts, values):
-        mesh, start = self.mesh, np.concatenate([[0], np.cumsum(counts)])
+        mesh, start, self.terms = self.mesh, np.concatenate([[0], np.cumsum(counts)]), []
         lengths = np.hypot(*(mesh.points[mesh.edges[:, 1]] - mesh.points[mesh.edges[:, 0]]).T)
         kinds = np.array([mesh.kind(e) for e in range(len(counts))])
         for n in np.unique(counts):
@@ -72,273 +86,195 @@ class Stress:
             self.tau.mid[which, :n] = np.einsum("ki,eic->ekc", matrix, own)
         free = np.flatnonzero(np.isin(kinds, ("inside", "clamped")))
         self._set_forces(free, fixed(self.tau.mid[free, 0]), fixed(self.tau.mid[free, 1]))
-        self.clamped = set(np.flatnonzero(kinds == "clamped").tolist())
-        self.rollers = {}
+        self.clamped = np.flatnonzero(kinds == "clamped").tolist()
+        self.open = np.flatnonzero(np.isin(kinds, ("free", "load"))).tolist()
         for e in np.flatnonzero(kinds == "roller").tolist():
-            n = np.array([float(x) for x in mesh.directions[e]])
-            self.rollers[e] = [Q(x) for x in (self.tau.mid[e] @ n / (n @ n)).tolist()]
-            self._set_roller(e)
+            n = mesh.directions[e]
+            unit = np.array([float(x) for x in n])
+            for k, b in enumerate((self.tau.mid[e, : counts[e]] @ unit / (unit @ unit)).tolist()):
+                self.terms.append(Term(Q(b), False, {e: [[Q(0)] * 2] * k + [n]}))
 
-    def _set_exact(self, e, coefficients, error=0.0):
-        """A traction with Legendre coefficients that are fractions (a list of vectors)."""
-        self.tau.put(e, Ball(np.zeros((self.most + 1, 2))))
-        for k, c in enumerate(coefficients):
-            ball = of_fractions(c)
-            self.tau.put((e, k), Ball(ball.mid, ball.rad + error))
-        two = (coefficients + [[Q(0), Q(0)]])[:2]
-        self._set_forces(np.array([e]), *(fixed(np.array(c, object))[None] for c in two))
+    def _contacts(self, pressures, largest):
+        self.pressed = []
+        for k, (pair, own) in enumerate(zip(self.mesh.pairs, pressures)):
+            if own.max(initial=0.0) > ROUNDING * largest:
+                raise Refused(f"the contact traction of pair {k} pulls: {own.max():.3e} is above zero")
+            terms = []
+            for j, b in enumerate(own.tolist()):
+                tau, tractions = contact_traction(pair, [Q(int(i == j)) for i in range(len(own))]), {}
+                for e, ends, sign in ((pair.edges[0], pair.first, 1), (pair.edges[1], pair.second, -1)):
+                    if e >= 0:
+                        along = ends[0] == self.mesh.edges[e, 0]
+                        tractions[e] = [[sign * x if along or i % 2 == 0 else -sign * x for x in c] for i, c in enumerate(tau)]
+                terms.append(Term(min(Q(b), Q(0)), True, tractions))
+            self.pressed.append(terms)
+            self.terms += terms
 
-    def _set_roller(self, e):
-        n = self.mesh.directions[e]
-        self._set_exact(e, [[b * n[0], b * n[1]] for b in self.rollers[e]])
-
-    def _given(self):
-        """Loads: exactly, but for lengths that are no fraction, which are taken to BITS places."""
-        mesh = self.mesh
+    def _set_terms(self, off=0.0):
+        """Tractions of loads, rollers and contacts; coefficients are known up to `off`."""
+        mesh, exact = self.mesh, {}
         for e, condition in enumerate(mesh.conditions):
             if condition and condition.kind == "load":
-                self._set_exact(e, load(mesh, e, condition))
-
-    # b(s) n(s) on contacts.
-
-    def _contacts(self, pressures):
-        start = np.concatenate([[0], np.cumsum(self.pair_counts)])
-        largest = max(np.abs(pressures).max(initial=0.0), 1e-300)
-        self.pressures = []
-        for k, pair in enumerate(self.mesh.pairs):
-            own = [Q(x) for x in pressures[start[k] : start[k + 1]].tolist()]
-            if max(own, default=0) > ROUNDING * largest:
-                raise Refused(f"the contact traction of pair {k} pulls: {float(max(own)):.3e} is above zero")
-            self.pressures.append([min(x, Q(0)) for x in own])
-            self._set_pair(k)
-
-    def _set_pair(self, k, error=0.0):
-        pair, b = self.mesh.pairs[k], self.pressures[k]
-        tau = contact_traction(pair, b)
-        error *= float(max(abs(x) for n in pair.ends for x in n)) * 4 * 9
-        for e, ends, sign in ((pair.edges[0], pair.first, 1), (pair.edges[1], pair.second, -1)):
-            if e >= 0:
-                along = ends[0] == self.mesh.edges[e, 0]
-                self._set_exact(e, [[sign * x if along or i % 2 == 0 else -sign * x for x in c] for i, c in enumerate(tau)], error)
-
-    def _raise_degrees(self):
-        """A triangle needs the degree of its tractions: any field that has them will do."""
-        there = (np.abs(self.tau.mid).max(2) + self.tau.rad.max(2)) > 0
-        needed = np.where(there.any(1), self.most - there[:, ::-1].argmax(1), 0)
-        self.degrees = np.maximum(np.maximum(self.degrees, 1), needed[self.mesh.sides].max(1))
+                exact[e] = load(mesh, e, condition)
+        for term in self.terms:
+            for e, tau in term.tractions.items():
+                own = exact.setdefault(e, [])
+                own += [[Q(0)] * 2] * (len(tau) - len(own))
+                if term.value:
+                    own[: len(tau)] = [[x + term.value * y for x, y in zip(a, b)] for a, b in zip(own, tau)]
+        if not exact:
+            return
+        which = np.array(list(exact))
+        rows = np.array([c + [[Q(0)] * 2] * (self.most + 1 - len(c)) for c in exact.values()], object)
+        ball = of_fractions(rows.ravel(), rows.shape)
+        reach = 64 * float(max([abs(x) for t in self.terms for tau in t.tractions.values() for c in tau for x in c], default=0))
+        self.tau.put(which, Ball(ball.mid, ball.rad + off * reach))
+        self._set_forces(which, fixed(rows[:, 0]), fixed(rows[:, 1]))
 
     # 2. Balances.
 
     def _residuals(self):
         mesh = self.mesh
-        out = np.zeros((len(mesh.triangles), 3), object)
-        for i in range(3):
-            out = out + mesh.signs[:, i, None].astype(object) * self.force[mesh.sides[:, i]]
+        out = sum(mesh.signs[:, i, None].astype(object) * self.force[mesh.sides[:, i]] for i in range(3))
         for b, name in enumerate(mesh.body_names):
-            f = fixed(np.array(mesh.scene.bodies[name][2], object))
-            own = np.flatnonzero(mesh.bodies == b)
-            if f[0] or f[1]:
-                for c in range(2):
-                    out[own, c] += times(mesh.det[own], f[c]) >> 1
+            f, own = fixed(np.array(mesh.scene.bodies[name][2], object)), np.flatnonzero(mesh.bodies == b)
+            if f.any():
                 centre = mesh.fixed[mesh.triangles[own]].sum(1)
+                out[own, :2] += np.stack([times(mesh.det[own], x) >> 1 for x in f], 1)
                 out[own, 2] += times(mesh.det[own], times(centre[:, 0], f[1]) - times(centre[:, 1], f[0])) // 6
         return out
 
-    def _neighbours(self, t):
-        for i in range(3):
-            e = self.mesh.sides[t, i]
-            other = self.mesh.owners[e, 1 if self.mesh.signs[t, i] > 0 else 0]
-            if other >= 0:
-                yield e, other
-
     def _forest(self):
-        """Triangles, parents first; the edge to the parent (a clamped one for roots, -1 where there is none) and the component."""
-        count = len(self.mesh.triangles)
-        self.parent_edge, self.component, order = np.full(count, -1), np.full(count, -1), []
-        self.bodies_held = []
-
-        def grow(begin):
+        """The triangles, parents first, and the components without a clamped edge; sets the edge from each triangle to its parent."""
+        mesh, count = self.mesh, len(self.mesh.triangles)
+        self.component, self.parent, order, self.roots = np.full(count, -1), np.full(count, -1), [], []
+        other = np.where(mesh.signs > 0, mesh.owners[mesh.sides, 1], mesh.owners[mesh.sides, 0]).tolist()
+        # From all clamped edges at once, then from an open edge of what they do not reach, then from anywhere.
+        starts = [self.clamped] + [[e] for e in self.open] + [[-1 - t] for t in range(count)]
+        for k, edges in enumerate(starts):
+            begin = len(order)
+            for e in edges:
+                t = int(mesh.owners[e, 0]) if e >= 0 else -1 - e
+                if self.component[t] < 0:
+                    self.component[t] = 0 if k == 0 else len(self.roots) + 1
+                    self.parent[t] = e if k == 0 else -1
+                    order.append(t)
+                    if k:
+                        self.roots.append((t, e))
             while begin < len(order):
                 t = order[begin]
                 begin += 1
-                for e, other in self._neighbours(t):
-                    if self.component[other] < 0:
-                        self.component[other], self.parent_edge[other] = self.component[t], e
-                        order.append(other)
+                for e, o in zip(mesh.sides[t].tolist(), other[t]):
+                    if o >= 0 and self.component[o] < 0:
+                        self.component[o], self.parent[o] = self.component[t], e
+                        order.append(o)
+        return order, list(range(1, len(self.roots) + 1))
 
-        # Components first, then trees from all clamped edges of each at once.
-        for t in range(count):
-            if self.component[t] < 0:
-                self.component[t] = len(self.bodies_held)
-                self.bodies_held.append(False)
-                order.append(t)
-                grow(len(order) - 1)
-        component, self.component = self.component, np.full(count, -1)
-        order.clear()
-        for e in sorted(self.clamped):
-            t = self.mesh.owners[e, 0]
-            self.bodies_held[component[t]] = True
-            if self.component[t] < 0:
-                self.component[t], self.parent_edge[t] = component[t], e
-                order.append(t)
-        grow(0)
-        for t in range(count):
-            if self.component[t] < 0:
-                self.component[t], self.parent_edge[t] = component[t], -1
-                order.append(t)
-                grow(len(order) - 1)
-        return order
-
-    def _float_bodies(self, residual):
+    def _balance(self, residual, floating):
         """Brings components without a clamped edge into balance as a whole, by closed contacts and rollers."""
-        self.order = self._forest()
-        largest = 1 + max(float(abs(x)) for body in self.mesh.scene.bodies.values() for x in body[2])
-        self.error = ROUNDINGS * (len(self.mesh.edges) + len(self.mesh.triangles)) * (1 + self.size) ** 2 * (1 + self.scale) * largest / 2.0**BITS
-        floating = [c for c, held in enumerate(self.bodies_held) if not held]
-        if not floating:
-            return residual
-        rows = {c: i for i, c in enumerate(floating)}
-        component = lambda e: rows.get(self.component[self.mesh.owners[e, 0]])
-        total = [sum(residual[self.component == c, k].tolist()) for c in floating for k in range(3)]
-        variables, columns = [], []
-        for e, b in self.rollers.items():
-            for k in range(2) if component(e) is not None else ():
-                variables.append(("roller", e, k))
-                columns.append([(component(e), self._unit_roller(e, k))])
-        for p, pair in enumerate(self.mesh.pairs):
-            touched = [component(e) if e >= 0 else None for e in pair.edges]
-            for j, b in enumerate(self.pressures[p]):
-                if b < 0 and touched != [None, None]:
-                    unit = self._unit_pair(p, j)
-                    variables.append(("pair", p, j))
-                    columns.append([(row, f) for row, f in zip(touched, unit) if row is not None])
-        matrix = np.zeros((3 * len(floating), len(variables)), object)
-        for v, column in enumerate(columns):
-            for row, f in column:
-                matrix[3 * row : 3 * row + 3, v] += f
-        # Rows of zeros are balances that nothing can change: they hold exactly, or the scene has no equilibrium.
-        wanted = [i for i in range(len(total)) if any(matrix[i])]
-        for i in set(range(len(total))) - set(wanted):
-            if total[i]:
-                what = ("horizontal forces", "vertical forces", "moments")[i % 3]
-                body = self.mesh.body_names[self.mesh.bodies[np.argmax(self.component == floating[i // 3])]]
-                raise Refused(f"the {what} on body '{body}' are out of balance by {total[i] / ONE:.3e}, and nothing that holds it can change that")
-        if wanted:
-            self._solve([total[i] for i in wanted], matrix[wanted], variables)
-            residual = self._residuals()
-        return residual
+        mesh = self.mesh
+        centres = {c: mesh.exact(mesh.triangles[self.roots[c - 1][0], 0]) for c in floating}
+        total = []
+        for c in floating:
+            x, y, m = (Q(sum(residual[self.component == c, k].tolist()), ONE) for k in range(3))
+            total += [x, y, m - centres[c][0] * y + centres[c][1] * x]
+        terms = [t for t in self.terms if not t.presses or t.value < 0]
+        matrix = [[Q(0)] * len(terms) for _ in total]
+        for v, term in enumerate(terms):
+            for e, tau in term.tractions.items():
+                c = int(self.component[mesh.owners[e, 0]])
+                if c:
+                    a, b = (mesh.exact(v) for v in mesh.edges[e].tolist())
+                    arm, d = [(x + y) / 2 - z for x, y, z in zip(a, b, centres[c])], [y - x for x, y in zip(a, b)]
+                    f, g = (tau + [[Q(0)] * 2])[:2]
+                    for k, x in enumerate((f[0], f[1], arm[0] * f[1] - arm[1] * f[0] + (d[0] * g[1] - d[1] * g[0]) / 6)):
+                        matrix[3 * (c - 1) + k][v] += x
+        # Balances that nothing takes part in hold exactly, or are left.
+        rows = [i for i, row in enumerate(matrix) if any(row)]
+        left = any(total[i] for i in set(range(len(total))) - set(rows))
+        off = self._solve([total[i] for i in rows], [matrix[i] for i in rows], terms) if rows else 0.0
+        if off is None or left:
+            # As an additional load on an edge of each: its size is told, and its work is part of the upper bound.
+            for t, e in self.roots:
+                if e < 0:
+                    raise Refused("a body that only contacts and rollers hold cannot be brought into balance exactly")
+                self.parent[t] = e
+        self.error *= 1 + (off or 0.0)
+        self._set_terms(self.error)
+        return self._residuals()
 
-    def _unit_roller(self, e, k):
-        n, (mid, d) = self.mesh.directions[e], self._edge(e)
-        cross = (mid[0] * n[1] - mid[1] * n[0]) if k == 0 else (d[0] * n[1] - d[1] * n[0]) / 6
-        return fixed(np.array([n[0] * (k == 0), n[1] * (k == 0), cross], object))
-
-    def _edge(self, e):
-        a, b = (self.mesh.exact(v) for v in self.mesh.edges[e].tolist())
-        return [(x + y) / 2 for x, y in zip(a, b)], [y - x for x, y in zip(a, b)]
-
-    def _unit_pair(self, p, j):
-        pair = self.mesh.pairs[p]
-        tau = contact_traction(pair, [Q(int(i == j)) for i in range(len(self.pressures[p]))])[:2] + [[Q(0)] * 2]
-        out = []
-        for e, ends, sign in ((pair.edges[0], pair.first, 1), (pair.edges[1], pair.second, -1)):
-            if e < 0:
-                out.append(None)
-                continue
-            a, b = (self.mesh.exact(v) for v in ends)
-            mid, d = [(x + y) / 2 for x, y in zip(a, b)], [y - x for x, y in zip(a, b)]
-            moment = mid[0] * tau[0][1] - mid[1] * tau[0][0] + (d[0] * tau[1][1] - d[1] * tau[1][0]) / 6
-            out.append(fixed(np.array([sign * x for x in (*tau[0], moment)], object)))
-        return out
-
-    def _solve(self, total, matrix, variables):
-        """Changes the coefficients: by about the least that balances, then exactly by as many as there are balances."""
-        value = lambda v: self.rollers[v[1]][v[2]] if v[0] == "roller" else self.pressures[v[1]][v[2]]
-        a = np.array([[x / ONE for x in row] for row in matrix])
-        room = np.array([abs(float(value(v))) if v[0] == "pair" else self.scale + 1e-300 for v in variables])
+    def _solve(self, total, matrix, terms):
+        """Changes coefficients by about the least that balances, then exactly by as many as there are balances. Returns by how much more than
+        `total` coefficients and forces may be off; None where the balance is not exact."""
+        room = np.array([abs(float(t.value)) if t.presses else self.scale + 1e-300 for t in terms])
+        a = np.array([[float(x) for x in row] for row in matrix])
         scaled = a * room
-        norms = np.sqrt((scaled**2).sum(1))
-        if not (norms > 0).all():
-            raise Refused("nothing that presses can balance a body that only contacts and rollers hold")
-        scaled = scaled / norms[:, None]
-        step = np.linalg.lstsq(scaled, -np.array([x / ONE for x in total]) / norms, rcond=1e-11)[0] * room
-        chosen, left = [], scaled.copy()
-        for _ in range(len(total)):
-            sizes = (left**2).sum(0)
-            j = int(np.argmax(sizes))
-            if sizes[j] < 1e-18:
-                raise Refused("a body that only contacts and rollers hold can move freely, and its balance cannot be made exact")
-            chosen.append(j)
-            q = left[:, j] / np.sqrt(sizes[j])
-            left = left - np.outer(q, q @ left)
-        exact_step = fixed(step)
-        for i in range(len(total)):
-            total[i] += sum(times(x, s) for x, s in zip(matrix[i].tolist(), exact_step.tolist()))
-        square = fmpq_mat(len(total), len(total), [fmpq(int(matrix[i, j]), ONE) for i in range(len(total)) for j in chosen])
-        inverse = square.inv()
-        last = inverse * fmpq_mat(len(total), 1, [fmpq(-int(x), ONE) for x in total])
-        for j, x in zip(chosen, (row[0] for row in last.table())):
-            exact_step[j] += int((x * ONE).floor())
-        # The real solution differs from the fixed-point one by what the inverse makes of the roundings.
-        norm = max(sum(abs(float(int(x.p) / int(x.q))) for x in row) for row in inverse.table())
-        largest = max(abs(a).max(), 1.0)
-        off = 2 * norm * (self.error * 2 + len(variables) * (largest + room.max() + 1) * 2.0**-BITS * 4) + 2.0**-BITS
-        self.error += off * largest * len(total) * 4
-        changed = set()
-        for v, s in zip(variables, exact_step.tolist()):
-            change = Q(s, ONE)
-            if abs(float(change)) > ROUNDING * max(self.scale, room.max()):
-                raise Refused(f"a body that only contacts and rollers hold is out of balance: a traction would have to change by {float(change):.3e}")
-            if v[0] == "roller":
-                self.rollers[v[1]][v[2]] += change
-            else:
-                self.pressures[v[1]][v[2]] += change
-                if float(self.pressures[v[1]][v[2]]) > -2 * off:
-                    raise Refused("a contact traction that has to balance a body would pull")
-            changed.add(v[:2])
-        self.off = off
-        for kind, which in changed:
-            if kind == "pair":
-                self._set_pair(which, off)
-            else:
-                self._set_roller(which)
-                self.tau.rad[which] += off * float(max(abs(x) for x in self.mesh.directions[which])) * 2
+        norms = np.sqrt((scaled**2).sum(1)) + 1e-300
+        scaled /= norms[:, None]
+        step = np.linalg.lstsq(scaled, -np.array([float(x) for x in total]) / norms, rcond=1e-10)[0] * room
+        changed = [t.value + Q(x) for t, x in zip(terms, step.tolist())]
+        chosen, rest = [], scaled.copy()
+        for _ in total:
+            sizes = (rest**2).sum(0)
+            chosen.append(int(np.argmax(sizes)))
+            q = rest[:, chosen[-1]] / np.sqrt(sizes[chosen[-1]] + 1e-300)
+            rest = rest - np.outer(q, q @ rest)
+        if any(t.presses and x >= 0 for t, x in zip(terms, changed)):
+            return None
+        rational = lambda x: fmpq(x.numerator, x.denominator)
+        square = fmpq_mat(len(total), len(total), [rational(row[j]) for row in matrix for j in chosen])
+        exact = sizes.max() > 1e-18 and square.det() != 0
+        if exact:
+            inverse = square.inv()
+            missing = [t + sum(x * (y - s.value) for x, y, s in zip(row, changed, terms) if x) for t, row in zip(total, matrix)]
+            for j, (x,) in zip(chosen, (inverse * fmpq_mat(len(total), 1, [rational(-x) for x in missing])).table()):
+                changed[j] += Q(int(x.p), int(x.q))
+            norm = max(sum(abs(int(x.p) / int(x.q)) for x in row) for row in inverse.table())
+            exact = all(x < -4 * norm * self.error for t, x in zip(terms, changed) if t.presses)
+        worst = max(abs(float(x - t.value)) for t, x in zip(terms, changed))
+        if worst > ROUNDING * max(self.scale, room.max()):
+            raise Refused(f"a body that only contacts and rollers hold is out of balance: a traction would have to change by {worst:.3e}")
+        if any(t.presses and x > 0 for t, x in zip(terms, changed)):
+            return None
+        for term, x in zip(terms, changed):
+            term.value = x
+        return 8 * norm * max(1.0, np.abs(a).max()) * len(terms) if exact else None
 
-    def _mend(self, residual):
+    def _mend(self, order, residual, error):
         """Passes on what is missing, leaves first, to the edges of the trees."""
-        mesh, missing = self.mesh, residual.copy()
-        edges, changes = [], []
-        for t in reversed(self.order):
-            e = self.parent_edge[t]
-            if e < 0:
-                continue
-            sign = 1 if mesh.owners[e, 0] == t else -1
-            own = missing[t]
-            edges.append(e)
-            changes.append([-sign * x for x in own])
-            other = mesh.owners[e, 1] if mesh.owners[e, 0] == t else mesh.owners[e, 0]
-            if other >= 0:
-                missing[other] = missing[other] + own
+        mesh, missing, edges, changes = self.mesh, residual, [], []
+        for t in reversed(order):
+            e = self.parent[t]
+            if e >= 0:
+                first = mesh.owners[e, 0] == t
+                edges.append(e)
+                changes.append(-missing[t] if first else missing[t])
+                other = mesh.owners[e, int(first)]
+                if other >= 0:
+                    missing[other] = missing[other] + missing[t]
         if not edges:
             return
-        which = np.array(edges)
-        change = np.array(changes, object).reshape(-1, 3)
+        which, change = np.array(edges), np.array(changes, object).reshape(-1, 3)
         mid, d = self._vectors(which)
         # What is left of the moment about the middle of the edge is d x tau_1 / 6.
         turning = 6 * (change[:, 2] - times(mid[:, 0], change[:, 1]) + times(mid[:, 1], change[:, 0]))
-        error = 64 * self.error * (1 + self.size)
         first, cross = ball_of(change[:, :2], error), ball_of(turning, error)
         (x, y) = (ball_of(d[:, i], 1e-90) for i in range(2))
         over = (x.square() + y.square()).inverse()
         second = stack([-(cross * y) * over, cross * x * over], 1)
-        worst = max(np.abs(first.mid).max(), np.abs(second.mid).max())
-        self.mended = float(worst)
-        if worst > ROUNDING * self.scale:
-            at = int(np.argmax(np.maximum(np.abs(first.mid).max(1), np.abs(second.mid).max(1))))
-            t = mesh.owners[which[at]]
-            raise Refused(f"the stress is not in equilibrium: edge {which[at]} of triangles {t.tolist()} would have to carry {worst:.3e} more, the largest force of an edge being {self.scale:.3e}")
+        by_edge = np.maximum(np.abs(first.mid).max(1), np.abs(second.mid).max(1))
+        at, self.mended = int(np.argmax(by_edge)), float(by_edge.max())
+        if self.mended > ROUNDING * self.scale:
+            raise Refused(
+                f"the stress is not in equilibrium: edge {which[at]} of triangles {mesh.owners[which[at]].tolist()} would have to carry "
+                f"{self.mended:.3e} more, the largest force of an edge being {self.scale:.3e}"
+            )
         for k, by in ((0, first), (1, second)):
             self.tau.put((which, k), self.tau[which, k] + by)
+        loaded = np.isin(which, self.open)
+        if loaded.any():
+            self.extra = float(sum((abs(by.mid[loaded]) + by.rad[loaded]).sum() for by in (first, second))) * (1 + 1e-9)
+            mesh.premises.append(f"a body that contacts and rollers alone hold is in balance but for {self.extra:.1e}, which is taken for an additional load")
 
     # 3. Energies.
 
@@ -346,25 +282,29 @@ class Stress:
         """A number that -Pi of an admissible stress is not below, thickness included."""
         mesh, total = self.mesh, Q(0)
         compliance = mesh.material(mesh.scene.compliance)
+        heavy = np.array([any(mesh.scene.bodies[name][2]) for name in mesh.body_names])
+        carries = (abs(self.tau.mid) + self.tau.rad).any((1, 2))
+        acted = carries[mesh.sides].any(1) | heavy[mesh.bodies]
         for p in np.unique(self.degrees):
-            for which in np.array_split(np.flatnonzero(self.degrees == p), max(1, (self.degrees == p).sum() * p * p // 20000)):
+            own = np.flatnonzero((self.degrees == p) & acted)
+            for which in np.array_split(own, max(1, len(own) * p * p // 20000)):
                 total -= Q(float(self._energies(which, int(p), [m[which] for m in compliance]).sum()[1]))
-        for e in sorted(self.clamped):
+        for e in (e for e in self.clamped if carries[e]):
             ends = [mesh.conditions[e].data.at(mesh.written(v)) for v in mesh.edges[e].tolist()]
             for c in range(2):
                 mean, slope = (ends[0][c] + ends[1][c]) / 2, (ends[1][c] - ends[0][c]) / 6
                 if mean or slope:
                     work = self.tau[e, 0, c] * of_fractions([mean]) + self.tau[e, 1, c] * of_fractions([slope])
                     total += Q(float(work.sum()[0]))
-        for e, b in self.rollers.items():
-            u0, n = mesh.conditions[e].data, mesh.directions[e]
-            if u0:
-                total += min(b[0] * u0 * length for length in root(n[0] ** 2 + n[1] ** 2)) - abs(u0) * Q(self.error) * 4
-        for pair, b in zip(mesh.pairs, self.pressures):
-            p, q = len(b) - 1, len(pair.gap) - 1
-            for i in range(p + 1):
-                for j in range(q + 1):
-                    work = b[i] * (pair.gap[j] + pair.excess) * reference.product(p, i, q, j)
+        for term in self.terms:
+            for e, tau in () if term.presses else term.tractions.items():
+                u0, n = mesh.conditions[e].data, mesh.directions[e]
+                if u0 and len(tau) == 1:
+                    total += min(term.value * u0 * length for length in root(n[0] ** 2 + n[1] ** 2)) - abs(u0) * Q(self.error) * 4
+        for pair, b in zip(mesh.pairs, self.pressed):
+            for i, term in enumerate(b):
+                for j, g in enumerate(pair.gap):
+                    work = term.value * (g + pair.excess) * reference.product(len(b) - 1, i, len(pair.gap) - 1, j)
                     total += min(work * length for length in pair.length)
             total -= Q(self.error) * 4 * max(abs(g) for g in pair.gap) * pair.length[1]
         return total * mesh.scene.thickness
@@ -372,8 +312,7 @@ class Stress:
     def _energies(self, which, p, compliance):
         mesh, count = self.mesh, len(which)
         (a, b), (c, d) = [[m[which] for m in row] for row in mesh.map]
-        tau = Ball(np.zeros((3, p + 1, 2, count)))
-        tau.rad = np.zeros(tau.mid.shape)
+        tau = Ball(np.zeros((3, p + 1, 2, count))).writable()
         flip = np.where(np.arange(p + 1) % 2 == 0, -1.0, 1.0)  # -tau(1 - s), from the right of an edge
         for i in range(3):
             own = self.tau[mesh.sides[which, i], : p + 1]

@@ -10,7 +10,7 @@ from fractions import Fraction as Q
 import numpy as np
 
 from . import Refused, reference
-from .ball import EPS, TINY, Ball, constants, of_fractions, root, stack
+from .ball import EPS, Ball, constants, of_fractions, root, stack
 from .lower import load
 
 ROUNDING = 1e-7  # changes beyond this part of the largest displacement are no rounding
@@ -187,12 +187,10 @@ class Displacement:
 
     # Energy.
 
-    def bound(self):
-        """A number that the energy of the displacement is not above, thickness included."""
+    def bound(self, extra):
+        """A number that the energy of the displacement is not above, thickness included; loads may change by the force `extra`."""
         mesh = self.mesh
-        vertices, edges = Ball(self.vertices.copy()), Ball(self.edges.copy())
-        for ball in (vertices, edges):
-            ball.rad = np.zeros(ball.mid.shape)
+        vertices, edges = (Ball(values).writable() for values in (self.vertices, self.edges))
         for (kind, i), value in self.exact.items():
             (vertices if kind == "v" else edges).put(i, of_fractions(value))
         total = Q(0)
@@ -204,13 +202,12 @@ class Displacement:
         for e, condition in enumerate(mesh.conditions):
             if condition and condition.kind == "load":
                 total -= Q(float(self._work(e, condition, vertices, edges).sum()[0]))
-        return total * mesh.scene.thickness
+        return (total + 2 * Q(extra) * Q(self.scale)) * mesh.scene.thickness
 
     def _gather(self, which, k, vertices, edges):
         """Coefficients of triangles of degree k, those of the boundary first: an array (nodes, 2, triangles)."""
         mesh, count = self.mesh, len(which)
-        out = Ball(np.zeros(((3 * k * k + 3 * k + 2) // 2, 2, count)))
-        out.rad = np.zeros(out.mid.shape)
+        out = Ball(np.zeros(((3 * k * k + 3 * k + 2) // 2, 2, count))).writable()
         turn = lambda ball: Ball(np.moveaxis(ball.mid, 0, -1), np.moveaxis(ball.rad, 0, -1))
         corners = mesh.triangles[which]
         for i in range(3):
@@ -243,8 +240,7 @@ class Displacement:
         # Vectors from the centroid to the corners, times 3; the edges are (a, c) from corner 0 to 1 and (b, d) from 0 to 2.
         arms = [(-(a + b), -(c + d)), (a + a - b, c + c - d), (b + b - a, d + d - c)]
         base = nodes[0]
-        local = Ball(nodes.mid - base.mid, None)
-        local.rad = (nodes.rad + base.rad + EPS * abs(local.mid)) * (1 + 16 * EPS) + TINY
+        local = nodes - base
         strain, load_ = None, None
         for sub in range(3):
             own = local[reference.split_nodes(k)[sub]]

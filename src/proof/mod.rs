@@ -98,7 +98,11 @@ pub fn proof(fields: &Fields<'_>) -> Result<Vec<u8>, ProofError> {
     let text =
         std::fs::read(&scene.path).map_err(|e| ProofError::Scene { path: path.clone(), reason: e.to_string() })?;
     let again = std::str::from_utf8(&text).ok().and_then(|text| crate::scene::Scene::parse(text, &scene.path).ok());
-    if again.is_none_or(|again| again.bodies != scene.bodies || again.mesh != scene.mesh) {
+    let same = |again: crate::scene::Scene| {
+        let conditions = again.supports == scene.supports && again.tractions == scene.tractions;
+        conditions && again.bodies == scene.bodies && again.contacts == scene.contacts
+    };
+    if !again.is_some_and(same) {
         return Err(ProofError::Changed { path });
     }
     let manifest = Manifest {
