@@ -77,7 +77,7 @@ class Proof:
     def against_claim(self):
         if self.lower > self.upper:
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
-        allowed = (self.claim[1] - self.claim[0]) * PART
+        allowed = max(self.claim[1] - self.claim[0], 0) * PART
         for end, found, claimed, sign in (("lower", self.lower, self.claim[0], 1), ("upper", self.upper, self.claim[1], -1)):
             if sign * (found - claimed) < -allowed:
                 short = float(abs(found - claimed))

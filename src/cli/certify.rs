@@ -92,6 +92,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let given = args.values.all()?;
     refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
     let has_field = !args.displacement.is_empty();

@@ -1,11 +1,28 @@
 //! `--proof`: what lets a reader verify the bracket travels with the report.
 
+use super::options::ProofOptions;
 use super::session::Session;
+use super::{CliError, Exit};
 use crate::compare::Comparison;
 use crate::problem::Note;
-use crate::proof::{Fields, proof};
+use crate::proof::{Fields, proof, unknown};
 use crate::report::Dossier;
 use crate::study::Certified;
+
+impl ProofOptions {
+    /// Refuses a scene that the checker could not verify, before it is solved.
+    ///
+    /// # Errors
+    /// The scene has something that the checker does not know.
+    pub(super) fn refuse_early(&self, session: &Session) -> Result<(), CliError> {
+        let path = &session.scene.path;
+        let text = if self.proof { std::fs::read_to_string(path).unwrap_or_default() } else { return Ok(()) };
+        let Some(what) = unknown(&text) else { return Ok(()) };
+        let message =
+            format!("{}: a scene with {what} has no proof: hypercircle-check does not know it", path.display());
+        Err(CliError::stopped(Exit::BadInput, message, "leave out --proof"))
+    }
+}
 
 impl Session {
     /// Gives the dossier its proof, or a note that says why there is none.

@@ -56,6 +56,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("solve", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     let Solved { run, comparison, answers } = solved(args, &session, Some(&folder))?;
     session.conclude(

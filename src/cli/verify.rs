@@ -125,6 +125,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     args.refuse_unheard()?;
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
     let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
