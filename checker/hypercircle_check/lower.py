@@ -281,7 +281,7 @@ class Stress:
     def bound(self):
         """A number that -Pi of an admissible stress is not below, thickness included."""
         mesh, total = self.mesh, Q(0)
-        compliance = mesh.material(mesh.scene.compliance)
+        compliance = mesh.by_body(mesh.scene.compliance)
         heavy = np.array([any(mesh.scene.bodies[name][2]) for name in mesh.body_names])
         carries = (abs(self.tau.mid) + self.tau.rad).any((1, 2))
         acted = carries[mesh.sides].any(1) | heavy[mesh.bodies]

@@ -194,7 +194,7 @@ class Displacement:
         for (kind, i), value in self.exact.items():
             (vertices if kind == "v" else edges).put(i, of_fractions(value))
         total = Q(0)
-        stiffness = mesh.material(mesh.scene.stiffness)
+        stiffness = mesh.by_body(mesh.scene.stiffness)
         for k in np.unique(self.degrees):
             for which in np.array_split(np.flatnonzero(self.degrees == k), max(1, (self.degrees == k).sum() * k * k // 20000)):
                 nodes = self._gather(which, int(k), vertices, edges)
