@@ -69,6 +69,7 @@ pub mod dual;
 pub mod element;
 pub mod job;
 mod lanes;
+pub mod load;
 pub mod measure;
 pub mod mesh;
 pub mod plot;

@@ -19,12 +19,13 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class Body:
-    """Homogeneous isotropic material: Young's modulus, Poisson's ratio, body force per volume (2,)."""
+    """Homogeneous isotropic material: Young's modulus, Poisson's ratio, body force per volume (2,) at the origin, its gradient (2, 2)."""
 
     name: str
     young: float
     poisson: float
     body_force: np.ndarray
+    force_gradient: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,11 @@ def _body(entry: dict, where: str) -> Body:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
         raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
-    return Body(str(_get(entry, "name", where)), young, poisson, _array(entry, "body_force", where, (2,)))
+    given = _get(entry, "body_force", where)
+    affine = given if isinstance(given, dict) else {"value": given, "gradient": [[0.0, 0.0], [0.0, 0.0]]}
+    value = _array(affine, "value", f"{where}.body_force", (2,))
+    gradient = _array(affine, "gradient", f"{where}.body_force", (2, 2))
+    return Body(str(_get(entry, "name", where)), young, poisson, value, gradient)
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:

@@ -78,10 +78,10 @@ impl NodalForces {
                     (stiffest[node], forces.triangle[node]) = (part, t);
                 }
             }
-            let f = problem.scene.bodies[mesh.body[t]].body_force;
-            for node in nodes {
-                let load = &mut forces.load[node];
-                *load = [0, 1].map(|c| load[c] + area / triangle::len(k) as f64 * f[c]);
+            let force = problem.force_on(t).of_area(area);
+            for (node, alpha) in nodes.into_iter().zip(triangle::indices(k)) {
+                let (load, f) = (&mut forces.load[node], force.against(alpha));
+                *load = [0, 1].map(|c| load[c] + f[c]);
             }
         }
         forces.press(problem, k);

@@ -20,6 +20,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 use std::sync::Arc;
 
 use crate::element::Compliance;
+use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::{Body, Scene};
@@ -48,6 +49,21 @@ impl Problem {
     pub fn materials(&self) -> Vec<Compliance> {
         let of = |body: &Body| Compliance::new(self.scene.kinematics, body.young, body.poisson);
         self.scene.bodies.iter().map(of).collect()
+    }
+
+    /// The body force on triangle `t`.
+    pub fn body_force(&self, t: usize) -> &BodyForce {
+        &self.scene.bodies[self.mesh.body[t]].body_force
+    }
+
+    /// What the body force does on triangle `t`.
+    pub fn force_on(&self, t: usize) -> OnTriangle {
+        self.body_force(t).on(self.mesh.corners(t))
+    }
+
+    /// The least degree of stresses on triangle `t` that balance its loads.
+    pub fn least_degree(&self, t: usize) -> usize {
+        self.body_force(t).stress_degree()
     }
 
     /// The pairs of all contacts, one interface after the other.

@@ -43,13 +43,21 @@ pub fn list<'py, T>(
     PyList::new(py, all.iter().map(|one| entry(py, one)).collect::<PyResult<Vec<_>>>()?)
 }
 
-/// A body: `name`, `young`, `poisson`, `body_force`.
+/// A body: `name`, `young`, `poisson`, `body_force`, which is a vector where it is constant and else `value` and `gradient`.
 pub fn body_entry<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
     let entry = PyDict::new(py);
     entry.set_item("name", &body.name)?;
     entry.set_item("young", body.young)?;
     entry.set_item("poisson", body.poisson)?;
-    entry.set_item("body_force", body.body_force)?;
+    let force = body.body_force.as_affine();
+    if force.is_constant() {
+        entry.set_item("body_force", force.value)?;
+    } else {
+        let field = PyDict::new(py);
+        field.set_item("value", force.value)?;
+        field.set_item("gradient", force.gradient)?;
+        entry.set_item("body_force", field)?;
+    }
     Ok(entry)
 }
 

@@ -15,6 +15,7 @@ use super::{
     MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
     Target, Touching, Traction,
 };
+use crate::load::{BodyForce, Rotation};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,8 +108,8 @@ impl Draft {
         for (i, Body { name, young, poisson, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
-            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force}{cells} }}")?;
+            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), force(body_force));
+            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
@@ -278,6 +279,17 @@ fn affine(Affine { value, gradient }: &Affine) -> String {
     match *gradient == [[0.0; 2]; 2] {
         true => list(value),
         false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
+    }
+}
+
+fn force(force: &BodyForce) -> String {
+    let given = affine(&force.given());
+    match force.rotation() {
+        None => format!("body_force = {given}"),
+        Some(Rotation { density, omega, about }) => {
+            let (density, omega, about) = (number(density), number(omega), list(&about));
+            format!("body_force = {given}, rotation = {{ density = {density}, omega = {omega}, about = {about} }}")
+        }
     }
 }
 

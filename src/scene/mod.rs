@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod body_force;
 mod centre;
 mod circle;
 mod conditions;
@@ -27,6 +28,8 @@ mod validate;
 
 use std::path::PathBuf;
 
+pub use crate::load::Affine;
+use crate::load::BodyForce;
 pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
@@ -128,8 +131,8 @@ pub struct Body {
     pub young: f64,
     /// Poisson's ratio ν in (−1, ½).
     pub poisson: f64,
-    /// Constant body force F (force per volume).
-    pub body_force: [f64; 2],
+    /// Body force F (force per volume).
+    pub body_force: BodyForce,
 }
 
 /// A supported boundary.
@@ -164,27 +167,6 @@ impl SupportKind {
         SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
     /// Rollers along the boundary.
     pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
-}
-
-/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Affine {
-    /// Its value at the origin.
-    pub value: [f64; 2],
-    /// Its gradient.
-    pub gradient: [[f64; 2]; 2],
-}
-
-impl Affine {
-    /// The same everywhere.
-    pub fn constant(value: [f64; 2]) -> Self {
-        Affine { value, gradient: [[0.0; 2]; 2] }
-    }
-
-    /// Its value at `point`.
-    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
-    }
 }
 
 /// A loaded boundary.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::body_force::body_force;
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
 use super::quantity::quantities;
@@ -83,10 +84,7 @@ fn bodies(raw: &RawScene, source: &Source) -> Result<(Vec<Body>, Vec<BodyCells>)
         let young = source.positive(&raw.young, (&label, "young"), words)?;
         let words = poisson_words(raw.poisson.value);
         let poisson = source.number(&raw.poisson, (&label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
-        let body_force = match &raw.body_force {
-            None => [0.0; 2],
-            Some(force) => source.vector(force, (&label, "body_force"))?,
-        };
+        let body_force = body_force(raw, &label, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
         Ok(Body { name, young, poisson, body_force })
     };

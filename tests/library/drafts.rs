@@ -22,7 +22,12 @@ fn square() -> Draft {
     let along = Component::along([0.8, -0.6]);
     Draft {
         title: "A \u{201c}square\u{201d}\\ \u{1}".into(),
-        bodies: vec![Body { name: "block \"a\"".into(), young: 0.1 + 0.2, poisson: -0.25, body_force: [0.0, -1e-300] }],
+        bodies: vec![Body {
+            name: "block \"a\"".into(),
+            young: 0.1 + 0.2,
+            poisson: -0.25,
+            body_force: [0.0, -1e-300].into(),
+        }],
         supports: vec![Support {
             on: "wall".into(),
             kind: SupportKind::Clamped { displacement: Affine::constant([1.0 / 3.0, 0.0]) },

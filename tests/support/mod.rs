@@ -61,7 +61,7 @@ impl Blocks {
             name: name.to_string(),
             young,
             poisson,
-            body_force: [0.0, 0.0],
+            body_force: hypercircle::load::BodyForce::NONE,
         };
         let draft = Draft {
             bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],

@@ -1,5 +1,6 @@
 //! Scenes put together by hand.
 
+use crate::load::BodyForce;
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
@@ -26,7 +27,7 @@ impl Build {
         if let Some(found) = self.bodies.iter().position(|body| body.name == name) {
             return found;
         }
-        self.bodies.push(Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] });
+        self.bodies.push(Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: BodyForce::NONE });
         self.bodies.len() - 1
     }
 
@@ -75,7 +76,7 @@ impl Build {
 
     pub fn gravity(&mut self, name: &str, force: Point) -> &mut Self {
         let body = self.body(name);
-        self.bodies[body].body_force = force;
+        self.bodies[body].body_force = force.into();
         self
     }
 
@@ -246,7 +247,7 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
         *p = [length * x + shift[0], length * y + shift[1]];
     }
     for body in &mut problem.scene.draft.bodies {
-        body.body_force = turn(body.body_force).map(|f| f * force / length);
+        body.body_force = turn(body.body_force.given().value).map(|f| f * force / length).into();
     }
     for condition in &mut problem.conditions {
         match condition {

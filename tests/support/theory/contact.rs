@@ -76,7 +76,7 @@ impl Solution {
             name: name.to_string(),
             young: materials[k].0,
             poisson: materials[k].1,
-            body_force: [0.0, 0.0],
+            body_force: hypercircle::load::BodyForce::NONE,
         };
         let support = |on: &str, kind| Support { on: on.to_string(), kind };
         let other = match self {

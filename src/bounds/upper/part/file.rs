@@ -9,6 +9,7 @@ use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
 use crate::element::{SideValues, StressField};
+use crate::load::{Affine, BodyForce, Rotation};
 use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
@@ -138,13 +139,24 @@ fn one<T: Copy>(list: Vec<T>) -> io::Result<T> {
 fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     out.indices([usize::from(scene.kinematics == Kinematics::PlaneStress)])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
-    out.numbers(scene.bodies.iter().flat_map(|b| [b.young, b.poisson, b.body_force[0], b.body_force[1]]))
+    out.numbers(scene.bodies.iter().flat_map(|body| {
+        let Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] } = body.body_force.given();
+        let rotation = body.body_force.rotation().unwrap_or(Rotation { density: 0.0, omega: 0.0, about: [0.0; 2] });
+        let Rotation { density, omega, about: [x, y] } = rotation;
+        [body.young, body.poisson, fx, fy, xx, xy, yx, yy, density, omega, x, y]
+    }))
 }
 
 fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
     let kinematics = if one(from.indices()?)? == 0 { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
     let [thickness, x, y] = one(from.vectors()?)?;
-    let body = |[young, poisson, fx, fy]: [f64; 4]| Body { name: String::new(), young, poisson, body_force: [fx, fy] };
+    let body = |[young, poisson, fx, fy, xx, xy, yx, yy, density, omega, x, y]: [f64; 12]| {
+        let given = BodyForce::affine(Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] });
+        let turning = density * omega != 0.0;
+        let rotation = Rotation { density, omega, about: [x, y] };
+        let body_force = if turning { given.with_rotation(rotation) } else { given };
+        Body { name: String::new(), young, poisson, body_force }
+    };
     let bodies = from.vectors()?.into_iter().map(body).collect();
     let none = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Ok(Scene { draft: Draft { thickness, origin: [x, y], bodies, ..Draft::new("", kinematics, none) } })
