@@ -4,6 +4,7 @@ mod accuracy;
 mod adaptive;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod body_forces;
 mod circular_gap;
 mod comparison;
 mod congruent;
