@@ -6,6 +6,7 @@
 //! [`crate::problem`].
 
 mod body_force;
+mod bonds;
 mod centre;
 mod circle;
 mod conditions;
@@ -30,6 +31,8 @@ use std::path::PathBuf;
 
 pub use crate::load::Affine;
 use crate::load::BodyForce;
+pub use bonds::Bond;
+pub(crate) use bonds::Joint;
 pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};

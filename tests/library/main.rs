@@ -5,6 +5,7 @@ mod adaptive;
 #[path = "../support/arcs.rs"]
 mod arcs;
 mod body_forces;
+mod bonds;
 mod circular_gap;
 mod comparison;
 mod congruent;
@@ -31,6 +32,7 @@ mod invariance;
 mod known_solutions;
 #[path = "../support/lame.rs"]
 mod lame;
+mod layers;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;
