@@ -19,13 +19,18 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class Body:
-    """Homogeneous isotropic material: Young's modulus, Poisson's ratio, body force per volume (2,) at the origin, its gradient (2, 2)."""
+    """Homogeneous material, body force per volume (2,) at the origin and its gradient (2, 2).
+
+    Isotropic by Young's modulus and Poisson's ratio, or any other by ``stiffness`` (3, 3), the stresses xx, yy, xy of unit strains
+    ε_xx, ε_yy, 2 ε_xy; ``young`` is then the largest entry on its diagonal, which only tells stiff bodies from soft ones.
+    """
 
     name: str
     young: float
     poisson: float
     body_force: np.ndarray
     force_gradient: np.ndarray
+    stiffness: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -182,17 +187,24 @@ def parse_problem(data: dict) -> Problem:
 
 
 def _body(entry: dict, where: str) -> Body:
+    name, force, slope = str(_get(entry, "name", where)), _get(entry, "body_force", where), np.zeros((2, 2))
+    if isinstance(force, dict):
+        inside = f"{where}.body_force"
+        force, slope = _array(force, "value", inside, (2,)), _array(force, "gradient", inside, (2, 2))
+    else:
+        force = _array(entry, "body_force", where, (2,))
+    if "stiffness" in entry:
+        stiffness = _array(entry, "stiffness", where, (3, 3))
+        if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
+            raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
+        return Body(name, float(stiffness.diagonal().max()), 0.0, force, slope, stiffness)
     young = _scalar(entry, "young", f"{where}.young")
     poisson = _scalar(entry, "poisson", f"{where}.poisson")
     if not young > 0.0:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
         raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
-    given = _get(entry, "body_force", where)
-    affine = given if isinstance(given, dict) else {"value": given, "gradient": [[0.0, 0.0], [0.0, 0.0]]}
-    value = _array(affine, "value", f"{where}.body_force", (2,))
-    gradient = _array(affine, "gradient", f"{where}.body_force", (2, 2))
-    return Body(str(_get(entry, "name", where)), young, poisson, value, gradient)
+    return Body(name, young, poisson, force, slope)
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:

@@ -7,7 +7,6 @@ use super::sample_numbers::report;
 use super::*;
 use crate::dual::{DualSolution, Equilibrium, Phases};
 use crate::element::{Displacement, SideValues, StressField};
-use crate::load::BodyForce;
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Note, Problem};
 use crate::scene::*;
@@ -242,7 +241,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
 }
 
 fn scene() -> Scene {
-    let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: BodyForce::NONE };
+    let body = |name: &str| Body::isotropic(name, 1.0, 0.3);
     let mesh = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Scene::unchecked(Draft {
         title: "Two blocks <a&b>, \"eccentric\" traction".into(),

@@ -20,7 +20,7 @@ use super::energy::{strain_on, work_inside};
 use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
-use crate::element::{Compliance, Displacement, Quadrilateral};
+use crate::element::{Displacement, Quadrilateral};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 
@@ -61,7 +61,7 @@ impl Correction {
         let body = cell.triangles.first().map_or(0, |t| mesh.body[*t]);
         let data = &problem.scene.bodies[body];
         let thickness = problem.scene.thickness;
-        let own = strain_energy(&cell.field, &Compliance::new(problem.scene.kinematics, data.young, data.poisson));
+        let own = strain_energy(&cell.field, &problem.material(body));
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
         let force = &data.body_force;
         let mut work = 0.0;

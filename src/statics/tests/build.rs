@@ -1,6 +1,5 @@
 //! Scenes put together by hand.
 
-use crate::load::BodyForce;
 use crate::mesh::{Edge, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
@@ -27,7 +26,7 @@ impl Build {
         if let Some(found) = self.bodies.iter().position(|body| body.name == name) {
             return found;
         }
-        self.bodies.push(Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: BodyForce::NONE });
+        self.bodies.push(Body::isotropic(name, 1.0, 0.3));
         self.bodies.len() - 1
     }
 
