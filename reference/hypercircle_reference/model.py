@@ -185,6 +185,10 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
     law = _stiffness(mesh, owner)
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
+    gradients = np.array([body.force_gradient for body in problem.bodies]) * problem.thickness
+    if np.any(gradients):
+        slope = [[compat.constant_per_cell(mesh.mesh, gradients[owner, i, j]) for j in range(2)] for i in range(2)]
+        force = force + ufl.dot(ufl.as_matrix(slope), ufl.SpatialCoordinate(mesh.mesh))
     displacement = compat.function(space)
 
     def product(e, d):

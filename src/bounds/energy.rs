@@ -11,6 +11,7 @@ use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::{sub_area, sub_corners};
 use crate::element::{Displacement, Material, Samples, StressField, contraction, side, triangle};
 use crate::element::{Strains, elastic_degree};
+use crate::load::BodyForce;
 use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -296,7 +297,7 @@ pub fn work(problem: &Problem, v: &Displacement) -> Sum {
 pub fn work_of(
     problem: &Problem,
     v: &Displacement,
-    force: impl Fn(usize) -> [f64; 2],
+    force: impl Fn(usize) -> BodyForce,
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
 ) -> Sum {
     counted_work(problem, v, force, tractions, Counted::ALL)
@@ -305,7 +306,7 @@ pub fn work_of(
 fn counted_work(
     problem: &Problem,
     v: &Displacement,
-    force: impl Fn(usize) -> [f64; 2],
+    force: impl Fn(usize) -> BodyForce,
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
     counted: Counted<'_>,
 ) -> Sum {
@@ -313,18 +314,24 @@ fn counted_work(
     let mut work = Sum::default();
     for t in (0..mesh.triangles.len()).filter(|t| counted.triangle(*t)) {
         let force = force(mesh.body[t]);
-        if force != [0.0; 2] {
-            // Every Bernstein polynomial has the same mean.
-            let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
-            // Component by component: what cancels between them is rounded all the same.
-            for (sub, c) in (0..3).flat_map(|sub| [0, 1].map(|c| (sub, c))) {
-                work.add(v.sub(t, sub).map(|u| share * force[c] * u[c]).sum());
-            }
+        if !force.is_none() {
+            work.extend(work_inside(&force, mesh.corners(t), v, t));
         }
     }
     let tractions = tractions.filter(|(e, _)| counted.boundary_edge(mesh, *e));
     tractions.for_each(|(e, ends)| work.extend(work_on_edge(problem, v, e, ends)));
     work
+}
+
+/// The work of a body force on the displacement that `v` has as its triangle `t`, in the terms of a sum.
+pub fn work_inside(force: &BodyForce, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 6] {
+    let forces = [0, 1, 2].map(|sub| force.on(sub_corners(corners, sub)).of_area(sub_area(corners)));
+    // Component by component: what cancels between them is rounded all the same.
+    [0, 1, 2, 3, 4, 5].map(|term| {
+        let (sub, c) = (term / 2, term % 2);
+        let weights = triangle::indices(v.degree(t)).map(|alpha| forces[sub].against(alpha)[c]);
+        v.sub(t, sub).zip(weights).map(|(u, weight)| weight * u[c]).sum()
+    })
 }
 
 /// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness, by components.

@@ -89,10 +89,10 @@ impl NodalForces {
                     forces.add_initial(area, s, &[nodes[term.alpha]], &[g[term.side]]);
                 }
             }
-            let f = problem.scene.bodies[mesh.body[t]].body_force;
-            for node in nodes {
-                let load = &mut forces.load[node];
-                *load = [0, 1].map(|c| load[c] + area / triangle::len(k) as f64 * f[c]);
+            let force = problem.force_on(t).of_area(area);
+            for (node, alpha) in nodes.into_iter().zip(triangle::indices(k)) {
+                let (load, f) = (&mut forces.load[node], force.against(alpha));
+                *load = [0, 1].map(|c| load[c] + f[c]);
             }
         }
         forces.add_springs(problem, k, Functions::Coefficients, |node| field.values()[node]);

@@ -129,12 +129,9 @@ impl NodalForces {
                     }
                 }
             }
-            let f = problem.scene.bodies[mesh.body[k]].body_force;
-            // ∫ φ of a quadratic shape function is a third of the area at a midpoint, and zero at a corner.
-            let bearing: &[usize] = if degree == 2 { &quadratic } else { corners };
-            for &node in bearing {
-                forces.load[node][0] += area / 3.0 * f[0];
-                forces.load[node][1] += area / 3.0 * f[1];
+            for (&node, f) in nodes.iter().zip(problem.force_on(k).of_area(area).at_nodes(degree == 2)) {
+                forces.load[node][0] += f[0];
+                forces.load[node][1] += f[1];
             }
         }
         forces

@@ -32,11 +32,12 @@ impl NodalForces {
             let map = Bilinear::new(cell.points(mesh));
             let nodes = nodes(mesh, k, &cell);
             let u: Vec<[f64; 2]> = nodes.iter().map(|&n| values[n]).collect();
-            let f = problem.scene.bodies[body].body_force;
+            let force = &problem.scene.bodies[body].body_force;
             let mut parts = vec![0.0; nodes.len()];
             for (at, weight) in rule.iter().flat_map(|(x, v)| rule.iter().map(move |(y, w)| ([*x, *y], v * w))) {
                 let weight = weight * problem.scene.thickness * map.determinant(at);
                 let (shape, gradients) = (bilinear::values(k, at), map.gradients(k, at));
+                let f = force.at(map.at(at));
                 let [e, s] = forces.add_stress((material, weight), &nodes, &gradients, &u);
                 let place = map.at(at);
                 let (held, initial) = (material.held_back(place), material.initial().at(place));

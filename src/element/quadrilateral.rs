@@ -98,6 +98,14 @@ impl Quadrilateral {
         h[0].hypot(h[1]) <= PARALLEL * a[0].hypot(a[1]).min(b[0].hypot(b[1]))
     }
 
+    /// Where a point of the square lies in the plane.
+    pub fn point(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        let [a, b, h] = self.frame();
+        let [p, q, r, s] = self.corners;
+        let middle = |c: usize| p[c] + 0.25 * ((q[c] - p[c]) + (r[c] - p[c]) + (s[c] - p[c]));
+        [0, 1].map(|c| middle(c) + a[c] * xi + b[c] * eta + h[c] * xi * eta)
+    }
+
     /// The value at a point of the square.
     pub fn value(&self, at: [f64; 2]) -> [f64; 2] {
         let weights = shapes(at);

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
 use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
+use crate::load::{Affine, BodyForce};
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, ContactPair, Pin, Problem};
 
@@ -53,7 +54,22 @@ struct BodyEntry<'a> {
     material: MaterialEntry,
     #[serde(skip_serializing_if = "Option::is_none")]
     initial_strain: Option<[[f64; 3]; 3]>,
-    body_force: [f64; 2],
+    body_force: Force,
+}
+
+/// The same everywhere, or value + gradient · x.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Force {
+    Constant([f64; 2]),
+    Affine { value: [f64; 2], gradient: [[f64; 2]; 2] },
+}
+
+impl From<&BodyForce> for Force {
+    fn from(force: &BodyForce) -> Self {
+        let Affine { value, gradient } = force.as_affine();
+        if force.is_constant() { Force::Constant(value) } else { Force::Affine { value, gradient } }
+    }
 }
 
 /// An isotropic body by its constants, any other by its stiffness in the plane.
@@ -188,7 +204,7 @@ impl<'a> ProblemFile<'a> {
                     name: &body.name,
                     material: MaterialEntry::new(problem, i),
                     initial_strain: initial_strain(problem, i),
-                    body_force: body.body_force,
+                    body_force: Force::from(&body.body_force),
                 })
                 .collect(),
             points: &mesh.points,

@@ -175,10 +175,10 @@ impl Loads {
         }
         for (body, extent) in problem.scene.bodies.iter().zip(bodies).filter(|(_, extent)| extent.any()) {
             let [width, height] = extent.sides();
-            traction = traction.max(norm(body.body_force) * width.min(height));
+            traction = traction.max(body.body_force.largest_in([extent.low, extent.high]) * width.min(height));
         }
-        for (t, &body) in problem.mesh.body.iter().enumerate() {
-            force += problem.mesh.area(t) * norm(problem.scene.bodies[body].body_force);
+        for t in 0..problem.mesh.triangles.len() {
+            force += problem.mesh.area(t) * problem.force_on(t).largest();
         }
         Loads { traction, force: problem.scene.thickness * force }
     }
@@ -278,7 +278,7 @@ mod tests {
         let mut scene =
             load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
-        scene.draft.bodies[1].body_force = [0.0, -2.0];
+        scene.draft.bodies[1].body_force = [0.0, -2.0].into();
         scene.draft.bodies[1].elasticity = Elasticity::Isotropic { young: 10.0, poisson: 0.3 };
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);

@@ -16,6 +16,7 @@ use super::{
     SupportKind, Target, Touching, Traction,
 };
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,8 +113,8 @@ impl Draft {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
             let (name, material, force) =
-                (quoted(name), material(elasticity) + &initial_keys(initial), list(body_force));
-            writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
+                (quoted(name), material(elasticity) + &initial_keys(initial), force(body_force));
+            writeln!(text, "bodies.{name} = {{ {material}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
@@ -322,6 +323,17 @@ fn affine(Affine { value, gradient }: &Affine) -> String {
     match *gradient == [[0.0; 2]; 2] {
         true => list(value),
         false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
+    }
+}
+
+fn force(force: &BodyForce) -> String {
+    let given = affine(&force.given());
+    match force.rotation() {
+        None => format!("body_force = {given}"),
+        Some(Rotation { density, omega, about }) => {
+            let (density, omega, about) = (number(density), number(omega), list(&about));
+            format!("body_force = {given}, rotation = {{ density = {density}, omega = {omega}, about = {about} }}")
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod body_force;
 mod bonds;
 mod centre;
 mod circle;
@@ -32,6 +33,8 @@ use std::path::PathBuf;
 
 use crate::elasticity::{Elasticity, Initial};
 
+pub use crate::load::Affine;
+use crate::load::BodyForce;
 pub use bonds::Bond;
 pub(crate) use bonds::Joint;
 pub use circle::Circle;
@@ -135,8 +138,8 @@ pub struct Body {
     pub elasticity: Elasticity,
     /// What strains and stresses it has without load.
     pub initial: Initial,
-    /// Constant body force F (force per volume).
-    pub body_force: [f64; 2],
+    /// Body force F (force per volume).
+    pub body_force: BodyForce,
 }
 
 impl Body {
@@ -146,7 +149,7 @@ impl Body {
             name: name.into(),
             elasticity: Elasticity::Isotropic { young, poisson },
             initial: Initial::default(),
-            body_force: [0.0; 2],
+            body_force: BodyForce::NONE,
         }
     }
 }
@@ -188,27 +191,6 @@ impl SupportKind {
         SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
     /// Rollers along the boundary.
     pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
-}
-
-/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Affine {
-    /// Its value at the origin.
-    pub value: [f64; 2],
-    /// Its gradient.
-    pub gradient: [[f64; 2]; 2],
-}
-
-impl Affine {
-    /// The same everywhere.
-    pub fn constant(value: [f64; 2]) -> Self {
-        Affine { value, gradient: [[0.0; 2]; 2] }
-    }
-
-    /// Its value at `point`.
-    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
-    }
 }
 
 /// A loaded boundary.

@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::body_force::{RawForce, RawRotation};
 use super::quantity::RawQuantity;
 
 /// A value and where it stands in the file.
@@ -234,9 +235,10 @@ pub(super) struct RawBody {
     /// Initial stress xx, yy, xy, and a fourth that is out of the plane.
     #[schemars(with = "Option<Vec<f64>>", extend("minItems" = 3, "maxItems" = 4))]
     pub initial_stress: Option<Pair>,
-    /// Constant force per volume, none where it is missing.
-    #[schemars(with = "Option<[f64; 2]>")]
-    pub body_force: Option<Pair>,
+    /// Force per volume, none where it is missing: the same everywhere, or value + gradient · x.
+    pub body_force: Option<At<RawForce>>,
+    /// The centrifugal force of a body that turns, beside any other.
+    pub rotation: Option<At<Table<RawRotation>>>,
     /// Its cells are those of this physical group of the mesh file, or of this elementary entity where there is no such group.
     pub tag: Option<At<i32>>,
     /// Its cells are those of this set of the mesh file.

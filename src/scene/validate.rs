@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::body_force::body_force;
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
 use super::material::{elasticity, initial};
@@ -82,10 +83,7 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
         let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
-        let body_force = match &raw.body_force {
-            None => [0.0; 2],
-            Some(force) => source.vector(force, (&label, "body_force"))?,
-        };
+        let body_force = body_force(raw, &label, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
         let initial = initial(raw, &label, &elasticity, kinematics, source)?;
         Ok(Body { name, elasticity, initial, body_force })

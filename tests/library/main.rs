@@ -5,6 +5,7 @@ mod adaptive;
 mod anisotropic;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod body_forces;
 mod bonds;
 mod circular_gap;
 mod comparison;

@@ -16,13 +16,13 @@ use rayon::prelude::*;
 
 use super::bracket::UpperBound;
 use super::counted::Counted;
-use super::energy::{strain_of, strain_on};
+use super::energy::{strain_of, strain_on, work_inside};
 use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
-use crate::element::geometry::sub_area;
 use crate::element::quadrature::segment_rule;
-use crate::element::{Displacement, Material, Quadrilateral, contraction, triangle};
+use crate::element::{Displacement, Material, Quadrilateral, contraction};
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 pub use enclosure::{Enclosed, strain_energy, strain_energy_by};
@@ -70,15 +70,12 @@ impl Correction {
             true => of_triangles,
             false => cell.triangles.iter().map(|t| strain_of(problem, polynomial, *t, *t)[0]).sum(),
         };
-        let force = data.body_force;
+        let force = &data.body_force;
         let mut work = 0.0;
-        if force != [0.0; 2] {
-            let mean = integral(&cell.field);
-            work += force[0] * mean[0] + force[1] * mean[1];
+        if !force.is_none() {
+            work += work_on(force, &cell.field);
             for &t in &cell.triangles {
-                let share = sub_area(mesh.corners(t)) / triangle::len(polynomial.degree(t)) as f64;
-                let parts = (0..3).flat_map(|sub| polynomial.sub(t, sub));
-                work -= parts.map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum::<f64>();
+                work -= work_inside(force, mesh.corners(t), polynomial, t).iter().sum::<f64>();
             }
         }
         Correction {
@@ -114,16 +111,16 @@ fn of_initial(cell: &Quadrilateral, material: &Material) -> [f64; 2] {
     sum
 }
 
-/// ∫ v over a quadrilateral: a polynomial of degree 3 along ξ and η.
-fn integral(cell: &Quadrilateral) -> [f64; 2] {
+/// ∫ f · v over a quadrilateral: a polynomial of degree 4 along ξ and η.
+fn work_on(force: &BodyForce, cell: &Quadrilateral) -> f64 {
     let rule = crate::element::quadrature::segment_rule(4);
     let [d0, d1, d2] = cell.determinant();
-    let mut sum = [0.0; 2];
+    let mut sum = 0.0;
     for (s, v) in rule {
         for (t, w) in rule {
             let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
-            let (u, weight) = (cell.value(at), 4.0 * v * w * (d0 + d1 * at[0] + d2 * at[1]));
-            sum = [sum[0] + weight * u[0], sum[1] + weight * u[1]];
+            let (u, f) = (cell.value(at), force.at(cell.point(at)));
+            sum += 4.0 * v * w * (d0 + d1 * at[0] + d2 * at[1]) * (f[0] * u[0] + f[1] * u[1]);
         }
     }
     sum
