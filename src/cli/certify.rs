@@ -8,7 +8,7 @@ use clap::ArgGroup;
 use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
-use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions};
+use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions};
 use super::session::{DualRun, Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
@@ -66,6 +66,9 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// What travels with the report.
+    #[command(flatten)]
+    pub proof: ProofOptions,
 }
 
 /// Measures the field against the bound.
@@ -89,6 +92,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let given = args.values.all()?;
     refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
     let has_field = !args.displacement.is_empty();
@@ -154,9 +158,10 @@ fn held(
     if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
         session.progress.phase("holding the field to its claim");
         let (problem, bracket) = (&certified.problem, &certified.bracket);
+        let weak = args.contact.is_some();
         let claim = match &before {
-            None => study::claim(problem, judged, bracket, args.contact.is_some(), &allow),
-            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, &allow),
+            None => study::claim(problem, judged, bracket, weak, &allow),
+            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, weak, &allow),
         };
         let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
@@ -206,6 +211,7 @@ fn held(
         residual: claimed.map(|claim| claim.residual),
         failure: None,
         baseline,
+        is_to_prove: args.proof.proof,
     };
     Ok((comparison, particulars))
 }
@@ -278,7 +284,7 @@ fn values_held(
     args.judge.refuse_unknown(&allow, &comparison.checks, false, &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
     comparison.checks.extend(against);
-    Ok((comparison, Particulars { answers, baseline, ..Particulars::default() }))
+    Ok((comparison, Particulars { answers, baseline, is_to_prove: args.proof.proof, ..Particulars::default() }))
 }
 
 /// The problem and the field on the triangles of its file, where contact cut some of these: a claim is held there. `None` where the
@@ -292,7 +298,10 @@ fn before_contact(
     field: &ForeignField,
 ) -> Result<Option<(Problem, Candidate)>, CliError> {
     if candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut) {
-        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        let help = "along a bond of unlike meshes the claim to be a discrete solution cannot be held: leave out --solution, or mesh both \
+                    sides with the same points";
+        let help = if problem.scene.bonds.is_empty() { "" } else { help };
+        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), help))?;
         let with_field = |before: Problem| field.candidate(&before, 0.0).map(|own| (before, own));
         return before.map(with_field).transpose().map_err(refused);
     }

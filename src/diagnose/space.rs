@@ -2,6 +2,8 @@
 
 use crate::bounds::Cell;
 use crate::compare::{Solution, cells};
+use crate::elasticity::Elasticity;
+use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
@@ -15,9 +17,28 @@ pub struct Moduli {
     pub mu: f64,
     /// μ in the shear stress.
     pub shear: f64,
+    /// What is not isotropic: stresses (xx, yy, xy) of unit strains ε_xx, ε_yy and ε_xy.
+    pub other: [[f64; 3]; 3],
 }
 
 impl Moduli {
+    /// No stiffness at all.
+    pub const NONE: Self = Moduli { lambda: 0.0, mu: 0.0, shear: 0.0, other: [[0.0; 3]; 3] };
+
+    /// Those of a material that is not isotropic.
+    pub fn of_material(material: &Material) -> Self {
+        let other = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| material.stress(e));
+        Moduli { other, ..Self::NONE }
+    }
+
+    /// Those of any Hooke's law in a plane state.
+    pub fn of_law(kinematics: Kinematics, elasticity: &Elasticity) -> Self {
+        match elasticity.isotropic() {
+            Some([young, poisson]) => Self::of(kinematics, young, poisson),
+            None => Self::of_material(&Material::new(kinematics, elasticity)),
+        }
+    }
+
     /// Those of a material.
     pub fn of(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
         let mu = young / (2.0 * (1.0 + poisson));
@@ -25,12 +46,12 @@ impl Moduli {
             Kinematics::PlaneStrain => 2.0 * mu * poisson / (1.0 - 2.0 * poisson),
             Kinematics::PlaneStress => 2.0 * mu * poisson / (1.0 - poisson),
         };
-        Moduli { lambda, mu, shear: mu }
+        Moduli { lambda, mu, shear: mu, other: [[0.0; 3]; 3] }
     }
 
     /// Those of a body of the scene.
     pub fn of_body(problem: &Problem, body: &Body) -> Self {
-        Self::of(problem.scene.kinematics, body.young, body.poisson)
+        Self::of_law(problem.scene.kinematics, &body.elasticity)
     }
 
     /// Young's modulus and Poisson's ratio of a material with these constants.
@@ -45,12 +66,20 @@ impl Moduli {
     /// The stress of a strain (xx, yy, xy).
     pub fn stress(&self, e: [f64; 3]) -> [f64; 3] {
         let pressure = self.lambda * (e[0] + e[1]);
-        [pressure + 2.0 * self.mu * e[0], pressure + 2.0 * self.mu * e[1], 2.0 * self.shear * e[2]]
+        let own = [pressure + 2.0 * self.mu * e[0], pressure + 2.0 * self.mu * e[1], 2.0 * self.shear * e[2]];
+        let [xx, yy, xy] = &self.other;
+        [0, 1, 2].map(|i| own[i] + (xx[i] * e[0] + yy[i] * e[1] + xy[i] * e[2]))
     }
 
     /// The difference from `other`.
     pub fn less(self, other: Self) -> Self {
-        Moduli { lambda: self.lambda - other.lambda, mu: self.mu - other.mu, shear: self.shear - other.shear }
+        let apart = |i: usize| [0, 1, 2].map(|j| self.other[i][j] - other.other[i][j]);
+        Moduli {
+            lambda: self.lambda - other.lambda,
+            mu: self.mu - other.mu,
+            shear: self.shear - other.shear,
+            other: [0, 1, 2].map(apart),
+        }
     }
 }
 
@@ -169,9 +198,52 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// The column of what stresses with the constants `moduli`, body by body, ask for.
+    /// The column of what stresses with the constants `moduli`, body by body, ask for: those of the strains without the initial ones.
     pub fn stiffness(&self, moduli: impl Fn(usize) -> Option<Moduli>) -> Vec<f64> {
-        self.stiffness_on(moduli, |node| self.solution.candidate.value(node))
+        let mut column = self.stiffness_on(&moduli, |node| self.solution.candidate.value(node));
+        let problem = self.problem();
+        if problem.scene.bodies.iter().any(|body| !body.initial.is_none()) {
+            let materials = problem.materials();
+            let held = self.forces_of(|body, x| Some(moduli(body)?.stress(materials[body].initial().at(x))));
+            column.iter_mut().zip(self.column(held)).for_each(|(c, f)| *c -= f);
+        }
+        column
+    }
+
+    /// Nodal forces ∫ s:e(φ) of a stress that is affine in each body.
+    pub fn forces_of(&self, stress: impl Fn(usize, [f64; 2]) -> Option<[f64; 3]>) -> Vec<[f64; 2]> {
+        let problem = self.problem();
+        let mut forces = vec![[0.0; 2]; self.count()];
+        let mut add = |node: usize, weight: f64, d: [f64; 2], s: [f64; 3]| {
+            forces[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+            forces[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+        };
+        for (t, body) in problem.mesh.body.iter().enumerate() {
+            let corners = problem.mesh.corners(t);
+            if stress(*body, corners[0]).is_none() {
+                continue;
+            }
+            let Some(cell) = self.counted(t) else { continue };
+            if let Some(cell) = cell {
+                for (at, weight) in cells::rule(self.solution.points.unwrap_or(cells::full(&cell.field))) {
+                    let (gradients, _) = cell.field.gradients(at);
+                    let s = stress(*body, cell.field.position(at)).unwrap_or_default();
+                    let weight = problem.scene.thickness * weight;
+                    cell.nodes.iter().zip(gradients).for_each(|(node, d)| add(*node, weight, d, s));
+                }
+                continue;
+            }
+            let weight = problem.scene.thickness * problem.mesh.area(t) / 3.0;
+            let g = gradients(corners);
+            let nodes = self.nodes(t);
+            for at in 0..3 {
+                let shape = if nodes.len() == 6 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
+                let (p, q) = (corners[(at + 1) % 3], corners[(at + 2) % 3]);
+                let s = stress(*body, [0, 1].map(|c| 0.5 * (p[c] + q[c]))).unwrap_or_default();
+                nodes.iter().zip(shape).for_each(|(node, d)| add(*node, weight, d, s));
+            }
+        }
+        forces
     }
 
     /// The same for other displacements.

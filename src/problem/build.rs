@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
@@ -72,11 +72,12 @@ impl Problem {
     /// The problem on its mesh before contact cut it, without its contacts; `None` where contact changed nothing.
     ///
     /// # Errors
-    /// None that [`Problem::new`] did not have.
+    /// Bonds whose sides did not match before.
     pub fn before_contact(&self) -> Result<Option<Problem>, ProblemError> {
         let Some(uncut) = &self.uncut else { return Ok(None) };
+        let mesh = mesh::bonded(uncut.mesh.clone(), &self.scene)?;
         let draft = Draft { contacts: Vec::new(), ..(*self.scene).clone() };
-        Problem::new(Scene::unchecked(draft), uncut.mesh.clone(), Vec::new()).map(Some)
+        Problem::new(Scene::unchecked(draft), mesh, Vec::new()).map(Some)
     }
 
     /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was
@@ -110,8 +111,10 @@ impl Problem {
                         displacement: *displacement,
                     },
                     Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
-                    // Contact edges are overwritten when they are paired.
-                    Some(Role::Contact) | None => Condition::Traction([[0.0; 2]; 2]),
+                    // Edges of contacts and springs are overwritten when they are paired.
+                    Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
+                        Condition::Traction([[0.0; 2]; 2])
+                    }
                 }
             })
             .collect();
@@ -144,13 +147,19 @@ impl Problem {
             }
             interfaces.push(matched);
         }
+        let beds = beds(&scene, &mesh)?;
+        for (bed, of) in beds.iter().enumerate() {
+            for (pair, edges) in of.pairs.iter().enumerate() {
+                edges.sides().for_each(|(side, e)| conditions[e] = Condition::Elastic { bed, pair, side });
+            }
+        }
         for remark in remarks {
             if !notes.contains(&remark) {
                 notes.push(remark);
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement, uncut: None })
+        Ok(Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -246,6 +255,15 @@ impl Problem {
         let problem = self.divided(finer.mesh, &curved)?;
         Ok((problem, finer.refinement, finer.parent))
     }
+}
+
+/// The springs of all supports, then the layers of all bonds.
+fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
+    let mut all: Vec<Bed> = scene.supports.iter().filter_map(|support| Bed::of_support(support, mesh)).collect();
+    for bond in &scene.bonds {
+        all.extend(Bed::of_bond(bond, scene, mesh)?);
+    }
+    Ok(all)
 }
 
 /// The role of every boundary that the scene mentions.

@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod bed;
 mod bow;
 mod build;
 mod contact;
@@ -12,6 +13,8 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bed::facing_vertices;
+pub use bed::{Bed, BedPair};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -19,10 +22,11 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
-use crate::element::Compliance;
+use crate::element::Material;
+use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
-use crate::scene::{Body, Scene};
+use crate::scene::Scene;
 
 /// A scene and a mesh that fit together.
 #[derive(Debug, Clone)]
@@ -35,6 +39,8 @@ pub struct Problem {
     pub conditions: Vec<Condition>,
     /// Contacts, in scene order.
     pub interfaces: Vec<Interface>,
+    /// Springs, in the order of the supports, then elastic layers in that of the bonds.
+    pub beds: Vec<Bed>,
     /// What the reader of the report has to know about how the mesh and the data were represented.
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
@@ -44,15 +50,44 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Compliance of each body of the scene.
-    pub fn materials(&self) -> Vec<Compliance> {
-        let of = |body: &Body| Compliance::new(self.scene.kinematics, body.young, body.poisson);
-        self.scene.bodies.iter().map(of).collect()
+    /// Material of each body of the scene.
+    pub fn materials(&self) -> Vec<Material> {
+        (0..self.scene.bodies.len()).map(|body| self.material(body)).collect()
+    }
+
+    /// Material of one body of the scene.
+    pub fn material(&self, body: usize) -> Material {
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
+    }
+
+    /// The body force on triangle `t`.
+    pub fn body_force(&self, t: usize) -> &BodyForce {
+        &self.scene.bodies[self.mesh.body[t]].body_force
+    }
+
+    /// What the body force does on triangle `t`.
+    pub fn force_on(&self, t: usize) -> OnTriangle {
+        self.body_force(t).on(self.mesh.corners(t))
+    }
+
+    /// The least degree of stresses on triangle `t` that balance its loads.
+    pub fn least_degree(&self, t: usize) -> usize {
+        self.body_force(t).stress_degree()
     }
 
     /// The pairs of all contacts, one interface after the other.
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)
+    }
+
+    /// The pairs of all beds with their stiffness, one bed after the other.
+    pub fn bed_pairs(&self) -> impl Iterator<Item = (&BedPair, [f64; 2])> + Clone {
+        self.beds.iter().flat_map(|bed| bed.pairs.iter().map(|pair| (pair, bed.stiffness)))
     }
 
     /// The edges of Γ_τ, each with P at its two ends.
@@ -98,6 +133,15 @@ pub enum Condition {
         /// Index into [`Problem::interfaces`].
         interface: usize,
         /// Index into [`Interface::pairs`].
+        pair: usize,
+        /// 0 for the first side, 1 for the second.
+        side: usize,
+    },
+    /// Side 0 or 1 of `beds[bed].pairs[pair]`: the traction is that of springs.
+    Elastic {
+        /// Index into [`Problem::beds`].
+        bed: usize,
+        /// Index into [`Bed::pairs`].
         pair: usize,
         /// 0 for the first side, 1 for the second.
         side: usize,

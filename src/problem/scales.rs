@@ -7,8 +7,8 @@
 //! stresses that they do cause may be smaller or none, but are computed from displacements of that size, and carry
 //! their rounding errors.
 
-use super::{Condition, Problem};
-use crate::scene::{Body, Kinematics};
+use super::{BedPair, Condition, Problem};
+use crate::element::Material;
 use crate::vector::norm;
 
 /// Rounding errors that a computed number carries, relative to the largest that it was computed from.
@@ -49,19 +49,22 @@ impl Scales {
         let scene = &problem.scene;
         let bodies = Extents::of_bodies(problem);
         let loads = Loads::new(problem, &bodies);
+        let materials = problem.materials();
         let imposed = match imposed(problem) {
             0.0 if loads.force == 0.0 => widest_gap(problem),
             imposed => imposed,
         };
-        let modulus: Vec<f64> = scene.bodies.iter().map(|body| modulus(scene.kinematics, body)).collect();
+        let imposed = imposed + initial(problem, &materials, &bodies);
+        let modulus: Vec<f64> = materials.iter().map(Material::uniaxial).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let used = || scene.bodies.iter().zip(&bodies).filter(|(_, extent)| extent.any());
-        let stiffest = largest(&mut used().map(|(body, _)| body.young));
-        let softest = used().map(|(body, _)| body.young).fold(f64::INFINITY, f64::min);
+        let used = || materials.iter().zip(&bodies).filter(|(_, extent)| extent.any());
+        let stiffest = largest(&mut used().map(|(material, _)| material.young()[1]));
+        let softest = used().map(|(material, _)| material.young()[0]).fold(f64::INFINITY, f64::min);
         let hardest = largest(&mut modulus.iter().copied());
-        let displacement = imposed + loads.force / (scene.thickness * softest);
+        let displacement =
+            imposed + loads.force / (scene.thickness * softest) + loads.force / scene.thickness * give(problem);
         let energy = |stiffness: f64| loads.force * displacement + scene.thickness * stiffness * imposed * imposed;
-        let strained = largest(&mut used().map(|(body, extent)| body.young * imposed / extent.diameter()));
+        let strained = largest(&mut used().map(|(material, extent)| material.young()[1] * imposed / extent.diameter()));
         let resolved = largest(&mut (0..problem.mesh.triangles.len()).map(|t| per_length(problem, &modulus, t)));
         Scales {
             data: Sizes {
@@ -102,14 +105,6 @@ impl Scales {
             return 0.0;
         }
         ROUND_OFF * amplified(degree) * self.imposed * per_length(problem, &self.modulus, t)
-    }
-}
-
-fn modulus(kinematics: Kinematics, body: &Body) -> f64 {
-    let (young, nu) = (body.young, body.poisson);
-    match kinematics {
-        Kinematics::PlaneStrain => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-        Kinematics::PlaneStress => young / (1.0 - nu * nu),
     }
 }
 
@@ -180,10 +175,10 @@ impl Loads {
         }
         for (body, extent) in problem.scene.bodies.iter().zip(bodies).filter(|(_, extent)| extent.any()) {
             let [width, height] = extent.sides();
-            traction = traction.max(norm(body.body_force) * width.min(height));
+            traction = traction.max(body.body_force.largest_in([extent.low, extent.high]) * width.min(height));
         }
-        for (t, &body) in problem.mesh.body.iter().enumerate() {
-            force += problem.mesh.area(t) * norm(problem.scene.bodies[body].body_force);
+        for t in 0..problem.mesh.triangles.len() {
+            force += problem.mesh.area(t) * problem.force_on(t).largest();
         }
         Loads { traction, force: problem.scene.thickness * force }
     }
@@ -209,6 +204,46 @@ fn imposed(problem: &Problem) -> f64 {
     prescribed + crossed.sum::<f64>()
 }
 
+/// By how much a unit force, per unit thickness, moves a piece that nothing but springs holds in some motion, at most: the
+/// softest of their stiffnesses, all edges taken together.
+fn give(problem: &Problem) -> f64 {
+    let mesh = &problem.mesh;
+    let (piece, count) = mesh.pieces();
+    let mut held = vec![false; count];
+    for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
+        if let (Condition::Clamped(_), Some(t)) = (condition, edge.triangles[0]) {
+            held[piece[t]] = true;
+        }
+    }
+    let mut most = 0.0_f64;
+    for bed in &problem.beds {
+        let own = |pair: &BedPair| mesh.edges[pair.edge].triangles[0].is_none_or(|t| held[piece[t]]);
+        if bed.pairs.iter().all(own) {
+            continue;
+        }
+        let length: f64 = bed.pairs.iter().map(|pair| pair.length).sum();
+        let softest = bed.stiffness.into_iter().filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min);
+        most = most.max(1.0 / (softest * length));
+    }
+    most
+}
+
+/// How far initial strains move the bodies that have one.
+fn initial(problem: &Problem, materials: &[Material], bodies: &[Extents]) -> f64 {
+    let of = |(material, extent): (&Material, &Extents)| {
+        let strain = material.initial();
+        if strain.is_none() || !extent.any() {
+            return 0.0;
+        }
+        let [low, high] = [extent.low, extent.high];
+        let corners = [low, high, [low[0], high[1]], [high[0], low[1]]];
+        let size = |p: [f64; 2]| strain.at(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        corners.map(size).into_iter().fold(0.0, f64::max) * extent.diameter()
+    };
+    debug_assert_eq!(materials.len(), problem.scene.bodies.len());
+    materials.iter().zip(bodies).map(of).fold(0.0, f64::max)
+}
+
 fn widest_gap(problem: &Problem) -> f64 {
     let pairs = problem.pairs();
     pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
@@ -217,6 +252,7 @@ fn widest_gap(problem: &Problem) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elasticity::Elasticity;
     use crate::mesh::testing::*;
     use crate::scene::{Affine, Gap, Load, Scene, SupportKind};
 
@@ -242,8 +278,8 @@ mod tests {
         let mut scene =
             load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
-        scene.draft.bodies[1].body_force = [0.0, -2.0];
-        scene.draft.bodies[1].young = 10.0;
+        scene.draft.bodies[1].body_force = [0.0, -2.0].into();
+        scene.draft.bodies[1].elasticity = Elasticity::Isotropic { young: 10.0, poisson: 0.3 };
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);
         assert!((found.data.displacement - 7.0).abs() < 1e-14 && (found.data.energy - 24.5).abs() < 1e-13);
@@ -265,7 +301,7 @@ mod tests {
             let mut scene = load(squares(0.0), "a_left", Load::Pressure(2.0 * stress));
             scene.draft.supports[0].kind =
                 SupportKind::Clamped { displacement: Affine::constant([0.01 * length, 0.0]) };
-            scene.draft.bodies.iter_mut().for_each(|body| body.young *= stress);
+            scene.draft.bodies.iter_mut().for_each(|body| body.elasticity = body.elasticity.stiffened(stress));
             let mut problem = Problem::load(scene).expect("a good scene");
             problem.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
             Scales::new(&problem)

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::bonds::{Bond, bond};
 use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::obstacle::obstacle;
@@ -10,6 +11,7 @@ use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
 use super::source::{Source, counted};
+use super::springs::{no_stiffness, spring};
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
 };
@@ -21,6 +23,7 @@ pub(super) struct Conditions {
     pub supports: Vec<Support>,
     pub tractions: Vec<Traction>,
     pub contacts: Vec<Contact>,
+    pub bonds: Vec<Bond>,
 }
 
 /// Checks the three lists, in the order of the file within each.
@@ -34,7 +37,8 @@ pub(super) fn conditions(
     let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
     let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
     let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
-    Ok(Conditions { supports, tractions, contacts })
+    let bonds = each(&raw.bonds, "bonds", |raw, table| bond(raw, table, &mut taken))?;
+    Ok(Conditions { supports, tractions, contacts, bonds })
 }
 
 fn each<R, T>(
@@ -57,8 +61,8 @@ pub(super) fn edge_names(mesh: &MeshSource, boundaries: &[Boundary]) -> Option<V
 }
 
 /// The boundaries that have a condition already.
-struct Taken<'a> {
-    source: &'a Source<'a>,
+pub(super) struct Taken<'a> {
+    pub(super) source: &'a Source<'a>,
     /// Names of the polygon edges; `None` where only a mesh file knows them.
     known: Option<Vec<String>>,
     by: HashMap<String, (String, Range<usize>)>,
@@ -66,7 +70,7 @@ struct Taken<'a> {
 
 impl Taken<'_> {
     /// The name, if it exists and is free; from now on it belongs to `table`.
-    fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
+    pub(super) fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
         let on = self.source.name(name, (table, key), NAME_A_BOUNDARY)?;
         if let Some(known) = &self.known
             && known.binary_search(&on).is_err()
@@ -90,6 +94,7 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
     let word = support.kind.value.as_str();
     let kind = match word {
         "clamped" => {
+            no_stiffness(support, table, source)?;
             if let Some(d) = &support.direction {
                 let remedy = "delete `direction`, or write type = \"roller\", which holds one component";
                 let (table, other) = (table.to_owned(), "type = \"clamped\", which holds both components");
@@ -99,14 +104,16 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
             SupportKind::Clamped { displacement: displacement.unwrap_or_default() }
         }
         "roller" => {
+            no_stiffness(support, table, source)?;
             let remedy = "write the direction of the component that is held, like [1.0, 0.0]";
             let direction =
                 support.direction.as_ref().map(|d| source.unit(d, (table, "direction"), remedy)).transpose()?;
             let displacement = support.displacement.as_ref().map(|u| roller(u, table, source)).transpose()?;
             SupportKind::Roller { direction, displacement: displacement.unwrap_or_default() }
         }
+        "spring" => SupportKind::Spring { stiffness: spring(raw, table, source)? },
         other => {
-            let known = ["clamped", "roller"].map(String::from).to_vec();
+            let known = ["clamped", "roller", "spring"].map(String::from).to_vec();
             let fault = Fault::UnknownWord { key: "type", table: table.to_owned(), found: other.to_owned(), known };
             return Err(source.error(support.kind.span(), fault));
         }
@@ -121,19 +128,24 @@ fn clamped(u: &At<RawDisplacement>, table: &str, source: &Source) -> Result<Affi
             let vector = At { value: vector.clone(), start: u.start, end: u.end };
             source.vector(&vector, (table, "displacement")).map(Affine::constant)
         }
-        RawDisplacement::Affine(RawAffine { value, gradient }) => {
-            let value = value.as_ref().map(|value| source.vector(value, (table, "displacement.value"))).transpose()?;
-            Ok(Affine {
-                value: value.unwrap_or_default(),
-                gradient: matrix(gradient, (table, "displacement.gradient"), source)?,
-            })
-        }
+        RawDisplacement::Affine(field) => affine(field, (table, "displacement"), source),
         RawDisplacement::Component(_) => {
             let (key, table, found) = ("displacement".to_owned(), table.to_owned(), "one number".to_owned());
             let remedy = "write both components [ux, uy], or type = \"roller\", which holds one";
             Err(source.error(u.span(), Fault::Count { key, table, found, expected: "2 numbers".to_owned(), remedy }))
         }
     }
+}
+
+/// A field value + gradient · x, written as `key` of `table`.
+pub(super) fn affine(
+    RawAffine { value, gradient }: &RawAffine,
+    (table, key): (&str, &str),
+    source: &Source,
+) -> Result<Affine, SceneError> {
+    let value = value.as_ref().map(|value| source.vector(value, (table, &format!("{key}.value")))).transpose()?;
+    let gradient = matrix(gradient, (table, &format!("{key}.gradient")), source)?;
+    Ok(Affine { value: value.unwrap_or_default(), gradient })
 }
 
 /// The component that rollers prescribe.
@@ -209,18 +221,8 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
         (None, None) => return Err(source.error(raw.span(), one_of(false))),
         (None, Some(on)) => ContactSides::Rigid(taken.claim(on, table, "on")?),
         (Some(between), None) => {
-            let [first, second] = between.value.as_slice() else {
-                let found = counted(between.value.len(), "name");
-                let remedy = "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle";
-                let (key, expected) = ("between".to_owned(), "2".to_owned());
-                return Err(source
-                    .error(between.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
-            };
-            if first.value == second.value && !first.value.trim().is_empty() {
-                let fault = Fault::SelfContact { name: first.value.clone(), table: table.to_owned() };
-                return Err(source.error(second.span(), fault));
-            }
-            ContactSides::Between([taken.claim(first, table, "between")?, taken.claim(second, table, "between")?])
+            let remedy = "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle";
+            ContactSides::Between(taken.between(between, table, remedy)?)
         }
     };
     let obstacle = obstacle(contact, table, source)?;

@@ -11,10 +11,12 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
-    Target, Touching, Traction,
+    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
+    Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
+    SupportKind, Target, Touching, Traction,
 };
+use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +48,8 @@ pub struct Draft {
     pub tractions: Vec<Traction>,
     /// Γ_K.
     pub contacts: Vec<Contact>,
+    /// Boundaries that are glued to each other.
+    pub bonds: Vec<Bond>,
     /// What the scene is solved for, in the order of the file.
     pub quantities: Vec<Quantity>,
 }
@@ -67,6 +71,7 @@ impl Draft {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            bonds: Vec::new(),
             quantities: Vec::new(),
         }
     }
@@ -104,17 +109,19 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, young, poisson, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
-            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force}{cells} }}")?;
+            let (name, material, force) =
+                (quoted(name), material(elasticity) + &initial_keys(initial), force(body_force));
+            writeln!(text, "bodies.{name} = {{ {material}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
             ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
             ("tractions", self.tractions.iter().map(traction).collect()),
             ("contacts", self.contacts.iter().map(contact).collect()),
+            ("bonds", self.bonds.iter().map(bond).collect()),
             ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
         ];
         for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
@@ -243,6 +250,43 @@ fn number(number: f64) -> String {
     Value::from(number).to_string()
 }
 
+/// The keys of initial strains and stresses, each behind a comma.
+fn initial_keys(initial: &Initial) -> String {
+    let Initial { expansion, temperature, gradient, stress } = initial;
+    let mut text = String::new();
+    if *expansion != [0.0; 3] || *temperature != 0.0 || *gradient != [0.0; 2] {
+        let (expansion, value, gradient) = (list(expansion), number(*temperature), list(gradient));
+        text += &format!(", expansion = {expansion}, temperature = {{ value = {value}, gradient = {gradient} }}");
+    }
+    if *stress != [0.0; 4] {
+        text += &format!(", initial_stress = {}", list(stress));
+    }
+    text
+}
+
+/// The keys of a material.
+pub(crate) fn material(elasticity: &Elasticity) -> String {
+    match elasticity {
+        Elasticity::Isotropic { young, poisson } => {
+            format!("young = {}, poisson = {}", number(*young), number(*poisson))
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => format!(
+            "orthotropic = {{ young = {}, poisson = {}, shear = {}, angle = {} }}",
+            list(young),
+            list(poisson),
+            number(*shear),
+            number(*angle)
+        ),
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            let rows = match matrix {
+                Matrix::Three(rows) => rows.iter().map(|row| list(row)).collect::<Vec<_>>(),
+                Matrix::Six(rows) => rows.iter().map(|row| list(row)).collect(),
+            };
+            format!("{} = [{}], angle = {}", kind.key(), rows.join(", "), number(*angle))
+        }
+    }
+}
+
 fn list(numbers: &[f64]) -> String {
     Value::from(numbers.to_vec()).to_string()
 }
@@ -271,6 +315,7 @@ fn support(Support { on, kind }: &Support) -> String {
             let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
             format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
         }
+        SupportKind::Spring { stiffness } => format!("on = {on}, type = \"spring\", stiffness = {}", list(stiffness)),
     }
 }
 
@@ -278,6 +323,17 @@ fn affine(Affine { value, gradient }: &Affine) -> String {
     match *gradient == [[0.0; 2]; 2] {
         true => list(value),
         false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
+    }
+}
+
+fn force(force: &BodyForce) -> String {
+    let given = affine(&force.given());
+    match force.rotation() {
+        None => format!("body_force = {given}"),
+        Some(Rotation { density, omega, about }) => {
+            let (density, omega, about) = (number(density), number(omega), list(&about));
+            format!("body_force = {given}, rotation = {{ density = {density}, omega = {omega}, about = {about} }}")
+        }
     }
 }
 
@@ -318,6 +374,11 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
         return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
     }
     format!("{sides}, gap = {gap}{normals}{direction}")
+}
+
+fn bond(Bond { sides: [a, b], stiffness }: &Bond) -> String {
+    let stiffness = stiffness.map(|k| format!(", stiffness = {}", list(&k))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

@@ -2,8 +2,11 @@
 
 mod accuracy;
 mod adaptive;
+mod anisotropic;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod body_forces;
+mod bonds;
 mod circular_gap;
 mod comparison;
 mod congruent;
@@ -24,12 +27,14 @@ mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
 mod gap_curves;
+mod initial_strain;
 mod inner_segments;
 mod intervals;
 mod invariance;
 mod known_solutions;
 #[path = "../support/lame.rs"]
 mod lame;
+mod layers;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;
@@ -57,6 +62,7 @@ mod rings;
 mod rounding;
 mod scene_schema;
 mod setup;
+mod springs;
 mod squares;
 #[path = "../support/mod.rs"]
 mod support;

@@ -6,7 +6,6 @@ use hypercircle::dual::paper::{
     Auxiliary, BlockMatrices, Constraints, Iteration, Meaning, Program, Reaction, TractionShape, dependences,
     multipliers,
 };
-use hypercircle::element::Compliance;
 use hypercircle::element::subtriangle::Matrix;
 use hypercircle::problem::{Condition, Problem};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -32,10 +31,9 @@ fn with_everything() -> Problem {
 }
 
 fn blocks(problem: &Problem) -> Vec<BlockMatrices> {
-    let body = |t: usize| &problem.scene.bodies[problem.mesh.body[t]];
     (0..problem.mesh.triangles.len())
         .map(|t| {
-            let material = Compliance::new(problem.scene.kinematics, body(t).young, body(t).poisson);
+            let material = problem.material(problem.mesh.body[t]);
             BlockMatrices::new(problem.mesh.corners(t), &material)
         })
         .collect()
@@ -222,7 +220,7 @@ fn auxiliary_field_balances_everything() {
     for t in 0..problem.mesh.triangles.len() {
         let corners = problem.mesh.corners(t);
         let centre = [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0);
-        let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
+        let force = problem.force_on(t).mean();
         for sub in 0..3 {
             let q = [corners[(sub + 1) % 3], corners[(sub + 2) % 3], centre];
             let mut flux = [0.0; 2];
@@ -255,7 +253,7 @@ fn auxiliary_field_balances_everything() {
                 Condition::Traction(p) => assert!(largest([own[end][0] - p[end][0], own[end][1] - p[end][1]]) < 1e-11),
                 Condition::Roller { .. } => assert!(tt.abs() < 1e-11),
                 Condition::Contact { .. } => assert!((tn - g).abs() < 1e-11 && tt.abs() < 1e-11),
-                Condition::Clamped(_) => {}
+                Condition::Clamped(_) | Condition::Elastic { .. } => {}
             }
             match condition {
                 Condition::Contact { .. } if left => (0..2).for_each(|c| on_contact[c] += 0.5 * length * own[end][c]),

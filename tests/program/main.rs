@@ -9,6 +9,7 @@ mod claimed;
 mod command;
 mod command_line;
 mod contact_in_the_mean;
+mod contact_of_others;
 mod diff;
 mod element;
 mod fields;
@@ -26,6 +27,7 @@ mod own_mesh;
 #[path = "../support/pages.rs"]
 mod pages;
 mod printed;
+mod proof;
 mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]

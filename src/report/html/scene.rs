@@ -2,6 +2,8 @@
 
 use maud::{Markup, html};
 
+use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
@@ -18,12 +20,13 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
                 dt { "State" } dd { (scene.kinematics.words()) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
-                    bdi { (clean(&body.name)) } ": E = " (significant(body.young, 6)) ", ν = " (significant(body.poisson, 6))
-                    @if body.body_force != [0.0; 2] { ", body force " (vector(body.body_force, 5)) }
+                    bdi { (clean(&body.name)) } ": " (elasticity(&body.elasticity))
+                    (force(&body.body_force))
                 } } } }
                 dt { "Loads" } dd { (loads(scene)) }
                 dt { "Supports" } dd { (supports(scene)) }
                 @if !scene.contacts.is_empty() { dt { "Contact" } dd { (contacts(problem)) } }
+                @if !scene.bonds.is_empty() { dt { "Bonds" } dd { (bonds(scene)) } }
                 dt { "Mesh" } dd { (counts(report, problem)) }
                 @if !report.provenance.command_line.is_empty() {
                     dt { "Command" } dd { code { (clean(&report.provenance.command_line)) } }
@@ -34,8 +37,32 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
     }
 }
 
+/// The constants of a material.
+fn elasticity(law: &Elasticity) -> String {
+    let list = |values: &[f64]| values.iter().map(|x| significant(*x, 6)).collect::<Vec<_>>().join(", ");
+    match law {
+        Elasticity::Isotropic { young, poisson } => {
+            format!("E = {}, ν = {}", significant(*young, 6), significant(*poisson, 6))
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => format!(
+            "orthotropic, E₁, E₂, E₃ = {}; ν₁₂, ν₁₃, ν₂₃ = {}; G₁₂ = {}; axis 1 at {}° to x",
+            list(young),
+            list(poisson),
+            significant(*shear, 6),
+            significant(*angle, 6)
+        ),
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            let rows = match matrix {
+                Matrix::Three(rows) => rows.iter().map(|row| list(row)).collect::<Vec<_>>(),
+                Matrix::Six(rows) => rows.iter().map(|row| list(row)).collect(),
+            };
+            format!("{} ({}), axis 1 at {}° to x", kind.key(), rows.join("; "), significant(*angle, 6))
+        }
+    }
+}
+
 fn loads(scene: &Scene) -> Markup {
-    let forces = scene.bodies.iter().any(|body| body.body_force != [0.0; 2]);
+    let forces = scene.bodies.iter().any(|body| !body.body_force.is_none());
     html! {
         @if scene.tractions.is_empty() { (if forces { "body forces alone" } else { "none" }) } @else {
             ul { @for traction in &scene.tractions { li {
@@ -45,6 +72,15 @@ fn loads(scene: &Scene) -> Markup {
                     Load::Affine(load) => (affine(load)),
                 }
             } } }
+        }
+    }
+}
+
+fn force(force: &BodyForce) -> Markup {
+    html! {
+        @if force.given() != Affine::default() { ", body force " (affine(force.given())) }
+        @if let Some(Rotation { density, omega, about }) = force.rotation() {
+            ", turning about " (vector(about, 5)) " with ω = " (significant(omega, 5)) ", ϱ = " (significant(density, 5))
         }
     }
 }
@@ -64,6 +100,10 @@ fn supports(scene: &Scene) -> Markup {
                 @match support.kind {
                     SupportKind::Clamped { displacement } if displacement == Affine::default() => "clamped",
                     SupportKind::Clamped { displacement } => { "clamped, moved by " (affine(displacement)) }
+                    SupportKind::Spring { stiffness: [normal, tangential] } => {
+                        "springs of stiffness " (significant(normal, 5)) " along the normal, "
+                        @if tangential == 0.0 { "none along the boundary" } @else { (significant(tangential, 5)) " along the boundary" }
+                    }
                     SupportKind::Roller { direction, displacement } => {
                         "roller"
                         @if let Some(d) = direction { " that holds along " (vector(d, 5)) }
@@ -89,6 +129,19 @@ fn contacts(problem: &Problem) -> Markup {
                 Gap::Parabola(touching) => { "of a parabola of radius " (significant(touching.radius, 5)) }
             }
             @if contact.direction.is_some() { ", matched along a direction" }
+        } } }
+    }
+}
+
+fn bonds(scene: &Scene) -> Markup {
+    html! {
+        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": "
+            @match bond.stiffness {
+                None => "glued",
+                Some([normal, tangential]) => {
+                    "an elastic layer of stiffness " (significant(normal, 5)) " along the normal, " (significant(tangential, 5)) " along the sides"
+                }
+            }
         } } }
     }
 }

@@ -3,8 +3,9 @@
 use hypercircle::bounds::{admissible, complementary, potential};
 use hypercircle::dual::{self, Condensed, Options};
 use hypercircle::element::{
-    Compliance, Elements, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
+    Elements, Material, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
 };
+use hypercircle::load::BodyForce;
 use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Kinematics;
@@ -100,7 +101,7 @@ pub const DEGREES: [usize; 4] = [1, 2, 3, 4];
 fn projected(mesh: &Triangulation, degree: usize, stress: Stress) -> StressField {
     let (element, rule) = (block(degree), gauss(degree + 8));
     // Which of the fields with its tractions an element has hangs on the material; elastic stresses belong to all.
-    let material = Compliance::new(Kinematics::PlaneStrain, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3);
     let mut field = StressField::zeros(degree, mesh.triangles.len());
     for t in 0..mesh.triangles.len() {
         let corners = mesh.corners(t);
@@ -120,9 +121,9 @@ fn projected(mesh: &Triangulation, degree: usize, stress: Stress) -> StressField
             let [x, y] = moments.map(|m| side::from_moments(&m));
             tractions.extend(x.into_iter().zip(y).flat_map(|(x, y)| [x, y]));
         }
-        let modes = element.modes(corners, &material, [0.0; 2]);
+        let modes = element.modes(corners, &material, &BodyForce::NONE);
         let (s, _) = parameters_from_tractions(&modes, &tractions).expect("no triangle is degenerate");
-        element.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
+        element.stresses(corners, &BodyForce::NONE, &modes, &s, 0.0, field.block_mut(t));
     }
     field
 }
