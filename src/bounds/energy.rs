@@ -257,6 +257,20 @@ fn counted_work(
     work
 }
 
+/// The work on `v` of tractions along edges of any kind, by their Bernstein coefficients, per unit thickness.
+pub fn work_on_edges(problem: &Problem, v: &Displacement, tractions: &[(usize, Vec<[f64; 2]>)]) -> f64 {
+    let mut work = Sum::default();
+    for (e, coefficients) in tractions {
+        let (length, _) = problem.mesh.edge_frame(*e);
+        let u = side_coefficients(problem, v, *e);
+        for c in 0..2 {
+            let [t, u]: [Vec<f64>; 2] = [coefficients.iter().map(|t| t[c]).collect(), u.iter().map(|u| u[c]).collect()];
+            work.add(length * side::integral(&t, &u));
+        }
+    }
+    work.value()
+}
+
 /// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness, by components.
 fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     if a == [0.0; 2] && b == [0.0; 2] {

@@ -51,6 +51,11 @@ impl Compliance {
         self.stress([1.0, 0.0, 0.0])[0].abs().max(self.stress([0.0, 0.0, 1.0])[2].abs())
     }
 
+    /// The smallest eigenvalue of c: c e:e is no less than this times |e|².
+    pub fn softest(&self) -> f64 {
+        self.young * (0.5 / self.kappa).min(2.0 / self.gamma)
+    }
+
     /// c e:d for two strains (xx, yy, xy).
     pub fn strain_product(&self, e: [f64; 3], d: [f64; 3]) -> f64 {
         let volume = 0.25 / self.kappa * (e[0] + e[1]) * (d[0] + d[1]);

@@ -8,7 +8,7 @@ use super::interval::{Known, in_degree};
 use super::tried::Tried;
 use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
-use crate::dual::{Loaded, Response};
+use crate::dual::{Load, Loaded, Response, ShapedStrain};
 use crate::element::StressField;
 
 /// How often, and by what factor, the ratio is raised where it gives nothing.
@@ -73,7 +73,10 @@ impl Search<'_, '_> {
         let sigma = self.stress(&neutral.stress);
         let nodes = nearest.start(&sigma, &neutral.moments);
         let balanced = square(problem, &neutral.stress);
-        let square = if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) };
+        let load = &self.functional.load;
+        let strained = !load.strains.is_empty() || !load.shaped.is_empty();
+        let rests: f64 = self.functional.rests.iter().sum();
+        let square = if strained { square(problem, &sigma) + rests } else { balanced };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
         let pull = Pull { scene: 0.0, stress: Some(&sigma) };
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
@@ -161,12 +164,31 @@ impl Search<'_, '_> {
     /// σ̂ + cχ, χ by its mean where a triangle is cut.
     fn stress<'f>(&self, adjoint: &'f StressField) -> Cow<'f, StressField> {
         let problem = self.known.problem;
-        let strains = &self.functional.load.strains;
-        if strains.is_empty() {
+        let Load { strains, shaped, .. } = &self.functional.load;
+        if strains.is_empty() && shaped.is_empty() {
             return Cow::Borrowed(adjoint);
         }
         let materials = problem.materials();
         let mut sigma = adjoint.clone();
+        if !shaped.is_empty() {
+            let mut degrees: Vec<usize> = (0..adjoint.len()).map(|t| adjoint.degree(t)).collect();
+            for ShapedStrain { triangle: t, strain } in shaped {
+                degrees[*t] = degrees[*t].max(strain.degree(0));
+            }
+            sigma = StressField::of_degrees(degrees);
+            for t in 0..adjoint.len() {
+                let own = adjoint.in_degree(t, sigma.degree(t));
+                sigma.block_mut(t).copy_from_slice(&own);
+            }
+            for ShapedStrain { triangle: t, strain } in shaped {
+                let material = &materials[problem.mesh.body[*t]];
+                let own = strain.in_degree(0, sigma.degree(*t));
+                for (s, chi) in sigma.block_mut(*t).iter_mut().zip(own.iter()) {
+                    let add = material.stress(*chi);
+                    (0..3).for_each(|c| s[c] += add[c]);
+                }
+            }
+        }
         for (t, chi) in strains {
             let add = materials[problem.mesh.body[*t]].stress(*chi);
             sigma.block_mut(*t).iter_mut().for_each(|s| (0..3).for_each(|c| s[c] += add[c]));

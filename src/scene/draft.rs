@@ -12,8 +12,8 @@ use toml::Value;
 use super::selection::written;
 use super::{
     Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
-    Target, Touching, Traction,
+    MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
+    SupportKind, Target, Touching, Traction,
 };
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -172,6 +172,14 @@ impl Draft {
                     Region::Polygon(points) => format!(", polygon = {}", rows(points)),
                 };
                 format!("stress = {}{region}, {}", body(*of), component_of(component))
+            }
+            Target::Point { body: of, at, value, smoothness } => {
+                let (key, value) = match value {
+                    PointValue::Displacement(direction) => ("displacement", format!("direction = {}", list(direction))),
+                    PointValue::Stress(component) => ("stress", component_of(component)),
+                    PointValue::Invariant(invariant) => ("stress", format!("component = {:?}", invariant.word())),
+                };
+                format!("{key} = {}, point = {}, {value}, smoothness = {smoothness}", body(*of), list(at))
             }
         };
         format!("name = {}, {what}", quoted(&quantity.name))

@@ -228,7 +228,7 @@ impl Fault {
             Fault::Empty => "a scene needs at least [model], [bodies.NAME] and [mesh] or [geometry]".into(),
             Fault::Syntax { message } => syntax_remedy(message).into(),
             Fault::UnknownKey { key, table, .. } if key == "at" && table.starts_with("[[quantities]]") => {
-                "no interval can be guaranteed for a value at a point; take the mean over a short boundary or a small `box`".into()
+                "write `point = [x, y]` for the value at a point inside a body; of the largest value of anything no interval can be guaranteed".into()
             }
             Fault::UnknownKey { key, known, .. } => suggestion(key, known, "keys known here", '`'),
             Fault::MissingKey { remedy, .. } => remedy.clone(),

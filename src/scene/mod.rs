@@ -33,7 +33,7 @@ pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use files::Part;
 pub use obstacle::{Obstacle, Shape};
-pub use quantity::{Component, Extent, Holder, Quantity, Region, Target};
+pub use quantity::{Component, Extent, Holder, Invariant, PointValue, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
 pub use selection::{BodyCells, Boundary, Edges, Group};
@@ -64,6 +64,14 @@ impl Kinematics {
         match self {
             Kinematics::PlaneStrain => "plane-strain",
             Kinematics::PlaneStress => "plane-stress",
+        }
+    }
+
+    /// The stress across the plane of an isotropic body over the sum of those in it.
+    pub fn stress_across(self, poisson: f64) -> f64 {
+        match self {
+            Kinematics::PlaneStrain => poisson,
+            Kinematics::PlaneStress => 0.0,
         }
     }
 

@@ -100,7 +100,10 @@ impl Context<'_> {
     }
 
     fn displacement(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["window", "about", "box", "polygon", "component"], "`displacement`")?;
+        if let Some(point) = &self.raw.point {
+            return self.displacement_at(of, point, whole);
+        }
+        self.refuse(&["window", "about", "box", "polygon", "component", "smoothness"], "`displacement`")?;
         let name = self.source.name(of, (self.table, "displacement"), "name a boundary or a body")?;
         let body = self.named.bodies.iter().position(|body| body.name == name);
         let boundary = match &self.named.edges {
@@ -125,7 +128,7 @@ impl Context<'_> {
     }
 
     fn force(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["about", "box", "polygon", "component"], "`force`")?;
+        self.refuse(&["about", "box", "polygon", "component", "point", "smoothness"], "`force`")?;
         match self.holder("force", of)? {
             Holder::Contact(contact) => {
                 if let Some(direction) = &self.raw.direction {
@@ -147,7 +150,7 @@ impl Context<'_> {
     }
 
     fn moment(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["direction", "window", "box", "polygon", "component"], "`moment`")?;
+        self.refuse(&["direction", "window", "box", "polygon", "component", "point", "smoothness"], "`moment`")?;
         let of = self.holder("moment", of)?;
         let remedy = "add about = [x, y], the point that the moment is taken about";
         let about = self.required(&self.raw.about, "about", remedy, whole)?;
@@ -155,11 +158,11 @@ impl Context<'_> {
     }
 
     fn stress(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["window", "about"], "`stress`")?;
-        let name = self.source.name(of, (self.table, "stress"), "name a body")?;
-        let Some(body) = self.named.bodies.iter().position(|body| body.name == name) else {
-            return self.unknown("stress", of, "body", names(self.named.bodies.iter().map(|b| b.name.as_str())));
-        };
+        if let Some(point) = &self.raw.point {
+            return self.stress_at(of, point, whole);
+        }
+        self.refuse(&["window", "about", "smoothness"], "`stress`")?;
+        let body = self.body("stress", of)?;
         let one_of = |first, second, both| Fault::OneOf { table: self.table.to_owned(), first, second, both };
         let region = match (&self.raw.corners, &self.raw.polygon) {
             (None, None) => Region::Whole,
@@ -182,9 +185,18 @@ impl Context<'_> {
         Ok(Target::Stress { body, region, component })
     }
 
+    /// The body that a name means.
+    pub(super) fn body(&self, key: &'static str, of: &At<String>) -> Result<usize, SceneError> {
+        let name = self.source.name(of, (self.table, key), "name a body")?;
+        match self.named.bodies.iter().position(|body| body.name == name) {
+            Some(body) => Ok(body),
+            None => self.unknown(key, of, "body", names(self.named.bodies.iter().map(|b| b.name.as_str()))),
+        }
+    }
+
     /// Refuses the first of `keys` that is there; `other` is what it does not go with.
-    fn refuse(&self, keys: &[&'static str], other: &'static str) -> Result<(), SceneError> {
-        let RawQuantity { direction, about, window, corners, polygon, component, .. } = self.raw;
+    pub(super) fn refuse(&self, keys: &[&'static str], other: &'static str) -> Result<(), SceneError> {
+        let RawQuantity { direction, about, window, corners, polygon, component, point, smoothness, .. } = self.raw;
         for &key in keys {
             let (span, remedy) = match key {
                 "direction" => (direction.as_ref().map(At::span), "delete `direction`; a moment in the plane has none"),
@@ -193,6 +205,13 @@ impl Context<'_> {
                 "box" => (corners.as_ref().map(At::span), "delete `box`; only a `stress` is taken over a region"),
                 "polygon" => {
                     (polygon.as_ref().map(At::span), "delete `polygon`; only a `stress` is taken over a region")
+                }
+                "point" => (
+                    point.as_ref().map(At::span),
+                    "delete `point`; only a `displacement` or a `stress` is taken at a point",
+                ),
+                "smoothness" => {
+                    (smoothness.as_ref().map(At::span), "delete `smoothness`; only a value at a `point` has one")
                 }
                 _ => (
                     component.as_ref().map(At::span),
@@ -206,7 +225,7 @@ impl Context<'_> {
         Ok(())
     }
 
-    fn misplaced<T>(
+    pub(super) fn misplaced<T>(
         &self,
         key: &'static str,
         span: Range<usize>,
@@ -216,7 +235,7 @@ impl Context<'_> {
         self.fail(span, Fault::Misplaced { key, table: self.table.to_owned(), other, remedy })
     }
 
-    fn required<'v, V>(
+    pub(super) fn required<'v, V>(
         &self,
         value: &'v Option<V>,
         key: &str,
@@ -249,6 +268,7 @@ impl Context<'_> {
     }
 }
 
-const DIRECTION_OF_DISPLACEMENT: &str = "add the direction of the displacement, for instance direction = [1.0, 0.0]";
+pub(super) const DIRECTION_OF_DISPLACEMENT: &str =
+    "add the direction of the displacement, for instance direction = [1.0, 0.0]";
 const DIRECTION_OF_FORCE: &str =
     "add the direction in which the force of the support is taken, for instance direction = [1.0, 0.0]";
