@@ -48,6 +48,7 @@ mod paper_objects;
 mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
+mod points;
 mod prescribed;
 mod pressure_at_ends;
 mod quadrilaterals;

@@ -91,10 +91,16 @@ pub enum PointValue {
 }
 
 impl PointValue {
-    /// The smoothness where none is given.
-    pub const SMOOTHNESS: usize = 2;
     /// The largest smoothness.
     pub const SMOOTHEST: usize = 6;
+
+    /// The smoothness where none is given: one that makes narrow intervals.
+    pub fn smoothness(&self) -> usize {
+        match self {
+            PointValue::Displacement(_) => 4,
+            PointValue::Stress(_) | PointValue::Invariant(_) => 2,
+        }
+    }
 }
 
 /// A number that the components of a stress determine, whatever the axes.

@@ -50,7 +50,7 @@ impl Context<'_> {
         let rule = ("the smoothness of a weight is a whole number from 0 to 6", "write 2, or leave `smoothness` out");
         let smoothness = match &self.raw.smoothness {
             Some(given) => self.source.number(given, (self.table, "smoothness"), is_whole, rule)? as usize,
-            None => PointValue::SMOOTHNESS,
+            None => value.smoothness(),
         };
         Ok(Target::Point { body, at, value, smoothness })
     }

@@ -56,7 +56,7 @@ pub(in crate::scene) struct RawQuantity {
     /// A point inside an isotropic body, away from its outline, at which a displacement or a stress is wanted.
     #[schemars(with = "Option<[f64; 2]>")]
     pub point: Option<Pair>,
-    /// How smooth the weight is of the mean that is the value at a point, 0 to 6; 2 where nothing is said.
+    /// How smooth the weight is of the mean that is the value at a point, 0 to 6; where nothing is said 2 for stresses, 4 for displacements.
     #[schemars(with = "Option<u8>", range(min = 0, max = 6))]
     pub smoothness: Option<At<f64>>,
 }
