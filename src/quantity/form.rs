@@ -42,7 +42,7 @@ impl Form {
     }
 
     fn invariant(problem: &Problem, body: usize, components: [Functional; 3], invariant: Invariant) -> Self {
-        let across = problem.scene.kinematics.stress_across(problem.scene.bodies[body].poisson);
+        let across = problem.materials()[body].out_of_plane([1.0, 0.0, 0.0]);
         Form::Invariant { components: Box::new(components), of: Invariants { invariant, across } }
     }
 

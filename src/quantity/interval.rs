@@ -17,7 +17,7 @@ use super::value::{displaced, value_of};
 use crate::bounds::energy::square;
 use crate::bounds::{Bracket, Nearest, UpperBound, excess_work, mid_field, openings_within};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses, ShapedStrain};
-use crate::element::{Compliance, Samples, StressField, side};
+use crate::element::{Material, Samples, StressField, side};
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Ends that are closer than this, relative to the value, are one but for rounding.
@@ -265,8 +265,12 @@ impl<'a> Known<'a> {
         let known =
             [exact, loaded].map(|functional| value_of(problem, functional, v).unwrap_or(f64::NAN) / functional.scale);
         // ‖u − v‖² ≤ 2 G.
-        let parts =
-            || loaded.oscillation.iter().map(|(t, b)| (*t, b / materials[problem.mesh.body[*t]].softest().sqrt()));
+        let parts = || {
+            loaded
+                .oscillation
+                .iter()
+                .map(|(t, b)| (*t, b / materials[problem.mesh.body[*t]].softest().unwrap_or(0.0).sqrt()))
+        };
         let square: f64 = parts().map(|(_, b)| b * b).sum();
         let radius = (2.0 * self.gap * square).sqrt();
         for (t, b) in parts().filter(|_| square > 0.0) {
@@ -331,7 +335,7 @@ struct Remainder {
 /// ∫ Πχ : c Πχ.
 fn shaped_square(
     problem: &Problem,
-    materials: &[Compliance],
+    materials: &[Material],
     ShapedStrain { triangle: t, strain }: &ShapedStrain,
 ) -> f64 {
     let material = &materials[problem.mesh.body[*t]];

@@ -139,6 +139,18 @@ fn points_on_the_outline_and_outside_are_refused_with_what_is_bounded() {
         let text = refused(p, value);
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
     }
+    let ply = "orthotropic = { young = [2.0, 1.0, 1.0], poisson = [0.3, 0.3, 0.3], shear = 0.5, angle = 30.0 }";
+    let anisotropic = |size| {
+        let mut problem = plate("plane-strain", size, SHEARED);
+        let text = problem.scene.to_toml().replace("young = 2", ply).replace("poisson = 0.3", "");
+        assert!(text.contains("orthotropic"), "{text}");
+        let scene = Scene::parse(&text, "ply.toml".as_ref()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        problem = Problem::load(scene).expect("a problem");
+        ask(&mut problem, vec![quantity("q", at([0.7, 0.5], YY))]);
+        refuse_quantities(&problem).expect_err("no value")
+    };
+    let text = anisotropic(0.25);
+    assert!(text.contains("is not isotropic") && text.contains("polygon = [...]"), "{text}");
     // The line that is offered is one that holds.
     let text = refused([0.7, 1.0], YY);
     let point = text.split("`point = [").nth(1).and_then(|rest| rest.split(']').next()).expect("a point");

@@ -47,7 +47,7 @@ impl Point {
     /// The value at `at` in body `body`, with a weight of this smoothness.
     ///
     /// # Errors
-    /// [`NotBounded::PointOutside`], [`NotBounded::PointOnOutline`].
+    /// [`NotBounded::PointInAnisotropic`], [`NotBounded::PointOutside`], [`NotBounded::PointOnOutline`].
     pub fn new(
         problem: &Problem,
         body: usize,
@@ -56,6 +56,10 @@ impl Point {
         wanted: Wanted,
     ) -> Result<Self, NotBounded> {
         let mesh = &problem.mesh;
+        let name = problem.scene.bodies[body].name.clone();
+        if problem.materials()[body].softest().is_none() {
+            return Err(NotBounded::PointInAnisotropic { body: name });
+        }
         let seen = |v: usize| [mesh.points[v][0] - at[0], mesh.points[v][1] - at[1]];
         let is_own = |t: Option<usize>| t.is_some_and(|t| mesh.body[t] == body);
         let (mut nearest, mut size, mut on) = (f64::INFINITY, 0.0_f64, None);
@@ -71,7 +75,6 @@ impl Point {
             }
         }
         let [x, y] = problem.scene.as_written(at);
-        let name = problem.scene.bodies[body].name.clone();
         if let Some(edge) = on.filter(|_| nearest <= ON_OUTLINE * size) {
             let own = mesh.edges[edge].triangles.into_iter().flatten().find(|&t| mesh.body[t] == body);
             let corners = own.map_or([at; 3], |t| mesh.corners(t)).map(|p| problem.scene.as_written(p));

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::disc::Spot;
 use crate::element::displacement::MOST;
 use crate::element::geometry::sub_area;
-use crate::element::{Compliance, Samples, StressField};
+use crate::element::{Material, Samples, StressField};
 
 /// The mean of products of the shape functions of a [`StressField`] of one degree, and its inverse.
 struct Mass {
@@ -45,7 +45,7 @@ pub struct Projection {
 /// those of all of it.
 pub fn projected(
     corners: [[f64; 2]; 3],
-    material: &Compliance,
+    material: &Material,
     degree: usize,
     (spots, whole): (&[Spot], bool),
     chi: &[[f64; 3]],
