@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
-use super::mark::{Mark, draw};
+use super::mark::{Mark, Spot, draw, draw_spots};
 use super::outline::{View, outline, polyline};
 use super::raster::raster;
 use super::svg::{Anchor, Svg, look, px};
@@ -72,7 +72,13 @@ pub(crate) fn view(problem: &Problem) -> (View, f64) {
 
 /// The map of `values`, one per triangle, on `scale`; triangles whose value is no number stay blank. What is coloured is a group of
 /// the class `cells`.
-pub fn map(problem: &Problem, title: &str, values: &[f64], scale: &Scale, marks: &[Mark]) -> String {
+pub fn map(
+    problem: &Problem,
+    title: &str,
+    values: &[f64],
+    scale: &Scale,
+    (marks, spots): (&[Mark], &[Spot]),
+) -> String {
     let (view, height) = view(problem);
     let mut svg = Svg::new(WIDTH, height, format!("{title}: a map over the bodies"));
     svg.raw(format_args!(r#"<g class="cells">"#));
@@ -85,6 +91,7 @@ pub fn map(problem: &Problem, title: &str, values: &[f64], scale: &Scale, marks:
     for body in 0..problem.scene.bodies.len() {
         svg.path(look::LINE, r#"stroke-width="1""#, &outline(&problem.mesh, body, &view));
     }
+    draw_spots(&mut svg, spots, |at| view.at(at));
     draw(&mut svg, marks, |mark| view.at(mark.at));
     svg.finish()
 }
