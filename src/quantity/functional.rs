@@ -10,8 +10,10 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::lift::lift;
+use super::local::Local;
 use super::point::{Point, Wanted};
 use super::region::{Cut, cut, twice_area};
+use super::tip::{NoTip, Tip};
 use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
@@ -29,6 +31,8 @@ pub enum Kind {
     Moment,
     /// Mean stress.
     Stress,
+    /// Stress intensity at the tip of a crack.
+    StressIntensity,
 }
 
 impl Kind {
@@ -44,6 +48,7 @@ impl Kind {
             Kind::Force => "force",
             Kind::Moment => "moment",
             Kind::Stress => "stress",
+            Kind::StressIntensity => "stress_intensity",
         }
     }
 
@@ -52,6 +57,11 @@ impl Kind {
         match self {
             Kind::Displacement => sizes.displacement,
             Kind::Stress => sizes.stress,
+            Kind::StressIntensity => {
+                let [low, high] = [f64::min, f64::max]
+                    .map(|of| [0, 1].map(|c| problem.mesh.points.iter().map(|p| p[c]).reduce(of).unwrap_or(0.0)));
+                sizes.stress * (high[0] - low[0]).hypot(high[1] - low[1]).sqrt()
+            }
             Kind::Moment => sizes.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
             Kind::Force => sizes.force,
         }
@@ -80,6 +90,9 @@ pub enum NotBounded {
         /// Name of the body.
         body: String,
     },
+    /// A stress intensity where there is no tip of a crack.
+    #[error(transparent)]
+    NoTip(#[from] NoTip),
     /// A number that is no linear functional, but a function of several.
     #[error("`{word}` is no linear functional of the solution")]
     NotLinear {
@@ -136,8 +149,8 @@ pub struct Functional {
     pub load: Load,
     /// χ of a region, constant in it; the load has it too.
     pub region: Option<([f64; 3], Vec<Cut>)>,
-    /// A value at a point: a mean with a weight. The load has it once it is [`Self::loaded`].
-    pub point: Option<Box<Point>>,
+    /// A value at a point or a stress intensity. The load has it once it is [`Self::loaded`].
+    pub local: Option<Box<Local>>,
     /// ∫ c(χ − Πχ):(χ − Πχ) for each of the shaped strains Πχ of the load.
     pub rests: Vec<f64>,
     /// What the load leaves of the quantity on a displacement w is at most Σ b_T ‖e(w)‖_T: triangles with their b_T.
@@ -169,6 +182,12 @@ impl Functional {
                     PointValue::Invariant(invariant) => return Err(NotBounded::NotLinear { word: invariant.word() }),
                 };
                 Self::at_point(problem, *body, *at, *smoothness, wanted)
+            }
+            Target::StressIntensity { mode, tip } => {
+                let tip = Tip::new(problem, *mode, *tip)?;
+                let constant = tip.of_body_force(problem);
+                let own = Functional::empty(problem, Kind::StressIntensity);
+                Ok(Functional { local: Some(Box::new(Local::Tip(tip))), constant, ..own })
             }
             Target::ContactForce { contact, window } => {
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
@@ -212,7 +231,7 @@ impl Functional {
             Wanted::Displacement(_) => Kind::Displacement,
         };
         let point = Point::new(problem, body, at, smoothness, wanted)?;
-        Ok(Functional { point: Some(Box::new(point)), ..Functional::empty(problem, kind) })
+        Ok(Functional { local: Some(Box::new(Local::Point(point))), ..Functional::empty(problem, kind) })
     }
 
     /// The functional with all of its load, for fields of these degrees on each triangle and tractions of these on each edge.
@@ -222,9 +241,9 @@ impl Functional {
         stress_degree: impl Fn(usize) -> usize,
         edge_degree: impl Fn(usize) -> usize,
     ) -> Cow<'_, Functional> {
-        let Some(point) = &self.point else { return Cow::Borrowed(self) };
-        let mut own = Functional { point: None, ..self.clone() };
-        point.load(problem, &mut own, stress_degree, edge_degree);
+        let Some(local) = &self.local else { return Cow::Borrowed(self) };
+        let mut own = Functional { local: None, ..self.clone() };
+        local.load(problem, &mut own, stress_degree, edge_degree);
         Cow::Owned(own)
     }
 
@@ -233,13 +252,13 @@ impl Functional {
         let load = &self.load;
         !load.tractions.is_empty()
             || load.force.iter().any(|f| *f != [0.0; 2])
-            || self.point.as_ref().is_some_and(|point| point.is_displacement())
+            || self.local.as_ref().is_some_and(|local| local.is_of_place())
     }
 
     /// Whether nothing but the normal traction of contacts, and what is known, enters.
     pub fn is_of_contact_alone(&self) -> bool {
         let load = &self.load;
-        self.point.is_none()
+        self.local.is_none()
             && load.tractions.is_empty()
             && load.strains.is_empty()
             && load.shaped.is_empty()
@@ -260,7 +279,7 @@ impl Functional {
                 weights: vec![Vec::new(); pairs],
             },
             region: None,
-            point: None,
+            local: None,
             rests: Vec::new(),
             oscillation: Vec::new(),
             constant: 0.0,

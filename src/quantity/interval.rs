@@ -257,7 +257,7 @@ impl<'a> Known<'a> {
     /// What the load leaves of a value at a point on the exact displacement: that of v, and at most so much more, whose parts are added to
     /// `shares`.
     fn remainder(&self, exact: &Functional, loaded: &Functional, shares: &mut [f64]) -> Remainder {
-        if exact.point.is_none() {
+        if exact.local.is_none() {
             return Remainder { centre: 0.0, radius: 0.0 };
         }
         let (v, problem) = (&self.upper.displacement, self.problem);

@@ -4,16 +4,20 @@
 //! of the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]), or what three of them determine
 //! ([`Form`]).
 
+mod constants;
 mod end;
 mod form;
 mod functional;
 mod interval;
 mod invariant;
 mod lift;
+mod local;
 mod pass;
 mod point;
+mod projection;
 mod region;
 mod search;
+mod tip;
 mod tried;
 mod value;
 
@@ -22,4 +26,5 @@ pub use functional::{Functional, Kind, NotBounded};
 pub use interval::{Interval, Known, outside};
 pub use invariant::Invariants;
 pub use point::Wanted;
+pub use tip::NoTip;
 pub use value::{displaced, value_of};

@@ -205,8 +205,8 @@ pub fn strained(
     degree: impl Fn(usize) -> usize,
     mut at: impl FnMut(usize, usize, [f64; 3]) -> [f64; 3],
 ) -> f64 {
-    if let Some(point) = &functional.point {
-        return point.strained(problem, degree, at);
+    if let Some(local) = &functional.local {
+        return local.strained(problem, degree, at);
     }
     let mut sum = Sum::default();
     let mut add = |t: usize, sub: usize, l: [f64; 3], by: f64, chi: &[f64; 3]| {

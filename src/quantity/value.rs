@@ -11,8 +11,8 @@ use crate::problem::Problem;
 
 /// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
 pub fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
-    if let Some(point) = &functional.point {
-        return point.displaced(problem, v);
+    if let Some(local) = &functional.local {
+        return local.displaced(problem, v);
     }
     let load = &functional.load;
     work_of(problem, v, |body| load.force[body], load.tractions.iter().copied()).value()

@@ -178,6 +178,9 @@ impl Draft {
                 };
                 format!("stress = {}{region}, {}", body(*of), component_of(component))
             }
+            Target::StressIntensity { mode, tip } => {
+                format!("stress_intensity = {:?}, tip = {}", mode.word(), list(tip))
+            }
             Target::Point { body: of, at, value, smoothness } => {
                 let (key, value) = match value {
                     PointValue::Displacement(direction) => ("displacement", format!("direction = {}", list(direction))),

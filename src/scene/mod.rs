@@ -39,7 +39,7 @@ pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use files::Part;
 pub use obstacle::{Obstacle, Shape};
-pub use quantity::{Component, Extent, Holder, Invariant, PointValue, Quantity, Region, Target};
+pub use quantity::{Component, Extent, Holder, Invariant, Mode, PointValue, Quantity, Region, Target};
 pub use raw::schema;
 pub use read::BoundaryUse;
 pub use selection::{BodyCells, Boundary, Edges, Group};

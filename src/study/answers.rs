@@ -4,7 +4,7 @@ use super::Certified;
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::{Displacement, Elements, StressField};
 use crate::problem::Problem;
-use crate::quantity::{Form, Interval, Kind, Known, NotBounded, displaced};
+use crate::quantity::{Form, Interval, Kind, Known, NoTip, NotBounded, displaced};
 use crate::scene::Quantity;
 
 /// A quantity and what is guaranteed of it.
@@ -44,7 +44,7 @@ impl Answer {
 pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
     for quantity in &problem.scene.quantities {
         match Form::new(problem, quantity) {
-            Ok(_) | Err(NotBounded::Shared { .. }) => {}
+            Ok(_) | Err(NotBounded::Shared { .. } | NotBounded::NoTip(NoTip::Coarse { .. })) => {}
             Err(error) => return Err(format!("quantity '{}': {error}", quantity.name)),
         }
     }

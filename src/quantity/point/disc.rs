@@ -244,7 +244,7 @@ fn sub_of(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 /// The distance of the origin from the segment between two points.
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let d = sub_of(b, a);
     let part = -(a[0] * d[0] + a[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
     let part = part.clamp(0.0, 1.0);

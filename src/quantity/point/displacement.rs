@@ -14,17 +14,17 @@
 //! bounded by the trace inequality ‖w'‖²_e ≤ |e|/|T| (‖w'‖² + h ‖w'‖ ‖∇w'‖). For w = u − v these bounds widen the interval.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::PI;
 
 use super::disc::Place;
-use super::projection::projected;
 use super::{Point, Wanted};
 use crate::dual::ShapedStrain;
 use crate::element::geometry::from_centroid;
 use crate::element::quadrature::segment_rule;
 use crate::element::side;
 use crate::problem::{Condition, Problem};
+use crate::quantity::constants::Constants;
 use crate::quantity::functional::Functional;
+use crate::quantity::projection::projected;
 
 /// What rounding leaves of a difference of squares.
 const ROUNDING: f64 = 1e-14;
@@ -195,39 +195,5 @@ impl Point {
             *oscillation.entry(t).or_default() += (length * left).sqrt() * of_traction;
         }
         functional.load.edges.push((e, x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()));
-    }
-}
-
-/// Constants of a triangle: ‖w'‖ ≤ `of_load` ‖e(w)‖, for w' = w less a rigid motion.
-struct Constants {
-    area: f64,
-    diameter: f64,
-    of_load: f64,
-    of_gradient: f64,
-}
-
-impl Constants {
-    fn new(corners: [[f64; 2]; 3]) -> Self {
-        let side = |i: usize| {
-            let [a, b] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-            (b[0] - a[0]).hypot(b[1] - a[1])
-        };
-        let sides = [0, 1, 2].map(side);
-        let around: f64 = sides.iter().sum();
-        let area = 3.0 * crate::element::geometry::sub_area(corners);
-        let inner = 2.0 * area / around;
-        let centre = [0, 1].map(|c| (0..3).map(|i| sides[i] * (corners[i][c] - corners[0][c])).sum::<f64>() / around);
-        let reach = |p: [f64; 2]| (p[0] - corners[0][0] - centre[0]).hypot(p[1] - corners[0][1] - centre[1]);
-        let outer = corners.into_iter().map(reach).fold(0.0, f64::max);
-        let diameter = sides.into_iter().fold(0.0, f64::max);
-        let beta = 0.5 * inner / outer;
-        let of_gradient = (1.0 + 2.0 / (beta * beta)).sqrt();
-        Constants { area, diameter, of_load: diameter / PI * of_gradient, of_gradient }
-    }
-
-    /// ‖w'‖ on a side of this length over ‖e(w)‖.
-    fn of_traction(&self, length: f64) -> f64 {
-        let square = self.of_load * self.of_load + self.diameter * self.of_load * self.of_gradient;
-        (length / self.area * square).sqrt()
     }
 }

@@ -7,12 +7,12 @@
 mod disc;
 mod displacement;
 mod kernel;
-mod projection;
 
-use self::disc::{Disc, Place, distance};
+use self::disc::Place;
+pub use self::disc::{Disc, Spot, distance};
 use self::kernel::Kernel;
-use self::projection::projected;
 use super::functional::{Functional, NotBounded};
+use super::projection::projected;
 use crate::dual::ShapedStrain;
 use crate::element::{Displacement, contraction};
 use crate::problem::Problem;

@@ -75,11 +75,15 @@ impl Context<'_> {
 
     fn target(&self, whole: Range<usize>) -> Result<Target, SceneError> {
         let raw = self.raw;
-        match [&raw.displacement, &raw.force, &raw.moment, &raw.stress] {
-            [Some(of), None, None, None] => self.displacement(of, whole),
-            [None, Some(of), None, None] => self.force(of, whole),
-            [None, None, Some(of), None] => self.moment(of, whole),
-            [None, None, None, Some(of)] => self.stress(of, whole),
+        if raw.stress_intensity.is_none() {
+            self.refuse(&["tip"], "this quantity")?;
+        }
+        match [&raw.displacement, &raw.force, &raw.moment, &raw.stress, &raw.stress_intensity] {
+            [Some(of), None, None, None, None] => self.displacement(of, whole),
+            [None, Some(of), None, None, None] => self.force(of, whole),
+            [None, None, Some(of), None, None] => self.moment(of, whole),
+            [None, None, None, Some(of), None] => self.stress(of, whole),
+            [None, None, None, None, Some(of)] => self.stress_intensity(of, whole),
             several => {
                 let given: Vec<_> =
                     KINDS.into_iter().zip(several).filter_map(|(key, of)| Some((key, of.as_ref()?))).collect();
@@ -206,7 +210,8 @@ impl Context<'_> {
 
     /// Refuses the first of `keys` that is there; `other` is what it does not go with.
     pub(super) fn refuse(&self, keys: &[&'static str], other: &'static str) -> Result<(), SceneError> {
-        let RawQuantity { direction, about, window, corners, polygon, component, point, smoothness, .. } = self.raw;
+        let RawQuantity { direction, about, window, corners, polygon, component, point, smoothness, tip, .. } =
+            self.raw;
         for &key in keys {
             let (span, remedy) = match key {
                 "direction" => (direction.as_ref().map(At::span), "delete `direction`; a moment in the plane has none"),
@@ -220,6 +225,7 @@ impl Context<'_> {
                     point.as_ref().map(At::span),
                     "delete `point`; only a `displacement` or a `stress` is taken at a point",
                 ),
+                "tip" => (tip.as_ref().map(At::span), "delete `tip`; only a `stress_intensity` has one"),
                 "smoothness" => {
                     (smoothness.as_ref().map(At::span), "delete `smoothness`; only a value at a `point` has one")
                 }

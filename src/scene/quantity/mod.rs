@@ -77,6 +77,32 @@ pub enum Target {
         /// n of the weight (1 − s)ⁿ (1 − (n + 3)s/2) of the mean that is the value, at most [`PointValue::SMOOTHEST`].
         smoothness: usize,
     },
+    /// The stress intensity at the tip of a crack.
+    StressIntensity {
+        /// Opening or sliding.
+        mode: Mode,
+        /// The tip, counted from [`Draft::origin`](super::Draft::origin).
+        tip: [f64; 2],
+    },
+}
+
+/// How a crack opens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// The faces move apart.
+    I,
+    /// The faces slide in the plane.
+    II,
+}
+
+impl Mode {
+    /// The word of the format.
+    pub fn word(self) -> &'static str {
+        match self {
+            Mode::I => "KI",
+            Mode::II => "KII",
+        }
+    }
 }
 
 /// What is wanted at a point.
@@ -183,7 +209,9 @@ impl Quantity {
     /// Counts coordinates from `origin`.
     pub(super) fn shift(&mut self, origin: [f64; 2]) {
         let points = match &mut self.target {
-            Target::Moment { about: at, .. } | Target::Point { at, .. } => std::slice::from_mut(at),
+            Target::Moment { about: at, .. } | Target::Point { at, .. } | Target::StressIntensity { tip: at, .. } => {
+                std::slice::from_mut(at)
+            }
             Target::Stress { region: Region::Polygon(points), .. } => points.as_mut_slice(),
             _ => return,
         };

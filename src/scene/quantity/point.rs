@@ -1,9 +1,9 @@
-//! Values at points.
+//! Values at points and stress intensities.
 
 use std::ops::Range;
 
 use super::check::{Context, DIRECTION_OF_DISPLACEMENT};
-use super::{Component, Invariant, PointValue, Target};
+use super::{Component, Invariant, Mode, PointValue, Target};
 use crate::scene::error::{Fault, SceneError};
 use crate::scene::raw::{At, Pair};
 
@@ -53,5 +53,17 @@ impl Context<'_> {
             None => value.smoothness(),
         };
         Ok(Target::Point { body, at, value, smoothness })
+    }
+
+    pub(super) fn stress_intensity(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
+        let others = ["direction", "window", "about", "box", "polygon", "component", "point", "smoothness"];
+        self.refuse(&others, "`stress_intensity`")?;
+        let Some(mode) = [Mode::I, Mode::II].into_iter().find(|mode| mode.word() == of.value) else {
+            let known = vec!["KI".to_owned(), "KII".to_owned()];
+            let (table, found) = (self.table.to_owned(), of.value.clone());
+            return self.fail(of.span(), Fault::UnknownWord { key: "stress_intensity", table, found, known });
+        };
+        let tip = self.required(&self.raw.tip, "tip", "add tip = [x, y], the end of the crack", whole)?;
+        Ok(Target::StressIntensity { mode, tip: self.source.vector(tip, (self.table, "tip"))? })
     }
 }

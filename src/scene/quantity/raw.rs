@@ -4,14 +4,16 @@ use schemars::JsonSchema;
 
 use crate::scene::raw::{At, Pair};
 
-/// A number the scene is solved for, with a guaranteed interval: one of `displacement`, `force`, `moment`, `stress`.
+/// A number the scene is solved for, with a guaranteed interval: one of `displacement`, `force`, `moment`, `stress`,
+/// `stress_intensity`.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Quantity", extend("oneOf" = [
     {"required": ["displacement", "direction"]},
     {"required": ["force"]},
     {"required": ["moment", "about"]},
-    {"required": ["stress"]}
+    {"required": ["stress"]},
+    {"required": ["stress_intensity", "tip"]}
 ]))]
 pub(in crate::scene) struct RawQuantity {
     /// A name of its own, without `=`: reports and `--tolerance-of NAME=X` use it.
@@ -32,6 +34,13 @@ pub(in crate::scene) struct RawQuantity {
     /// in it, or over all of it; with `point` the value there.
     #[schemars(length(min = 1))]
     pub stress: Option<At<String>>,
+    /// `KI` or `KII`: the stress intensity at the `tip` of a crack with faces free of traction, or of half a model with a roller ahead of
+    /// the tip; of KII the faces may touch without friction.
+    #[schemars(extend("enum" = ["KI", "KII"]))]
+    pub stress_intensity: Option<At<String>>,
+    /// The tip of a crack, a vertex of the mesh.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub tip: Option<Pair>,
     /// A direction of any length.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,

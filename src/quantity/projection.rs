@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::disc::Spot;
+use super::point::Spot;
 use crate::element::displacement::MOST;
 use crate::element::geometry::sub_area;
 use crate::element::{Material, Samples, StressField};
