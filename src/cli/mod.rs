@@ -23,6 +23,7 @@ pub mod options;
 pub mod part;
 mod points;
 pub mod progress;
+mod proof;
 pub mod say;
 pub mod schema;
 pub mod session;

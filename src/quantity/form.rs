@@ -35,15 +35,22 @@ impl Form {
                     Functional::at_point(problem, body, at, smoothness, Wanted::Stress(component.factors()))
                 };
                 let components = [component(Component::XX)?, component(Component::YY)?, component(Component::XY)?];
-                Ok(Form::invariant(problem, body, components, invariant))
+                Ok(Form::invariant(problem, (body, at), components, invariant))
             }
             _ => Ok(Form::Linear(Box::new(Functional::new(problem, quantity)?))),
         }
     }
 
-    fn invariant(problem: &Problem, body: usize, components: [Functional; 3], invariant: Invariant) -> Self {
-        let across = problem.materials()[body].out_of_plane([1.0, 0.0, 0.0]);
-        Form::Invariant { components: Box::new(components), of: Invariants { invariant, across } }
+    fn invariant(
+        problem: &Problem,
+        (body, at): (usize, [f64; 2]),
+        components: [Functional; 3],
+        invariant: Invariant,
+    ) -> Self {
+        let out = |stress: [f64; 3]| problem.material(body).out_of_plane(stress, at);
+        let offset = out([0.0; 3]);
+        let across = out([1.0, 0.0, 0.0]) - offset;
+        Form::Invariant { components: Box::new(components), of: Invariants { invariant, across, offset } }
     }
 
     /// What it is.

@@ -8,8 +8,10 @@ use crate::scene::Invariant;
 pub struct Invariants {
     /// Which.
     pub invariant: Invariant,
-    /// The stress across the plane over σ_xx + σ_yy.
+    /// The stress across the plane is this times σ_xx + σ_yy …
     pub across: f64,
+    /// … and this.
+    pub offset: f64,
 }
 
 /// Steps over which slopes are taken, relative to the largest component.
@@ -20,8 +22,8 @@ impl Invariants {
     pub fn value(&self, [xx, yy, xy]: [f64; 3]) -> f64 {
         let (mean, radius) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
         match self.invariant {
-            // With s = σ_xx + σ_yy, σ_zz = as: ¼(1 − 2a)² s² + ¾(σ_xx − σ_yy)² + 3σ_xy².
-            Invariant::VonMises => ((1.0 - 2.0 * self.across) * mean).hypot(3.0_f64.sqrt() * radius),
+            // (½(σ_xx + σ_yy) − σ_zz)² + ¾(σ_xx − σ_yy)² + 3σ_xy².
+            Invariant::VonMises => ((1.0 - 2.0 * self.across) * mean - self.offset).hypot(3.0_f64.sqrt() * radius),
             Invariant::LargestPrincipal => mean + radius,
             Invariant::SmallestPrincipal => mean - radius,
         }
@@ -46,14 +48,14 @@ impl Invariants {
         }
     }
 
-    /// The least of von Mises' stress: zero normal stress, or on a side of the rectangle.
+    /// The least of von Mises' stress, a convex function: inside the rectangle of normal stresses, or on a side of it.
     fn least(&self, xx: [f64; 2], yy: [f64; 2], shear: f64) -> f64 {
         let within = |x: f64, [low, high]: [f64; 2]| x.max(low).min(high);
-        // For a given normal stress s the other one is best at that multiple of it: the square is A(x² + y²) + 2Bxy + 3σ_xy².
-        let c = 0.25 * (1.0 - 2.0 * self.across).powi(2);
-        let [a, b] = [c + 0.75, c - 0.75];
-        let best = |s: f64| -b / a * s;
-        let mut candidates = vec![[within(0.0, xx), within(0.0, yy)]];
+        // With m = qs/2 − c for the first term above, the best other normal stress for a given one.
+        let (q, c) = (1.0 - 2.0 * self.across, self.offset);
+        let best = |s: f64| ((1.5 - 0.5 * q * q) * s + q * c) / (1.5 + 0.5 * q * q);
+        let all = if q == 0.0 { 0.0 } else { c / q };
+        let mut candidates = vec![[within(all, xx), within(all, yy)]];
         for k in 0..2 {
             candidates.push([xx[k], within(best(xx[k]), yy)]);
             candidates.push([within(best(yy[k]), xx), yy[k]]);
@@ -114,8 +116,8 @@ mod tests {
             (seed >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
         };
         for invariant in Invariant::ALL {
-            for across in [0.0, 0.3, 0.49] {
-                let of = Invariants { invariant, across };
+            for (across, offset) in [(0.0, 0.0), (0.3, 0.2), (0.49, -0.4)] {
+                let of = Invariants { invariant, across, offset };
                 for _ in 0..200 {
                     let bounds = [0, 1, 2].map(|_| {
                         let (a, b) = (random(), 0.4 * random());

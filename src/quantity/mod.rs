@@ -17,6 +17,7 @@ mod point;
 mod projection;
 mod region;
 mod search;
+mod springs;
 mod tip;
 mod tried;
 mod value;

@@ -2,14 +2,17 @@
 
 mod accuracy;
 mod adaptive;
+mod anisotropic;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod body_forces;
 mod bonds;
 mod circular_gap;
 mod comparison;
 mod congruent;
 mod contact_pressure;
 mod contact_qp;
+mod crack_tips;
 mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
@@ -25,6 +28,7 @@ mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
 mod gap_curves;
+mod initial_strain;
 mod inner_segments;
 mod intervals;
 mod invariance;
@@ -59,6 +63,7 @@ mod rings;
 mod rounding;
 mod scene_schema;
 mod setup;
+mod springs;
 mod squares;
 #[path = "../support/mod.rs"]
 mod support;

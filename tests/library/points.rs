@@ -45,6 +45,8 @@ fn fields_that_both_models_represent_have_their_value_at_every_point() {
                 [[tractions]]\non = \"right\"\nvalue = [1, 0]\ngradient = [[0, -2], [0, 0]]";
     let weight = "body_force = [0, -1]\n[[supports]]\non = \"left\"\ntype = \"roller\"\n[[supports]]\non = \"right\"\n\
                   type = \"roller\"\n[[supports]]\non = \"bottom\"\ntype = \"roller\"";
+    let warm = "expansion = 0.1\ntemperature = { value = 0.5, gradient = [0, 1] }\n\
+                [[supports]]\non = \"left\"\ntype = \"roller\"";
     for (degree, size, points) in [(1, 0.3, &POINTS[..]), (2, 0.5, &POINTS[1..3]), (3, 0.7, &POINTS[..1])] {
         for &p in points {
             let [x, y] = p;
@@ -57,7 +59,12 @@ fn fields_that_both_models_represent_have_their_value_at_every_point() {
             let targets = [at(p, YY), at(p, XX), at(p, UY), at(p, UX)];
             let of_weight = [y - 1.0, 0.3 * (y - 1.0), -0.5 * 0.91 * (y - 0.5 * y * y), 0.0];
             let heavy = found(plate("plane-stress", size, weight), degree, &targets);
-            for (answer, exact) in bent.iter().zip(exact).chain(heavy.iter().zip(of_weight)) {
+            // Warmer above: no stress, and e(u) = ε0.
+            let targets = [at(p, XX), at(p, UX), at(p, invariant(Invariant::VonMises))];
+            let warm = found(plate("plane-stress", size, warm), degree, &targets);
+            let of_warmth = [0.0, 0.1 * x * (0.5 + y), 0.0];
+            let all = bent.iter().zip(exact).chain(heavy.iter().zip(of_weight)).chain(warm.iter().zip(of_warmth));
+            for (answer, exact) in all {
                 let [low, high] = answer.interval.ends;
                 assert!(low <= exact && exact <= high, "{p:?} {}: {exact} in [{low:e}, {high:e}]", answer.name);
                 // The radius of the ball is the root of a gap that is known to rounding.

@@ -72,7 +72,10 @@ fn quantities_are_what_the_file_says() {
 
 /// A quantity without its name, and what its refusal has to say.
 const MALFORMED: &[(&str, &[&str])] = &[
-    ("", &["does not say what is wanted", "give one of `displacement`, `force`, `moment`, `stress`"]),
+    (
+        "",
+        &["does not say what is wanted", "give one of `displacement`, `force`, `moment`, `stress`, `stress_intensity`"],
+    ),
     (
         "force = \"wall\"\nmoment = \"wall\"\nabout = [0, 0]",
         &["2 things at once: `force`, `moment`", "a table [[quantities]] with a name of its own"],
@@ -95,6 +98,10 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("stress = \"left\"\npoint = [0, 0]\ncomponent = \"mises\"", &["\"mises\"", "\"von-mises\""]),
     ("stress = \"left\"\ncomponent = \"von-mises\"", &["`von-mises`", "a mean over a region", "point = [x, y]"]),
     ("force = \"left_face\"\npoint = [0, 0]", &["`point`", "does not go with `force`"]),
+    ("stress_intensity = \"KI\"", &["no `tip`", "tip = [x, y]"]),
+    ("stress_intensity = \"K1\"\ntip = [0, 0]", &["\"K1\"", "\"KI\""]),
+    ("stress_intensity = \"KI\"\ntip = [0, 0]\ndirection = [1, 0]", &["`direction`", "`stress_intensity`"]),
+    ("stress = \"left\"\ncomponent = \"xx\"\ntip = [0, 0]", &["`tip`", "only a `stress_intensity`"]),
     ("stress = \"left\"\nat = [0, 0]", &["unknown key `at`", "`point = [x, y]`"]),
     ("force = \"left\"", &["no contact or support", "\"left_face|right_face\"", "\"wall\""]),
     ("force = \"left_load\"\ndirection = [1, 0]", &["no contact or support", "\"left_load\""]),

@@ -18,6 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::disc::Place;
 use super::{Point, Wanted};
 use crate::dual::ShapedStrain;
+use crate::element::contraction;
 use crate::element::geometry::from_centroid;
 use crate::element::quadrature::segment_rule;
 use crate::element::side;
@@ -62,8 +63,14 @@ impl Point {
             if left > 0.0 {
                 *oscillation.entry(t).or_default() += left * Constants::new(corners).of_load;
             }
-            let chi: Vec<[f64; 3]> =
-                all.iter().map(|spot| material.strain(self.stress(&share, corners, spot.from_middle, d))).collect();
+            let stresses: Vec<[f64; 3]> =
+                all.iter().map(|spot| self.stress(&share, corners, spot.from_middle, d)).collect();
+            // e(u) = aτ + ε0.
+            for (spot, stress) in all.iter().zip(&stresses) {
+                let at = [0, 1].map(|c| spot.from_middle[c] + self.disc.middle[c]);
+                functional.constant += spot.weight * contraction(*stress, material.initial().at(at));
+            }
+            let chi: Vec<[f64; 3]> = stresses.into_iter().map(|stress| material.strain(stress)).collect();
             let found = projected(corners, &material, degree, (&all, true), &chi);
             functional.load.shaped.push(ShapedStrain { triangle: t, strain: found.field });
             functional.rests.push(found.rest);

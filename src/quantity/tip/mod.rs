@@ -56,6 +56,9 @@ impl Tip {
         let Some([kappa, gamma]) = material.pressure_and_shear() else {
             return Err(NoTip::Anisotropic { body: problem.scene.bodies[place.body].name.clone() });
         };
+        if !problem.scene.bodies[place.body].initial.is_none() {
+            return Err(NoTip::Strained { body: problem.scene.bodies[place.body].name.clone() });
+        }
         let constants = [0.25 * material.unit() / kappa, material.unit() / gamma];
         let span = if place.half { [0.0, PI] } else { [-PI, PI] };
         Ok(Tip { field: Williams::extracting(mode, constants, span), place })
@@ -181,11 +184,14 @@ impl Tip {
     /// ∫ F·ηw, which is known.
     pub fn of_body_force(&self, problem: &Problem) -> f64 {
         let force = problem.scene.bodies[self.place.body].body_force;
-        if force == [0.0; 2] {
+        if force.is_none() {
             return 0.0;
         }
         let mut sum = Sum::default();
-        let of = |w: [f64; 2]| force[0] * w[0] + force[1] * w[1];
+        let of = |at: [f64; 2]| {
+            let (f, w) = (force.at(at), self.displacement(at));
+            f[0] * w[0] + f[1] * w[1]
+        };
         for &(t, eta) in self.place.triangles.iter().chain(&self.place.inner) {
             let corners = problem.mesh.corners(t);
             if let Some(i) = corners.iter().position(|p| *p == self.place.at) {
@@ -196,7 +202,7 @@ impl Tip {
                     for (q, across) in segment_rule(40) {
                         let s = root * root;
                         let at = [0, 1].map(|d| a[d] + s * (b[d] + q * (c[d] - b[d]) - a[d]));
-                        sum.add(4.0 * area * s * root * along * across * of(self.displacement(at)));
+                        sum.add(4.0 * area * s * root * along * across * of(at));
                     }
                 }
                 continue;
@@ -207,7 +213,7 @@ impl Tip {
                 let at = [0, 1].map(|c| spot.from_middle[c] + self.place.at[c]);
                 let from = [0, 1].map(|c| at[c] - corners[0][c]);
                 let value = eta[0] + (0..3).map(|i| eta[i] * (g[i][0] * from[0] + g[i][1] * from[1])).sum::<f64>();
-                sum.add(spot.weight * value * of(self.displacement(at)));
+                sum.add(spot.weight * value * of(at));
             }
         }
         sum.value()

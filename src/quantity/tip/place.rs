@@ -51,6 +51,14 @@ pub enum NoTip {
         /// The distance of the next boundary.
         radius: String,
     },
+    /// An initial strain.
+    #[error(
+        "body '{body}' has a temperature or an initial stress, and the stress intensity is bounded for bodies without one"
+    )]
+    Strained {
+        /// Name of the body.
+        body: String,
+    },
     /// Another law of elasticity.
     #[error(
         "body '{body}' is not isotropic: the field that extracts a stress intensity is known for isotropic bodies only"
