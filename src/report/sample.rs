@@ -166,7 +166,7 @@ fn two_blocks(n: usize) -> Problem {
         scene: scene(),
         mesh,
         conditions,
-        interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
+        interfaces: vec![Interface { name: "left_face|right_face".into(), pairs, centre: None }],
         notes,
         refinement: crate::problem::Refinement::default(),
         uncut: None,

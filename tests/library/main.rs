@@ -60,5 +60,6 @@ mod squares;
 #[path = "../support/mod.rs"]
 mod support;
 mod two_blocks;
+mod unlike_arcs;
 mod upper_bound;
 mod workbench;
