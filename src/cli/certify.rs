@@ -154,9 +154,10 @@ fn held(
     if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
         session.progress.phase("holding the field to its claim");
         let (problem, bracket) = (&certified.problem, &certified.bracket);
+        let weak = args.contact.is_some();
         let claim = match &before {
-            None => study::claim(problem, judged, bracket, args.contact.is_some(), &allow),
-            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, &allow),
+            None => study::claim(problem, judged, bracket, weak, &allow),
+            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, weak, &allow),
         };
         let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.

@@ -173,10 +173,9 @@ impl<'a> Places<'a> {
             Some(Condition::Roller { .. }) => {
                 ("clamped", format!("{name} is held along the boundary too, where the scene lets it slide"))
             }
-            Some(Condition::Traction(_)) => (
-                "forces",
-                format!("the nodal forces on {name} are others than the consistent ones of the scene's load"),
-            ),
+            Some(Condition::Traction(_)) => {
+                ("forces", format!("the nodal forces on {name} are not the consistent ones of the scene's load"))
+            }
             _ => ("forces", format!("forces act on {name} that the scene does not have")),
         };
         Trial { rank: 7, left, findings: vec![Finding::new(format!("boundary/{name}/{key}"), None, None, sentence)] }

@@ -95,7 +95,7 @@ impl Sample {
             mid: None,
             stresses: Vec::new(),
             maps: vec![
-                map("stress_difference", MapKind::Difference, "dual less FEniCSx P2 <a&b>", &|x, y| {
+                map("stress_difference", MapKind::Difference, "difference dual − FEniCSx P2 <a&b>", &|x, y| {
                     (x - 1.0).powi(2) + 0.1 * (9.0 * y).sin().abs()
                 }),
                 map("error_contribution", MapKind::GapShare, "free upper bound", &|x, y| {

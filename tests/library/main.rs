@@ -30,6 +30,7 @@ mod invariance;
 mod known_solutions;
 #[path = "../support/lame.rs"]
 mod lame;
+mod layers;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;

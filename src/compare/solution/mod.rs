@@ -92,6 +92,8 @@ pub struct Solution<'a> {
     pub reference: f64,
     /// What contact does on gaps beside what acts at [`Self::sites`].
     on_gaps: f64,
+    /// What the rule of a method whose contact holds in the mean may leave of the energy identity.
+    of_the_rule: f64,
     /// By what forces of the field are multiplied so that they are those of a solution at most.
     larger: f64,
     /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
@@ -161,6 +163,7 @@ impl<'a> Solution<'a> {
             largest: candidate.largest(),
             reference: candidate.largest(),
             on_gaps: 0.0,
+            of_the_rule: 0.0,
             larger: 1.0,
             ceiling: f64::INFINITY,
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),
