@@ -293,7 +293,10 @@ fn before_contact(
     field: &ForeignField,
 ) -> Result<Option<(Problem, Candidate)>, CliError> {
     if candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut) {
-        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        let help = "along a bond of unlike meshes the claim to be a discrete solution cannot be held: leave out --solution, or mesh both \
+                    sides with the same points";
+        let help = if problem.scene.bonds.is_empty() { "" } else { help };
+        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), help))?;
         let with_field = |before: Problem| field.candidate(&before, 0.0).map(|own| (before, own));
         return before.map(with_field).transpose().map_err(refused);
     }

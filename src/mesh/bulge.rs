@@ -41,8 +41,8 @@ impl<'a> Curvatures<'a> {
             let dot = before[0] * after[0] + before[1] * after[1];
             let lengths = before[0].hypot(before[1]) * after[0].hypot(after[1]);
             let across = (q[0] - p[0]).hypot(q[1] - p[1]);
-            let bends = dot >= CORNER * lengths && cross.abs() > IN_LINE * lengths;
-            bends.then(|| (v, 2.0 * cross / (lengths * across)))
+            let bent = if cross.abs() > IN_LINE * lengths { 2.0 * cross / (lengths * across) } else { 0.0 };
+            (dot >= CORNER * lengths).then_some((v, bent))
         };
         Curvatures { mesh, at: ways.into_iter().filter_map(curvature).collect() }
     }

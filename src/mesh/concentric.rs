@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use super::error::at;
 use super::glue::Record;
 use super::{MeshError, Triangulation};
-use crate::scene::{Circle, Contact, Note, Scene, counted};
+use crate::scene::{Circle, Joint, Note, Scene, counted};
 use crate::vector::distance;
 
 /// Part of the radius within which vertices lie on a circle.
@@ -128,11 +128,11 @@ fn spread(points: &[[f64; 2]]) -> Option<Circle> {
 pub(super) fn match_around(
     mesh: Triangulation,
     scene: &Scene,
-    contact: &Contact,
-    names: &[String; 2],
+    joint: Joint,
     Concentric { centre, radii }: Concentric,
     record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
+    let names = joint.sides;
     let sides = [0, 1].map(|i| seen(&mesh, &names[i], centre));
     let mut inserted = Vec::new();
     let (mut counts, mut bulge) = ([0, 0], 0.0_f64);
@@ -155,15 +155,15 @@ pub(super) fn match_around(
     } else {
         let flat = |p: [f64; 2]| {
             let what = format!("the triangle at {} is too flat to take a vertex on its circle", at(scene, p));
-            MeshError::contact(scene, contact.name(), what, "give both sides the same number of edges, or more of them")
+            MeshError::contact(scene, joint.quoted(), what, "give both sides the same number of edges, or more of them")
         };
         mesh.with_inserted(&inserted, &mut record.parent).map_err(flat)?
     };
     let gap = (radii[0] - radii[1]).abs();
     let mut text = format!(
-        "contact {}: the sides lie on circles about {} with radii that differ by {gap:.3e}; they are matched along its rays, \
+        "{}: the sides lie on circles about {} with radii that differ by {gap:.3e}; they are matched along its rays, \
          and contact acts along these",
-        contact.name(),
+        joint.name(),
         at(scene, centre)
     );
     if !inserted.is_empty() {

@@ -1,4 +1,4 @@
-//! Contact sides that coincide as curves get coinciding vertices.
+//! Sides of contacts and bonds that coincide as curves get coinciding vertices.
 //!
 //! Every vertex of one side is put into the edges of the other, break points of the gap and of windows into both. What is left is
 //! the condition of the scene: two coinciding polylines.
@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 
 use super::along::match_along;
+use super::bonded::bond;
 use super::boxes::{BoxTree, around};
 use super::bulge::Curvatures;
 use super::concentric::{Concentric, match_around};
@@ -13,9 +14,9 @@ use super::error::at;
 use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation, Uncut};
-use crate::scene::{Contact, ContactSides, Normals, Note, Scene, counted};
+use crate::scene::{ContactSides, Joint, Note, Scene, counted};
 
-/// A mesh whose contact sides match.
+/// A mesh whose contact sides match and whose bonds are closed.
 #[derive(Debug, Clone)]
 pub struct Glued {
     /// The mesh.
@@ -34,7 +35,7 @@ pub(super) struct Record {
     pub parent: Vec<usize>,
 }
 
-/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
+/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit, and those of every bond one.
 ///
 /// # Errors
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
@@ -48,35 +49,36 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
         mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
     snap(&mut mesh, scene, &mut record.notes);
-    for contact in &scene.contacts {
-        let ContactSides::Between(names) = &contact.sides else { continue };
-        mesh = match (contact.direction, concentric(&mesh, contact, names)) {
-            (Some(direction), _) => match_along(mesh, scene, contact, names, direction, &mut record)?,
-            (None, Some(circles)) => match_around(mesh, scene, contact, names, circles, &mut record)?,
-            (None, None) => match_vertices(mesh, scene, contact, names, &mut record)?,
+    for joint in scene.joints() {
+        mesh = match (joint.direction, concentric(&mesh, joint)) {
+            (Some(direction), _) => match_along(mesh, scene, joint, direction, &mut record)?,
+            (None, Some(circles)) => match_around(mesh, scene, joint, circles, &mut record)?,
+            (None, None) => match_vertices(mesh, scene, joint, &mut record)?,
         };
     }
     for index in others {
         mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
     let changed = mesh.points != before.points;
+    let (mesh, vertex) = bond(mesh, scene)?;
     let Record { notes, parent } = record;
-    Ok(Glued { mesh, notes, uncut: changed.then_some(Uncut { mesh: before, parent }) })
+    Ok(Glued { mesh, notes, uncut: changed.then(|| Uncut::new(before, parent, vertex)) })
 }
 
 /// The circles of sides with a distance between them, along whose rays they are matched.
-fn concentric(mesh: &Triangulation, contact: &Contact, [first, second]: &[String; 2]) -> Option<Concentric> {
-    (contact.normals == Normals::Smooth).then(|| Concentric::of(mesh, [first, second]))?
+fn concentric(mesh: &Triangulation, joint: Joint) -> Option<Concentric> {
+    let [first, second] = joint.sides;
+    joint.turns.then(|| Concentric::of(mesh, [first, second]))?
 }
 
 /// Puts the vertices of each side into the edges of the other, or beside them where the curve passes that they stand for.
 fn match_vertices(
     mesh: Triangulation,
     scene: &Scene,
-    contact: &Contact,
-    names: &[String; 2],
+    joint: Joint,
     record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
+    let names = joint.sides;
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
     let (mut moved, mut beside) = (0.0_f64, 0.0_f64);
@@ -113,11 +115,11 @@ fn match_vertices(
             let Some((off, edge)) = passing else {
                 let what =
                     format!("the vertex {} of '{}' does not lie on '{}'", at(scene, p), names[from], names[into]);
-                let remedy = "the two sides must be coinciding curves with the same ends, however each is divided: divide the \
-                              longer curve there and name the common part only; of curves that do not coincide, arcs about \
-                              one centre are matched along its rays if all of each side lies on its arc, and others, an arc on a \
-                              line or two cylinders, along a `direction`, with a `gap` beside their distance where there is one";
-                return Err(MeshError::contact(scene, contact.name(), what, remedy));
+                let remedy = "the two sides must be coinciding polylines, or divide one curve, with the same ends: divide the \
+                              longer one there and name the common part only, or give both sides the same points; sides that lie \
+                              apart are matched along the rays of their centre where they are arcs about one, and along a \
+                              `direction` otherwise, with a `gap` beside their distance where there is one";
+                return Err(MeshError::contact(scene, joint.quoted(), what, remedy));
             };
             beside = beside.max(off);
             counts[from] += 1;
@@ -128,7 +130,7 @@ fn match_vertices(
         return Ok(mesh);
     }
     let size = extent(&mesh);
-    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, joint.quoted(), p))?;
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
@@ -136,31 +138,29 @@ fn match_vertices(
             format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
         })
         .collect();
-    record
-        .notes
-        .push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
+    record.notes.push(Note { weakens_guarantee: false, text: format!("{}: {}", joint.name(), parts.join(", ")) });
     if beside > 0.0 {
         record.notes.push(Note {
             weakens_guarantee: true,
             text: format!(
-                "contact {}: both sides stand for one curve, and their vertices lie up to {beside:.1e} beside the edges of the \
-                 other side; these now pass through them. The bounds are for the bodies with these edges",
-                contact.name()
+                "{}: both sides stand for one curve, and their vertices lie up to {beside:.1e} beside the edges of the other \
+                 side; these now pass through them. The bounds are for the bodies with these edges",
+                joint.name()
             ),
         });
     }
     if moved > ROUND_OFF * size {
         record.notes.push(Note {
             weakens_guarantee: true,
-            text: format!("contact {}: the sides deviate by {moved:.1e} and were made to coincide", contact.name()),
+            text: format!("{}: the sides deviate by {moved:.1e} and were made to coincide", joint.name()),
         });
     }
     Ok(mesh)
 }
 
-fn too_flat(scene: &Scene, contact: &Contact, p: [f64; 2]) -> MeshError {
+fn too_flat(scene: &Scene, joint: String, p: [f64; 2]) -> MeshError {
     let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
-    MeshError::contact(scene, contact.name(), what, "mesh both sides with the same points")
+    MeshError::contact(scene, joint, what, "mesh both sides with the same points")
 }
 
 /// Puts the break points of a contact into its sides, so that the gap and the weights of quantities are linear on every
@@ -190,7 +190,9 @@ fn insert_breaks(
         let opposite = |i: usize| facing.get(&[key(side[i][1]), key(side[i][0])]);
         inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
     }
-    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh
+        .with_inserted(&inserted, &mut record.parent)
+        .map_err(|p| too_flat(scene, format!("contact '{}'", contact.name()), p))?;
     let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {

@@ -11,9 +11,9 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
-    Target, Touching, Traction,
+    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
+    Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
+    SupportKind, Target, Touching, Traction,
 };
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -46,6 +46,8 @@ pub struct Draft {
     pub tractions: Vec<Traction>,
     /// Γ_K.
     pub contacts: Vec<Contact>,
+    /// Boundaries that are glued to each other.
+    pub bonds: Vec<Bond>,
     /// What the scene is solved for, in the order of the file.
     pub quantities: Vec<Quantity>,
 }
@@ -67,6 +69,7 @@ impl Draft {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            bonds: Vec::new(),
             quantities: Vec::new(),
         }
     }
@@ -115,6 +118,7 @@ impl Draft {
             ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
             ("tractions", self.tractions.iter().map(traction).collect()),
             ("contacts", self.contacts.iter().map(contact).collect()),
+            ("bonds", self.bonds.iter().map(bond).collect()),
             ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
         ];
         for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
@@ -318,6 +322,10 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
         return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
     }
     format!("{sides}, gap = {gap}{normals}{direction}")
+}
+
+fn bond(Bond { sides: [a, b] }: &Bond) -> String {
+    format!("between = [{}, {}]", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

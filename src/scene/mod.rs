@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod bonds;
 mod centre;
 mod circle;
 mod conditions;
@@ -27,6 +28,8 @@ mod validate;
 
 use std::path::PathBuf;
 
+pub use bonds::Bond;
+pub(crate) use bonds::Joint;
 pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};

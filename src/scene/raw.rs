@@ -106,6 +106,9 @@ pub(super) struct RawScene {
     /// Boundaries that may touch, without friction.
     #[serde(default)]
     pub contacts: Vec<At<Table<RawContact>>>,
+    /// Boundaries that are glued to each other.
+    #[serde(default)]
+    pub bonds: Vec<At<Table<RawBond>>>,
     /// What the scene is solved for.
     #[serde(default)]
     pub quantities: Vec<At<Table<RawQuantity>>>,
@@ -386,6 +389,16 @@ pub(super) struct RawContact {
     #[serde(rename = "move")]
     #[schemars(with = "Option<[f64; 2]>")]
     pub moved: Option<Pair>,
+}
+
+/// Two boundaries that are glued to each other. Their vertices need not be the same.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Bond")]
+pub(super) struct RawBond {
+    /// Two boundaries that coincide as polylines.
+    #[schemars(with = "[String; 2]")]
+    pub between: At<Vec<At<String>>>,
 }
 
 /// A rigid obstacle: a straight line or a circle.

@@ -21,7 +21,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let edges = edge_names(&mesh, &boundaries);
     let conditions = conditions(&raw, edges.clone(), &source)?;
     let quantities = quantities(&raw, edges, &bodies, &conditions, &source)?;
-    let Conditions { supports, tractions, contacts } = conditions;
+    let Conditions { supports, tractions, contacts, bonds } = conditions;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene::unchecked(Draft {
@@ -38,6 +38,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         supports,
         tractions,
         contacts,
+        bonds,
         quantities,
     }))
 }

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use hypercircle::scene::{
-    Affine, Body, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource, Polygon,
-    Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
+    Affine, Body, Bond, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource,
+    Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
 };
 
 use crate::support::scenes::sample;
@@ -13,8 +13,8 @@ use crate::support::scenes::sample;
 fn square() -> Draft {
     let polygon = Polygon {
         body: "block \"a\"".into(),
-        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-        edges: ["ground", "wall", "top", ""].map(String::from).to_vec(),
+        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 1.0], [0.0, 1.0]],
+        edges: ["ground", "wall", "top", "left", "right"].map(String::from).to_vec(),
         arcs: Vec::new(),
     };
     let quantity = |name: &str, target| Quantity { name: name.into(), target };
@@ -32,6 +32,7 @@ fn square() -> Draft {
             load: Load::Affine(Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] }),
         }],
         contacts: vec![Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))],
+        bonds: vec![Bond { sides: ["left".into(), "right".into()] }],
         quantities: vec![
             quantity("side", side),
             quantity("all", Target::Displacement { of: Extent::Body(0), direction: [0.0, 1.0] }),

@@ -4,6 +4,7 @@ mod accuracy;
 mod adaptive;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod bonds;
 mod circular_gap;
 mod comparison;
 mod congruent;

@@ -24,6 +24,7 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
                 dt { "Loads" } dd { (loads(scene)) }
                 dt { "Supports" } dd { (supports(scene)) }
                 @if !scene.contacts.is_empty() { dt { "Contact" } dd { (contacts(problem)) } }
+                @if !scene.bonds.is_empty() { dt { "Bonds" } dd { (bonds(scene)) } }
                 dt { "Mesh" } dd { (counts(report, problem)) }
                 @if !report.provenance.command_line.is_empty() {
                     dt { "Command" } dd { code { (clean(&report.provenance.command_line)) } }
@@ -90,6 +91,12 @@ fn contacts(problem: &Problem) -> Markup {
             }
             @if contact.direction.is_some() { ", matched along a direction" }
         } } }
+    }
+}
+
+fn bonds(scene: &Scene) -> Markup {
+    html! {
+        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": glued" } } }
     }
 }
 
