@@ -241,7 +241,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
 }
 
 fn scene() -> Scene {
-    let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0, 0.0] };
+    let body = |name: &str| Body::isotropic(name, 1.0, 0.3);
     let mesh = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Scene::unchecked(Draft {
         title: "Two blocks <a&b>, \"eccentric\" traction".into(),

@@ -15,6 +15,7 @@ use super::{
     Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
     SupportKind, Target, Touching, Traction,
 };
+use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,11 +108,11 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, young, poisson, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
-            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force}{cells} }}")?;
+            let (name, material, force) = (quoted(name), material(elasticity), list(body_force));
+            writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
@@ -245,6 +246,29 @@ pub(crate) fn quoted(text: &str) -> String {
 
 fn number(number: f64) -> String {
     Value::from(number).to_string()
+}
+
+/// The keys of a material.
+pub(crate) fn material(elasticity: &Elasticity) -> String {
+    match elasticity {
+        Elasticity::Isotropic { young, poisson } => {
+            format!("young = {}, poisson = {}", number(*young), number(*poisson))
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => format!(
+            "orthotropic = {{ young = {}, poisson = {}, shear = {}, angle = {} }}",
+            list(young),
+            list(poisson),
+            number(*shear),
+            number(*angle)
+        ),
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            let rows = match matrix {
+                Matrix::Three(rows) => rows.iter().map(|row| list(row)).collect::<Vec<_>>(),
+                Matrix::Six(rows) => rows.iter().map(|row| list(row)).collect(),
+            };
+            format!("{} = [{}], angle = {}", kind.key(), rows.join(", "), number(*angle))
+        }
+    }
 }
 
 fn list(numbers: &[f64]) -> String {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use hypercircle::elasticity::Elasticity;
 use hypercircle::scene::{
     Affine, Body, Bond, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource,
     Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
@@ -22,7 +23,7 @@ fn square() -> Draft {
     let along = Component::along([0.8, -0.6]);
     Draft {
         title: "A \u{201c}square\u{201d}\\ \u{1}".into(),
-        bodies: vec![Body { name: "block \"a\"".into(), young: 0.1 + 0.2, poisson: -0.25, body_force: [0.0, -1e-300] }],
+        bodies: vec![Body { body_force: [0.0, -1e-300], ..Body::isotropic("block \"a\"", 0.1 + 0.2, -0.25) }],
         supports: vec![Support {
             on: "wall".into(),
             kind: SupportKind::Clamped { displacement: Affine::constant([1.0 / 3.0, 0.0]) },
@@ -70,8 +71,8 @@ fn parts_that_make_no_scene_are_refused_as_in_a_file() {
         let error: SceneError = scene.changed(change).expect_err(fragment);
         assert!(error.to_string().contains(fragment), "{error}");
     };
-    refused(&|draft| draft.bodies[0].poisson = 0.5, "incompressible");
-    refused(&|draft| draft.bodies[0].young = f64::NAN, "finite");
+    refused(&|draft| draft.bodies[0].elasticity = Elasticity::Isotropic { young: 1.0, poisson: 0.5 }, "incompressible");
+    refused(&|draft| draft.bodies[0].elasticity = Elasticity::Isotropic { young: f64::NAN, poisson: 0.3 }, "finite");
     refused(&|draft| draft.thickness = f64::INFINITY, "finite");
     refused(&|draft| draft.bodies.clear(), "bod");
     refused(&|draft| draft.supports[0].on = "ceiling".into(), "ceiling");

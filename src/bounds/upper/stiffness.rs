@@ -2,7 +2,7 @@
 
 use super::cholesky;
 use super::split::Split;
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::side::elevation;
 use crate::lanes::wide;
 
@@ -26,7 +26,7 @@ pub struct Stiffness {
 impl Stiffness {
     /// That of a triangle of degree `k` with sides of degrees `degrees`; `None` where the inside has no unique minimum in
     /// numbers.
-    pub fn new(k: usize, degrees: [usize; 3], corners: [[f64; 2]; 3], material: &Compliance) -> Option<Self> {
+    pub fn new(k: usize, degrees: [usize; 3], corners: [[f64; 2]; 3], material: &Material) -> Option<Self> {
         // With K_ii = L Lᵀ and Y = L⁻¹ K_ib, what is left is K_bb − YᵀY.
         let split = Split::new(k, corners, material);
         let (boundary, inside) = (split.boundary, split.inside);

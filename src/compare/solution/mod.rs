@@ -21,7 +21,7 @@ use super::candidate::Candidate;
 use super::cells;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};
 
 /// What a solver may leave in the equations that it solves, relative to what they balance.
@@ -105,7 +105,7 @@ pub struct Solution<'a> {
     /// What supports leave of the nodal forces, contact forces among them.
     unsupported: Vec<[f64; 2]>,
     /// Material of every body.
-    materials: Vec<Compliance>,
+    materials: Vec<Material>,
     /// How every contact holds in the mean, where it does and not at the nodes.
     pub weak: Vec<Option<Weak>>,
     /// Whether contact is claimed to hold in the mean.

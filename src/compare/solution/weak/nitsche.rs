@@ -243,7 +243,8 @@ impl Terms {
 
     /// The γ that brings the forces nearest.
     fn fit(&self, solution: &Solution<'_>, signed: bool) -> Fit {
-        let young = solution.problem.scene.bodies.iter().map(|body| body.young).fold(f64::INFINITY, f64::min);
+        let materials = solution.problem.materials();
+        let young = materials.iter().map(|material| material.young()[0]).fold(f64::INFINITY, f64::min);
         let [low, high, step] = POWERS;
         let count = ((high - low) / step) as usize;
         let tried = (0..=count).map(|k| self.at(solution, low + step * k as f64 - young.log10(), signed));
