@@ -2,6 +2,7 @@
 
 mod along;
 mod around;
+mod bed;
 mod bow;
 mod build;
 mod contact;
@@ -13,6 +14,8 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bed::facing_vertices;
+pub use bed::{Bed, BedPair};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -21,6 +24,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 use std::sync::Arc;
 
 use crate::element::Material;
+use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::Scene;
@@ -36,6 +40,8 @@ pub struct Problem {
     pub conditions: Vec<Condition>,
     /// Contacts, in scene order.
     pub interfaces: Vec<Interface>,
+    /// Springs, in the order of the supports, then elastic layers in that of the bonds.
+    pub beds: Vec<Bed>,
     /// What the reader of the report has to know about how the mesh and the data were represented.
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
@@ -52,12 +58,37 @@ impl Problem {
 
     /// Material of one body of the scene.
     pub fn material(&self, body: usize) -> Material {
-        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
+    }
+
+    /// The body force on triangle `t`.
+    pub fn body_force(&self, t: usize) -> &BodyForce {
+        &self.scene.bodies[self.mesh.body[t]].body_force
+    }
+
+    /// What the body force does on triangle `t`.
+    pub fn force_on(&self, t: usize) -> OnTriangle {
+        self.body_force(t).on(self.mesh.corners(t))
+    }
+
+    /// The least degree of stresses on triangle `t` that balance its loads.
+    pub fn least_degree(&self, t: usize) -> usize {
+        self.body_force(t).stress_degree()
     }
 
     /// The pairs of all contacts, one interface after the other.
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)
+    }
+
+    /// The pairs of all beds with their stiffness, one bed after the other.
+    pub fn bed_pairs(&self) -> impl Iterator<Item = (&BedPair, [f64; 2])> + Clone {
+        self.beds.iter().flat_map(|bed| bed.pairs.iter().map(|pair| (pair, bed.stiffness)))
     }
 
     /// The edges of Γ_τ, each with P at its two ends.
@@ -103,6 +134,15 @@ pub enum Condition {
         /// Index into [`Problem::interfaces`].
         interface: usize,
         /// Index into [`Interface::pairs`].
+        pair: usize,
+        /// 0 for the first side, 1 for the second.
+        side: usize,
+    },
+    /// Side 0 or 1 of `beds[bed].pairs[pair]`: the traction is that of springs.
+    Elastic {
+        /// Index into [`Problem::beds`].
+        bed: usize,
+        /// Index into [`Bed::pairs`].
         pair: usize,
         /// 0 for the first side, 1 for the second.
         side: usize,

@@ -30,6 +30,7 @@ mod pages;
 #[path = "../support/decks.rs"]
 mod plates;
 mod printed;
+mod proof;
 mod quadrilateral_blocks;
 mod quadrilaterals;
 mod quantities;
