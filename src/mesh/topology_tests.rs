@@ -217,7 +217,7 @@ fn contacts_along_shared_curves_that_do_not_fit() {
     let mut raw = shared_curve(&["a", "b"]);
     raw.triangles.iter_mut().for_each(|(_, name)| *name = "left".into());
     let one = contact(scene(&["left"]), "a", "b", Gap::Constant(0.0));
-    refuse(raw, &one, &["inside body 'left'", "separates two bodies"]);
+    refuse(raw, &one, &["inside body 'left'", "joins two bodies"]);
 }
 
 #[test]

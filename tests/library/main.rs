@@ -68,5 +68,6 @@ mod squares;
 #[path = "../support/mod.rs"]
 mod support;
 mod two_blocks;
+mod unlike_arcs;
 mod upper_bound;
 mod workbench;
