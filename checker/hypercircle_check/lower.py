@@ -43,7 +43,7 @@ class Stress:
         self.tau = Ball(np.zeros((len(counts), self.most + 1, 2))).writable()
         self.force = np.zeros((len(counts), 3), object)  # force and moment about the origin, fixed point
         self._candidates(counts, values)
-        self._contacts(np.split(pressures, np.cumsum(pair_counts)[:-1]), np.abs(pressures).max(initial=0.0))
+        self._contacts(np.split(pressures, np.cumsum(pair_counts)[:-1]), max(np.abs(x).max(initial=0.0) for x in (values, pressures)))
         self._set_terms()
         self.scale = float(np.abs(self.tau.mid).max(initial=0.0))
         size = 1 + float(np.abs(mesh.points).max())
@@ -87,7 +87,8 @@ class Stress:
         free = np.flatnonzero(np.isin(kinds, ("inside", "clamped")))
         self._set_forces(free, fixed(self.tau.mid[free, 0]), fixed(self.tau.mid[free, 1]))
         self.clamped = np.flatnonzero(kinds == "clamped").tolist()
-        self.open = np.flatnonzero(np.isin(kinds, ("free", "load"))).tolist()
+        # Of edges that may take an additional load those first that have nothing to do with others.
+        self.open = [e for some in (("free", "load"), ("roller", "contact")) for e in np.flatnonzero(np.isin(kinds, some)).tolist()]
         for e in np.flatnonzero(kinds == "roller").tolist():
             n = mesh.directions[e]
             unit = np.array([float(x) for x in n])
@@ -149,15 +150,14 @@ class Stress:
         mesh, count = self.mesh, len(self.mesh.triangles)
         self.component, self.parent, order, self.roots = np.full(count, -1), np.full(count, -1), [], []
         other = np.where(mesh.signs > 0, mesh.owners[mesh.sides, 1], mesh.owners[mesh.sides, 0]).tolist()
-        # From all clamped edges at once, then from an open edge of what they do not reach, then from anywhere.
-        starts = [self.clamped] + [[e] for e in self.open] + [[-1 - t] for t in range(count)]
+        # From all clamped edges at once, then from an open edge of what they do not reach.
+        starts = [self.clamped] + [[e] for e in self.open]
         for k, edges in enumerate(starts):
             begin = len(order)
             for e in edges:
-                t = int(mesh.owners[e, 0]) if e >= 0 else -1 - e
+                t = int(mesh.owners[e, 0])
                 if self.component[t] < 0:
-                    self.component[t] = 0 if k == 0 else len(self.roots) + 1
-                    self.parent[t] = e if k == 0 else -1
+                    self.component[t], self.parent[t] = (0, e) if k == 0 else (len(self.roots) + 1, -1)
                     order.append(t)
                     if k:
                         self.roots.append((t, e))
@@ -196,8 +196,6 @@ class Stress:
         if off is None or left:
             # As an additional load on an edge of each: its size is told, and its work is part of the upper bound.
             for t, e in self.roots:
-                if e < 0:
-                    raise Refused("a body that only contacts and rollers hold cannot be brought into balance exactly")
                 self.parent[t] = e
         self.error *= 1 + (off or 0.0)
         self._set_terms(self.error)

@@ -95,17 +95,17 @@ class Mesh:
         return [Ball(x, abs(x) * 2.0**-51) for x in mid.T]
 
     def _rollers(self):
-        """Direction of every roller edge: as given, or the sum of the normals of all edges of its boundary that are parallel to it."""
-        self.directions, groups = {}, {}
+        """Direction of every roller edge: as given, or the sum of the normals of all such edges that are parallel to it."""
+        self.directions, groups = {}, []
         for e, condition in enumerate(self.conditions):
             if condition and condition.kind == "roller":
                 n = self.directions[e] = condition.direction or self.normal(*self.edges[e])
                 unit = np.array([float(x) for x in n]) / np.hypot(*map(float, n))
                 rounding = 2.0**-48 * np.abs(self.points[self.edges[e]]).max() / np.hypot(*map(float, n))
-                own = groups.setdefault(self.names[e], [])
-                group = next((g for g in own if np.abs(unit - g[0]).max() < PARALLEL + rounding), None)
-                own.append((unit, [e])) if group is None else group[1].append(e)
-        for _, group in (g for own in groups.values() for g in own):
+                near = (group for group in groups if np.abs(unit - group[0]).max() < PARALLEL + rounding)
+                group = None if condition.direction else next(near, None)
+                groups.append((unit, [e])) if group is None else group[1].append(e)
+        for _, group in groups:
             if not self.conditions[group[0]].direction:
                 n = [sum(self.directions[e][k] for e in group) for k in range(2)]
                 self.directions.update(dict.fromkeys(group, n))
