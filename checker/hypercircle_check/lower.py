@@ -209,31 +209,33 @@ class Stress:
         scaled = a * room
         norms = np.sqrt((scaled**2).sum(1)) + 1e-300
         scaled /= norms[:, None]
-        step = np.linalg.lstsq(scaled, -np.array([float(x) for x in total]) / norms, rcond=1e-10)[0] * room
-        changed = [t.value + Q(x) for t, x in zip(terms, step.tolist())]
+        changed = [t.value for t in terms]
+        for _ in range(3):
+            missing = [t + sum(x * (y - s.value) for x, y, s in zip(row, changed, terms) if x) for t, row in zip(total, matrix)]
+            active = np.array([not t.presses or x < 0 for t, x in zip(terms, changed)])
+            step = np.linalg.lstsq(scaled * active, -np.array([float(x) for x in missing]) / norms, rcond=1e-10)[0] * room * active
+            changed = [min(x + Q(s), Q(0)) if t.presses else x + Q(s) for t, x, s in zip(terms, changed, step.tolist())]
         chosen, rest = [], scaled.copy()
         for _ in total:
             sizes = (rest**2).sum(0)
             chosen.append(int(np.argmax(sizes)))
             q = rest[:, chosen[-1]] / np.sqrt(sizes[chosen[-1]] + 1e-300)
             rest = rest - np.outer(q, q @ rest)
-        if any(t.presses and x >= 0 for t, x in zip(terms, changed)):
-            return None
         rational = lambda x: fmpq(x.numerator, x.denominator)
         square = fmpq_mat(len(total), len(total), [rational(row[j]) for row in matrix for j in chosen])
         exact = sizes.max() > 1e-18 and square.det() != 0
+        balanced = changed
         if exact:
-            inverse = square.inv()
+            inverse, balanced = square.inv(), list(changed)
             missing = [t + sum(x * (y - s.value) for x, y, s in zip(row, changed, terms) if x) for t, row in zip(total, matrix)]
             for j, (x,) in zip(chosen, (inverse * fmpq_mat(len(total), 1, [rational(-x) for x in missing])).table()):
-                changed[j] += Q(int(x.p), int(x.q))
+                balanced[j] += Q(int(x.p), int(x.q))
             norm = max(sum(abs(int(x.p) / int(x.q)) for x in row) for row in inverse.table())
-            exact = all(x < -4 * norm * self.error for t, x in zip(terms, changed) if t.presses)
+            exact = all(balanced[j] < -4 * norm * self.error for j in chosen if terms[j].presses)
+        changed = balanced if exact else changed
         worst = max(abs(float(x - t.value)) for t, x in zip(terms, changed))
         if worst > ROUNDING * max(self.scale, room.max()):
             raise Refused(f"a body that only contacts and rollers hold is out of balance: a traction would have to change by {worst:.3e}")
-        if any(t.presses and x > 0 for t, x in zip(terms, changed)):
-            return None
         for term, x in zip(terms, changed):
             term.value = x
         return 8 * norm * max(1.0, np.abs(a).max()) * len(terms) if exact else None
