@@ -39,7 +39,7 @@ class Stress:
             raise Refused("the proof does not have a traction for every edge and contact pair")
         if not np.isfinite(values).all() or not np.isfinite(pressures).all():
             raise Refused("a traction of the proof is no number")
-        self.most = int(max([counts.max() - 1, 1] + [n - 1 + p.turns() for n, p in zip(pair_counts, mesh.pairs)]))
+        self.most = int(max([counts.max() - 1, data["stress_degrees"].max(), 1] + [n - 1 + p.turns() for n, p in zip(pair_counts, mesh.pairs)]))
         self.tau = Ball(np.zeros((len(counts), self.most + 1, 2))).writable()
         self.force = np.zeros((len(counts), 3), object)  # force and moment about the origin, fixed point
         self._candidates(counts, values)

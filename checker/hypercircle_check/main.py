@@ -163,6 +163,7 @@ def main(arguments=None):
     print(f"  scene: sha256 {proof.manifest['scene_sha256']}")
     for file in proof.manifest["mesh_files"]:
         print(f"  mesh: {file['name']}, sha256 {file['sha256']}")
+    print(f"  by hypercircle-check {VERSION}")
     print(f"  {time.monotonic() - start:.1f} s")
     return 0
 
