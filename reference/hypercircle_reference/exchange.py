@@ -108,6 +108,10 @@ class Problem:
     traction_edges: np.ndarray
     traction_values: np.ndarray
     contacts: list[Contact]
+    spring_edges: np.ndarray
+    spring_opposite: np.ndarray
+    spring_axes: np.ndarray
+    spring_stiffness: np.ndarray
     pin_vertices: np.ndarray
     pin_directions: np.ndarray
 
@@ -155,6 +159,14 @@ def parse_problem(data: dict) -> Problem:
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
     pins = _records(data, "pins")
+    springs = _records(data, "springs") if "springs" in data else []
+    alone = [{**entry, "opposite": -1} if entry.get("opposite") is None else entry for entry in springs]
+    axes = _column(springs, "springs", "axes", (2, 2))
+    for axis in range(2):
+        _check_unit(axes[:, axis], "springs", "axes")
+    stiffness = _column(springs, "springs", "stiffness", (2,))
+    if np.any(stiffness < 0.0):
+        raise BadExchange(f"springs[{np.argmin(stiffness.min(axis=1))}].stiffness is negative")
     along = _column(roller, "roller", "normal", (2,))
     _check_unit(along, "roller", "normal")
     directions = _column(pins, "pins", "direction", (2,))
@@ -180,6 +192,10 @@ def parse_problem(data: dict) -> Problem:
         contacts=[
             _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(_records(data, "contacts"))
         ],
+        spring_edges=_index_column(springs, "springs", "edge", (), len(edges)),
+        spring_opposite=_index_column(alone, "springs", "opposite", (), len(edges), lowest=-1),
+        spring_axes=axes,
+        spring_stiffness=stiffness,
         pin_vertices=_index_column(pins, "pins", "vertex", (), len(points)),
         pin_directions=directions,
     )

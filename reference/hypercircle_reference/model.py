@@ -13,13 +13,16 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
+import scipy.sparse as sp
 import ufl
+from petsc4py import PETSc
 
 from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
 from .lattice import Lattice, square, traction_weights, weights
+from .springs import stiffness as spring_stiffness
 
 GAUSS_POINTS = 6
 """Points of the rule on quadrilaterals, in each direction."""
@@ -51,7 +54,8 @@ class Numbering:
 class Model:
     """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node.
 
-    ``displacement`` is a function of the space, and ``energy`` the compiled form of its strain energy. The space owns
+    ``displacement`` is a function of the space, ``energy`` the compiled form of its strain energy, and ``springs`` the part of the
+    stiffness that springs have, if there are any. The space owns
     the communicator of matrix and vector, and has to live as long as they and all that is duplicated from them.
     """
 
@@ -59,13 +63,16 @@ class Model:
     load: object
     displacement: object
     energy: object
+    springs: object
     numbering: Numbering
     seconds_compile: float
     seconds_assemble: float
 
     def strain_energy(self, u) -> float:
-        """½ ∫ c e(u):e(u), summed over the triangles. In uᵀK u, a rigid motion would take more digits: all of |u|²."""
-        return compat.evaluate(self.energy, self.displacement, u)
+        """½ ∫ c e(u):e(u), summed over the triangles, and what springs store. In uᵀK u, a rigid motion would take more digits: all
+        of |u|²."""
+        strain = compat.evaluate(self.energy, self.displacement, u)
+        return strain if self.springs is None else strain + 0.5 * u.dot(self.springs * u)
 
 
 class Mesh:
@@ -193,10 +200,32 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     lattice = Lattice.of(problem, degree)
     numbering = mesh.numbering(space, lattice)
     stiffness = compat.assemble_matrix(bilinear)
+    springs = _springs(mesh, degree, numbering)
+    if springs is not None:
+        stiffness.axpy(1.0, springs, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     load = compat.assemble_vector(linear)
     tractions = _traction_load(problem, lattice)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
-    return Model(stiffness, load, displacement, energy, numbering, compiled - start, perf_counter() - compiled)
+    return Model(stiffness, load, displacement, energy, springs, numbering, compiled - start, perf_counter() - compiled)
+
+
+def _springs(mesh: Mesh, degree: int, numbering: Numbering):
+    """The stiffness of springs in FEniCSx's numbering; None where there are none."""
+    problem, rank = mesh.problem, mesh.comm.rank
+    if len(problem.spring_edges) == 0:
+        return None
+    of_nodes = spring_stiffness(problem, degree).tocoo()
+    number = (2 * numbering.nodes[:, None] + np.arange(2)).reshape(-1)
+    rows, columns = number[of_nodes.row], number[of_nodes.col]
+    begin, end = 2 * numbering.ranges[rank]
+    size = 2 * int(numbering.ranges.max())
+    mine = (rows >= begin) & (rows < end)
+    local = sp.csr_matrix((of_nodes.data[mine], (rows[mine] - begin, columns[mine])), shape=(end - begin, size))
+    local.sort_indices()
+    csr = (local.indptr.astype(PETSc.IntType), local.indices.astype(PETSc.IntType), local.data)
+    matrix = PETSc.Mat().createAIJ(((int(end - begin), size), (int(end - begin), size)), csr=csr, comm=mesh.comm)
+    matrix.assemble()
+    return matrix
 
 
 def _strain(v):

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::counted::Counted;
 use super::jump::side_coefficients;
+use super::springs::{complementary_of_springs, potential_of_springs};
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
@@ -20,6 +21,8 @@ pub struct Complementary {
     pub support_work: f64,
     /// ∫_{ΓK} T_n g ≤ 0.
     pub gap_work: f64,
+    /// ∫ t²/2k of springs and elastic layers.
+    pub springs: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
     /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
@@ -27,9 +30,14 @@ pub struct Complementary {
 }
 
 impl Complementary {
+    /// 𝒮(λ) and what springs store.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.springs
+    }
+
     /// −Π(λ), the lower bound.
     pub fn lower(&self) -> f64 {
-        (self.support_work + self.gap_work) - self.strain
+        (self.support_work + self.gap_work) - self.stored()
     }
 }
 
@@ -88,13 +96,15 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
         let t = contact_traction(problem, stress, pair);
         gap.add(pair.length * side::integral(&t, &pair.gap_polynomial()));
     }
+    let springs = complementary_of_springs(problem, stress, counted);
     let t = problem.scene.thickness;
     Complementary {
         strain: t * strain.value(),
         support_work: t * support.value(),
         gap_work: t * gap.value(),
-        magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
-        sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
+        springs: springs.value,
+        magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()) + springs.value,
+        sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()) + springs.sensitivity,
     }
 }
 
@@ -141,6 +151,8 @@ fn support_work_of(problem: &Problem, stress: &StressField, counted: Counted<'_>
 pub struct Potential {
     /// ½∫ c e(v):e(v).
     pub strain: f64,
+    /// ½∫ k j² of springs and elastic layers.
+    pub springs: f64,
     /// ∫F·v + ∫P·v.
     pub work: f64,
     /// Sum of the absolute values of all terms.
@@ -150,9 +162,14 @@ pub struct Potential {
 }
 
 impl Potential {
+    /// The energy of strains and springs.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.springs
+    }
+
     /// 𝓛(v).
     pub fn total(&self) -> f64 {
-        self.strain - self.work
+        self.stored() - self.work
     }
 }
 
@@ -179,12 +196,14 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
     let sensitivity: f64 = terms.iter().map(|t| t[1]).sum();
     let force = |body: usize| problem.scene.bodies[body].body_force;
     let work = counted_work(problem, v, force, problem.tractions(), counted);
+    let springs = potential_of_springs(problem, v, counted);
     let t = problem.scene.thickness;
     Potential {
         strain: t * strain.value(),
+        springs: springs.value,
         work: t * work.value(),
-        magnitude: t * (strain.magnitude() + work.magnitude()),
-        sensitivity: t * (sensitivity + work.magnitude()),
+        magnitude: t * (strain.magnitude() + work.magnitude()) + springs.value,
+        sensitivity: t * (sensitivity + work.magnitude()) + springs.sensitivity,
     }
 }
 

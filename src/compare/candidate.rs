@@ -152,7 +152,7 @@ impl Judged {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             _ => field.potential,
         };
-        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
+        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.stored()));
         let larger = extent.larger(candidate.largest());
         Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }

@@ -40,7 +40,7 @@ impl Extent {
             let field = &free.displacement;
             (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
         });
-        Extent { strain: bracket.complementary.strain, displacement }
+        Extent { strain: bracket.complementary.stored(), displacement }
     }
 
     /// `largest` displacement, or the largest that a correct field has where that is less.
@@ -91,7 +91,7 @@ impl Ceilings {
         let of_data = OF_DATA * scales.data.energy;
         Ceilings {
             extent: Extent::of(bracket),
-            energy: part * bracket.complementary.strain.max(0.0) + of_data,
+            energy: part * bracket.complementary.stored().max(0.0) + of_data,
             force: part * (forces(problem) + contact.sum::<f64>()) + OF_DATA * scales.data.force,
             of_data: (2.0 * of_data).sqrt(),
         }

@@ -6,6 +6,7 @@
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::bounds::Cell;
 use crate::element::Quadrilateral;
 use crate::element::quadrature::segment_rule;
@@ -142,6 +143,7 @@ impl NodalForces {
                 }
             }
         }
+        forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
         forces.add_tractions(problem, candidate.degree);
         forces.take_loads();
         forces

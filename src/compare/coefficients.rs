@@ -1,6 +1,7 @@
 //! Forces on the Bernstein polynomials of a displacement of any degree: [`NodalForces`] by coefficients in place of nodes.
 
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::element::geometry::gradients;
 use crate::element::{PlainDisplacement, plain, triangle};
 use crate::problem::{Condition, Problem};
@@ -84,6 +85,7 @@ impl NodalForces {
                 *load = [0, 1].map(|c| load[c] + area / triangle::len(k) as f64 * f[c]);
             }
         }
+        forces.add_springs(problem, k, Functions::Coefficients, |node| field.values()[node]);
         forces.press(problem, k);
         forces.take_loads();
         forces

@@ -60,7 +60,7 @@ pub fn primal_checks(
 ) -> Vec<Check> {
     let who = judged.candidate.name.as_str();
     let own = judged.own;
-    let (strain, scale) = (bracket.complementary.strain, bracket.complementary.strain.max(own.magnitude));
+    let (strain, scale) = (bracket.complementary.stored(), bracket.complementary.stored().max(own.magnitude));
     let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
     let name = format!("admissible/{who}");
@@ -86,7 +86,7 @@ pub fn primal_checks(
     checks.push(two_ways(problem, scales, (dual, bracket), who, admissible));
     let claims = [
         ("recomputed", judged.candidate.reported, own.total()),
-        ("strain", judged.candidate.reported_strain, own.strain),
+        ("strain", judged.candidate.reported_strain, own.stored()),
     ];
     for (what, reported, found) in claims {
         let Some(reported) = reported else { continue };
@@ -114,11 +114,11 @@ pub fn primal_checks(
         let name = format!("energy/identity/{who}");
         let why = "With zero gap and zero prescribed displacement the admissible set is a cone, and its minimiser satisfies \
              𝓛(u_h) = −𝒮(τ(u_h)).";
-        let equal = |allowed| Check::equal(&name, own.total(), -own.strain, allowed, Basis::RoundOff, why);
+        let equal = |allowed| Check::equal(&name, own.total(), -own.stored(), allowed, Basis::RoundOff, why);
         checks.push(of_energy(ceilings, SOLVER * strain, SOLVER * scale + rounding).check_of_large(equal));
     }
     if let Some(balance) = &judged.balance {
-        checks.push(in_its_own_space(who, (scales, ceilings), balance, own.strain));
+        checks.push(in_its_own_space(who, (scales, ceilings), balance, own.stored()));
         checks.extend(judged.candidate.reactions.as_ref().map(|_| reactions(who, (scales, ceilings), balance)));
     }
     let gap = (admissible.upper() - bracket.lower()).max(0.0);
@@ -190,7 +190,7 @@ pub fn degree_order(
         let [low, high] = [pair[0], pair[1]];
         let [p, q] = [low, high].map(|j| j.candidate.degree);
         let magnitude = low.own.magnitude.max(high.own.magnitude);
-        let strain = bracket.complementary.strain;
+        let strain = bracket.complementary.stored();
         let (lower, rounding) = (high.own.total(), energy_rounding(scales, low) + energy_rounding(scales, high));
         let upper = if linear_where_jumps_bend(problem, low) { low.admissible.upper() } else { low.own.total() };
         let why = format!(
@@ -245,7 +245,7 @@ fn two_ways(
     upper: &UpperBound,
 ) -> Check {
     let name = format!("energy/gap-two-ways/{who}");
-    let scale = bracket.complementary.strain.max(upper.potential.magnitude);
+    let scale = bracket.complementary.stored().max(upper.potential.magnitude);
     let gap = upper.potential.total() - bracket.complementary.lower();
     let mut allowed = IDENTITY * scale + bracket.lower_widening + upper.widening + scales.round_off.energy;
     if (gap - upper.local.total).abs() > allowed {

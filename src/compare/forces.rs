@@ -1,5 +1,6 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
+use super::springs::Functions;
 use crate::bounds::{Hold, Holds, Nodes};
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
@@ -27,6 +28,8 @@ impl NodalForces {
     /// Of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
     pub fn new(problem: &Problem, degree: usize, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
         let mut forces = Self::on(problem, degree, vertex, middle, |_| true);
+        let value = |node: usize| *vertex.get(node).unwrap_or_else(|| &middle[node - vertex.len()]);
+        forces.add_springs(problem, degree, Functions::Values, value);
         forces.add_tractions(problem, degree);
         forces.take_loads();
         forces

@@ -4,6 +4,7 @@
 //! a solution balances the loads to round-off only in the same one.
 
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::bounds::Potential;
 use crate::element::OnQuadrilaterals;
 use crate::element::bilinear::{self, Bilinear};
@@ -49,12 +50,13 @@ impl NodalForces {
                 }
             }
         }
+        let springs = forces.add_springs(problem, k, Functions::Values, |node| values[node]);
         forces.add_tractions(problem, k);
         let products = || forces.load.iter().zip(values).map(|(f, u)| f[0] * u[0] + f[1] * u[1]);
         let work = products().sum();
-        let magnitude = strain + products().map(f64::abs).sum::<f64>();
+        let magnitude = strain + springs + products().map(f64::abs).sum::<f64>();
         forces.take_loads();
         let sensitivity = forces.size.iter().zip(values).map(|(f, u)| f * u[0].hypot(u[1])).sum();
-        (forces, Potential { strain, work, magnitude, sensitivity })
+        (forces, Potential { strain, springs, work, magnitude, sensitivity })
     }
 }

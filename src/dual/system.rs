@@ -12,6 +12,7 @@ use std::time::Instant;
 use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef};
 use rayon::prelude::*;
 
+use super::beds::Springs;
 use super::factor::SymbolicFactor;
 use super::hybrid::structure;
 use super::modes::ModeTable;
@@ -30,6 +31,8 @@ pub struct System {
     pub unknowns: Arc<Unknowns>,
     /// Element matrices.
     pub modes: Arc<ModeTable>,
+    /// Springs and elastic layers.
+    pub springs: Arc<Springs>,
     /// Lower triangle of K.
     pub matrix: Arc<SparseColMat<usize, f64>>,
     /// f, given moments included.
@@ -76,14 +79,22 @@ impl System {
         let unknowns = Unknowns::new(problem, modes.elements());
         let pattern = Pattern::new(problem, &unknowns);
         let entries = || entries(problem, &unknowns, &modes, &pattern);
-        let ((values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
+        let springs = Springs::new(problem, &unknowns);
+        let ((mut values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
+        springs.assemble(&pattern, &mut values);
         let external = load_of_tractions(&unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
         let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
-        let (unknowns, modes) = (Arc::new(unknowns), Arc::new(modes));
-        (System { unknowns, modes, matrix, rhs, external, jump_bound }, done)
+        let (unknowns, modes, springs) = (Arc::new(unknowns), Arc::new(modes), Arc::new(springs));
+        (System { unknowns, modes, springs, matrix, rhs, external, jump_bound }, done)
     }
+
+    /// Number of parameters of triangles and springs.
+    pub fn parameters(&self) -> usize {
+        self.modes.parameters() + self.springs.parameters()
+    }
+
     /// The size of the terms of K x: the largest entry of the diagonal times that of x, all of it or a part.
     pub fn size_of_terms(&self, x: &[f64]) -> f64 {
         let columns = self.matrix.symbolic().col_ptr();

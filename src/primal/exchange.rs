@@ -41,6 +41,8 @@ struct ProblemFile<'a> {
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
     contacts: Vec<ContactEntry<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<SpringEntry>,
     pins: Vec<PinEntry>,
 }
 
@@ -107,6 +109,15 @@ struct TractionEntry {
     values: [[f64; 2]; 2],
 }
 
+/// An edge on springs, or on a side of an elastic layer.
+#[derive(Serialize)]
+struct SpringEntry {
+    edge: usize,
+    opposite: Option<usize>,
+    axes: [[f64; 2]; 2],
+    stiffness: [f64; 2],
+}
+
 #[derive(Serialize)]
 struct ContactEntry<'a> {
     name: &'a str,
@@ -148,7 +159,10 @@ impl<'a> ProblemFile<'a> {
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
-                Condition::Traction(_) | Condition::Interior | Condition::Contact { .. } => {}
+                Condition::Traction(_)
+                | Condition::Interior
+                | Condition::Contact { .. }
+                | Condition::Elastic { .. } => {}
             }
         }
         ProblemFile {
@@ -196,6 +210,15 @@ impl<'a> ProblemFile<'a> {
                             gap_below: gap_below(pair),
                         })
                         .collect(),
+                })
+                .collect(),
+            springs: problem
+                .bed_pairs()
+                .map(|(pair, stiffness)| SpringEntry {
+                    edge: pair.edge,
+                    opposite: pair.opposite,
+                    axes: pair.axes,
+                    stiffness,
                 })
                 .collect(),
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),

@@ -7,7 +7,7 @@
 //! stresses that they do cause may be smaller or none, but are computed from displacements of that size, and carry
 //! their rounding errors.
 
-use super::{Condition, Problem};
+use super::{BedPair, Condition, Problem};
 use crate::element::Material;
 use crate::vector::norm;
 
@@ -60,7 +60,8 @@ impl Scales {
         let stiffest = largest(&mut used().map(|(material, _)| material.young()[1]));
         let softest = used().map(|(material, _)| material.young()[0]).fold(f64::INFINITY, f64::min);
         let hardest = largest(&mut modulus.iter().copied());
-        let displacement = imposed + loads.force / (scene.thickness * softest);
+        let displacement =
+            imposed + loads.force / (scene.thickness * softest) + loads.force / scene.thickness * give(problem);
         let energy = |stiffness: f64| loads.force * displacement + scene.thickness * stiffness * imposed * imposed;
         let strained = largest(&mut used().map(|(material, extent)| material.young()[1] * imposed / extent.diameter()));
         let resolved = largest(&mut (0..problem.mesh.triangles.len()).map(|t| per_length(problem, &modulus, t)));
@@ -200,6 +201,30 @@ fn imposed(problem: &Problem) -> f64 {
         pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
     });
     prescribed + crossed.sum::<f64>()
+}
+
+/// By how much a unit force, per unit thickness, moves a piece that nothing but springs holds in some motion, at most: the
+/// softest of their stiffnesses, all edges taken together.
+fn give(problem: &Problem) -> f64 {
+    let mesh = &problem.mesh;
+    let (piece, count) = mesh.pieces();
+    let mut held = vec![false; count];
+    for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
+        if let (Condition::Clamped(_), Some(t)) = (condition, edge.triangles[0]) {
+            held[piece[t]] = true;
+        }
+    }
+    let mut most = 0.0_f64;
+    for bed in &problem.beds {
+        let own = |pair: &BedPair| mesh.edges[pair.edge].triangles[0].is_none_or(|t| held[piece[t]]);
+        if bed.pairs.iter().all(own) {
+            continue;
+        }
+        let length: f64 = bed.pairs.iter().map(|pair| pair.length).sum();
+        let softest = bed.stiffness.into_iter().filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min);
+        most = most.max(1.0 / (softest * length));
+    }
+    most
 }
 
 fn widest_gap(problem: &Problem) -> f64 {

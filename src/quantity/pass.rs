@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::functional::Functional;
 use super::region::{Cut, Piece};
-use crate::bounds::Sum;
+use super::springs;
 use crate::bounds::energy::{shape, square_on};
+use crate::bounds::{OnSprings, Sum};
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
@@ -22,6 +23,8 @@ pub struct Fields<'a> {
     /// z over `factor`.
     pub lifted: &'a Displacement,
     pub factor: f64,
+    /// m and σ_z on springs.
+    pub springs: (&'a OnSprings, &'a OnSprings),
 }
 
 /// The integrals, per unit thickness.
@@ -48,6 +51,14 @@ pub struct Integrals {
     pub uncancelled: f64,
 }
 
+impl Integrals {
+    fn add(&mut self, other: &Integrals) {
+        self.square += other.square;
+        self.work += other.work;
+        self.uncancelled += other.uncancelled;
+    }
+}
+
 /// Computes them.
 pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> Pass {
     let mesh = &problem.mesh;
@@ -69,12 +80,22 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
         .collect();
     let sum = |i: usize| terms.iter().map(|t| t[i]).collect::<Sum>().value();
     let integrals = |first: usize| Integrals { square: sum(first), work: sum(first + 1), uncancelled: sum(first + 2) };
-    Pass {
+    let mut pass = Pass {
         squares: terms.iter().map(|t| t[PAIR]).collect(),
         pair: integrals(PAIR),
         alone: integrals(ALONE),
         balanced: sum(BALANCED),
+    };
+    let on_springs = springs::terms(problem, fields.springs, (fields.lifted, fields.factor));
+    for ((pair, _), own) in problem.bed_pairs().zip(on_springs) {
+        if let Some(t) = mesh.edges[pair.edge].triangles[0] {
+            pass.squares[t] += own.pair.square;
+        }
+        pass.pair.add(&own.pair);
+        pass.alone.add(&own.alone);
+        pass.balanced += own.balanced;
     }
+    pass
 }
 
 /// Where the sums of a triangle stand: three of the pair, three without z, and one of each other kind.
@@ -93,7 +114,7 @@ enum Strain<'a> {
 
 /// The sums of one triangle.
 fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>, fields: Fields<'_>) -> [f64; TERMS] {
-    let Fields { middle, adjoint, lifted, factor } = fields;
+    let Fields { middle, adjoint, lifted, factor, .. } = fields;
     let corners = problem.mesh.corners(t);
     let area = sub_area(corners);
     let initial = match strain {

@@ -2,6 +2,7 @@
 
 use super::functional::Functional;
 use super::pass::strained;
+use super::springs::product_of;
 use crate::bounds::{Sum, work, work_of};
 use crate::element::Displacement;
 use crate::element::Strains;
@@ -31,7 +32,7 @@ pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) ->
     if functional.load.weights.iter().any(|w| !w.is_empty()) {
         // ∫ φ t = −∫ t j(w̃) = F(w̃) − ∫ σ(v) : e(w̃).
         let lift = functional.lift.as_ref()?;
-        sum += work(problem, lift).value() - product(problem, v, lift);
+        sum += work(problem, lift).value() - product(problem, v, lift) - product_of(problem, v, lift);
     }
     Some(functional.scale * sum)
 }

@@ -168,6 +168,7 @@ fn two_blocks(n: usize) -> Problem {
         mesh,
         conditions,
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
+        beds: Vec::new(),
         notes,
         refinement: crate::problem::Refinement::default(),
         uncut: None,

@@ -299,6 +299,7 @@ fn support(Support { on, kind }: &Support) -> String {
             let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
             format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
         }
+        SupportKind::Spring { stiffness } => format!("on = {on}, type = \"spring\", stiffness = {}", list(stiffness)),
     }
 }
 
@@ -348,8 +349,9 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 
-fn bond(Bond { sides: [a, b] }: &Bond) -> String {
-    format!("between = [{}, {}]", quoted(a), quoted(b))
+fn bond(Bond { sides: [a, b], stiffness }: &Bond) -> String {
+    let stiffness = stiffness.map(|k| format!(", stiffness = {}", list(&k))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

@@ -24,6 +24,7 @@ mod raw;
 mod read;
 mod selection;
 mod source;
+mod springs;
 pub(crate) mod text;
 mod validate;
 
@@ -166,6 +167,11 @@ pub enum SupportKind {
         direction: Option<[f64; 2]>,
         /// The prescribed component.
         displacement: f64,
+    },
+    /// Springs to the ground: traction −k u.
+    Spring {
+        /// Force per area and displacement, normal and tangential: neither below zero, one of them above.
+        stiffness: [f64; 2],
     },
 }
 

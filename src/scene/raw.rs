@@ -313,14 +313,54 @@ pub(super) struct RawSupport {
     #[schemars(length(min = 1))]
     pub on: At<String>,
     /// `clamped`: u = displacement. `roller`: one component of u is prescribed, mostly the normal one at zero, and there is no traction across it.
+    /// `spring`: traction against the displacement, as strong as `stiffness` says.
     #[serde(rename = "type")]
-    #[schemars(extend("enum" = ["clamped", "roller"]))]
+    #[schemars(extend("enum" = ["clamped", "roller", "spring"]))]
     pub kind: At<String>,
     /// What is prescribed, zero where it is missing: the displacement of a clamped boundary, the component that a roller holds.
     pub displacement: Option<At<RawDisplacement>>,
     /// The component that a roller holds, without traction across it; the outward normal where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,
+    /// Force per area and displacement of springs: normal, with the tangential direction free, or both, [normal, tangential].
+    pub stiffness: Option<At<RawStiffness>>,
+}
+
+/// A number, the normal stiffness of springs, or both components, [normal, tangential].
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Stiffness")]
+pub(super) enum RawStiffness {
+    /// Along the normal; the tangential direction is free.
+    Normal(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// Along the normal and along the boundary.
+    Both(#[schemars(with = "[f64; 2]")] Vec<f64>),
+}
+
+impl<'de> Deserialize<'de> for RawStiffness {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrBoth;
+        impl<'de> Visitor<'de> for NumberOrBoth {
+            type Value = RawStiffness;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number, the normal stiffness, or [normal, tangential]")
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawStiffness, E> {
+                Ok(RawStiffness::Normal(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawStiffness, E> {
+                Ok(RawStiffness::Normal(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<RawStiffness, A::Error> {
+                let mut both = Vec::new();
+                while let Some(entry) = entries.next_element()? {
+                    both.push(entry);
+                }
+                Ok(RawStiffness::Both(both))
+            }
+        }
+        deserializer.deserialize_any(NumberOrBoth)
+    }
 }
 
 /// A number on rollers; on clamped boundaries a vector, or value + gradient · x.
@@ -431,6 +471,9 @@ pub(super) struct RawBond {
     /// Two boundaries that coincide as polylines.
     #[schemars(with = "[String; 2]")]
     pub between: At<Vec<At<String>>>,
+    /// An elastic layer in place of a rigid bond: force per area and relative displacement, [normal, tangential].
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub stiffness: Option<Pair>,
 }
 
 /// A rigid obstacle: a straight line or a circle.

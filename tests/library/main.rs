@@ -59,6 +59,7 @@ mod rings;
 mod rounding;
 mod scene_schema;
 mod setup;
+mod springs;
 mod squares;
 #[path = "../support/mod.rs"]
 mod support;

@@ -8,6 +8,7 @@
 //! ([`interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
 //! keeps the bound uniform as ν → ½.
 
+mod beds;
 mod cholesky;
 mod contact;
 mod edges;
@@ -128,6 +129,7 @@ fn relaxed(
     let mut field = NodalValues::zeros(nodes.clone());
     field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments));
     share.refresh(&mut field.values);
+    beds::draw(problem, stress, &mut field);
     let vertex = field.vertices_mut();
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);

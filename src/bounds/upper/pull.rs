@@ -1,6 +1,7 @@
 //! What pulls at a displacement.
 
 use super::split::{self, load};
+use crate::bounds::springs::OnSprings;
 use crate::element::StressField;
 use crate::problem::{Condition, Problem};
 
@@ -11,11 +12,13 @@ pub struct Pull<'a> {
     pub scene: f64,
     /// Forces ∫ σ : e(v) of a stress on every triangle.
     pub stress: Option<&'a StressField>,
+    /// Work ∫ f j(v) of forces on the jumps of springs.
+    pub springs: Option<&'a OnSprings>,
 }
 
 impl Pull<'_> {
     /// The scene alone: the energy is 𝓛.
-    pub const SCENE: Pull<'static> = Pull { scene: 1.0, stress: None };
+    pub const SCENE: Pull<'static> = Pull { scene: 1.0, stress: None, springs: None };
 
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {

@@ -53,6 +53,8 @@ impl Part {
             mesh: read_mesh(&mut from)?,
             conditions: read_conditions(&mut from)?,
             interfaces: read_contacts(&mut from)?,
+            // Parts are made of scenes without springs.
+            beds: Vec::new(),
             notes: Vec::new(),
             refinement: Refinement::default(),
             uncut: None,
@@ -188,6 +190,7 @@ fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> i
         Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
         Condition::Contact { interface, pair, side } => ([4, interface, pair, side], [0.0; 4]),
+        Condition::Elastic { bed, pair, side } => ([5, bed, pair, side], [0.0; 4]),
     };
     out.indices(conditions.iter().flat_map(|condition| told(condition).0))?;
     out.numbers(conditions.iter().flat_map(|condition| told(condition).1))
@@ -201,6 +204,7 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
         2 => Ok(Condition::Clamped([[a, b], [c, d]])),
         3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
         4 => Ok(Condition::Contact { interface, pair, side }),
+        5 => Ok(Condition::Elastic { bed: interface, pair, side }),
         _ => Err(io::ErrorKind::InvalidData.into()),
     };
     kinds.into_iter().zip(numbers).map(of).collect()
