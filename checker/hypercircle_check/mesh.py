@@ -53,6 +53,8 @@ class Mesh:
             raise Refused(f"no edge of {self.what} is part of '{name}', on which the scene has a condition")
         self._rollers()
         self._pairs(get("pairs").tolist(), get("pair_data").tolist(), manifest["contacts"])
+        kind = lambda condition, right: condition.kind if condition else "inside" if right >= 0 else "free"
+        self.kinds = np.array([kind(*of) for of in zip(self.conditions, self.owners[:, 1])])
         if scene.polygons:
             self._against_polygons()
 
@@ -85,9 +87,6 @@ class Mesh:
     def normal(self, a, b):
         (x, y), (u, v) = self.exact(a), self.exact(b)
         return [v - y, x - u]
-
-    def kind(self, e):
-        return self.conditions[e].kind if self.conditions[e] else "inside" if self.owners[e, 1] >= 0 else "free"
 
     def by_body(self, of):
         """The fractions of(body) as Balls, a number for each triangle."""

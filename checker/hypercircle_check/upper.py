@@ -71,7 +71,7 @@ class Displacement:
     def _supports(self):
         mesh, held = self.mesh, {}
         for e, condition in enumerate(mesh.conditions):
-            if mesh.kind(e) not in ("clamped", "roller"):
+            if mesh.kinds[e] not in ("clamped", "roller"):
                 continue
             nodes = self.nodes(e, mesh.edges[e, 0])
             for j, node in enumerate(nodes):
@@ -165,14 +165,13 @@ class Displacement:
             along, all_ = self._along(k, values), np.flatnonzero(self.degrees == k)
             for which in np.array_split(all_, max(1, len(all_) * k * k // 20000)):
                 total += Q(float(self._energies(which, k, self._gather(which, k, along), [m[which] for m in stiffness]).sum()[1]))
-        for e, condition in enumerate(mesh.conditions):
-            if mesh.kind(e) == "load":
-                tau, nodes = load(mesh, e, condition), self.nodes(e, mesh.edges[e, 0])
-                k = len(nodes) - 1
-                for j, (kind, i) in enumerate(nodes):
-                    # int B_j = 1 / (k + 1), int (2 s - 1) B_j = (2 j - k) / ((k + 1) (k + 2))
-                    weights = [a / (k + 1) + b * Q(2 * j - k, (k + 1) * (k + 2)) for a, b in zip(*(tau + [[Q(0)] * 2])[:2])]
-                    total -= Q(float((of_fractions(weights) * values[kind][i]).sum()[0])) if any(weights) else 0
+        for e in np.flatnonzero(mesh.kinds == "load").tolist():
+            nodes = self.nodes(e, mesh.edges[e, 0])
+            k = len(nodes) - 1
+            for j, (kind, i) in enumerate(nodes):
+                # int B_j = 1 / (k + 1), int (2 s - 1) B_j = (2 j - k) / ((k + 1) (k + 2))
+                weights = [a / (k + 1) + b * Q(2 * j - k, (k + 1) * (k + 2)) for a, b in zip(*load(mesh, e))]
+                total -= Q(float((of_fractions(weights) * values[kind][i]).sum()[0])) if any(weights) else 0
         return total * mesh.scene.thickness
 
     def _along(self, k, values):
