@@ -70,6 +70,7 @@ pub mod elasticity;
 pub mod element;
 pub mod job;
 mod lanes;
+pub mod load;
 pub mod measure;
 pub mod mesh;
 pub mod plot;
