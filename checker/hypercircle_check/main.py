@@ -20,6 +20,7 @@ from .upper import Displacement
 
 FORMAT = 1
 PART = Fraction(1, 1000)  # of the width, by which a bracket may be wider than claimed: it is told then
+LEAST = Fraction(1, 10**250)  # and what underflows in double precision
 
 
 def read(path):
@@ -77,7 +78,7 @@ class Proof:
     def against_claim(self):
         if self.lower > self.upper:
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
-        allowed = max(self.claim[1] - self.claim[0], 0) * PART
+        allowed = max((self.claim[1] - self.claim[0]) * PART, LEAST)
         for end, found, claimed, sign in (("lower", self.lower, self.claim[0], 1), ("upper", self.upper, self.claim[1], -1)):
             if sign * (found - claimed) < -allowed:
                 short = float(abs(found - claimed))
@@ -162,6 +163,7 @@ def main(arguments=None):
     print(f"  scene: sha256 {proof.manifest['scene_sha256']}")
     for file in proof.manifest["mesh_files"]:
         print(f"  mesh: {file['name']}, sha256 {file['sha256']}")
+    print(f"  by hypercircle-check {VERSION}")
     print(f"  {time.monotonic() - start:.1f} s")
     return 0
 

@@ -113,12 +113,12 @@ def rational(rows):
     return fmpq_mat(len(rows), len(rows[0]), [fmpq(*x.as_integer_ratio()) for row in rows for x in row])
 
 
-def _floats(matrix):
+def floats(matrix):
     return np.array([[int(x.p) / int(x.q) for x in row] for row in matrix.table()])
 
 
 def _enclosed(matrix):
-    mid = _floats(matrix)
+    mid = floats(matrix)
     return Ball(mid, abs(mid) * EPS + 1e-300)
 
 
@@ -154,8 +154,8 @@ def stresses(p):
     weight = np.sqrt(np.array([float(x) * (1, 1, 2)[c] for _ in range(3) for c in range(3) for x in d]))[:, None]
     basis = matrix(columns[data:])
     for _ in range(2):
-        basis = basis * rational(np.linalg.inv(np.linalg.qr(_floats(basis) * weight)[1]).tolist())
-    least = -(_floats(basis) * weight).T @ (_floats(special) * weight)
+        basis = basis * rational(np.linalg.inv(np.linalg.qr(floats(basis) * weight)[1]).tolist())
+    least = -(floats(basis) * weight).T @ (floats(special) * weight)
     return _enclosed(special + basis * rational(least.tolist())), _enclosed(basis), d
 
 

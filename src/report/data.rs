@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::guarantee::{Guarantee, GuaranteeLevel};
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::cause::{Cause, Place};
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
@@ -149,6 +150,8 @@ pub struct Energy {
     pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
+    /// On whose word it holds.
+    pub guarantee: Guarantee,
 }
 
 /// The dual solve in numbers.

@@ -27,6 +27,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         enclosed_work: [-2.0 * upper, -2.0 * lower],
         compliance: Some([-2.0 * upper, -2.0 * lower]),
         guaranteed: true,
+        guarantee: Guarantee::of_notes(&[]),
     };
     let primal = |name: &str, degree, energy: f64| PrimalSummary {
         name: name.into(),

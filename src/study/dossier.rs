@@ -14,7 +14,9 @@ use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::Displacement;
 use crate::problem::{Note, Problem};
-use crate::report::{Dossier, DualSummary, Energy, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status};
+use crate::report::{
+    Dossier, DualSummary, Energy, Guarantee, GuaranteeLevel, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status,
+};
 
 /// What a run found.
 #[derive(Debug)]
@@ -96,10 +98,10 @@ fn report(findings: &Findings<'_>) -> Report {
     // A finer mesh for the sake of the verdict keeps the edges.
     let followed = if findings.finer.is_none() { findings.history.as_slice() } else { &[] };
     notes.extend(curves::remarks(findings.certified, followed));
-    let guaranteed = !notes.iter().any(|n| n.weakens_guarantee);
     let sharpest = findings.finer.map_or(bracket, |finer| &finer.bracket);
-    let energy =
-        comparison.upper(sharpest).map(|(upper, from)| energy(problem, sharpest, bracket, upper, from, guaranteed));
+    let energy = comparison
+        .upper(sharpest)
+        .map(|(upper, from)| energy(problem, sharpest, bracket, upper, from, Guarantee::of_notes(&notes)));
     let blunt = |enough: f64| !energy.as_ref().is_some_and(|energy| sharpest.tells(energy.upper, enough));
     let status = match (&findings.failure, comparison.agrees()) {
         (Some(_), _) => Status::Failed,
@@ -169,8 +171,9 @@ fn energy(
     own: &Bracket,
     upper: &UpperBound,
     from: &str,
-    guaranteed: bool,
+    guarantee: Guarantee,
 ) -> Energy {
+    let guaranteed = guarantee.level == GuaranteeLevel::Guaranteed;
     let free = sharpest.free.as_ref().ok();
     let gap = upper.upper() - sharpest.lower();
     // The constitutive error of a displacement is known against the stress of its own mesh.
@@ -194,6 +197,7 @@ fn energy(
         enclosed_work: enclosed_work(upper, sharpest),
         compliance: problem.is_cone().then(|| enclosed_work(upper, sharpest)),
         guaranteed,
+        guarantee,
     }
 }
 

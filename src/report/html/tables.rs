@@ -31,7 +31,6 @@ pub(super) fn scroll(label: &str, table: Markup) -> Markup {
 fn energies(report: &Report, energy: &Energy) -> Markup {
     let digits = digits_to_tell(energy.lower, energy.upper).max(10);
     let upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
-    let guaranteed = if energy.guaranteed { "yes" } else { "for the data on the mesh" };
     let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
     let (work, meaning) = match energy.compliance {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
@@ -63,7 +62,7 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
             significant(energy.widening, 3),
             "what rounding and residual equilibrium can have cost, contained in both bounds",
         ),
-        ("guaranteed", guaranteed.to_string(), "whether the bracket holds for the scene as written"),
+        ("guarantee", clean(&energy.guarantee.words), "on whose word the bracket holds for the scene as written"),
     ];
     let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
         (false, _) => "not admissible everywhere: no bound",
