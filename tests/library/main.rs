@@ -11,6 +11,7 @@ mod comparison;
 mod congruent;
 mod contact_pressure;
 mod contact_qp;
+mod cracks;
 mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
