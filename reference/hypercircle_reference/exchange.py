@@ -19,17 +19,20 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class Body:
-    """Homogeneous material and body force per volume (2,).
+    """Homogeneous material, body force per volume (2,) at the origin and its gradient (2, 2).
 
     Isotropic by Young's modulus and Poisson's ratio, or any other by ``stiffness`` (3, 3), the stresses xx, yy, xy of unit strains
     ε_xx, ε_yy, 2 ε_xy; ``young`` is then the largest entry on its diagonal, which only tells stiff bodies from soft ones.
+    ``initial_strain`` (3, 3) has a row (value, ∂x, ∂y) for each of ε_xx, ε_yy, ε_xy: the strain without stress, affine in x.
     """
 
     name: str
     young: float
     poisson: float
     body_force: np.ndarray
+    force_gradient: np.ndarray
     stiffness: np.ndarray | None = None
+    initial_strain: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -202,19 +205,25 @@ def parse_problem(data: dict) -> Problem:
 
 
 def _body(entry: dict, where: str) -> Body:
-    name, force = str(_get(entry, "name", where)), _array(entry, "body_force", where, (2,))
+    name, force, slope = str(_get(entry, "name", where)), _get(entry, "body_force", where), np.zeros((2, 2))
+    if isinstance(force, dict):
+        inside = f"{where}.body_force"
+        force, slope = _array(force, "value", inside, (2,)), _array(force, "gradient", inside, (2, 2))
+    else:
+        force = _array(entry, "body_force", where, (2,))
+    initial = _array(entry, "initial_strain", where, (3, 3)) if "initial_strain" in entry else None
     if "stiffness" in entry:
         stiffness = _array(entry, "stiffness", where, (3, 3))
         if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
             raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
-        return Body(name, float(stiffness.diagonal().max()), 0.0, force, stiffness)
+        return Body(name, float(stiffness.diagonal().max()), 0.0, force, slope, stiffness, initial)
     young = _scalar(entry, "young", f"{where}.young")
     poisson = _scalar(entry, "poisson", f"{where}.poisson")
     if not young > 0.0:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
         raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
-    return Body(name, young, poisson, force)
+    return Body(name, young, poisson, force, slope, None, initial)
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:

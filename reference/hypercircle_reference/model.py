@@ -54,6 +54,7 @@ class Numbering:
 class Model:
     """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node.
 
+    ``load`` counts what initial strains pull, ``working`` does not: the work that enters the energy is that of the latter.
     ``displacement`` is a function of the space, ``energy`` the compiled form of its strain energy, and ``springs`` the part of the
     stiffness that springs have, if there are any. The space owns
     the communicator of matrix and vector, and has to live as long as they and all that is duplicated from them.
@@ -61,6 +62,7 @@ class Model:
 
     stiffness: object
     load: object
+    working: object
     displacement: object
     energy: object
     springs: object
@@ -69,8 +71,8 @@ class Model:
     seconds_assemble: float
 
     def strain_energy(self, u) -> float:
-        """½ ∫ c e(u):e(u), summed over the triangles, and what springs store. In uᵀK u, a rigid motion would take more digits: all
-        of |u|²."""
+        """½ ∫ c (e(u) − ε0):(e(u) − ε0), summed over the triangles, and what springs store. In uᵀK u, a rigid motion would take more
+        digits: all of |u|²."""
         strain = compat.evaluate(self.energy, self.displacement, u)
         return strain if self.springs is None else strain + 0.5 * u.dot(self.springs * u)
 
@@ -181,19 +183,34 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
-    stiffness = _stiffness(mesh, owner)
+    law = _stiffness(mesh, owner)
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
+    gradients = np.array([body.force_gradient for body in problem.bodies]) * problem.thickness
+    if np.any(gradients):
+        slope = [[compat.constant_per_cell(mesh.mesh, gradients[owner, i, j]) for j in range(2)] for i in range(2)]
+        force = force + ufl.dot(ufl.as_matrix(slope), ufl.SpatialCoordinate(mesh.mesh))
     displacement = compat.function(space)
 
-    def work(u, v):
-        isotropic = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
-        if stiffness is None:
+    def product(e, d):
+        isotropic = lame * ufl.tr(e) * ufl.tr(d) + 2 * shear * ufl.inner(e, d)
+        if law is None:
             return isotropic * dx
-        return (isotropic + ufl.inner(ufl.dot(stiffness, _engineering(u)), _engineering(v))) * dx
+        return (isotropic + ufl.inner(ufl.dot(law, _engineering(e)), _engineering(d))) * dx
+
+    def work(u, v):
+        if law is None:
+            return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * dx
+        return product(_strain(u), _strain(v))
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
-    energy = compat.form(comm, 0.5 * work(displacement, displacement))
+    initial = _initial_strain(mesh, owner)
+    if initial is None:
+        energy, pull = compat.form(comm, 0.5 * work(displacement, displacement)), None
+    else:
+        elastic = _strain(displacement) - initial
+        energy = compat.form(comm, 0.5 * product(elastic, elastic))
+        pull = compat.form(comm, product(initial, _strain(v)))
     linear = compat.form(comm, ufl.inner(force, v) * dx)
     compiled = perf_counter()
 
@@ -206,7 +223,11 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     load = compat.assemble_vector(linear)
     tractions = _traction_load(problem, lattice)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
-    return Model(stiffness, load, displacement, energy, springs, numbering, compiled - start, perf_counter() - compiled)
+    working = load
+    if pull is not None:
+        working = load.copy()
+        load.axpy(1.0, compat.assemble_vector(pull))
+    return Model(stiffness, load, working, displacement, energy, springs, numbering, compiled - start, perf_counter() - compiled)
 
 
 def _springs(mesh: Mesh, degree: int, numbering: Numbering):
@@ -232,10 +253,21 @@ def _strain(v):
     return ufl.sym(ufl.grad(v))
 
 
-def _engineering(v):
+def _engineering(strain):
     """ε_xx, ε_yy and 2 ε_xy."""
-    strain = _strain(v)
     return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+
+
+def _initial_strain(mesh: Mesh, owner: np.ndarray):
+    """ε0, affine in x, or None where no body has one."""
+    bodies = mesh.problem.bodies
+    if all(body.initial_strain is None for body in bodies):
+        return None
+    values = np.array([np.zeros((3, 3)) if body.initial_strain is None else body.initial_strain for body in bodies])[owner]
+    x = ufl.SpatialCoordinate(mesh.mesh)
+    part = [[compat.constant_per_cell(mesh.mesh, values[:, i, j]) for j in range(3)] for i in range(3)]
+    xx, yy, xy = (value + along_x * x[0] + along_y * x[1] for value, along_x, along_y in part)
+    return ufl.as_matrix([[xx, xy], [xy, yy]])
 
 
 def _stiffness(mesh: Mesh, owner: np.ndarray):

@@ -13,7 +13,7 @@ use super::springs::spring_error;
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::sub_area;
-use crate::element::{Displacement, Samples, Strains, StressField, side};
+use crate::element::{Displacement, Samples, Strains, StressField, elastic_degree, side};
 use crate::problem::{ContactPair, Problem};
 
 /// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.
@@ -72,12 +72,12 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
             }
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
-            let (of_v, own) = (v.degree(t) - 1, stress.degree(t));
+            let (of_v, own) = (elastic_degree(v.degree(t), material), stress.degree(t));
             let (samples, shapes) = (Samples::of(of_v, own), Samples::of_stress(own, of_v));
             let mut sum = 0.0;
             let mut strains = Strains::default();
             for sub in 0..3 {
-                strains.on(corners, v, t, sub);
+                strains.elastic(corners, v, t, sub, material);
                 for (q, (_, weight)) in samples.points.iter().enumerate() {
                     let e = strains.sample(samples, q);
                     let of_stress = material.strain(stress.sample(t, sub, shapes, q));

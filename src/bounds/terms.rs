@@ -30,15 +30,16 @@ impl LowerTerms {
     }
 
     /// The numbers, as another process takes them.
-    pub fn numbers(&self) -> [f64; 7] {
-        let Complementary { strain, support_work, gap_work, springs, magnitude, sensitivity } = self.complementary;
-        [strain, support_work, gap_work, springs, magnitude, sensitivity, self.rounding]
+    pub fn numbers(&self) -> [f64; 8] {
+        let Complementary { strain, initial, support_work, gap_work, springs, magnitude, sensitivity } =
+            self.complementary;
+        [strain, initial, support_work, gap_work, springs, magnitude, sensitivity, self.rounding]
     }
 
     /// The sum of the terms of all ranks, each given by its numbers.
     pub fn sum<'a>(ranks: impl Iterator<Item = &'a [f64]> + Clone) -> Self {
-        let [strain, support_work, gap_work, springs, magnitude, sensitivity, rounding] = summed(ranks);
-        let complementary = Complementary { strain, support_work, gap_work, springs, magnitude, sensitivity };
+        let [strain, initial, support_work, gap_work, springs, magnitude, sensitivity, rounding] = summed(ranks);
+        let complementary = Complementary { strain, initial, support_work, gap_work, springs, magnitude, sensitivity };
         LowerTerms { complementary, rounding }
     }
 }

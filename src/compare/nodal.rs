@@ -23,7 +23,7 @@ use super::stress::primal_means;
 use crate::dual::DualSolution;
 use crate::element::bilinear::Bilinear;
 use crate::element::geometry::sub_corners;
-use crate::element::{Samples, Strains, contraction};
+use crate::element::{Samples, Strains, contraction, elastic_degree};
 use crate::problem::{Condition, Interface, Problem};
 use crate::vector::dot;
 
@@ -240,11 +240,11 @@ fn works_on_quadrilaterals(
         for t in cell.triangles {
             let material = &materials[mesh.body[t]];
             let stress = 2.0 * judged.field.local.triangles[t] / problem.scene.thickness;
-            let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
+            let (of_field, own) = (elastic_degree(field.degree(t), material), dual.stress.degree(t));
             let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
             let mut parts = [[0.0; 2]; 4];
             for sub in 0..3 {
-                strains.on(mesh.corners(t), field, t, sub);
+                strains.elastic(mesh.corners(t), field, t, sub, material);
                 let corners = sub_corners(mesh.corners(t), sub);
                 for (q, (l, weight)) in samples.points.iter().enumerate() {
                     let weight = weight * mesh.area(t) / 3.0;

@@ -196,8 +196,7 @@ pub fn forces(problem: &Problem) -> f64 {
         }
     }
     for t in 0..mesh.triangles.len() {
-        let f = problem.scene.bodies[mesh.body[t]].body_force;
-        sum += mesh.area(t) * f[0].hypot(f[1]);
+        sum += mesh.area(t) * problem.force_on(t).largest();
     }
     problem.scene.thickness * sum
 }

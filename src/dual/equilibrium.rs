@@ -207,9 +207,10 @@ fn largest_resultant(problem: &Problem, stress: &StressField, moments: &SideValu
     }
     for t in 0..mesh.triangles.len() {
         let body = mesh.body[t];
-        let (f, area) = (problem.scene.bodies[body].body_force, mesh.area(t));
-        (0..2).for_each(|c| force[body][c] += f[c] * area);
-        gross[body] += norm(f) * area;
+        let f = problem.force_on(t).of_area(mesh.area(t));
+        let whole = f.resultant();
+        (0..2).for_each(|c| force[body][c] += whole[c]);
+        gross[body] += f.largest() * mesh.area(t);
     }
     // A body without load carries nothing but rounding errors, which are not to be compared with each other.
     let least = 1e-3 * gross.iter().copied().fold(0.0, f64::max);

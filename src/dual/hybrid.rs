@@ -116,7 +116,7 @@ pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion])
     pivots.into_iter().map(|pivot| pivot.unknown).collect()
 }
 
-/// Mode parameters S = Tᵀm of every triangle, then of all springs. `given` counts the moments of u0 in; without them the result is the
+/// Mode parameters S = Tᵀm of every triangle, then of all springs. `given` counts the moments of u0 and initial strains in; without them the result is the
 /// answer to a correction of the unknowns alone.
 pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) -> Vec<f64> {
     let mesh = &problem.mesh;
@@ -143,6 +143,9 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
         sides.lower(own, lowered);
         modes.parameters_from_moments(lowered, s);
     });
+    if given {
+        out.iter_mut().zip(system.initial.iter()).for_each(|(s, initial)| *s += initial);
+    }
     out
 }
 

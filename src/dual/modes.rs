@@ -40,7 +40,9 @@ impl ModeTable {
     pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = problem.materials();
         let mesh = &problem.mesh;
-        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
+        // A force that is not the same everywhere differs on triangles that are congruent.
+        let own = |t: usize| (!problem.body_force(t).is_constant()).then_some(t);
+        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), own(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;
         let classes: Vec<Class> = first
@@ -57,8 +59,7 @@ impl ModeTable {
         of_classes.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
             let t = class.triangle;
             let body = mesh.body[t];
-            let force = problem.scene.bodies[body].body_force;
-            elements.of(t).compute(mesh.corners(t), &materials[body], force, class.layout.split(out));
+            elements.of(t).compute(mesh.corners(t), &materials[body], problem.body_force(t), class.layout.split(out));
         });
         let first_parameter = starts(class.iter().map(|&c| classes[c as usize].layout.parameters));
         ModeTable { elements, class, classes, data, first_parameter, materials }
@@ -112,7 +113,7 @@ impl ModeTable {
         field.blocks_mut().into_par_iter().enumerate().with_min_len(256).for_each(|(t, block)| {
             // What was kept belongs to the triangle that it was computed on.
             let corners = mesh.corners(self.classes[self.class[t] as usize].triangle);
-            let force = problem.scene.bodies[mesh.body[t]].body_force;
+            let force = problem.body_force(t);
             self.elements.of(t).stresses(corners, force, &self.of(t), &s[self.parameters_of(t)], 1.0, block);
         });
         field

@@ -38,6 +38,24 @@ impl Elements {
         }
     }
 
+    /// Those of `count` triangles with blocks of the degrees `least` where their own is lower; `None` where an element that is no block
+    /// would have to be another.
+    pub fn at_least(&self, count: usize, least: impl Fn(usize) -> usize) -> Option<Elements> {
+        if (0..count).all(|t| self.degree(t) >= least(t)) {
+            return Some(self.clone());
+        }
+        if let Elements::Uniform(element) = self
+            && element.name() != block(element.degree()).name()
+        {
+            return None;
+        }
+        let degrees: Vec<u8> = (0..count).map(|t| self.degree(t).max(least(t)) as u8).collect();
+        Some(match degrees.iter().all(|degree| *degree == degrees[0]) {
+            true => Elements::Uniform(block(degrees[0].into())),
+            false => Elements::Blocks(degrees.into()),
+        })
+    }
+
     /// The largest degree of the triangles.
     pub fn largest_degree(&self) -> usize {
         match self {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
 use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
+use crate::load::{Affine, BodyForce};
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, ContactPair, Pin, Problem};
 
@@ -51,7 +52,24 @@ struct BodyEntry<'a> {
     name: &'a str,
     #[serde(flatten)]
     material: MaterialEntry,
-    body_force: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_strain: Option<[[f64; 3]; 3]>,
+    body_force: Force,
+}
+
+/// The same everywhere, or value + gradient · x.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Force {
+    Constant([f64; 2]),
+    Affine { value: [f64; 2], gradient: [[f64; 2]; 2] },
+}
+
+impl From<&BodyForce> for Force {
+    fn from(force: &BodyForce) -> Self {
+        let Affine { value, gradient } = force.as_affine();
+        if force.is_constant() { Force::Constant(value) } else { Force::Affine { value, gradient } }
+    }
 }
 
 /// An isotropic body by its constants, any other by its stiffness in the plane.
@@ -74,6 +92,14 @@ impl MaterialEntry {
             }
         }
     }
+}
+
+/// ε_xx, ε_yy and ε_xy of a body without stress, each by its value at the origin and its derivatives along x and y.
+fn initial_strain(problem: &Problem, body: usize) -> Option<[[f64; 3]; 3]> {
+    let material = problem.material(body);
+    let strain = material.initial();
+    let row = |c: usize| [strain.value[c], strain.gradient[c][0], strain.gradient[c][1]];
+    (!strain.is_none()).then(|| [0, 1, 2].map(row))
 }
 
 #[derive(Serialize)]
@@ -177,7 +203,8 @@ impl<'a> ProblemFile<'a> {
                 .map(|(i, body)| BodyEntry {
                     name: &body.name,
                     material: MaterialEntry::new(problem, i),
-                    body_force: body.body_force,
+                    initial_strain: initial_strain(problem, i),
+                    body_force: Force::from(&body.body_force),
                 })
                 .collect(),
             points: &mesh.points,

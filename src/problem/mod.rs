@@ -23,6 +23,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 use std::sync::Arc;
 
 use crate::element::Material;
+use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::Scene;
@@ -56,7 +57,27 @@ impl Problem {
 
     /// Material of one body of the scene.
     pub fn material(&self, body: usize) -> Material {
-        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
+    }
+
+    /// The body force on triangle `t`.
+    pub fn body_force(&self, t: usize) -> &BodyForce {
+        &self.scene.bodies[self.mesh.body[t]].body_force
+    }
+
+    /// What the body force does on triangle `t`.
+    pub fn force_on(&self, t: usize) -> OnTriangle {
+        self.body_force(t).on(self.mesh.corners(t))
+    }
+
+    /// The least degree of stresses on triangle `t` that balance its loads.
+    pub fn least_degree(&self, t: usize) -> usize {
+        self.body_force(t).stress_degree()
     }
 
     /// The pairs of all contacts, one interface after the other.

@@ -49,11 +49,12 @@ impl Scales {
         let scene = &problem.scene;
         let bodies = Extents::of_bodies(problem);
         let loads = Loads::new(problem, &bodies);
+        let materials = problem.materials();
         let imposed = match imposed(problem) {
             0.0 if loads.force == 0.0 => widest_gap(problem),
             imposed => imposed,
         };
-        let materials = problem.materials();
+        let imposed = imposed + initial(problem, &materials, &bodies);
         let modulus: Vec<f64> = materials.iter().map(Material::uniaxial).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let used = || materials.iter().zip(&bodies).filter(|(_, extent)| extent.any());
@@ -174,10 +175,10 @@ impl Loads {
         }
         for (body, extent) in problem.scene.bodies.iter().zip(bodies).filter(|(_, extent)| extent.any()) {
             let [width, height] = extent.sides();
-            traction = traction.max(norm(body.body_force) * width.min(height));
+            traction = traction.max(body.body_force.largest_in([extent.low, extent.high]) * width.min(height));
         }
-        for (t, &body) in problem.mesh.body.iter().enumerate() {
-            force += problem.mesh.area(t) * norm(problem.scene.bodies[body].body_force);
+        for t in 0..problem.mesh.triangles.len() {
+            force += problem.mesh.area(t) * problem.force_on(t).largest();
         }
         Loads { traction, force: problem.scene.thickness * force }
     }
@@ -227,6 +228,22 @@ fn give(problem: &Problem) -> f64 {
     most
 }
 
+/// How far initial strains move the bodies that have one.
+fn initial(problem: &Problem, materials: &[Material], bodies: &[Extents]) -> f64 {
+    let of = |(material, extent): (&Material, &Extents)| {
+        let strain = material.initial();
+        if strain.is_none() || !extent.any() {
+            return 0.0;
+        }
+        let [low, high] = [extent.low, extent.high];
+        let corners = [low, high, [low[0], high[1]], [high[0], low[1]]];
+        let size = |p: [f64; 2]| strain.at(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        corners.map(size).into_iter().fold(0.0, f64::max) * extent.diameter()
+    };
+    debug_assert_eq!(materials.len(), problem.scene.bodies.len());
+    materials.iter().zip(bodies).map(of).fold(0.0, f64::max)
+}
+
 fn widest_gap(problem: &Problem) -> f64 {
     let pairs = problem.pairs();
     pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
@@ -261,7 +278,7 @@ mod tests {
         let mut scene =
             load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
-        scene.draft.bodies[1].body_force = [0.0, -2.0];
+        scene.draft.bodies[1].body_force = [0.0, -2.0].into();
         scene.draft.bodies[1].elasticity = Elasticity::Isotropic { young: 10.0, poisson: 0.3 };
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);

@@ -68,6 +68,9 @@ impl Search<'_, '_> {
         let mut sum = Sum::default();
         sum.add(self.functional.constant);
         sum.add(integrals.work);
+        let [initial, size_of_initial] = pass.initial;
+        sum.add(initial);
+        rounding += ROUNDING_PER_TERM * size_of_initial;
         if let Some((z, factor)) = lifted {
             let work = work(problem, z);
             sum.add(factor * work.value());

@@ -13,6 +13,7 @@ use super::region::{Cut, cut, twice_area};
 use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
+use crate::load::BodyForce;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};
 use crate::scene::{Extent, Holder, Quantity, Region, SupportKind, Target};
 
@@ -144,7 +145,7 @@ impl Functional {
     /// Whether nothing but the normal traction of contacts, and what is known, enters.
     pub fn is_of_contact_alone(&self) -> bool {
         let load = &self.load;
-        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(|f| *f == [0.0; 2])
+        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(BodyForce::is_none)
     }
 
     fn empty(problem: &Problem, kind: Kind) -> Self {
@@ -152,7 +153,7 @@ impl Functional {
         Functional {
             kind,
             load: Load {
-                force: vec![[0.0; 2]; problem.scene.bodies.len()],
+                force: vec![BodyForce::NONE; problem.scene.bodies.len()],
                 tractions: Vec::new(),
                 strains: Vec::new(),
                 weights: vec![Vec::new(); pairs],
@@ -214,7 +215,7 @@ fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional,
 fn on_body(problem: &Problem, body: usize, d: [f64; 2]) -> Result<Functional, NotBounded> {
     let area = area(problem, body)?;
     let mut functional = Functional::empty(problem, Kind::Displacement);
-    functional.load.force[body] = d.map(|d| d / area);
+    functional.load.force[body] = d.map(|d| d / area).into();
     Ok(functional)
 }
 

@@ -80,7 +80,7 @@ impl Search<'_, '_> {
         let square =
             if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) + of_springs };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
-        let pull = Pull { scene: 0.0, stress: Some(&sigma), springs: Some(&springs) };
+        let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: Some(&springs) };
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
         let distance = if rest > CANCELLED * square {
             rest.sqrt()
@@ -156,7 +156,8 @@ impl Search<'_, '_> {
             return false;
         }
         let sigma = self.stress(&begun.response.stress);
-        let filled = nearest.filled(&begun.nodes, Pull { scene: 0.0, stress: Some(&sigma), springs: None });
+        let filled =
+            nearest.filled(&begun.nodes, Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: None });
         let pair = self.measured(&begun.response, (&filled, 1.0), 1.0);
         pair.pass.balanced <= NO_STRESS * natural
             && pair.pass.pair.square <= NO_STRAIN * natural
@@ -205,7 +206,7 @@ impl Search<'_, '_> {
         let less =
             |(q, m): (&[Vec<f64>; 2], &[Vec<f64>; 2])| [0, 1].map(|c| combined(sign, &q[c], -2.0 * weight, &m[c]));
         let springs: OnSprings = adjoint.iter().zip(&known.springs).map(less).collect();
-        let pull = Pull { scene: 2.0 * weight, stress: Some(&stress), springs: Some(&springs) };
+        let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } if is_tip(known.problem, [x, y]) => format!(

@@ -104,6 +104,7 @@ impl Sample {
             ],
             motion: infeasible
                 .then(|| mesh.points.iter().map(|p| if p[0] < 1.0 { [-0.3, 0.05] } else { [0.0; 2] }).collect()),
+            proof: None,
         }
     }
 }

@@ -128,19 +128,24 @@ fn clamped(u: &At<RawDisplacement>, table: &str, source: &Source) -> Result<Affi
             let vector = At { value: vector.clone(), start: u.start, end: u.end };
             source.vector(&vector, (table, "displacement")).map(Affine::constant)
         }
-        RawDisplacement::Affine(RawAffine { value, gradient }) => {
-            let value = value.as_ref().map(|value| source.vector(value, (table, "displacement.value"))).transpose()?;
-            Ok(Affine {
-                value: value.unwrap_or_default(),
-                gradient: matrix(gradient, (table, "displacement.gradient"), source)?,
-            })
-        }
+        RawDisplacement::Affine(field) => affine(field, (table, "displacement"), source),
         RawDisplacement::Component(_) => {
             let (key, table, found) = ("displacement".to_owned(), table.to_owned(), "one number".to_owned());
             let remedy = "write both components [ux, uy], or type = \"roller\", which holds one";
             Err(source.error(u.span(), Fault::Count { key, table, found, expected: "2 numbers".to_owned(), remedy }))
         }
     }
+}
+
+/// A field value + gradient · x, written as `key` of `table`.
+pub(super) fn affine(
+    RawAffine { value, gradient }: &RawAffine,
+    (table, key): (&str, &str),
+    source: &Source,
+) -> Result<Affine, SceneError> {
+    let value = value.as_ref().map(|value| source.vector(value, (table, &format!("{key}.value")))).transpose()?;
+    let gradient = matrix(gradient, (table, &format!("{key}.gradient")), source)?;
+    Ok(Affine { value: value.unwrap_or_default(), gradient })
 }
 
 /// The component that rollers prescribe.

@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::body_force::{RawForce, RawRotation};
 use super::quantity::RawQuantity;
 
 /// A value and where it stands in the file.
@@ -227,14 +228,51 @@ pub(super) struct RawBody {
     pub compliance: Option<At<Vec<Pair>>>,
     /// Degrees from x to axis 1 of the matrix, anticlockwise.
     pub angle: Option<At<f64>>,
-    /// Constant force per volume, none where it is missing.
-    #[schemars(with = "Option<[f64; 2]>")]
-    pub body_force: Option<Pair>,
+    /// Thermal expansion, or three along the axes of the body.
+    pub expansion: Option<At<RawExpansion>>,
+    /// Temperature above the one without stress: a number, or affine in x.
+    pub temperature: Option<At<RawTemperature>>,
+    /// Initial stress xx, yy, xy, and a fourth that is out of the plane.
+    #[schemars(with = "Option<Vec<f64>>", extend("minItems" = 3, "maxItems" = 4))]
+    pub initial_stress: Option<Pair>,
+    /// Force per volume, none where it is missing: the same everywhere, or value + gradient · x.
+    pub body_force: Option<At<RawForce>>,
+    /// The centrifugal force of a body that turns, beside any other.
+    pub rotation: Option<At<Table<RawRotation>>>,
     /// Its cells are those of this physical group of the mesh file, or of this elementary entity where there is no such group.
     pub tag: Option<At<i32>>,
     /// Its cells are those of this set of the mesh file.
     #[schemars(length(min = 1))]
     pub set: Option<At<String>>,
+}
+
+/// The same in all directions, or along the axes of the body.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or three numbers, one for each axis of the body")]
+pub(super) enum RawExpansion {
+    Isotropic(f64),
+    Axes(Vec<f64>),
+}
+
+/// The same everywhere, or value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or a table { value = 80.0, gradient = [gx, gy] }")]
+pub(super) enum RawTemperature {
+    Constant(f64),
+    Affine(RawAffineTemperature),
+}
+
+/// value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Temperature")]
+pub(super) struct RawAffineTemperature {
+    /// At the origin of coordinates.
+    #[serde(default)]
+    pub value: f64,
+    /// Along x and y.
+    #[schemars(with = "[f64; 2]")]
+    pub gradient: Vec<f64>,
 }
 
 /// Engineering constants. Axis 3 is out of the plane.

@@ -36,7 +36,7 @@ pub fn claim(
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
     let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored())?;
-    let solution = solution.within(Extent::of(bracket)).with_weak_contact(weak);
+    let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
     let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
@@ -75,7 +75,7 @@ pub fn claim_before_contact(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(before, own, judged.field.potential.stored())?.within(Extent::of(bracket));
+    let solution = Solution::new(before, own, judged.field.potential.stored())?.within(Extent::of(before, bracket));
     let solution = Nonmatching::new(solution.with_weak_contact(weak), problem);
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
@@ -92,7 +92,8 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     let strain = judged.field.potential.stored();
     let others = cells::rules(&judged.candidate).into_iter().filter(|points| *points != solution.points);
     let by = |points| {
-        let other = Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(bracket));
+        let other =
+            Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(problem, bracket));
         diagnose(&other, energies).map(Some).filter(is_explained)
     };
     others.into_iter().find_map(by).unwrap_or(own)
@@ -125,7 +126,7 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) 
     };
     let explained = |judged: &Judged| {
         let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored()).ok()?;
-        let solution = solution.within(Extent::of(bracket));
+        let solution = solution.within(Extent::of(problem, bracket));
         diagnose(&solution, energies(problem, judged))
     };
     comparison.judged.iter().filter(wrong).filter_map(explained).collect()

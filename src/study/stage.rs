@@ -1,6 +1,6 @@
 //! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
 
-use super::certified::{Balanced, Certified, StudyError, admit, solve_balanced};
+use super::certified::{Balanced, Certified, StudyError, admit, carrying_loads, solve_balanced};
 use super::curves::divide_evenly_what_slides;
 use super::trend::Way;
 use super::warm_start::{carried, closed_coefficients};
@@ -15,6 +15,8 @@ use crate::problem::{Note, Problem, Refinement};
 /// # Errors
 /// [`StudyError`].
 pub fn certify_divided(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
+    let (problem, options) = carrying_loads(problem, options)?;
+    let options = &options;
     admit(&problem, method, options)?;
     let balanced = Balanced::new(&problem, &options.elements, None)?;
     if !balanced.statics.is_beyond_mesh() {

@@ -127,7 +127,7 @@ fn relaxed(
     let mesh = &problem.mesh;
     let Groundwork { nodes, holds, rows, made } = ground;
     let mut field = NodalValues::zeros(nodes.clone());
-    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments));
+    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
     share.refresh(&mut field.values);
     beds::draw(problem, stress, &mut field);
     let vertex = field.vertices_mut();

@@ -12,8 +12,9 @@ use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
-use crate::element::geometry::{sub_area, sub_gradients};
+use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
 use crate::element::{Material, Samples, StressField, triangle};
+use crate::load::BodyForce;
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.
 #[derive(Debug, Clone)]
@@ -76,14 +77,14 @@ impl Split {
 }
 
 /// The forces of a body force on every coefficient of degree `k`, x and y of each.
-pub fn load(k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
+pub fn load(k: usize, corners: [[f64; 2]; 3], force: &BodyForce) -> Vec<f64> {
     let mut out = vec![0.0; 2 * split_len(k)];
-    for nodes in &SplitNodes::of(k).subs {
-        // Every Bernstein polynomial has the same mean.
-        let share = sub_area(corners) / nodes.len() as f64;
-        for node in nodes {
-            out[2 * node] += share * force[0];
-            out[2 * node + 1] += share * force[1];
+    for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        let force = force.on(sub_corners(corners, sub)).of_area(sub_area(corners));
+        for (node, alpha) in nodes.iter().zip(triangle::indices(k)) {
+            let [x, y] = force.against(alpha);
+            out[2 * node] += x;
+            out[2 * node + 1] += y;
         }
     }
     out
@@ -197,7 +198,7 @@ mod tests {
     #[test]
     fn the_load_is_the_work_of_the_body_force() {
         for k in 1..=MOST {
-            let forces = load(k, CORNERS, [2.0, -3.0]);
+            let forces = load(k, CORNERS, &BodyForce::constant([2.0, -3.0]));
             // A unit translation does the work of the whole force.
             let work = |c: usize| forces.iter().skip(c).step_by(2).sum::<f64>();
             let area = 3.0 * sub_area(CORNERS);

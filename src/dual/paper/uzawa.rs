@@ -119,6 +119,13 @@ impl DualMethod for Uzawa {
 
 /// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
 fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Result<(), DualError> {
+    if let Some(body) = problem.scene.bodies.iter().find(|body| !body.body_force.is_constant()) {
+        return Err(DualError::NotExpressible {
+            method,
+            what: format!("the body force of {}, which is not constant", body.name),
+            remedy: "use another method, whose stresses have degree 2 there",
+        });
+    }
     let degree = options.elements.largest_degree();
     if degree != 1 {
         return Err(DualError::NotExpressible {

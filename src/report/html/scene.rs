@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
@@ -20,7 +21,7 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
                     bdi { (clean(&body.name)) } ": " (elasticity(&body.elasticity))
-                    @if body.body_force != [0.0; 2] { ", body force " (vector(body.body_force, 5)) }
+                    (force(&body.body_force))
                 } } } }
                 dt { "Loads" } dd { (loads(scene)) }
                 dt { "Supports" } dd { (supports(scene)) }
@@ -61,7 +62,7 @@ fn elasticity(law: &Elasticity) -> String {
 }
 
 fn loads(scene: &Scene) -> Markup {
-    let forces = scene.bodies.iter().any(|body| body.body_force != [0.0; 2]);
+    let forces = scene.bodies.iter().any(|body| !body.body_force.is_none());
     html! {
         @if scene.tractions.is_empty() { (if forces { "body forces alone" } else { "none" }) } @else {
             ul { @for traction in &scene.tractions { li {
@@ -71,6 +72,15 @@ fn loads(scene: &Scene) -> Markup {
                     Load::Affine(load) => (affine(load)),
                 }
             } } }
+        }
+    }
+}
+
+fn force(force: &BodyForce) -> Markup {
+    html! {
+        @if force.given() != Affine::default() { ", body force " (affine(force.given())) }
+        @if let Some(Rotation { density, omega, about }) = force.rotation() {
+            ", turning about " (vector(about, 5)) " with ω = " (significant(omega, 5)) ", ϱ = " (significant(density, 5))
         }
     }
 }
