@@ -11,6 +11,7 @@ use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, OnSprings, Pull, Until};
 use crate::dual::{Load, Loaded, Response, ShapedStrain};
 use crate::element::StressField;
+use crate::problem::Problem;
 
 /// How often, and by what factor, the ratio is raised where it gives nothing.
 const MOST_RAISES: usize = 8;
@@ -229,12 +230,25 @@ impl Search<'_, '_> {
         let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
+            NoUpperBound::ForcedPenetration { x, y, .. } if is_tip(known.problem, [x, y]) => format!(
+                "the contact ends inside a body at ({x}, {y}), and what it carries up to there is no bounded functional; ask for a \
+                 window that is zero there"
+            ),
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
         })?;
         Ok(End { nodes, ..self.measured(response, (&z, sign), sign) })
     }
+}
+
+/// Whether both sides of a contact have one vertex at this place of the scene as it was written.
+fn is_tip(problem: &Problem, place: [f64; 2]) -> bool {
+    let shared = problem.pairs().flat_map(|pair| {
+        let second = pair.second;
+        (0..2).filter_map(move |end| second.filter(|second| second[end] == pair.first[end]).map(|second| second[end]))
+    });
+    shared.into_iter().any(|v| problem.scene.as_written(problem.mesh.points[v]) == place)
 }
 
 /// The ratios that were tried for one end, and the best of what they gave.

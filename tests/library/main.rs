@@ -13,6 +13,7 @@ mod congruent;
 mod contact_pressure;
 mod contact_qp;
 mod crack_tips;
+mod cracks;
 mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
