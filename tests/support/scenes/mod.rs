@@ -9,6 +9,7 @@ mod curved;
 mod frame;
 mod lattice;
 mod layout;
+mod matter;
 mod moved;
 mod msh;
 mod obstacles;
@@ -65,12 +66,13 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 5] = [
+const LATER: [(&str, f64, Family); 6] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
     ("quadrilaterals", 0.12, lattice::quadrilaterals),
     ("obstacles", 0.1, obstacles::obstacles),
+    ("matter", 0.15, lattice::matter),
 ];
 
 /// The scene of a seed.
