@@ -2,6 +2,7 @@
 
 use super::Kinematics;
 use super::error::{Fault, SceneError};
+use super::range::{ends, no_range};
 use super::raw::{At, Pair, RawBody, RawOrthotropic, Table};
 use super::source::Source;
 use crate::elasticity::{Anisotropic, Elasticity, Matrix, MatrixKind, Orthotropic};
@@ -99,10 +100,14 @@ fn isotropic(
     };
     let young = raw.young.as_ref().ok_or_else(|| missing("young"))?;
     let words = ("Young's modulus must be positive", "write a positive number, in units of stress");
-    let young = source.positive(young, (label, "young"), words)?;
+    let (low, high) = ends(young, (label, "young"), source)?;
+    high.map(|high| source.positive(&high, (label, "young"), words)).transpose()?;
+    // Of a range the end of the lowest energy.
+    let young = source.positive(&low, (label, "young"), words)?;
     let poisson = raw.poisson.as_ref().ok_or_else(|| missing("poisson"))?;
+    let poisson = no_range(poisson, (label, "poisson"), source)?;
     let words = poisson_words(poisson.value);
-    let poisson = source.number(poisson, (label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
+    let poisson = source.number(&poisson, (label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
     Ok(Elasticity::Isotropic { young, poisson })
 }
 
