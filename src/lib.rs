@@ -77,6 +77,7 @@ pub mod plot;
 pub mod primal;
 pub mod problem;
 pub mod process;
+pub mod proof;
 #[cfg(feature = "python")]
 mod python;
 pub mod quantity;

@@ -13,13 +13,16 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
+import scipy.sparse as sp
 import ufl
+from petsc4py import PETSc
 
 from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
 from .lattice import Lattice, square, traction_weights, weights
+from .springs import stiffness as spring_stiffness
 
 GAUSS_POINTS = 6
 """Points of the rule on quadrilaterals, in each direction."""
@@ -51,21 +54,27 @@ class Numbering:
 class Model:
     """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node.
 
-    ``displacement`` is a function of the space, and ``energy`` the compiled form of its strain energy. The space owns
+    ``load`` counts what initial strains pull, ``working`` does not: the work that enters the energy is that of the latter.
+    ``displacement`` is a function of the space, ``energy`` the compiled form of its strain energy, and ``springs`` the part of the
+    stiffness that springs have, if there are any. The space owns
     the communicator of matrix and vector, and has to live as long as they and all that is duplicated from them.
     """
 
     stiffness: object
     load: object
+    working: object
     displacement: object
     energy: object
+    springs: object
     numbering: Numbering
     seconds_compile: float
     seconds_assemble: float
 
     def strain_energy(self, u) -> float:
-        """½ ∫ c e(u):e(u), summed over the triangles. In uᵀK u, a rigid motion would take more digits: all of |u|²."""
-        return compat.evaluate(self.energy, self.displacement, u)
+        """½ ∫ c (e(u) − ε0):(e(u) − ε0), summed over the triangles, and what springs store. In uᵀK u, a rigid motion would take more
+        digits: all of |u|²."""
+        strain = compat.evaluate(self.energy, self.displacement, u)
+        return strain if self.springs is None else strain + 0.5 * u.dot(self.springs * u)
 
 
 class Mesh:
@@ -174,7 +183,7 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
-    stiffness = _stiffness(mesh, owner)
+    law = _stiffness(mesh, owner)
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
     gradients = np.array([body.force_gradient for body in problem.bodies]) * problem.thickness
     if np.any(gradients):
@@ -182,35 +191,83 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
         force = force + ufl.dot(ufl.as_matrix(slope), ufl.SpatialCoordinate(mesh.mesh))
     displacement = compat.function(space)
 
-    def work(u, v):
-        isotropic = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
-        if stiffness is None:
+    def product(e, d):
+        isotropic = lame * ufl.tr(e) * ufl.tr(d) + 2 * shear * ufl.inner(e, d)
+        if law is None:
             return isotropic * dx
-        return (isotropic + ufl.inner(ufl.dot(stiffness, _engineering(u)), _engineering(v))) * dx
+        return (isotropic + ufl.inner(ufl.dot(law, _engineering(e)), _engineering(d))) * dx
+
+    def work(u, v):
+        if law is None:
+            return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * dx
+        return product(_strain(u), _strain(v))
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
-    energy = compat.form(comm, 0.5 * work(displacement, displacement))
+    initial = _initial_strain(mesh, owner)
+    if initial is None:
+        energy, pull = compat.form(comm, 0.5 * work(displacement, displacement)), None
+    else:
+        elastic = _strain(displacement) - initial
+        energy = compat.form(comm, 0.5 * product(elastic, elastic))
+        pull = compat.form(comm, product(initial, _strain(v)))
     linear = compat.form(comm, ufl.inner(force, v) * dx)
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)
     numbering = mesh.numbering(space, lattice)
     stiffness = compat.assemble_matrix(bilinear)
+    springs = _springs(mesh, degree, numbering)
+    if springs is not None:
+        stiffness.axpy(1.0, springs, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     load = compat.assemble_vector(linear)
     tractions = _traction_load(problem, lattice)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
-    return Model(stiffness, load, displacement, energy, numbering, compiled - start, perf_counter() - compiled)
+    working = load
+    if pull is not None:
+        working = load.copy()
+        load.axpy(1.0, compat.assemble_vector(pull))
+    return Model(stiffness, load, working, displacement, energy, springs, numbering, compiled - start, perf_counter() - compiled)
+
+
+def _springs(mesh: Mesh, degree: int, numbering: Numbering):
+    """The stiffness of springs in FEniCSx's numbering; None where there are none."""
+    problem, rank = mesh.problem, mesh.comm.rank
+    if len(problem.spring_edges) == 0:
+        return None
+    of_nodes = spring_stiffness(problem, degree).tocoo()
+    number = (2 * numbering.nodes[:, None] + np.arange(2)).reshape(-1)
+    rows, columns = number[of_nodes.row], number[of_nodes.col]
+    begin, end = 2 * numbering.ranges[rank]
+    size = 2 * int(numbering.ranges.max())
+    mine = (rows >= begin) & (rows < end)
+    local = sp.csr_matrix((of_nodes.data[mine], (rows[mine] - begin, columns[mine])), shape=(end - begin, size))
+    local.sort_indices()
+    csr = (local.indptr.astype(PETSc.IntType), local.indices.astype(PETSc.IntType), local.data)
+    matrix = PETSc.Mat().createAIJ(((int(end - begin), size), (int(end - begin), size)), csr=csr, comm=mesh.comm)
+    matrix.assemble()
+    return matrix
 
 
 def _strain(v):
     return ufl.sym(ufl.grad(v))
 
 
-def _engineering(v):
+def _engineering(strain):
     """ε_xx, ε_yy and 2 ε_xy."""
-    strain = _strain(v)
     return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+
+
+def _initial_strain(mesh: Mesh, owner: np.ndarray):
+    """ε0, affine in x, or None where no body has one."""
+    bodies = mesh.problem.bodies
+    if all(body.initial_strain is None for body in bodies):
+        return None
+    values = np.array([np.zeros((3, 3)) if body.initial_strain is None else body.initial_strain for body in bodies])[owner]
+    x = ufl.SpatialCoordinate(mesh.mesh)
+    part = [[compat.constant_per_cell(mesh.mesh, values[:, i, j]) for j in range(3)] for i in range(3)]
+    xx, yy, xy = (value + along_x * x[0] + along_y * x[1] for value, along_x, along_y in part)
+    return ufl.as_matrix([[xx, xy], [xy, yy]])
 
 
 def _stiffness(mesh: Mesh, owner: np.ndarray):

@@ -22,6 +22,7 @@ mod methods;
 pub mod options;
 pub mod part;
 pub mod progress;
+mod proof;
 pub mod say;
 pub mod schema;
 pub mod session;

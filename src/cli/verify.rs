@@ -8,7 +8,7 @@ use clap::value_parser;
 use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
-use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
+use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions, positive};
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
@@ -39,6 +39,9 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// What travels with the report.
+    #[command(flatten)]
+    pub proof: ProofOptions,
     /// Degrees of the displacement model, each from 1 to 9, with commas between
     #[arg(
         long, value_name = "P,…", value_delimiter = ',', default_values_t = [1, 2],
@@ -122,6 +125,7 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     args.refuse_unheard()?;
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
     let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
@@ -192,6 +196,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         failure: failure.as_ref().map(ToString::to_string),
         baseline,
         notes: on_cells.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect(),
+        is_to_prove: args.proof.proof,
         ..Particulars::default()
     };
     let exit = session.conclude(&run, &comparison, particulars, &folder)?;

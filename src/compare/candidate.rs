@@ -6,6 +6,7 @@ use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::solution::Numbering;
+use crate::bounds::energy::initial_energy;
 use crate::bounds::{
     Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,
 };
@@ -152,7 +153,9 @@ impl Judged {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             _ => field.potential,
         };
-        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
+        let balance = candidate
+            .is_solution
+            .then(|| Balance::new(problem, &candidate, field.potential.stored() + initial_energy(problem)));
         let larger = extent.larger(candidate.largest());
         Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }

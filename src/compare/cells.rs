@@ -6,6 +6,7 @@
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::bounds::Cell;
 use crate::element::Quadrilateral;
 use crate::element::quadrature::segment_rule;
@@ -129,6 +130,13 @@ impl NodalForces {
             for (node, f) in cell.nodes.iter().zip(own) {
                 (0..2).for_each(|c| forces.left[*node][c] += thickness * f[c]);
             }
+            if !material.initial().is_none() {
+                for (at, weight) in rule(points) {
+                    let (gradients, _) = cell.field.gradients(at);
+                    let held = material.held_back(cell.field.position(at));
+                    forces.add_initial(thickness * weight, held, &cell.nodes, &gradients);
+                }
+            }
             for (node, f) in cell.nodes.iter().zip(load(&cell.field, problem.body_force(t))) {
                 (0..2).for_each(|c| forces.load[*node][c] += thickness * f[c]);
             }
@@ -145,6 +153,7 @@ impl NodalForces {
                 }
             }
         }
+        forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
         forces.add_tractions(problem, candidate.degree);
         forces.take_loads();
         forces

@@ -19,6 +19,7 @@ mod piece;
 pub mod pressure;
 mod resultant;
 pub mod solution;
+mod springs;
 mod stress;
 mod tolerance;
 

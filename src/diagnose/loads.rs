@@ -35,7 +35,11 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         vec![Finding::new(name, Some(s), Some(1.0), sentence)]
     };
     if several {
-        let column = negative(&space.solution.forces.load);
+        // What initial strains pull is no load.
+        let materials = space.problem().materials();
+        let held = space.forces_of(|b, x| (!materials[b].initial().is_none()).then(|| materials[b].held_back(x)));
+        let load = space.solution.forces.load.iter().zip(&held);
+        let column = negative(&load.map(|(f, h)| [f[0] - h[0], f[1] - h[1]]).collect::<Vec<_>>());
         terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
     }
     for (on, forces) in &tractions {

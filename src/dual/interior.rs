@@ -16,6 +16,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
 use super::equilibrium::Equilibrium;
 use super::hybrid::{Motion, parameters, residual};
+use super::method::without_springs;
 use super::rows::Sides;
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
@@ -61,6 +62,7 @@ impl DualMethod for Clarabel {
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
         let start = Instant::now();
+        without_springs(problem, self.name())?;
         let system = System::new(problem, options);
         let program = ConicProgram::new(problem, &system);
         seconds.assemble = start.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@
 //! nothing else, so every one of them is tested against the others.
 
 mod active_set;
+mod beds;
 mod clearing;
 mod condensed;
 mod contact_moments;
@@ -14,6 +15,7 @@ pub mod equilibrium;
 mod factor;
 mod footprint;
 mod hybrid;
+mod initial;
 mod interior;
 mod loaded;
 mod long_contact;

@@ -114,7 +114,7 @@ impl Responses<'_> {
             (Cow::Owned(other), modes)
         };
         let external = load_of_tractions(&system.unknowns, load.tractions.iter().copied());
-        let mut system = System { modes, rhs: Vec::new(), external, ..system.clone() };
+        let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
         let start = system.strained(&problem, &load.strains);
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
@@ -128,7 +128,7 @@ impl Responses<'_> {
 impl System {
     /// Mode parameters −∫ N_k : χ of the given constant strains: minus those of the moments of χx on the boundary.
     fn strained(&self, problem: &Problem, strains: &[(usize, [f64; 3])]) -> Vec<f64> {
-        let mut out = vec![0.0; self.modes.parameters()];
+        let mut out = vec![0.0; self.parameters()];
         for (t, [xx, yy, xy]) in strains {
             let corners = problem.mesh.corners(*t);
             let at = |i: usize| {

@@ -46,7 +46,7 @@ pub use quadrilateral::Quadrilateral;
 pub use samples::Samples;
 pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;
-pub use strain::Strains;
+pub use strain::{Strains, elastic_degree};
 
 use std::borrow::Cow;
 

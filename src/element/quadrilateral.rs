@@ -114,6 +114,13 @@ impl Quadrilateral {
         [base[0] + sum(0), base[1] + sum(1)]
     }
 
+    /// The point of the plane that a point of the square is mapped to.
+    pub fn position(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        let [a, b, h] = self.frame();
+        let base = self.corners[0];
+        [0, 1].map(|c| base[c] + a[c] * (1.0 + xi) + b[c] * (1.0 + eta) + h[c] * (xi * eta - 1.0))
+    }
+
     /// The point of the square that is mapped to `x`, in or at the edge of the quadrilateral.
     pub fn place(&self, x: [f64; 2]) -> [f64; 2] {
         let [a, b, h] = self.frame();

@@ -42,6 +42,8 @@ struct ProblemFile<'a> {
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
     contacts: Vec<ContactEntry<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<SpringEntry>,
     pins: Vec<PinEntry>,
 }
 
@@ -50,6 +52,8 @@ struct BodyEntry<'a> {
     name: &'a str,
     #[serde(flatten)]
     material: MaterialEntry,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_strain: Option<[[f64; 3]; 3]>,
     body_force: Force,
 }
 
@@ -90,6 +94,14 @@ impl MaterialEntry {
     }
 }
 
+/// ε_xx, ε_yy and ε_xy of a body without stress, each by its value at the origin and its derivatives along x and y.
+fn initial_strain(problem: &Problem, body: usize) -> Option<[[f64; 3]; 3]> {
+    let material = problem.material(body);
+    let strain = material.initial();
+    let row = |c: usize| [strain.value[c], strain.gradient[c][0], strain.gradient[c][1]];
+    (!strain.is_none()).then(|| [0, 1, 2].map(row))
+}
+
 #[derive(Serialize)]
 struct QuadrilateralEntry {
     corners: [usize; 4],
@@ -121,6 +133,15 @@ struct RollerEntry {
 struct TractionEntry {
     edge: usize,
     values: [[f64; 2]; 2],
+}
+
+/// An edge on springs, or on a side of an elastic layer.
+#[derive(Serialize)]
+struct SpringEntry {
+    edge: usize,
+    opposite: Option<usize>,
+    axes: [[f64; 2]; 2],
+    stiffness: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -164,7 +185,10 @@ impl<'a> ProblemFile<'a> {
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
-                Condition::Traction(_) | Condition::Interior | Condition::Contact { .. } => {}
+                Condition::Traction(_)
+                | Condition::Interior
+                | Condition::Contact { .. }
+                | Condition::Elastic { .. } => {}
             }
         }
         ProblemFile {
@@ -179,6 +203,7 @@ impl<'a> ProblemFile<'a> {
                 .map(|(i, body)| BodyEntry {
                     name: &body.name,
                     material: MaterialEntry::new(problem, i),
+                    initial_strain: initial_strain(problem, i),
                     body_force: Force::from(&body.body_force),
                 })
                 .collect(),
@@ -212,6 +237,15 @@ impl<'a> ProblemFile<'a> {
                             gap_below: gap_below(pair),
                         })
                         .collect(),
+                })
+                .collect(),
+            springs: problem
+                .bed_pairs()
+                .map(|(pair, stiffness)| SpringEntry {
+                    edge: pair.edge,
+                    opposite: pair.opposite,
+                    axes: pair.axes,
+                    stiffness,
                 })
                 .collect(),
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),

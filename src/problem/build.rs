@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
@@ -111,8 +111,10 @@ impl Problem {
                         displacement: *displacement,
                     },
                     Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
-                    // Contact edges are overwritten when they are paired.
-                    Some(Role::Contact) | None => Condition::Traction([[0.0; 2]; 2]),
+                    // Edges of contacts and springs are overwritten when they are paired.
+                    Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
+                        Condition::Traction([[0.0; 2]; 2])
+                    }
                 }
             })
             .collect();
@@ -145,13 +147,19 @@ impl Problem {
             }
             interfaces.push(matched);
         }
+        let beds = beds(&scene, &mesh)?;
+        for (bed, of) in beds.iter().enumerate() {
+            for (pair, edges) in of.pairs.iter().enumerate() {
+                edges.sides().for_each(|(side, e)| conditions[e] = Condition::Elastic { bed, pair, side });
+            }
+        }
         for remark in remarks {
             if !notes.contains(&remark) {
                 notes.push(remark);
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement, uncut: None })
+        Ok(Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -247,6 +255,15 @@ impl Problem {
         let problem = self.divided(finer.mesh, &curved)?;
         Ok((problem, finer.refinement, finer.parent))
     }
+}
+
+/// The springs of all supports, then the layers of all bonds.
+fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
+    let mut all: Vec<Bed> = scene.supports.iter().filter_map(|support| Bed::of_support(support, mesh)).collect();
+    for bond in &scene.bonds {
+        all.extend(Bed::of_bond(bond, scene, mesh)?);
+    }
+    Ok(all)
 }
 
 /// The role of every boundary that the scene mentions.

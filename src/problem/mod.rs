@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod bed;
 mod bow;
 mod build;
 mod contact;
@@ -12,6 +13,8 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bed::facing_vertices;
+pub use bed::{Bed, BedPair};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -36,6 +39,8 @@ pub struct Problem {
     pub conditions: Vec<Condition>,
     /// Contacts, in scene order.
     pub interfaces: Vec<Interface>,
+    /// Springs, in the order of the supports, then elastic layers in that of the bonds.
+    pub beds: Vec<Bed>,
     /// What the reader of the report has to know about how the mesh and the data were represented.
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
@@ -52,7 +57,12 @@ impl Problem {
 
     /// Material of one body of the scene.
     pub fn material(&self, body: usize) -> Material {
-        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
     }
 
     /// The body force on triangle `t`.
@@ -73,6 +83,11 @@ impl Problem {
     /// The pairs of all contacts, one interface after the other.
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)
+    }
+
+    /// The pairs of all beds with their stiffness, one bed after the other.
+    pub fn bed_pairs(&self) -> impl Iterator<Item = (&BedPair, [f64; 2])> + Clone {
+        self.beds.iter().flat_map(|bed| bed.pairs.iter().map(|pair| (pair, bed.stiffness)))
     }
 
     /// The edges of Γ_τ, each with P at its two ends.
@@ -118,6 +133,15 @@ pub enum Condition {
         /// Index into [`Problem::interfaces`].
         interface: usize,
         /// Index into [`Interface::pairs`].
+        pair: usize,
+        /// 0 for the first side, 1 for the second.
+        side: usize,
+    },
+    /// Side 0 or 1 of `beds[bed].pairs[pair]`: the traction is that of springs.
+    Elastic {
+        /// Index into [`Problem::beds`].
+        bed: usize,
+        /// Index into [`Bed::pairs`].
         pair: usize,
         /// 0 for the first side, 1 for the second.
         side: usize,

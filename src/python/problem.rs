@@ -103,6 +103,7 @@ fn condition_entry<'py>(py: Python<'py>, condition: &Condition) -> PyResult<Boun
             "roller"
         }
         Condition::Contact { .. } => "contact",
+        Condition::Elastic { .. } => "elastic",
     };
     entry.set_item("kind", kind)?;
     Ok(entry)

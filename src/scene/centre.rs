@@ -42,7 +42,10 @@ impl Scene {
                 load.shift(middle);
             }
         }
-        self.draft.bodies.iter_mut().for_each(|body| body.body_force.shift(middle));
+        for body in &mut self.draft.bodies {
+            body.initial = body.initial.about(middle);
+            body.body_force.shift(middle);
+        }
         for support in &mut self.draft.supports {
             if let SupportKind::Clamped { displacement } = &mut support.kind {
                 displacement.shift(middle);

@@ -12,6 +12,7 @@ use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
 use super::source::{Source, counted};
+use super::springs::{no_stiffness, spring};
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
 };
@@ -94,6 +95,7 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
     let word = support.kind.value.as_str();
     let kind = match word {
         "clamped" => {
+            no_stiffness(support, table, source)?;
             if let Some(d) = &support.direction {
                 let remedy = "delete `direction`, or write type = \"roller\", which holds one component";
                 let (table, other) = (table.to_owned(), "type = \"clamped\", which holds both components");
@@ -103,14 +105,16 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
             SupportKind::Clamped { displacement: displacement.unwrap_or_default() }
         }
         "roller" => {
+            no_stiffness(support, table, source)?;
             let remedy = "write the direction of the component that is held, like [1.0, 0.0]";
             let direction =
                 support.direction.as_ref().map(|d| source.unit(d, (table, "direction"), remedy)).transpose()?;
             let displacement = support.displacement.as_ref().map(|u| roller(u, table, source)).transpose()?;
             SupportKind::Roller { direction, displacement: displacement.unwrap_or_default() }
         }
+        "spring" => SupportKind::Spring { stiffness: spring(raw, table, source)? },
         other => {
-            let known = ["clamped", "roller"].map(String::from).to_vec();
+            let known = ["clamped", "roller", "spring"].map(String::from).to_vec();
             let fault = Fault::UnknownWord { key: "type", table: table.to_owned(), found: other.to_owned(), known };
             return Err(source.error(support.kind.span(), fault));
         }

@@ -16,7 +16,7 @@ use super::{
     Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
     SupportKind, Target, Touching, Traction,
 };
-use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
@@ -113,7 +113,7 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, elasticity, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
             let material = match (self.range_of(Ranged::Young(i)), elasticity) {
@@ -123,17 +123,28 @@ impl Draft {
                 _ => material(elasticity),
             };
             let (name, force) = (quoted(name), force(body_force));
+            let material = material + &initial_keys(initial);
             writeln!(text, "bodies.{name} = {{ {material}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
-            ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
+            (
+                "supports",
+                self.supports
+                    .iter()
+                    .enumerate()
+                    .map(|(i, s)| support(s, |c| self.range_of(Ranged::Spring(i, c))))
+                    .collect::<Vec<_>>(),
+            ),
             ("tractions", self.tractions.iter().map(traction).collect()),
             (
                 "contacts",
                 self.contacts.iter().enumerate().map(|(i, c)| contact(c, self.range_of(Ranged::Gap(i)))).collect(),
             ),
-            ("bonds", self.bonds.iter().map(bond).collect()),
+            (
+                "bonds",
+                self.bonds.iter().enumerate().map(|(i, b)| bond(b, |c| self.range_of(Ranged::Layer(i, c)))).collect(),
+            ),
             ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
         ];
         for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
@@ -267,6 +278,20 @@ fn number(number: f64) -> String {
     Value::from(number).to_string()
 }
 
+/// The keys of initial strains and stresses, each behind a comma.
+fn initial_keys(initial: &Initial) -> String {
+    let Initial { expansion, temperature, gradient, stress } = initial;
+    let mut text = String::new();
+    if *expansion != [0.0; 3] || *temperature != 0.0 || *gradient != [0.0; 2] {
+        let (expansion, value, gradient) = (list(expansion), number(*temperature), list(gradient));
+        text += &format!(", expansion = {expansion}, temperature = {{ value = {value}, gradient = {gradient} }}");
+    }
+    if *stress != [0.0; 4] {
+        text += &format!(", initial_stress = {}", list(stress));
+    }
+    text
+}
+
 /// The keys of a material.
 pub(crate) fn material(elasticity: &Elasticity) -> String {
     match elasticity {
@@ -308,7 +333,13 @@ fn polygon(polygon: &Polygon) -> String {
     format!("{{ body = {body}, points = {points}, edges = [{names}], arcs = [{arcs}] }}")
 }
 
-fn support(Support { on, kind }: &Support) -> String {
+/// Normal and tangential, each a number or the ends that `range` has of it.
+fn both(stiffness: &[f64; 2], range: impl Fn(usize) -> Option<String>) -> String {
+    let [normal, tangential] = [0, 1].map(|c| range(c).unwrap_or_else(|| number(stiffness[c])));
+    format!("[{normal}, {tangential}]")
+}
+
+fn support(Support { on, kind }: &Support, range: impl Fn(usize) -> Option<String>) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
@@ -317,6 +348,9 @@ fn support(Support { on, kind }: &Support) -> String {
         SupportKind::Roller { direction, displacement } => {
             let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
             format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
+        }
+        SupportKind::Spring { stiffness } => {
+            format!("on = {on}, type = \"spring\", stiffness = {}", both(stiffness, range))
         }
     }
 }
@@ -378,8 +412,9 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 
-fn bond(Bond { sides: [a, b] }: &Bond) -> String {
-    format!("between = [{}, {}]", quoted(a), quoted(b))
+fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
+    let stiffness = stiffness.map(|k| format!(", stiffness = {}", both(&k, range))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

@@ -26,12 +26,13 @@ mod raw;
 mod read;
 mod selection;
 mod source;
+mod springs;
 pub(crate) mod text;
 mod validate;
 
 use std::path::PathBuf;
 
-use crate::elasticity::Elasticity;
+use crate::elasticity::{Elasticity, Initial};
 
 pub use crate::load::Affine;
 use crate::load::BodyForce;
@@ -137,6 +138,8 @@ pub struct Body {
     pub name: String,
     /// What it is made of.
     pub elasticity: Elasticity,
+    /// What strains and stresses it has without load.
+    pub initial: Initial,
     /// Body force F (force per volume).
     pub body_force: BodyForce,
 }
@@ -144,7 +147,12 @@ pub struct Body {
 impl Body {
     /// A body with Young's modulus E > 0 and Poisson's ratio ν in (−1, ½), without body force.
     pub fn isotropic(name: impl Into<String>, young: f64, poisson: f64) -> Self {
-        Body { name: name.into(), elasticity: Elasticity::Isotropic { young, poisson }, body_force: BodyForce::NONE }
+        Body {
+            name: name.into(),
+            elasticity: Elasticity::Isotropic { young, poisson },
+            initial: Initial::default(),
+            body_force: BodyForce::NONE,
+        }
     }
 }
 
@@ -171,6 +179,11 @@ pub enum SupportKind {
         direction: Option<[f64; 2]>,
         /// The prescribed component.
         displacement: f64,
+    },
+    /// Springs to the ground: traction −k u.
+    Spring {
+        /// Force per area and displacement, normal and tangential: neither below zero, one of them above.
+        stiffness: [f64; 2],
     },
 }
 

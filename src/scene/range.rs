@@ -1,6 +1,6 @@
 //! Numbers that are known between two ends alone, and the two scenes that enclose the energies of all that lie between.
 //!
-//! The least energy min 𝓛 grows with Young's moduli and falls with gaps: 𝓛(v) does so for every v, or the set of admissible v
+//! The least energy min 𝓛 grows with Young's moduli and the stiffness of springs and falls with gaps: 𝓛(v) does so for every v, or the set of admissible v
 //! shrinks. It does neither with Poisson's ratio, so that a range of it is refused. A scene with ranges holds the ends with the lowest
 //! energy; [`Scene::of_highest_energy`] is the scene of the other ends.
 
@@ -11,9 +11,9 @@ use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 
 use super::error::SceneError;
 use super::fault::Fault;
-use super::raw::{At, RawContact, RawGap, RawScene, Table};
+use super::raw::{At, RawContact, RawGap, RawScene, RawStiffness, Table};
 use super::source::Source;
-use super::{Body, Gap, Scene};
+use super::{Body, Gap, Scene, SupportKind};
 use crate::elasticity::Elasticity;
 
 /// A number of the scene that is known between two ends alone.
@@ -27,6 +27,9 @@ pub struct DataRange {
     pub high: f64,
 }
 
+/// Components of a stiffness in words.
+const DIRECTIONS: [&str; 2] = ["normal", "tangential"];
+
 /// A number that may be known as a range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ranged {
@@ -34,22 +37,26 @@ pub enum Ranged {
     Young(usize),
     /// The gap of a contact, by its index.
     Gap(usize),
+    /// The stiffness of the springs of a support, by its index, normal (0) or tangential (1).
+    Spring(usize, usize),
+    /// That of the elastic layer of a bond.
+    Layer(usize, usize),
 }
 
 impl DataRange {
     /// The end for which the energy is lowest.
     pub fn softest(&self) -> f64 {
         match self.of {
-            Ranged::Young(_) => self.low,
             Ranged::Gap(_) => self.high,
+            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) => self.low,
         }
     }
 
     /// The end for which the energy is highest.
     pub fn stiffest(&self) -> f64 {
         match self.of {
-            Ranged::Young(_) => self.high,
             Ranged::Gap(_) => self.low,
+            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) => self.high,
         }
     }
 }
@@ -60,6 +67,13 @@ impl Scene {
         match range.of {
             Ranged::Young(body) => format!("Young's modulus of {}", self.bodies[body].name),
             Ranged::Gap(contact) => format!("the gap of {}", self.contacts[contact].name()),
+            Ranged::Spring(support, c) => {
+                format!("the {} stiffness of the springs on {}", DIRECTIONS[c], self.supports[support].on)
+            }
+            Ranged::Layer(bond, c) => {
+                let [a, b] = &self.bonds[bond].sides;
+                format!("the {} stiffness of the layer {a}|{b}", DIRECTIONS[c])
+            }
         }
     }
 
@@ -77,6 +91,16 @@ impl Scene {
                     }
                 }
                 Ranged::Gap(contact) => scene.draft.contacts[contact].gap = Gap::Constant(range.stiffest()),
+                Ranged::Spring(support, c) => {
+                    if let SupportKind::Spring { stiffness } = &mut scene.draft.supports[support].kind {
+                        stiffness[c] = range.stiffest();
+                    }
+                }
+                Ranged::Layer(bond, c) => {
+                    if let Some(stiffness) = &mut scene.draft.bonds[bond].stiffness {
+                        stiffness[c] = range.stiffest();
+                    }
+                }
             }
         }
         Some(scene)
@@ -136,6 +160,29 @@ pub(super) fn ends(
     }
 }
 
+/// The two ends of each of two components, normal and tangential; the same twice where one is a number.
+pub(super) fn components(
+    both: &[RawNumber],
+    span: std::ops::Range<usize>,
+    (table, key): (&str, &str),
+    source: &Source,
+) -> Result<[[f64; 2]; 2], SceneError> {
+    let [normal, tangential] = both else {
+        let (key, table, found) = (key.to_owned(), table.to_owned(), super::counted(both.len(), "component"));
+        let remedy = "write both, [normal, tangential]; each may be a range, [[low, high], [low, high]]";
+        return Err(source.error(span, Fault::Count { key, table, found, expected: "2".into(), remedy }));
+    };
+    let ends = |component: &RawNumber| match component {
+        RawNumber::One(value) => Ok([*value; 2]),
+        RawNumber::Range(ends) => ordered(ends, span.clone(), (table, key), source),
+    };
+    let all = [ends(normal)?, ends(tangential)?];
+    // None beyond what numbers may be.
+    let list = At { value: all.as_flattened().to_vec(), start: span.start, end: span.end };
+    source.vector::<4>(&list, (table, key))?;
+    Ok(all)
+}
+
 /// Two ends, the lower one first.
 pub(super) fn ordered(
     ends: &[f64],
@@ -189,5 +236,24 @@ pub(super) fn ranges(raw: &RawScene, bodies: &[Body]) -> Vec<DataRange> {
         RawGap::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Gap(i), low, high }),
         _ => None,
     };
-    bodies.iter().enumerate().filter_map(young).chain(raw.contacts.iter().enumerate().filter_map(gap)).collect()
+    let of_components = |both: &[RawNumber], of: &dyn Fn(usize) -> Ranged| -> Vec<DataRange> {
+        let ranged = |(c, component): (usize, &RawNumber)| match component {
+            RawNumber::Range(ends) => two(ends).map(|[low, high]| DataRange { of: of(c), low, high }),
+            RawNumber::One(_) => None,
+        };
+        both.iter().enumerate().filter_map(ranged).collect()
+    };
+    let mut all: Vec<DataRange> = bodies.iter().enumerate().filter_map(young).collect();
+    all.extend(raw.contacts.iter().enumerate().filter_map(gap));
+    for (i, support) in raw.supports.iter().enumerate() {
+        if let Some(At { value: RawStiffness::Both(both), .. }) = &support.value.0.stiffness {
+            all.extend(of_components(both, &|c| Ranged::Spring(i, c)));
+        }
+    }
+    for (i, bond) in raw.bonds.iter().enumerate() {
+        if let Some(both) = &bond.value.0.stiffness {
+            all.extend(of_components(&both.value, &|c| Ranged::Layer(i, c)));
+        }
+    }
+    all
 }

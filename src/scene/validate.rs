@@ -5,7 +5,7 @@ use std::path::Path;
 use super::body_force::body_force;
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
-use super::material::elasticity;
+use super::material::{elasticity, initial};
 use super::quantity::quantities;
 use super::range::ranges;
 use super::raw::{At, RawModel, RawScene, Table};
@@ -88,7 +88,8 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
         let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
         let body_force = body_force(raw, &label, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
-        Ok(Body { name, elasticity, body_force })
+        let initial = initial(raw, &label, &elasticity, kinematics, source)?;
+        Ok(Body { name, elasticity, initial, body_force })
     };
     let bodies = bodies.into_iter().enumerate().map(body).collect::<Result<_, SceneError>>()?;
     Ok((bodies, cells))

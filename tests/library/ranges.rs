@@ -13,12 +13,12 @@ fn scene(text: &str) -> Scene {
     Scene::parse(text, "ranges.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// The bounds of the energy of a scene; `None` without an equilibrium.
+/// The bounds of the energy of a scene; `None` without an equilibrium that its mesh can express.
 fn bounds(scene: Scene) -> Option<[f64; 2]> {
     let problem = Problem::load(scene).expect("a problem");
     match certify(problem, &Condensed::default(), &Options::default()) {
         Ok(own) => Some([own.bracket.lower(), own.bracket.free.as_ref().expect("an upper bound").upper()]),
-        Err(StudyError::NoEquilibrium { .. }) => None,
+        Err(StudyError::NoEquilibrium { .. } | StudyError::BeyondMesh { .. }) => None,
         Err(error) => panic!("{error}"),
     }
 }
@@ -56,10 +56,11 @@ fn energies_of_data_between_lie_between() {
                             draft.bodies[body].elasticity = Elasticity::Isotropic { young: value, poisson };
                         }
                         Ranged::Gap(contact) => draft.contacts[contact].gap = Gap::Constant(value),
+                        Ranged::Spring(..) | Ranged::Layer(..) => unreachable!("none here"),
                     })
                     .expect("a scene");
             }
-            let [low, high] = bounds(between.clone()).expect("a solution");
+            let Some([low, high]) = bounds(between.clone()) else { continue };
             // The exact energy lies in both.
             assert!(low <= upper && lower <= high, "{low} {high} {lower} {upper}\n{}", between.to_toml());
             let slack = 1e-12 * (lower.abs() + upper.abs());
@@ -88,4 +89,32 @@ fn ranges_are_kept_in_the_file() {
     assert_eq!(stiff.bodies[0].elasticity.isotropic(), Some([2.0, 0.3]));
     assert_eq!(stiff.contacts[0].gap, Gap::Constant(0.0));
     assert_eq!(own.name_of(&own.ranges[0]), "Young's modulus of a");
+}
+
+/// Springs and layers: the exact energy of two springs in series under a unit force is −½ (1/k + 1/l) in the width 1.
+#[test]
+fn stiffnesses_may_be_ranges() {
+    let text = Toml::default()
+        .size(1.0)
+        .model("plane-stress", 1.0)
+        .polygon("a", &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], ["foot", "", "seat", ""])
+        .polygon("b", &[[0.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]], ["under", "", "head", ""])
+        .material("a", 1e9, 0.0)
+        .material("b", 1e9, 0.0)
+        .pressure("head", 1.0)
+        .table("[[supports]]\non = \"foot\"\ntype = \"spring\"\nstiffness = [[1.0, 2.0], 5.0]")
+        .table("[[bonds]]\nbetween = [\"seat\", \"under\"]\nstiffness = [[4.0, 8.0], [1.0, 3.0]]")
+        .text();
+    let soft = scene(&text);
+    let names: Vec<String> = soft.ranges.iter().map(|range| soft.name_of(range)).collect();
+    assert_eq!(names[0], "the normal stiffness of the springs on foot");
+    assert_eq!(names[2], "the tangential stiffness of the layer seat|under");
+    assert_eq!(soft.changed(|_| ()).expect("the same").ranges, soft.ranges);
+    let stiff = soft.of_highest_energy().expect("ranges");
+    let energy = |k: f64, l: f64| -0.5 * (1.0 / k + 1.0 / l);
+    for (scene, exact) in [(soft, energy(1.0, 4.0)), (stiff, energy(2.0, 8.0))] {
+        for bound in bounds(scene).expect("a solution") {
+            assert!((bound - exact).abs() < 1e-7, "{bound} {exact}");
+        }
+    }
 }

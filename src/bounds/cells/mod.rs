@@ -16,11 +16,12 @@ use rayon::prelude::*;
 
 use super::bracket::UpperBound;
 use super::counted::Counted;
-use super::energy::{strain_on, work_inside};
+use super::energy::{strain_of, strain_on, work_inside};
 use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
-use crate::element::{Displacement, Quadrilateral};
+use crate::element::quadrature::segment_rule;
+use crate::element::{Displacement, Material, Quadrilateral, contraction};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 
@@ -61,8 +62,14 @@ impl Correction {
         let body = cell.triangles.first().map_or(0, |t| mesh.body[*t]);
         let data = &problem.scene.bodies[body];
         let thickness = problem.scene.thickness;
-        let own = strain_energy(&cell.field, &problem.material(body));
+        let material = problem.material(body);
+        let own = strain_energy(&cell.field, &material);
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
+        let [initial, size] = if material.initial().is_none() { [0.0; 2] } else { of_initial(&cell.field, &material) };
+        let homogeneous = match material.initial().is_none() {
+            true => of_triangles,
+            false => cell.triangles.iter().map(|t| strain_of(problem, polynomial, *t, *t)[0]).sum(),
+        };
         let force = &data.body_force;
         let mut work = 0.0;
         if !force.is_none() {
@@ -72,18 +79,36 @@ impl Correction {
             }
         }
         Correction {
-            strain: thickness * (own.value - of_triangles),
+            strain: thickness * (own.value + initial - of_triangles),
             work: thickness * work,
             error: thickness * own.error,
-            sensitivity: thickness * own.sensitivity,
+            sensitivity: thickness * (own.sensitivity + size),
             own: thickness * own.value,
-            polynomial: thickness * of_triangles,
+            polynomial: thickness * homogeneous,
         }
     }
 
     fn total(&self) -> f64 {
         self.strain - self.work
     }
+}
+
+/// ½∫ cε0:ε0 − ∫ cε0:e(v) over a quadrilateral, and the same with the sizes of all terms: polynomials of degree 4 at most along ξ and η.
+fn of_initial(cell: &Quadrilateral, material: &Material) -> [f64; 2] {
+    let rule = segment_rule(7);
+    let mut sum = [0.0; 2];
+    for (s, v) in rule {
+        for (t, w) in rule {
+            let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
+            let (of_v, place) = (cell.at(at), cell.position(at));
+            let (held, initial) = (material.held_back(place), material.initial().at(place));
+            let own = 0.5 * of_v.determinant * contraction(held, initial);
+            let size = held.iter().map(|s| s.abs()).sum::<f64>() * of_v.spread;
+            sum[0] += 4.0 * v * w * (own - contraction(held, of_v.strain));
+            sum[1] += 4.0 * v * w * (own.abs() + size);
+        }
+    }
+    sum
 }
 
 /// ∫ f · v over a quadrilateral: a polynomial of degree 4 along ξ and η.

@@ -100,6 +100,10 @@ fn supports(scene: &Scene) -> Markup {
                 @match support.kind {
                     SupportKind::Clamped { displacement } if displacement == Affine::default() => "clamped",
                     SupportKind::Clamped { displacement } => { "clamped, moved by " (affine(displacement)) }
+                    SupportKind::Spring { stiffness: [normal, tangential] } => {
+                        "springs of stiffness " (significant(normal, 5)) " along the normal, "
+                        @if tangential == 0.0 { "none along the boundary" } @else { (significant(tangential, 5)) " along the boundary" }
+                    }
                     SupportKind::Roller { direction, displacement } => {
                         "roller"
                         @if let Some(d) = direction { " that holds along " (vector(d, 5)) }
@@ -131,7 +135,14 @@ fn contacts(problem: &Problem) -> Markup {
 
 fn bonds(scene: &Scene) -> Markup {
     html! {
-        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": glued" } } }
+        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": "
+            @match bond.stiffness {
+                None => "glued",
+                Some([normal, tangential]) => {
+                    "an elastic layer of stiffness " (significant(normal, 5)) " along the normal, " (significant(tangential, 5)) " along the sides"
+                }
+            }
+        } } }
     }
 }
 

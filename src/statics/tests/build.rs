@@ -223,7 +223,16 @@ impl Build {
         let source = MeshSource::File("test.msh".into());
         let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };
         let scene = Scene::unchecked(draft);
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
+        Problem {
+            scene,
+            mesh,
+            conditions,
+            interfaces,
+            beds: Vec::new(),
+            notes: Vec::new(),
+            refinement: Default::default(),
+            uncut: None,
+        }
     }
 }
 

@@ -230,7 +230,16 @@ impl Setup {
             names: Vec::new(),
             cells: Default::default(),
         };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
+        Problem {
+            scene,
+            mesh,
+            conditions,
+            interfaces,
+            beds: Vec::new(),
+            notes: Vec::new(),
+            refinement: Default::default(),
+            uncut: None,
+        }
     }
 }
 

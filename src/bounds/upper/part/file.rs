@@ -8,7 +8,7 @@ use super::traffic::Traffic;
 use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
-use crate::elasticity::{Elasticity, NUMBERS};
+use crate::elasticity::{Elasticity, Initial, NUMBERS};
 use crate::element::{SideValues, StressField};
 use crate::load::{Affine, BodyForce, Rotation};
 use crate::mesh::{Edge, FileCells, Triangulation};
@@ -54,6 +54,8 @@ impl Part {
             mesh: read_mesh(&mut from)?,
             conditions: read_conditions(&mut from)?,
             interfaces: read_contacts(&mut from)?,
+            // Parts are made of scenes without springs.
+            beds: Vec::new(),
             notes: Vec::new(),
             refinement: Refinement::default(),
             uncut: None,
@@ -141,6 +143,7 @@ fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     out.indices([usize::from(scene.kinematics == Kinematics::PlaneStress)])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.elasticity.to_numbers()))?;
+    out.numbers(scene.bodies.iter().flat_map(|body| body.initial.to_numbers()))?;
     out.numbers(scene.bodies.iter().flat_map(|body| {
         let Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] } = body.body_force.given();
         let rotation = body.body_force.rotation().unwrap_or(Rotation { density: 0.0, omega: 0.0, about: [0.0; 2] });
@@ -153,16 +156,20 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
     let kinematics = if one(from.indices()?)? == 0 { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
     let [thickness, x, y] = one(from.vectors()?)?;
     let laws: Vec<[f64; NUMBERS]> = from.vectors()?;
+    let initial: Vec<[f64; 10]> = from.vectors()?;
     let forces: Vec<[f64; 10]> = from.vectors()?;
-    let body = |(law, [fx, fy, xx, xy, yx, yy, density, omega, x, y]): (&[f64; NUMBERS], [f64; 10])| {
+    let body = |((law, initial), [fx, fy, xx, xy, yx, yy, density, omega, x, y]): (
+        (&[f64; NUMBERS], &[f64; 10]),
+        [f64; 10],
+    )| {
         let given = BodyForce::affine(Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] });
         let turning = density * omega != 0.0;
         let rotation = Rotation { density, omega, about: [x, y] };
         let body_force = if turning { given.with_rotation(rotation) } else { given };
         let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
-        Ok(Body { name: String::new(), elasticity, body_force })
+        Ok(Body { name: String::new(), elasticity, initial: Initial::from_numbers(initial), body_force })
     };
-    let bodies = laws.iter().zip(forces).map(body).collect::<io::Result<_>>()?;
+    let bodies = laws.iter().zip(&initial).zip(forces).map(body).collect::<io::Result<_>>()?;
     let none = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Ok(Scene { draft: Draft { thickness, origin: [x, y], bodies, ..Draft::new("", kinematics, none) } })
 }
@@ -198,6 +205,7 @@ fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> i
         Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
         Condition::Contact { interface, pair, side } => ([4, interface, pair, side], [0.0; 4]),
+        Condition::Elastic { bed, pair, side } => ([5, bed, pair, side], [0.0; 4]),
     };
     out.indices(conditions.iter().flat_map(|condition| told(condition).0))?;
     out.numbers(conditions.iter().flat_map(|condition| told(condition).1))
@@ -211,6 +219,7 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
         2 => Ok(Condition::Clamped([[a, b], [c, d]])),
         3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
         4 => Ok(Condition::Contact { interface, pair, side }),
+        5 => Ok(Condition::Elastic { bed: interface, pair, side }),
         _ => Err(io::ErrorKind::InvalidData.into()),
     };
     kinds.into_iter().zip(numbers).map(of).collect()
