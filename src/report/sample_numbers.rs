@@ -60,6 +60,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         verdict: verdict_text.into(),
         causes: if failed { causes() } else { Vec::new() },
         energy: solved.then_some(energy),
+        data_range: None,
         dual: solved.then(|| DualSummary {
             method: "condensed".into(),
             degree_min: 1,

@@ -6,6 +6,7 @@ use super::curves;
 use super::maps::Fields;
 use super::provenance::{identifier, provenance};
 use super::quantity_checks::summaries;
+use super::ranges::{OtherEnd, data_range, in_words, ranges_note};
 use super::verdict::verdict;
 use crate::bounds::{Bracket, UpperBound};
 use crate::cause::causes;
@@ -51,6 +52,8 @@ pub struct Findings<'a> {
     pub failure: Option<String>,
     /// What to do where refinement ended before its tolerance.
     pub advice: Option<&'static str>,
+    /// The scene of the other ends of ranges of the data, solved.
+    pub other_end: Option<&'a OtherEnd>,
 }
 
 /// Puts the report and its fields together.
@@ -109,6 +112,8 @@ fn report(findings: &Findings<'_>) -> Report {
         (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
         (None, true) => Status::Agree,
     };
+    let across = findings.other_end.map(|end| data_range(problem, sharpest, end));
+    notes.extend(across.as_ref().map(ranges_note));
     let causes = causes(problem, comparison, &findings.diagnosis, findings.advice);
     let (checks, remarks) = comparison.checks.iter().cloned().partition(|check| check.decides());
     let mut provenance = provenance(problem, findings.threads);
@@ -121,9 +126,11 @@ fn report(findings: &Findings<'_>) -> Report {
         command: findings.command.to_string(),
         run: identifier(),
         status,
-        verdict: verdict(findings, status, energy.as_ref(), &causes),
+        verdict: verdict(findings, status, energy.as_ref(), &causes)
+            + &across.as_ref().map_or_else(String::new, in_words),
         causes,
         energy,
+        data_range: across,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
             degree_min: (0..dual.stress.len()).map(|t| dual.stress.degree(t)).min().unwrap_or(0),
@@ -231,6 +238,7 @@ pub fn infeasible<'a>(
             verdict: sentence.to_string(),
             causes: Vec::new(),
             energy: None,
+            data_range: None,
             dual: None,
             primal: Vec::new(),
             contact: Vec::new(),

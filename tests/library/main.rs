@@ -59,6 +59,7 @@ mod prescribed;
 mod pressure_at_ends;
 mod quadrilaterals;
 mod quantities;
+mod ranges;
 mod refinement_ends;
 mod rings;
 mod rounding;

@@ -64,6 +64,11 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
         ("guarantee", clean(&energy.guarantee.words), "on whose word the bracket holds for the scene as written"),
     ];
+    let across = report.data_range.as_ref().map(|range| {
+        let digits = range.upper.map_or(6, |upper| digits_to_tell(range.lower, upper).max(6));
+        let upper = range.upper.map_or("∞".to_string(), |upper| significant(upper, digits));
+        format!("{} … {upper}", significant(range.lower, digits))
+    });
     let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
         (false, _) => "not admissible everywhere: no bound",
         (true, true) => "admissible, but the energy is that of a quadrature: no bound",
@@ -81,6 +86,18 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                         tr {
                             td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
                             td.why { (primal_meaning(primal)) }
+                        }
+                    }
+                    @if let Some(across) = &across {
+                        tr {
+                            td { "for all data" } td.n { (across) }
+                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
+                        }
+                    }
+                    @if let Some(across) = &across {
+                        tr {
+                            td { "for all data" } td.n { (across) }
+                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
                         }
                     }
                 }
