@@ -202,7 +202,7 @@ mod tests {
         let sample = Sample::new(3, Verdict::Agree);
         let text = {
             let values: Vec<f64> = (0..36).map(f64::from).collect();
-            map(&sample.problem, "<von Mises>", &values, &Scale::of(&values), &[])
+            map(&sample.problem, "<von Mises>", &values, &Scale::of(&values), (&[], &[]))
         };
         assert_well_formed(&text);
         // 36 triangles, 2 outlines, and the ticks are single lines without a z.
@@ -214,11 +214,11 @@ mod tests {
         let sample = Sample::new(96, Verdict::Agree);
         assert!(is_coarsened(&sample.problem));
         let noise: Vec<f64> = (0..sample.problem.mesh.triangles.len()).map(|t| ((t * 7919) % 1009) as f64).collect();
-        let text = map(&sample.problem, "noise", &noise, &Scale::of(&noise), &[]);
+        let text = map(&sample.problem, "noise", &noise, &Scale::of(&noise), (&[], &[]));
         assert!(text.len() < 700_000, "{}", text.len());
         let smooth: Vec<f64> =
             sample.problem.mesh.triangles.iter().map(|t| sample.problem.mesh.points[t[0]][0]).collect();
-        let text = map(&sample.problem, "smooth", &smooth, &Scale::of(&smooth), &[]);
+        let text = map(&sample.problem, "smooth", &smooth, &Scale::of(&smooth), (&[], &[]));
         assert!(text.len() < 150_000, "{}", text.len());
     }
 }

@@ -5,6 +5,7 @@ use super::super::scenes::{Lift, Sketch, steps};
 use super::material::lift_known;
 use super::{PLAIN, Regime};
 use crate::elasticity::{Elasticity, Initial, Orthotropic};
+use crate::load::BodyForce;
 
 const STIFF: &[f64] = &[1.0, 1e2, 1e4, 1e6];
 const SOFT: &[f64] = &[0.1, 1e-2, 1e-4, 1e-6, 1e-8];
@@ -40,7 +41,7 @@ fn balanced(left: f64) -> Sketch {
     // p = EαT − FL/2.
     let body = &mut model.scene.bodies[0];
     body.initial = Initial { expansion: [1e-3; 3], temperature: 1e3, ..Initial::default() };
-    body.body_force = [-(1.0 - left), 0.0];
+    body.body_force = BodyForce::constant([-(1.0 - left), 0.0]);
     model
 }
 

@@ -139,6 +139,33 @@ fn compacted() {
 }
 
 #[test]
+fn springs() {
+    let report = sound("springs");
+    // ½ ∫ σ²/E' in the block and ½ ∫ σ²/k on the springs, ∫ (3 + 1.5 x)² dx = 19.5.
+    closed_on(&report, -0.5 * 19.5 * (0.9375 / 100.0 + 1.0 / 40.0));
+    for (quantity, exact) in [(0, 6.0), (1, 1.0), (2, 3.0 / 40.0)] {
+        for end in ["lower", "upper"] {
+            let found = report.number(&format!("/quantities/{quantity}/{end}"));
+            assert!((found - exact).abs() < 1e-7, "{found} is not {exact}");
+        }
+    }
+}
+
+#[test]
+fn bonded() {
+    let report = sound("bonded");
+    closed_on(&report, -0.5 * 4.0 / 50.0 * 2.0 * 0.5);
+}
+
+#[test]
+fn crack() {
+    let report = sound("crack");
+    closed_on(&report, -0.5 * 0.36 * 0.91 / 10.0 * 6.0);
+    carries(&report, 0, [0.0, -0.6]);
+    pressed(&report, 0, |_| 0.6);
+}
+
+#[test]
 fn gap() {
     let report = sound("gap");
     // Two springs in series, E/L = 2 and 1/0.91 per unit of height, share what is left of the motion.
