@@ -7,6 +7,7 @@ use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
 use super::material::{elasticity, initial};
 use super::quantity::quantities;
+use super::range::ranges;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
 use super::{Body, BodyCells, Draft, Kinematics, MeshSource, Scene, files, geometry, selection};
@@ -24,6 +25,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let conditions = conditions(&raw, edges.clone(), &source)?;
     let quantities = quantities(&raw, edges, &bodies, &conditions, &source)?;
     let Conditions { supports, tractions, contacts, bonds } = conditions;
+    let ranges = ranges(&raw, &bodies);
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene::unchecked(Draft {
@@ -42,6 +44,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         contacts,
         bonds,
         quantities,
+        ranges,
     }))
 }
 

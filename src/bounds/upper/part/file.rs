@@ -256,7 +256,10 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();
     let mut pairs = pairs.ok_or(io::ErrorKind::InvalidData)?.into_iter();
-    Ok(counts.into_iter().map(|n| Interface { name: String::new(), pairs: pairs.by_ref().take(n).collect() }).collect())
+    Ok(counts
+        .into_iter()
+        .map(|n| Interface { name: String::new(), pairs: pairs.by_ref().take(n).collect(), centre: None })
+        .collect())
 }
 
 fn write_holds(out: &mut Writer<impl Write>, holds: &[Hold]) -> io::Result<()> {
