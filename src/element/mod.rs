@@ -23,6 +23,7 @@ pub mod on_quadrilaterals;
 pub mod plain;
 pub mod quadrature;
 pub mod quadrilateral;
+pub mod revolved;
 mod samples;
 pub mod side;
 mod side_values;
@@ -218,6 +219,11 @@ impl<'a> Modes<'a> {
     /// Reads what an element of this layout wrote.
     pub fn view(layout: Layout, data: &'a [f64]) -> Self {
         Modes { layout, data: Cow::Borrowed(data) }
+    }
+
+    /// Owns what an element of this layout wrote.
+    pub fn owned(layout: Layout, data: Vec<f64>) -> Modes<'static> {
+        Modes { layout, data: Cow::Owned(data) }
     }
 
     /// Dimension of N(K).
