@@ -8,7 +8,7 @@ use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
-use crate::element::{Compliance, Displacement, Samples, StressField, side, triangle};
+use crate::element::{Compliance, Displacement, Samples, Section, StressField, side, triangle};
 use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -73,6 +73,11 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
             }
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
+            if let Some(revolved) = problem.section().revolved() {
+                let force = problem.scene.bodies[mesh.body[t]].body_force[0];
+                let [square, sensitivity] = revolved.square(stress, t, mesh.corners(t), material, force);
+                return (0.5 * square, sensitivity * shape(mesh.corners(t)));
+            }
             let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
             let product = |value: &[f64; 3]| absolute(*value) * absolute(material.strain(*value));
@@ -172,7 +177,7 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
             if !counted.triangle(t) {
                 return [0.0; 2];
             }
-            strain_with(&materials[mesh.body[t]], mesh.corners(t), v, t)
+            strain_with(problem.section(), &materials[mesh.body[t]], mesh.corners(t), v, t)
         })
         .collect();
     let strain: Sum = terms.iter().map(|t| t[0]).collect();
@@ -197,10 +202,20 @@ pub fn strain_on(problem: &Problem, v: &Displacement, t: usize) -> [f64; 2] {
 pub fn strain_of(problem: &Problem, v: &Displacement, own: usize, t: usize) -> [f64; 2] {
     let body = &problem.scene.bodies[problem.mesh.body[t]];
     let material = Compliance::new(problem.scene.kinematics, body.young, body.poisson);
-    strain_with(&material, problem.mesh.corners(t), v, own)
+    strain_with(problem.section(), &material, problem.mesh.corners(t), v, own)
 }
 
-fn strain_with(material: &Compliance, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
+fn strain_with(
+    section: Section,
+    material: &Compliance,
+    corners: [[f64; 2]; 3],
+    v: &Displacement,
+    t: usize,
+) -> [f64; 2] {
+    if let Some(revolved) = section.revolved() {
+        let [energy, sensitivity] = revolved.strain_energy(v, t, corners, material);
+        return [energy, sensitivity * shape(corners)];
+    }
     let area = sub_area(corners);
     let samples = Samples::of(v.degree(t) - 1, 0);
     let (mut strain, mut sensitivity) = (0.0, 0.0);
@@ -239,11 +254,20 @@ fn counted_work(
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
     counted: Counted<'_>,
 ) -> Sum {
-    let mesh = &problem.mesh;
+    let (mesh, section) = (&problem.mesh, problem.section());
     let mut work = Sum::default();
     for t in (0..mesh.triangles.len()).filter(|t| counted.triangle(*t)) {
         let force = force(mesh.body[t]);
         if force != [0.0; 2] {
+            if section.is_revolved() {
+                for sub in 0..3 {
+                    let forces = section.body_forces(mesh.corners(t), sub, v.degree(t), force);
+                    for c in 0..2 {
+                        work.add(v.sub(t, sub).zip(&forces).map(|(u, f)| u[c] * f[c]).sum());
+                    }
+                }
+                continue;
+            }
             // Every Bernstein polynomial has the same mean.
             let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
             // Component by component: what cancels between them is rounded all the same.
@@ -264,7 +288,9 @@ fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]
     }
     let (length, _) = problem.mesh.edge_frame(e);
     let u = side_coefficients(problem, v, e);
-    let along = |c: usize| side::integral(&[a[c], b[c]], &u.iter().map(|u| u[c]).collect::<Vec<_>>());
+    let own = problem.weighted(e, [a, b]);
+    let values = |list: &[[f64; 2]], c: usize| list.iter().map(|u| u[c]).collect::<Vec<_>>();
+    let along = |c: usize| side::integral(&values(&own, c), &values(&u, c));
     [0, 1].map(|c| length * along(c))
 }
 

@@ -11,7 +11,7 @@ use crate::scene::Kinematics;
 /// Von Mises stress of an in-plane stress.
 pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
     let out = match kinematics {
-        Kinematics::PlaneStrain => poisson * (s[0] + s[1]),
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => poisson * (s[0] + s[1]),
         Kinematics::PlaneStress => 0.0,
     };
     let (a, b, c) = (s[0] - s[1], s[1] - out, out - s[0]);

@@ -16,7 +16,9 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         Trial { rank: 0, left: space.left_with(&change), findings: vec![finding] }
     };
     let (other, sentence) = match scene.kinematics {
-        Kinematics::PlaneStrain => (Kinematics::PlaneStress, "plane stress stands in place of plane strain"),
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
+            (Kinematics::PlaneStress, "plane stress stands in place of plane strain")
+        }
         Kinematics::PlaneStress => (Kinematics::PlaneStrain, "plane strain stands in place of plane stress"),
     };
     let negative =

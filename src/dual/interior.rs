@@ -16,6 +16,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
 use super::equilibrium::Equilibrium;
 use super::hybrid::{Motion, parameters, residual};
+use super::method::plane_only;
 use super::rows::Sides;
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
@@ -60,6 +61,7 @@ impl DualMethod for Clarabel {
 
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
+        plane_only(problem, self.name())?;
         let start = Instant::now();
         let system = System::new(problem, options);
         let program = ConicProgram::new(problem, &system);

@@ -40,13 +40,15 @@ impl ModeTable {
     pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = problem.materials();
         let mesh = &problem.mesh;
-        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t));
+        let section = problem.section();
+        let place = |t: usize| section.place(mesh.corners(t));
+        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), place(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;
         let classes: Vec<Class> = first
             .into_iter()
             .map(|t| {
-                let layout = elements.of(t).layout();
+                let layout = section.layout(elements.of(t), mesh.corners(t));
                 let start = end;
                 end += layout.len();
                 Class { triangle: t, layout, start }
@@ -58,7 +60,8 @@ impl ModeTable {
             let t = class.triangle;
             let body = mesh.body[t];
             let force = problem.scene.bodies[body].body_force;
-            elements.of(t).compute(mesh.corners(t), &materials[body], force, class.layout.split(out));
+            let out = class.layout.split(out);
+            section.compute(elements.of(t), mesh.corners(t), &materials[body], force, out);
         });
         let first_parameter = starts(class.iter().map(|&c| classes[c as usize].layout.parameters));
         ModeTable { elements, class, classes, data, first_parameter, materials }
@@ -113,7 +116,8 @@ impl ModeTable {
             // What was kept belongs to the triangle that it was computed on.
             let corners = mesh.corners(self.classes[self.class[t] as usize].triangle);
             let force = problem.scene.bodies[mesh.body[t]].body_force;
-            self.elements.of(t).stresses(corners, force, &self.of(t), &s[self.parameters_of(t)], 1.0, block);
+            let (modes, s) = (self.of(t), &s[self.parameters_of(t)]);
+            problem.section().stresses(self.elements.of(t), corners, force, &modes, s, block);
         });
         field
     }

@@ -112,7 +112,7 @@ impl Responses<'_> {
             let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
             (Cow::Owned(other), modes)
         };
-        let external = load_of_tractions(&system.unknowns, load.tractions.iter().copied());
+        let external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
         let mut system = System { modes, rhs: Vec::new(), external, ..system.clone() };
         let start = system.strained(&problem, &load.strains);
         let r = residual(&problem, &system, &start);

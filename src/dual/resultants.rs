@@ -22,7 +22,12 @@ pub fn work_within(problem: &Problem, stress: &StressField, moments: &SideValues
     let of = |t: usize| {
         let corners = from_centroid(mesh.corners(t));
         let force = problem.scene.bodies[mesh.body[t]].body_force;
-        let [fx, fy, moment] = resultant(stress, t, corners, force.map(|f| f * mesh.area(t)));
+        let volume = problem.section().volume(mesh.corners(t));
+        let [mut fx, fy, mut moment] = resultant(stress, t, corners, force.map(|f| f * volume));
+        if problem.section().is_revolved() {
+            // The hoop stress balances what is along r.
+            (fx, moment) = (0.0, 0.0);
+        }
         let of_edges = mesh.triangle_edges[t].map(|e| means[e]);
         let largest = of_edges.iter().fold(0.0_f64, |m, u| m.max(u[0].hypot(u[1])));
         let longest = (0..3).map(|i| along(corners, i)).fold(0.0_f64, |m, [x, y]| m.max(x.hypot(y)));

@@ -21,7 +21,7 @@ impl Compliance {
     /// Compliance of a material with Young's modulus `young` and Poisson's ratio `poisson` in (−1, ½).
     pub fn new(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
         let kappa = match kinematics {
-            Kinematics::PlaneStrain => 0.5 * (1.0 + poisson) * (1.0 - 2.0 * poisson),
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => 0.5 * (1.0 + poisson) * (1.0 - 2.0 * poisson),
             Kinematics::PlaneStress => 0.5 * (1.0 - poisson),
         };
         Compliance { young, kappa, gamma: 2.0 * (1.0 + poisson) }

@@ -126,7 +126,7 @@ impl<'a> ProblemFile<'a> {
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
-                Condition::Traction(_) | Condition::Interior | Condition::Contact { .. } => {}
+                Condition::Traction(_) | Condition::Interior | Condition::Axis | Condition::Contact { .. } => {}
             }
         }
         ProblemFile {

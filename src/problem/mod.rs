@@ -19,7 +19,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
-use crate::element::Compliance;
+use crate::element::{Compliance, Section};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::{Body, Scene};
@@ -48,6 +48,27 @@ impl Problem {
     pub fn materials(&self) -> Vec<Compliance> {
         let of = |body: &Body| Compliance::new(self.scene.kinematics, body.young, body.poisson);
         self.scene.bodies.iter().map(of).collect()
+    }
+
+    /// What the plane figure stands for.
+    pub fn section(&self) -> Section {
+        build::section(&self.scene)
+    }
+
+    /// Bernstein coefficients of a traction on edge `e`, given by its values at the ends, times the weight of the section.
+    pub fn weighted(&self, e: usize, ends: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+        self.section().weighted(self.mesh.edges[e].vertices.map(|v| self.mesh.points[v]), ends)
+    }
+
+    /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
+    pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
+        let [a, b] = self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v]));
+        (a && b) || (a && k == 0) || (b && k == degree)
+    }
+
+    /// Largest weight of the ends of edge `e`.
+    pub fn largest_weight(&self, e: usize) -> f64 {
+        self.mesh.edges[e].vertices.iter().fold(0.0, |m, v| self.section().weight(self.mesh.points[*v]).max(m))
     }
 
     /// The pairs of all contacts, one interface after the other.
@@ -93,6 +114,8 @@ pub enum Condition {
         /// The prescribed component.
         displacement: f64,
     },
+    /// A side on the axis of revolution: u_r = 0, and no traction.
+    Axis,
     /// Side 0 or 1 of `interfaces[interface].pairs[pair]`.
     Contact {
         /// Index into [`Problem::interfaces`].

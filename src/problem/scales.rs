@@ -108,7 +108,7 @@ impl Scales {
 fn modulus(kinematics: Kinematics, body: &Body) -> f64 {
     let (young, nu) = (body.young, body.poisson);
     match kinematics {
-        Kinematics::PlaneStrain => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         Kinematics::PlaneStress => young / (1.0 - nu * nu),
     }
 }

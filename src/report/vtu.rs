@@ -210,7 +210,7 @@ fn on_triangle(sub: usize, l: [f64; 3]) -> [f64; 3] {
 fn out_of_plane(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
     match problem.scene.kinematics {
         Kinematics::PlaneStress => 0.0,
-        Kinematics::PlaneStrain => {
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
             let body = problem.mesh.body.get(t).and_then(|&b| problem.scene.bodies.get(b));
             body.map_or(0.0, |body| body.poisson * (s[0] + s[1]))
         }

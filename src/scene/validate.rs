@@ -52,13 +52,22 @@ fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64)
     let table = "[model]";
     let Table(model) = &raw.value;
     let Some(kinematics) = Kinematics::named(&model.kinematics.value) else {
-        let known = [Kinematics::PlaneStrain, Kinematics::PlaneStress].map(|k| k.name().to_owned()).to_vec();
+        let known = [Kinematics::PlaneStrain, Kinematics::PlaneStress, Kinematics::Axisymmetric]
+            .map(|k| k.name().to_owned())
+            .to_vec();
         let found = model.kinematics.value.clone();
         let fault = Fault::UnknownWord { key: "kinematics", table: table.into(), found, known };
         return Err(source.error(model.kinematics.span(), fault));
     };
     let thickness = match &model.thickness {
-        None => 1.0,
+        None => kinematics.measure(),
+        Some(number) if kinematics == Kinematics::Axisymmetric => {
+            let words = (
+                "a body of revolution has no thickness: its forces and energies are those of the full turn",
+                "leave `thickness` out",
+            );
+            source.number(number, (table, "thickness"), |_| false, words)?
+        }
         Some(number) => {
             let words = ("a thickness must be positive", "write a positive number, or leave `thickness` out for 1");
             source.positive(number, (table, "thickness"), words)?

@@ -59,7 +59,14 @@ fn corner_values(
     let p = from_centroid(corners);
     let reference = Reference::of(stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
-    let strain = reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q)));
+    let strain = match problem.section().revolved() {
+        None => reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q))),
+        Some(revolved) => {
+            let force = problem.scene.bodies[mesh.body[t]].body_force[0];
+            let of = revolved.plane_strain_of(stress, t, corners, material, force);
+            reference.strain(|sub, _, l| of(sub, l))
+        }
+    };
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
     let (mut shift, mut turn, mut inertia) = ([0.0; 2], 0.0, 0.0);

@@ -21,7 +21,7 @@ impl Pull<'_> {
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
         let corners = problem.mesh.corners(t);
         let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
-        let mut forces = load(k, corners, force.map(|f| self.scene * f));
+        let mut forces = load(problem.section(), k, corners, force.map(|f| self.scene * f));
         if let Some(stress) = self.stress {
             split::pull(k, corners, stress, t, &mut forces);
         }

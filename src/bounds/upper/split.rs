@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_gradients};
-use crate::element::{Compliance, Samples, StressField, triangle};
+use crate::element::{Compliance, Samples, Section, StressField, triangle};
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.
 #[derive(Debug, Clone)]
@@ -42,6 +42,17 @@ impl Split {
                 }
                 split.put(nodes[entry.nodes[0]], nodes[entry.nodes[1]], sum);
             }
+        }
+        split
+    }
+
+    /// The same of a triangle of the given section.
+    pub fn of(section: Section, k: usize, corners: [[f64; 2]; 3], material: &Compliance) -> Self {
+        let Some(revolved) = section.revolved() else { return Self::new(k, corners, material) };
+        let all = 2 * split_len(k);
+        let mut split = Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all] };
+        for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+            revolved.stiffness(k, corners, sub, material, |a, b, pair| split.put(nodes[a], nodes[b], pair));
         }
         split
     }
@@ -76,14 +87,12 @@ impl Split {
 }
 
 /// The forces of a body force on every coefficient of degree `k`, x and y of each.
-pub fn load(k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
+pub fn load(section: Section, k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
     let mut out = vec![0.0; 2 * split_len(k)];
-    for nodes in &SplitNodes::of(k).subs {
-        // Every Bernstein polynomial has the same mean.
-        let share = sub_area(corners) / nodes.len() as f64;
-        for node in nodes {
-            out[2 * node] += share * force[0];
-            out[2 * node + 1] += share * force[1];
+    for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        for (node, [x, y]) in nodes.iter().zip(section.body_forces(corners, sub, k, force)) {
+            out[2 * node] += x;
+            out[2 * node + 1] += y;
         }
     }
     out
@@ -205,7 +214,7 @@ mod tests {
     #[test]
     fn the_load_is_the_work_of_the_body_force() {
         for k in 1..=MOST {
-            let forces = load(k, CORNERS, [2.0, -3.0]);
+            let forces = load(Section::Slice, k, CORNERS, [2.0, -3.0]);
             // A unit translation does the work of the whole force.
             let work = |c: usize| forces.iter().skip(c).step_by(2).sum::<f64>();
             let area = 3.0 * sub_area(CORNERS);

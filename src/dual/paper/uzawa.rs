@@ -10,6 +10,7 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
+use crate::dual::method::plane_only;
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
@@ -118,6 +119,7 @@ impl DualMethod for Uzawa {
 
 /// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
 fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Result<(), DualError> {
+    plane_only(problem, method)?;
     let degree = options.elements.largest_degree();
     if degree != 1 {
         return Err(DualError::NotExpressible {

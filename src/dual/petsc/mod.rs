@@ -17,6 +17,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::equilibrium::Equilibrium;
+use super::method::plane_only;
 use super::modes::ModeTable;
 use super::unknowns::Unknowns;
 use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
@@ -115,6 +116,7 @@ impl DualMethod for Petsc {
     }
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        plane_only(problem, self.name())?;
         let start = Instant::now();
         let modes = ModeTable::new(problem, options.elements.clone());
         let unknowns = Unknowns::new(problem, modes.elements());

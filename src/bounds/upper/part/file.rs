@@ -136,13 +136,22 @@ fn one<T: Copy>(list: Vec<T>) -> io::Result<T> {
 
 /// What energies and contact take of a scene: materials and loads on bodies.
 fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
-    out.indices([usize::from(scene.kinematics == Kinematics::PlaneStress)])?;
+    let kinematics = match scene.kinematics {
+        Kinematics::PlaneStrain => 0,
+        Kinematics::PlaneStress => 1,
+        Kinematics::Axisymmetric => 2,
+    };
+    out.indices([kinematics])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
     out.numbers(scene.bodies.iter().flat_map(|b| [b.young, b.poisson, b.body_force[0], b.body_force[1]]))
 }
 
 fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
-    let kinematics = if one(from.indices()?)? == 0 { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
+    let kinematics = match one(from.indices()?)? {
+        0 => Kinematics::PlaneStrain,
+        1 => Kinematics::PlaneStress,
+        _ => Kinematics::Axisymmetric,
+    };
     let [thickness, x, y] = one(from.vectors()?)?;
     let body = |[young, poisson, fx, fy]: [f64; 4]| Body { name: String::new(), young, poisson, body_force: [fx, fy] };
     let bodies = from.vectors()?.into_iter().map(body).collect();
@@ -177,6 +186,7 @@ fn read_mesh(from: &mut Reader<impl Read>) -> io::Result<Triangulation> {
 fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> io::Result<()> {
     let told = |condition: &Condition| match *condition {
         Condition::Interior => ([0; 4], [0.0; 4]),
+        Condition::Axis => ([5, 0, 0, 0], [0.0; 4]),
         Condition::Traction([a, b]) => ([1, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
@@ -190,6 +200,7 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
     let (kinds, numbers) = (from.tuples()?, from.vectors()?);
     let of = |([kind, interface, pair, side], [a, b, c, d]): ([usize; 4], [f64; 4])| match kind {
         0 => Ok(Condition::Interior),
+        5 => Ok(Condition::Axis),
         1 => Ok(Condition::Traction([[a, b], [c, d]])),
         2 => Ok(Condition::Clamped([[a, b], [c, d]])),
         3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
