@@ -38,6 +38,14 @@ impl Elements {
         }
     }
 
+    /// The same with at least these degrees.
+    pub fn at_least(&self, least: &[u8]) -> Elements {
+        if (0..least.len()).all(|t| self.degree(t) >= least[t].into()) {
+            return self.clone();
+        }
+        Elements::Blocks(least.iter().enumerate().map(|(t, p)| (*p).max(self.degree(t) as u8)).collect())
+    }
+
     /// The largest degree of the triangles.
     pub fn largest_degree(&self) -> usize {
         match self {

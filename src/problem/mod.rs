@@ -66,6 +66,22 @@ impl Problem {
         (a && b) || (a && k == 0) || (b && k == degree)
     }
 
+    /// The lowest degree of the stresses on each triangle that can balance the loads: two beside the axis where a weight or a traction, times
+    /// the distance from the axis, has more than one.
+    pub fn least_degrees(&self) -> Vec<u8> {
+        let mut least: Vec<u8> = vec![1; self.mesh.triangles.len()];
+        if self.section().is_revolved() {
+            for (least, &body) in least.iter_mut().zip(&self.mesh.body) {
+                *least = if self.scene.bodies[body].body_force[1] == 0.0 { 1 } else { 2 };
+            }
+            for (e, ends) in self.tractions() {
+                let degree = self.weighted(e, ends).len() - 1;
+                self.mesh.edges[e].triangles.iter().flatten().for_each(|&t| least[t] = least[t].max(degree as u8));
+            }
+        }
+        least
+    }
+
     /// Largest weight of the ends of edge `e`.
     pub fn largest_weight(&self, e: usize) -> f64 {
         self.mesh.edges[e].vertices.iter().fold(0.0, |m, v| self.section().weight(self.mesh.points[*v]).max(m))

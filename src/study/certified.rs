@@ -67,9 +67,15 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
+    let options = &carrying(&problem, options);
     admit(&problem, method, options)?;
     let statics = Balanced::new(&problem, &options.elements, None)?;
     solve_balanced(problem, statics, method, options, None)
+}
+
+/// The options with degrees that can balance the loads.
+pub(super) fn carrying(problem: &Problem, options: &Options) -> Options {
+    Options { elements: options.elements.at_least(&problem.least_degrees()), ..options.clone() }
 }
 
 /// Refuses a solve for which there is no memory.
