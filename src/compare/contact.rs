@@ -8,7 +8,7 @@ use super::outcome::{ContactSummary, Profile, TwoSides};
 use super::peak::Peaks;
 use super::pressure::{
     Piece, contact_ends, disagreement, dual_pressure, l2, maximum, open_length, profile, reaction_moment,
-    reaction_pressure, resultant, trace_pressure,
+    reaction_pressure, resultant, trace_pressure, unweighted,
 };
 use super::resultant::{forces, resultant_check};
 use super::tolerance::chosen;
@@ -70,16 +70,18 @@ impl Sides<'_> {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
+        let own = &unweighted(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
         ContactSummary {
             name: interface.name.clone(),
             resultant: TwoSides { dual: force, primal: None },
             moment: TwoSides { dual: about_zero(problem, moment, force), primal: None },
             pressure_max: TwoSides { dual: largest, primal: None },
             pressure_max_at: TwoSides { dual: problem.scene.as_written(at), primal: None },
-            pressure_mean: mean::around(problem, (index, interface), own, at, length - open, self.gap),
+            pressure_mean: if problem.section().is_revolved() { None } else { around() },
             open_fraction: open / length,
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
@@ -284,5 +286,5 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
 /// The moment about the point (0, 0) of the file, from that about the point from which coordinates count.
 fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     let [x, y] = problem.scene.origin;
-    if [x, y] == [0.0; 2] { moment } else { moment + (x * force[1] - y * force[0]) }
+    if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
 }

@@ -15,6 +15,33 @@ pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
     dual.contact_traction[interface].iter().map(pressure).collect()
 }
 
+/// Pressures from those times the weight of the section, which is all that a body of revolution has on its edges; between the points of the
+/// degree they are interpolated.
+pub fn unweighted(problem: &Problem, interface: &Interface, own: &[Piece]) -> Vec<Piece> {
+    let section = problem.section();
+    if !section.is_revolved() {
+        return own.to_vec();
+    }
+    let of_pair = |(pair, piece): (&ContactPair, &Piece)| {
+        let [a, b] = pair.first.map(|v| section.weight(problem.mesh.points[v]));
+        let coefficients: Vec<f64> = piece.coefficients().collect();
+        if a == b {
+            return Piece::polynomial(coefficients.iter().map(|c| c / a).collect());
+        }
+        let last = (coefficients.len() - 1).max(1);
+        let at = |i: usize| {
+            // On the axis the value close by.
+            let s = (i as f64 / last as f64).clamp(ASIDE, 1.0 - ASIDE);
+            [side::value(&coefficients, s) / (a + s * (b - a)), 0.0]
+        };
+        Piece::polynomial(through(&(0..=last).map(at).collect::<Vec<_>>()).iter().map(|c| c[0]).collect())
+    };
+    interface.pairs.iter().zip(own).map(of_pair).collect()
+}
+
+/// Part of an edge that is as near to its end as pressures beside an axis are taken.
+const ASIDE: f64 = 1e-6;
+
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
 pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &Reactions) -> Vec<Piece> {
     let thickness = problem.scene.thickness;
@@ -91,7 +118,8 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
         // The arm of a force along a direction that turns is quadratic.
         moment -= size * p.integral(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);
     }
-    (force, moment)
+    // Around the axis radial forces and moments cancel.
+    if problem.section().is_revolved() { ([0.0, force[1]], 0.0) } else { (force, moment) }
 }
 
 /// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.

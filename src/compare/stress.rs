@@ -4,7 +4,7 @@ use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use crate::dual::DualSolution;
 use crate::element::Strains;
-use crate::element::{Samples, contraction};
+use crate::element::{Samples, StressField, contraction};
 use crate::problem::Problem;
 use crate::scene::Kinematics;
 
@@ -16,6 +16,25 @@ pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
     };
     let (a, b, c) = (s[0] - s[1], s[1] - out, out - s[0]);
     (0.5 * (a * a + b * b + c * c) + 3.0 * s[2] * s[2]).sqrt()
+}
+
+/// Von Mises stress of a stress (xx, yy, out of the plane, xy).
+pub fn von_mises_of(s: [f64; 4]) -> f64 {
+    let (a, b, c) = (s[0] - s[1], s[1] - s[2], s[2] - s[0]);
+    (0.5 * (a * a + b * b + c * c) + 3.0 * s[3] * s[3]).sqrt()
+}
+
+/// Von Mises stress of the mean stress of a [`StressField`] on each triangle.
+pub fn von_mises_of_means(problem: &Problem, stress: &StressField) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let all = 0..stress.len();
+    match problem.section().revolved() {
+        None => von_mises_map(problem, &all.map(|t| stress.mean(t)).collect::<Vec<_>>()),
+        Some(revolved) => {
+            let force = |t: usize| problem.scene.bodies[mesh.body[t]].body_force[0];
+            all.map(|t| von_mises_of(revolved.mean(stress, t, mesh.corners(t), force(t)))).collect()
+        }
+    }
 }
 
 /// Mean stress of the displacement solution on each triangle.
@@ -91,7 +110,7 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
         worst_at: [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0),
         worst_share: if total > 0.0 { terms.get(worst).copied().unwrap_or(0.0) / total } else { 0.0 },
         von_mises_max: TwoSides {
-            dual: largest((0..mesh.triangles.len()).map(|t| dual.stress.mean(t)).collect()),
+            dual: von_mises_of_means(problem, &dual.stress).into_iter().fold(0.0, f64::max),
             primal: Some(largest(primal_means(problem, judged))),
         },
         component_l2_difference: ComponentDifference {

@@ -3,7 +3,7 @@
 use super::answers::Answer;
 use super::certified::Certified;
 use crate::bounds::{UpperBound, mid_field, stress_of};
-use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::compare::{Comparison, primal_means, von_mises_map, von_mises_of_means};
 use crate::element::StressField;
 use crate::problem::Problem;
 use crate::report::{Map, MapKind, plain};
@@ -21,13 +21,14 @@ impl Fields {
     pub fn new(certified: &Certified, comparison: &Comparison, answers: &[Answer]) -> Self {
         let Certified { problem, dual, bracket, .. } = certified;
         let means = |stress: &StressField| (0..stress.len()).map(|t| stress.mean(t)).collect::<Vec<_>>();
-        let mises = |who: &str, key: &str, means: &[[f64; 3]]| Map {
+        let of_values = |who: &str, key: &str, values: Vec<f64>| Map {
             key: format!("von_mises_{key}"),
             title: who.to_string(),
             kind: MapKind::VonMises,
-            values: von_mises_map(problem, means),
+            values,
         };
-        let mut maps = vec![mises("dual", "dual", &means(&dual.stress))];
+        let mises = |who: &str, key: &str, means: &[[f64; 3]]| of_values(who, key, von_mises_map(problem, means));
+        let mut maps = vec![of_values("dual", "dual", von_mises_of_means(problem, &dual.stress))];
         let models = || comparison.judged.iter().map(|judged| (judged.candidate.name.as_str(), judged));
         maps.extend(models().map(|(name, judged)| mises(name, &plain(name), &primal_means(problem, judged))));
         let upper = comparison.upper(bracket).map(|(upper, _)| upper);

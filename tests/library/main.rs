@@ -52,6 +52,7 @@ mod pressure_at_ends;
 mod quadrilaterals;
 mod quantities;
 mod refinement_ends;
+mod revolved;
 mod rings;
 mod rounding;
 mod scene_schema;
