@@ -17,7 +17,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut curves, mut series) = (Vec::new(), Vec::new());
     for (ink, poisson) in [0.3, 0.4999].into_iter().enumerate() {
         let scene = Scene::read(&root.join("cases/two_blocks.toml"))?;
-        let scene = scene.changed(|draft| draft.bodies.iter_mut().for_each(|b| b.poisson = poisson))?;
+        let scene = scene.changed(|draft| {
+            draft.bodies.iter_mut().for_each(|b| {
+                let young = b.elasticity.isotropic().map_or(1.0, |[young, _]| young);
+                b.elasticity = hypercircle::elasticity::Elasticity::Isotropic { young, poisson };
+            })
+        })?;
         let coarsest = Problem::load(scene.coarsest())?;
         let options = Options::default();
         let run = adapt(coarsest.clone(), &Condensed::default(), &options, &Goal::new(TOLERANCE), |_| ())?;

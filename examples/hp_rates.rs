@@ -17,7 +17,12 @@ const TOLERANCE: f64 = 1e-5;
 
 fn blocks(poisson: f64, coarsest: bool) -> Result<Problem, Box<dyn Error>> {
     let scene = Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml"))?;
-    let scene = scene.changed(|draft| draft.bodies.iter_mut().for_each(|b| b.poisson = poisson))?;
+    let scene = scene.changed(|draft| {
+        draft.bodies.iter_mut().for_each(|b| {
+            let young = b.elasticity.isotropic().map_or(1.0, |[young, _]| young);
+            b.elasticity = hypercircle::elasticity::Elasticity::Isotropic { young, poisson };
+        })
+    })?;
     Ok(Problem::load(if coarsest { scene.coarsest() } else { scene })?)
 }
 

@@ -10,7 +10,7 @@ use std::path::Path;
 use hypercircle::bounds::complementary;
 use hypercircle::dual::{self, Condensed, DualError, DualSolution, Options};
 use hypercircle::element::quadrature::triangle_rule;
-use hypercircle::element::{Compliance, Elements, EquilibriumElement, Modes, ModesMut, block};
+use hypercircle::element::{Elements, EquilibriumElement, Material, Modes, ModesMut, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use nalgebra::{DMatrix, DVector};
@@ -49,7 +49,7 @@ impl EquilibriumElement for Plain {
         (MODES + 1) * VALUES
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
         let parts = [0, 1, 2].map(|sub| Part::new(corners, sub));
         let (energy, traction) = (energy(&parts, material), tractions(&parts));
         let balanced = null_space(&equations(&parts));
@@ -194,21 +194,20 @@ fn tractions(parts: &[Part; 3]) -> DMatrix<f64> {
 }
 
 /// ∫ a τ:τ is |E x|² for the nodal values x.
-fn energy(parts: &[Part; 3], material: &Compliance) -> DMatrix<f64> {
+fn energy(parts: &[Part; 3], material: &Material) -> DMatrix<f64> {
     let rule = triangle_rule(2 * DEGREE);
-    let [mean, deviator] = [material.kappa, material.gamma].map(|c| (c / material.young).sqrt());
+    let roots = material.roots();
     let mut matrix = DMatrix::zeros(9 * rule.len(), VALUES);
     let mut row = 0;
     for (sub, part) in parts.iter().enumerate() {
         for &(l, weight) in rule {
-            let root = (weight * part.area).sqrt();
+            let root = (weight * part.area / material.unit()).sqrt();
             for (node, shape) in shapes(l).into_iter().enumerate() {
-                let [xx, yy, xy] = [0, 1, 2].map(|c| value(sub, node, c));
-                matrix[(row, xx)] = root * mean * shape;
-                matrix[(row, yy)] = root * mean * shape;
-                matrix[(row + 1, xx)] = 0.5 * root * deviator * shape;
-                matrix[(row + 1, yy)] = -0.5 * root * deviator * shape;
-                matrix[(row + 2, xy)] = root * deviator * shape;
+                for (c, unit) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
+                    for (i, part) in roots.apply(unit).into_iter().enumerate() {
+                        matrix[(row + i, value(sub, node, c))] = root * part * shape;
+                    }
+                }
             }
             row += 3;
         }

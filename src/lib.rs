@@ -66,6 +66,7 @@ pub mod compare;
 pub mod diagnose;
 pub mod diff;
 pub mod dual;
+pub mod elasticity;
 pub mod element;
 pub mod job;
 mod lanes;

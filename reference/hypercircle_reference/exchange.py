@@ -19,12 +19,17 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class Body:
-    """Homogeneous isotropic material: Young's modulus, Poisson's ratio, body force per volume (2,)."""
+    """Homogeneous material and body force per volume (2,).
+
+    Isotropic by Young's modulus and Poisson's ratio, or any other by ``stiffness`` (3, 3), the stresses xx, yy, xy of unit strains
+    ε_xx, ε_yy, 2 ε_xy; ``young`` is then the largest entry on its diagonal, which only tells stiff bodies from soft ones.
+    """
 
     name: str
     young: float
     poisson: float
     body_force: np.ndarray
+    stiffness: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -181,13 +186,19 @@ def parse_problem(data: dict) -> Problem:
 
 
 def _body(entry: dict, where: str) -> Body:
+    name, force = str(_get(entry, "name", where)), _array(entry, "body_force", where, (2,))
+    if "stiffness" in entry:
+        stiffness = _array(entry, "stiffness", where, (3, 3))
+        if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
+            raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
+        return Body(name, float(stiffness.diagonal().max()), 0.0, force, stiffness)
     young = _scalar(entry, "young", f"{where}.young")
     poisson = _scalar(entry, "poisson", f"{where}.poisson")
     if not young > 0.0:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
         raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
-    return Body(str(_get(entry, "name", where)), young, poisson, _array(entry, "body_force", where, (2,)))
+    return Body(name, young, poisson, force)
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:

@@ -174,11 +174,15 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
+    stiffness = _stiffness(mesh, owner)
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
     displacement = compat.function(space)
 
     def work(u, v):
-        return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * dx
+        isotropic = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
+        if stiffness is None:
+            return isotropic * dx
+        return (isotropic + ufl.inner(ufl.dot(stiffness, _engineering(u)), _engineering(v))) * dx
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
@@ -199,8 +203,28 @@ def _strain(v):
     return ufl.sym(ufl.grad(v))
 
 
+def _engineering(v):
+    """ε_xx, ε_yy and 2 ε_xy."""
+    strain = _strain(v)
+    return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+
+
+def _stiffness(mesh: Mesh, owner: np.ndarray):
+    """Stiffness of the bodies that are not isotropic, cell by cell, or None where all are."""
+    problem = mesh.problem
+    if all(body.stiffness is None for body in problem.bodies):
+        return None
+    none = np.zeros((3, 3))
+    values = np.array([none if body.stiffness is None else body.stiffness for body in problem.bodies])
+    values = values[owner] * problem.thickness
+    entry = {(i, j): compat.constant_per_cell(mesh.mesh, values[:, i, j]) for i in range(3) for j in range(i, 3)}
+    return ufl.as_matrix([[entry[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
+
+
 def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
     """(λ, μ) of the plane problem; plane stress has λ* = 2λμ/(λ + 2μ) = Eν/(1 − ν²)."""
+    if body.stiffness is not None:
+        return 0.0, 0.0
     young, poisson, sign = body.young, body.poisson, -1.0 if flip_sign else 1.0
     shear = young / (2.0 * (1.0 + poisson))
     if kinematics == "plane-strain":

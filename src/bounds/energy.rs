@@ -8,7 +8,7 @@ use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
-use crate::element::{Compliance, Displacement, Samples, Section, StressField, side, triangle};
+use crate::element::{Displacement, Material, Samples, Section, StressField, side, triangle};
 use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -34,7 +34,7 @@ impl Complementary {
 }
 
 /// ‖σ‖²_a on triangle `t`, a third of which has the area `third`.
-pub fn square_on(stress: &StressField, t: usize, material: &Compliance, third: f64) -> f64 {
+pub fn square_on(stress: &StressField, t: usize, material: &Material, third: f64) -> f64 {
     let shapes = Samples::of_stress(stress.degree(t), 0);
     let mut sum = 0.0;
     for sub in 0..3 {
@@ -80,7 +80,7 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
             }
             let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
-            let product = |value: &[f64; 3]| absolute(*value) * absolute(material.strain(*value));
+            let product = |value: &[f64; 3]| material.spread(*value);
             let sensitivity = 3.0 * third / nodes.len() as f64 * nodes.iter().map(product).sum::<f64>();
             (sum, sensitivity * shape(mesh.corners(t)))
         })
@@ -200,18 +200,10 @@ pub fn strain_on(problem: &Problem, v: &Displacement, t: usize) -> [f64; 2] {
 
 /// The same for the displacement that `v` has as its triangle `own`, on triangle `t`.
 pub fn strain_of(problem: &Problem, v: &Displacement, own: usize, t: usize) -> [f64; 2] {
-    let body = &problem.scene.bodies[problem.mesh.body[t]];
-    let material = Compliance::new(problem.scene.kinematics, body.young, body.poisson);
-    strain_with(problem.section(), &material, problem.mesh.corners(t), v, own)
+    strain_with(problem.section(), &problem.material(problem.mesh.body[t]), problem.mesh.corners(t), v, own)
 }
 
-fn strain_with(
-    section: Section,
-    material: &Compliance,
-    corners: [[f64; 2]; 3],
-    v: &Displacement,
-    t: usize,
-) -> [f64; 2] {
+fn strain_with(section: Section, material: &Material, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
     if let Some(revolved) = section.revolved() {
         let [energy, sensitivity] = revolved.strain_energy(v, t, corners, material);
         return [energy, sensitivity * shape(corners)];

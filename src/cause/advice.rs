@@ -209,7 +209,7 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Compare what both were given: loads, materials, supports, gaps, thickness.",
         ],
         (Kind::Value, _) => [
-            "The value is no value of a correct solution of this scene, or is asked for another place or direction.",
+            "The value cannot be that of a correct solution of this scene, or it belongs to another place or direction.",
             "Compare boundary, direction, window and sign of the quantity in the two programs.",
         ],
     }

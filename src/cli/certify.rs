@@ -154,9 +154,10 @@ fn held(
     if let (true, Some(judged)) = (args.solution, comparison.judged.first()) {
         session.progress.phase("holding the field to its claim");
         let (problem, bracket) = (&certified.problem, &certified.bracket);
+        let weak = args.contact.is_some();
         let claim = match &before {
-            None => study::claim(problem, judged, bracket, args.contact.is_some(), &allow),
-            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, &allow),
+            None => study::claim(problem, judged, bracket, weak, &allow),
+            Some((before, own)) => study::claim_before_contact(problem, (before, own), judged, bracket, weak, &allow),
         };
         let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
@@ -292,7 +293,10 @@ fn before_contact(
     field: &ForeignField,
 ) -> Result<Option<(Problem, Candidate)>, CliError> {
     if candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut) {
-        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
+        let help = "along a bond of unlike meshes the claim to be a discrete solution cannot be held: leave out --solution, or mesh both \
+                    sides with the same points";
+        let help = if problem.scene.bonds.is_empty() { "" } else { help };
+        let before = problem.before_contact().map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), help))?;
         let with_field = |before: Problem| field.candidate(&before, 0.0).map(|own| (before, own));
         return before.map(with_field).transpose().map_err(refused);
     }

@@ -1,7 +1,7 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
 use crate::bounds::{Hold, Holds, Nodes};
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::{Condition, Problem};
 
@@ -47,7 +47,7 @@ impl NodalForces {
     /// there and the values `u`; gives strain and stress.
     pub(super) fn add_stress(
         &mut self,
-        (material, weight): (&Compliance, f64),
+        (material, weight): (&Material, f64),
         nodes: &[usize],
         gradients: &[[f64; 2]],
         u: &[[f64; 2]],

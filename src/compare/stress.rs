@@ -6,17 +6,6 @@ use crate::dual::DualSolution;
 use crate::element::Strains;
 use crate::element::{Samples, StressField, contraction};
 use crate::problem::Problem;
-use crate::scene::Kinematics;
-
-/// Von Mises stress of an in-plane stress.
-pub fn von_mises(kinematics: Kinematics, poisson: f64, s: [f64; 3]) -> f64 {
-    let out = match kinematics {
-        Kinematics::PlaneStrain | Kinematics::Axisymmetric => poisson * (s[0] + s[1]),
-        Kinematics::PlaneStress => 0.0,
-    };
-    let (a, b, c) = (s[0] - s[1], s[1] - out, out - s[0]);
-    (0.5 * (a * a + b * b + c * c) + 3.0 * s[2] * s[2]).sqrt()
-}
 
 /// Von Mises stress of a stress (xx, yy, out of the plane, xy).
 pub fn von_mises_of(s: [f64; 4]) -> f64 {
@@ -61,18 +50,13 @@ pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
 
 /// Von Mises stress of mean stresses.
 pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
-    let scene = &problem.scene;
-    means
-        .iter()
-        .enumerate()
-        .map(|(t, &s)| von_mises(scene.kinematics, scene.bodies[problem.mesh.body[t]].poisson, s))
-        .collect()
+    let materials = problem.materials();
+    means.iter().enumerate().map(|(t, &s)| materials[problem.mesh.body[t]].von_mises(s)).collect()
 }
 
 /// Compares the stresses.
 pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judged: &Judged) -> StressSummary {
     let mesh = &problem.mesh;
-    let scene = &problem.scene;
     let materials = problem.materials();
     // ½‖λ_h − σ(u_h)‖² on each triangle.
     let terms = &judged.field.local.triangles;
@@ -81,7 +65,7 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
     let (mut difference, mut norm, mut mises) = ([0.0; 3], 0.0, 0.0);
     let mut strains = Strains::default();
     for t in 0..mesh.triangles.len() {
-        let poisson = scene.bodies[mesh.body[t]].poisson;
+        let material = &materials[mesh.body[t]];
         let field = &judged.field.displacement;
         let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
         let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
@@ -89,13 +73,13 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
             strains.on(mesh.corners(t), field, t, sub);
             for (q, (_, weight)) in samples.points.iter().enumerate() {
                 let l = dual.stress.sample(t, sub, shapes, q);
-                let s = materials[mesh.body[t]].stress(strains.sample(samples, q));
+                let s = material.stress(strains.sample(samples, q));
                 let w = weight * mesh.area(t) / 3.0;
                 for c in 0..3 {
                     difference[c] += w * (l[c] - s[c]).powi(2);
                 }
                 norm += w * contraction(l, l);
-                let of = |s| von_mises(scene.kinematics, poisson, s);
+                let of = |s| material.von_mises(s);
                 mises += w * (of(l) - of(s)).powi(2);
             }
         }

@@ -40,7 +40,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
             ),
             &|own| {
                 let shear = own.forces(points, |moduli, e| Moduli { lambda: 0.0, ..moduli }.stress(e));
-                let volume = own.forces(fewer, |moduli, e| Moduli { mu: 0.0, shear: 0.0, ..moduli }.stress(e));
+                let volume = own.forces(fewer, |moduli, e| Moduli { lambda: moduli.lambda, ..Moduli::NONE }.stress(e));
                 shear.iter().zip(volume).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
             },
         ),
@@ -161,6 +161,9 @@ impl On<'_> {
                 }
             }
         }
+        let other = Moduli { other: self.moduli.other, ..Moduli::NONE };
+        let rest = cells::forces(self.cell, &self.values, points, |e| other.stress(e));
+        forces.iter_mut().zip(rest).for_each(|(force, rest)| (0..2).for_each(|c| force[c] += rest[c]));
         forces
     }
 

@@ -20,7 +20,8 @@ const FALLEN: f64 = 1e-12;
 /// Layers of the thickness of the scene and of one.
 pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     let scene = &space.problem().scene;
-    if scene.kinematics != Kinematics::PlaneStress {
+    let isotropic = scene.bodies.iter().all(|body| body.elasticity.isotropic().is_some());
+    if scene.kinematics != Kinematics::PlaneStress || !isotropic {
         return Vec::new();
     }
     let mut thicknesses = vec![scene.thickness];
@@ -71,7 +72,7 @@ impl Layer {
         let mut points = Vec::new();
         for t in 0..problem.mesh.triangles.len() {
             let body = &problem.scene.bodies[problem.mesh.body[t]];
-            let Moduli { lambda, mu, .. } = Moduli::of(Kinematics::PlaneStrain, body.young, body.poisson);
+            let Moduli { lambda, mu, .. } = Moduli::of_law(Kinematics::PlaneStrain, &body.elasticity);
             for l in rule {
                 let gradients = solution.gradients(t, *l);
                 let mut strain = [0.0; 3];

@@ -118,10 +118,18 @@ impl<'a> Places<'a> {
     /// One triangle of another material.
     fn material(&self, t: usize) -> Trial {
         let value = |n: usize| self.space.solution.candidate.value(n);
-        let Moduli { lambda, mu, .. } = self.own(t);
+        let own = self.own(t);
+        let Moduli { lambda, mu, .. } = own;
+        if mu == 0.0 {
+            let column = self.column(&[t], |_| own, value);
+            let (x, left) = fit(&[&column], &self.space.residual, self.space.square);
+            let sentence = factor(&format!("the stiffness of {}", self.named(t)), 1.0 + x[0]);
+            let findings = vec![Finding::new("triangle/material", Some(1.0 + x[0]), None, sentence)];
+            return Trial { rank: 4, left, findings };
+        }
         let columns = [
-            self.column(&[t], |_| Moduli { lambda: 1.0, mu: 0.0, shear: 0.0 }, value),
-            self.column(&[t], |_| Moduli { lambda: 0.0, mu: 1.0, shear: 1.0 }, value),
+            self.column(&[t], |_| Moduli { lambda: 1.0, ..Moduli::NONE }, value),
+            self.column(&[t], |_| Moduli { mu: 1.0, shear: 1.0, ..Moduli::NONE }, value),
         ];
         let (x, left) = fit(&columns.each_ref().map(Vec::as_slice), &self.space.residual, self.space.square);
         let (of_lambda, of_mu) = (1.0 + x[0] / lambda, 1.0 + x[1] / mu);
@@ -173,10 +181,9 @@ impl<'a> Places<'a> {
             Some(Condition::Roller { .. }) => {
                 ("clamped", format!("{name} is held along the boundary too, where the scene lets it slide"))
             }
-            Some(Condition::Traction(_)) => (
-                "forces",
-                format!("the nodal forces on {name} are others than the consistent ones of the scene's load"),
-            ),
+            Some(Condition::Traction(_)) => {
+                ("forces", format!("the nodal forces on {name} are not the consistent ones of the scene's load"))
+            }
             _ => ("forces", format!("forces act on {name} that the scene does not have")),
         };
         Trial { rank: 7, left, findings: vec![Finding::new(format!("boundary/{name}/{key}"), None, None, sentence)] }

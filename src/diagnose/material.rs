@@ -15,6 +15,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         let change = space.stiffness(|b| Some(others(b).less(own[b])).filter(|d| *d != NONE));
         Trial { rank: 0, left: space.left_with(&change), findings: vec![finding] }
     };
+    let isotropic = |body: &Body| body.elasticity.isotropic();
     let (other, sentence) = match scene.kinematics {
         Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
             (Kinematics::PlaneStress, "plane stress stands in place of plane strain")
@@ -23,9 +24,19 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     };
     let negative =
         Finding::new("bodies/poisson-sign", None, None, "Poisson's ratio of every body has the opposite sign");
-    let mut trials = vec![with(&|b| Moduli::of(scene.kinematics, bodies[b].young, -bodies[b].poisson), negative)];
+    let mut trials = Vec::new();
+    if bodies.iter().any(|body| isotropic(body).is_some()) {
+        let turned = |b: usize| match isotropic(&bodies[b]) {
+            Some([young, poisson]) => Moduli::of(scene.kinematics, young, -poisson),
+            None => own[b],
+        };
+        trials.push(with(&turned, negative));
+    }
     trials.push(with(
-        &|b| Moduli::of(other, bodies[b].young, bodies[b].poisson),
+        &|b| match bodies[b].elasticity.is_plane_stress_only() {
+            true => own[b],
+            false => Moduli::of_law(other, &bodies[b].elasticity),
+        },
         Finding::new("kinematics", None, None, sentence),
     ));
     let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
@@ -46,18 +57,31 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
                 None,
                 format!("{what} of {} and {} are exchanged", bodies[i].name, bodies[j].name),
             );
-            trials.push(with(&|b| made(&bodies[b], &bodies[swapped(b)]), finding));
+            let own = &own;
+            trials
+                .push(with(&|b| if swapped(b) == b { own[b] } else { made(&bodies[b], &bodies[swapped(b)]) }, finding));
         };
-        let made = |young: f64, poisson: f64| Moduli::of(scene.kinematics, young, poisson);
-        let (young, poisson) = (bodies[i].young != bodies[j].young, bodies[i].poisson != bodies[j].poisson);
-        if poisson {
-            exchange("poisson-exchanged", "Poisson's ratios", &|own, other| made(own.young, other.poisson));
+        let exchanged = |own: &Body, other: &Body, which: [bool; 2]| {
+            let constants = isotropic(own).zip(isotropic(other));
+            constants.map_or(NONE, |(own, other)| {
+                let [young, poisson] = [0, 1].map(|i| if which[i] { other[i] } else { own[i] });
+                Moduli::of(scene.kinematics, young, poisson)
+            })
+        };
+        let apart = match isotropic(&bodies[i]).zip(isotropic(&bodies[j])) {
+            Some((a, b)) => [a[0] != b[0], a[1] != b[1]],
+            None => [false; 2],
+        };
+        if apart[1] {
+            exchange("poisson-exchanged", "Poisson's ratios", &|own, other| exchanged(own, other, [false, true]));
         }
-        if young {
-            exchange("young-exchanged", "Young's moduli", &|own, other| made(other.young, own.poisson));
+        if apart[0] {
+            exchange("young-exchanged", "Young's moduli", &|own, other| exchanged(own, other, [true, false]));
         }
-        if young && poisson {
-            exchange("materials-exchanged", "the materials", &|_, other| made(other.young, other.poisson));
+        if apart == [true; 2] || (apart == [false; 2] && bodies[i].elasticity != bodies[j].elasticity) {
+            exchange("materials-exchanged", "the materials", &|_, other| {
+                Moduli::of_law(scene.kinematics, &other.elasticity)
+            });
         }
     }
     trials
@@ -67,7 +91,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 const MOST_PAIRS: usize = 200;
 /// Bodies of their own in least squares: more are not tried.
 const MOST_BODIES: usize = 64;
-const NONE: Moduli = Moduli { lambda: 0.0, mu: 0.0, shear: 0.0 };
+const NONE: Moduli = Moduli::NONE;
 
 /// Constants that are off by a number.
 pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
@@ -76,7 +100,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let own = move |b: usize| Moduli::of_body(problem, &bodies[b]);
     let all = |name: &'static str, what: &'static str, part: fn(Moduli) -> Moduli, terms: &mut Terms<'a>| {
         let column = space.stiffness(|b| Some(part(own(b))));
-        let poisson: Vec<f64> = bodies.iter().map(|body| body.poisson).collect();
+        let poisson: Vec<f64> =
+            bodies.iter().filter_map(|body| body.elasticity.isotropic()).map(|[_, nu]| nu).collect();
         terms.push(1, vec![column], move |x| {
             let s = 1.0 + x[0];
             let mut sentence = factor(what, s);
@@ -91,6 +116,10 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     all("stiffness/shear", "the shear stiffness of every body", |m| Moduli { shear: m.shear, ..NONE }, terms);
     for b in 0..bodies.len().min(MOST_BODIES) {
         let body = &bodies[b];
+        let Some([given_young, given_poisson]) = body.elasticity.isotropic() else {
+            anisotropic(space, b, own(b), terms);
+            continue;
+        };
         let part = |moduli: Moduli| space.stiffness(|at| (at == b).then_some(moduli));
         let (of_lambda, of_mu) = (part(Moduli { lambda: 1.0, ..NONE }), part(Moduli { mu: 1.0, shear: 1.0, ..NONE }));
         let Moduli { lambda, mu, .. } = own(b);
@@ -99,29 +128,29 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         if bodies.len() > 1 {
             terms.push(1, vec![whole], move |x| {
                 let what = format!("Young's modulus of {}", body.name);
-                let found = (1.0 + x[0]) * body.young;
+                let found = (1.0 + x[0]) * given_young;
                 let sentence = factor(&what, 1.0 + x[0]);
-                vec![Finding::new(format!("body/{}/young", body.name), Some(found), Some(body.young), sentence)]
+                vec![Finding::new(format!("body/{}/young", body.name), Some(found), Some(given_young), sentence)]
             });
         }
         terms.push(2, vec![of_lambda, of_mu], move |x| {
             let [young, poisson] = Moduli::engineering(scene.kinematics, lambda + x[0], mu + x[1]);
             let mut findings = Vec::new();
-            if !near(young, body.young) {
+            if !near(young, given_young) {
                 let sentence =
-                    format!("Young's modulus of {} is {} in place of {}", body.name, number(young), body.young);
+                    format!("Young's modulus of {} is {} in place of {}", body.name, number(young), given_young);
                 findings.push(Finding::new(
                     format!("body/{}/young", body.name),
                     Some(young),
-                    Some(body.young),
+                    Some(given_young),
                     sentence,
                 ));
             }
-            if !near(poisson, body.poisson) || findings.is_empty() {
+            if !near(poisson, given_poisson) || findings.is_empty() {
                 let sentence =
-                    format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), body.poisson);
+                    format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), given_poisson);
                 let name = format!("body/{}/poisson", body.name);
-                findings.push(Finding::new(name, Some(poisson), Some(body.poisson), sentence));
+                findings.push(Finding::new(name, Some(poisson), Some(given_poisson), sentence));
             }
             findings
         });
@@ -129,8 +158,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     if bodies.len() > 1 {
         let column = |part: fn(Moduli) -> Moduli| space.stiffness(|b| Some(part(own(b))));
         let columns = vec![column(|m| Moduli { lambda: m.lambda, ..NONE }), column(|m| Moduli { lambda: 0.0, ..m })];
-        let alike = bodies.iter().all(|b| b.young == bodies[0].young && b.poisson == bodies[0].poisson);
-        if alike {
+        let alike = bodies.iter().all(|b| b.elasticity == bodies[0].elasticity);
+        if let (true, Some([given_young, given_poisson])) = (alike, bodies[0].elasticity.isotropic()) {
             terms.push(2, columns, move |x| {
                 let first = own(0);
                 let [young, poisson] =
@@ -141,12 +170,24 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
                 let of = |key: &str, what: &str, found: f64, given: f64| {
                     Finding::new(format!("bodies/{key}"), Some(found), Some(given), sentence(what, found, given))
                 };
-                let mut findings = vec![of("poisson", "Poisson's ratio", poisson, bodies[0].poisson)];
-                if !near(young, bodies[0].young) {
-                    findings.push(of("young", "Young's modulus", young, bodies[0].young));
+                let mut findings = vec![of("poisson", "Poisson's ratio", poisson, given_poisson)];
+                if !near(young, given_young) {
+                    findings.push(of("young", "Young's modulus", young, given_young));
                 }
                 findings
             });
         }
+    }
+}
+
+/// One factor on all moduli of a body that is not isotropic.
+fn anisotropic<'a>(space: &'a Space<'a>, b: usize, own: Moduli, terms: &mut Terms<'a>) {
+    let bodies = &space.problem().scene.bodies;
+    if bodies.len() > 1 {
+        let column = space.stiffness(|at| (at == b).then_some(own));
+        terms.push(1, vec![column], move |x| {
+            let sentence = factor(&format!("the stiffness of {}", bodies[b].name), 1.0 + x[0]);
+            vec![Finding::new(format!("body/{}/stiffness", bodies[b].name), Some(1.0 + x[0]), Some(1.0), sentence)]
+        });
     }
 }

@@ -2,6 +2,8 @@
 
 use crate::bounds::Cell;
 use crate::compare::{Solution, cells};
+use crate::elasticity::Elasticity;
+use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
@@ -15,9 +17,28 @@ pub struct Moduli {
     pub mu: f64,
     /// μ in the shear stress.
     pub shear: f64,
+    /// What is not isotropic: stresses (xx, yy, xy) of unit strains ε_xx, ε_yy and ε_xy.
+    pub other: [[f64; 3]; 3],
 }
 
 impl Moduli {
+    /// No stiffness at all.
+    pub const NONE: Self = Moduli { lambda: 0.0, mu: 0.0, shear: 0.0, other: [[0.0; 3]; 3] };
+
+    /// Those of a material that is not isotropic.
+    pub fn of_material(material: &Material) -> Self {
+        let other = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| material.stress(e));
+        Moduli { other, ..Self::NONE }
+    }
+
+    /// Those of any Hooke's law in a plane state.
+    pub fn of_law(kinematics: Kinematics, elasticity: &Elasticity) -> Self {
+        match elasticity.isotropic() {
+            Some([young, poisson]) => Self::of(kinematics, young, poisson),
+            None => Self::of_material(&Material::new(kinematics, elasticity)),
+        }
+    }
+
     /// Those of a material.
     pub fn of(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
         let mu = young / (2.0 * (1.0 + poisson));
@@ -25,12 +46,12 @@ impl Moduli {
             Kinematics::PlaneStrain | Kinematics::Axisymmetric => 2.0 * mu * poisson / (1.0 - 2.0 * poisson),
             Kinematics::PlaneStress => 2.0 * mu * poisson / (1.0 - poisson),
         };
-        Moduli { lambda, mu, shear: mu }
+        Moduli { lambda, mu, shear: mu, other: [[0.0; 3]; 3] }
     }
 
     /// Those of a body of the scene.
     pub fn of_body(problem: &Problem, body: &Body) -> Self {
-        Self::of(problem.scene.kinematics, body.young, body.poisson)
+        Self::of_law(problem.scene.kinematics, &body.elasticity)
     }
 
     /// Young's modulus and Poisson's ratio of a material with these constants.
@@ -45,12 +66,20 @@ impl Moduli {
     /// The stress of a strain (xx, yy, xy).
     pub fn stress(&self, e: [f64; 3]) -> [f64; 3] {
         let pressure = self.lambda * (e[0] + e[1]);
-        [pressure + 2.0 * self.mu * e[0], pressure + 2.0 * self.mu * e[1], 2.0 * self.shear * e[2]]
+        let own = [pressure + 2.0 * self.mu * e[0], pressure + 2.0 * self.mu * e[1], 2.0 * self.shear * e[2]];
+        let [xx, yy, xy] = &self.other;
+        [0, 1, 2].map(|i| own[i] + (xx[i] * e[0] + yy[i] * e[1] + xy[i] * e[2]))
     }
 
     /// The difference from `other`.
     pub fn less(self, other: Self) -> Self {
-        Moduli { lambda: self.lambda - other.lambda, mu: self.mu - other.mu, shear: self.shear - other.shear }
+        let apart = |i: usize| [0, 1, 2].map(|j| self.other[i][j] - other.other[i][j]);
+        Moduli {
+            lambda: self.lambda - other.lambda,
+            mu: self.mu - other.mu,
+            shear: self.shear - other.shear,
+            other: [0, 1, 2].map(apart),
+        }
     }
 }
 

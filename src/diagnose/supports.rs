@@ -60,7 +60,7 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
             Finding::new(name("penalty"), Some(stiffness), None, sentence)
         } else if bad < nodes.len() {
             let sentence = format!(
-                "the support on {on} is missed at {bad} of {} nodes, most, by {}, at {}",
+                "the support on {on} is violated at {bad} of {} nodes, by at most {}, at {}",
                 nodes.len(),
                 number(depth),
                 solution.named(worst)

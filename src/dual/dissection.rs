@@ -185,7 +185,7 @@ mod tests {
             raw.triangles.extend([[a, b, c], [a, c, d]].map(|t| (t, "strip".to_string())));
         }
         let source = MeshSource::Geometry { size: None, polygons: Vec::new() };
-        let bodies = vec![Body { name: "strip".to_string(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] }];
+        let bodies = vec![Body::isotropic("strip", 1.0, 0.3)];
         let scene = Scene::unchecked(Draft { bodies, ..Draft::new("strip", Kinematics::PlaneStrain, source) });
         let (mesh, notes) = Triangulation::new(raw, &scene).expect("a strip");
         let problem = Problem::new(scene, mesh, notes).expect("a problem");

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::element::{Compliance, Elements, Layout, Modes, StressField, congruent, parts, starts};
+use crate::element::{Elements, Layout, Material, Modes, StressField, congruent, parts, starts};
 use crate::problem::Problem;
 
 /// The modes of every triangle.
@@ -16,7 +16,7 @@ pub struct ModeTable {
     data: Vec<f64>,
     /// The first mode parameter of each triangle, and the end.
     first_parameter: Vec<usize>,
-    materials: Vec<Compliance>,
+    materials: Vec<Material>,
 }
 
 /// Congruent triangles of one degree.
@@ -122,8 +122,8 @@ impl ModeTable {
         field
     }
 
-    /// Compliance of each body.
-    pub fn materials(&self) -> &[Compliance] {
+    /// Material of each body.
+    pub fn materials(&self) -> &[Material] {
         &self.materials
     }
 }

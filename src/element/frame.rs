@@ -1,5 +1,7 @@
 //! The coordinates in which the stresses of an element are written.
 
+use super::{Material, Roots};
+
 /// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
 ///
 /// Along the longest side the modes of a stretched triangle keep apart by themselves (stress along it, across it, shear),
@@ -25,6 +27,11 @@ impl Frame {
         let area = 0.5 * (sides[0][0] * sides[1][1] - sides[0][1] * sides[1][0]);
         let l = length(longest);
         Frame { axis: [longest[0] / l, longest[1] / l], base, scale: area.sqrt() }
+    }
+
+    /// R of a = RᵀR for stresses in its components.
+    pub fn roots(&self, material: &Material) -> Roots {
+        material.in_frame(self.axis).roots()
     }
 
     /// A point in it, from where it is as seen from the centroid.

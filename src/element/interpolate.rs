@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::quadrature::segment_rule;
-use super::{Block, Compliance, EquilibriumElement, Modes, StressField};
+use super::{Block, EquilibriumElement, Material, Modes, StressField};
 use crate::mesh::Triangulation;
 
 /// End values of the linear function that is nearest to `traction` in L² on the side from `a` to `b`.
@@ -42,8 +42,6 @@ pub fn parameters_from_tractions(modes: &Modes<'_>, tractions: &[f64]) -> Option
 /// A stress that is not self-equilibrated has no interpolant; it gives the field of least squares. Degenerate triangles
 /// are left at zero.
 pub fn interpolant(mesh: &Triangulation, stress: impl Fn(usize, [f64; 2]) -> [f64; 3]) -> StressField {
-    // N(K) and its tractions know nothing of the material.
-    let material = Compliance { young: 1.0, kappa: 0.5, gamma: 2.0 };
     let mut field = StressField::zeros(1, mesh.triangles.len());
     for t in 0..mesh.triangles.len() {
         let corners = mesh.corners(t);
@@ -59,7 +57,8 @@ pub fn interpolant(mesh: &Triangulation, stress: impl Fn(usize, [f64; 2]) -> [f6
             };
             tractions.extend(side_projection(a, b, traction).into_iter().flatten());
         }
-        let modes = Block.modes(corners, &material, [0.0; 2]);
+        // N(K) and its tractions know nothing of the material.
+        let modes = Block.modes(corners, &Material::ANY, [0.0; 2]);
         if let Some((s, _)) = parameters_from_tractions(&modes, &tractions) {
             Block.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
         }

@@ -11,7 +11,6 @@
 
 pub mod bilinear;
 mod block;
-mod compliance;
 pub mod congruent;
 pub mod displacement;
 mod elements;
@@ -19,6 +18,7 @@ mod field;
 mod frame;
 pub mod geometry;
 mod interpolate;
+mod material;
 pub mod on_quadrilaterals;
 pub mod plain;
 pub mod quadrature;
@@ -37,11 +37,11 @@ mod traction;
 pub mod triangle;
 
 pub use block::Block;
-pub use compliance::Compliance;
 pub use displacement::Displacement;
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
+pub use material::{Material, Roots, Stiffness};
 pub use on_quadrilaterals::OnQuadrilaterals;
 pub use plain::PlainDisplacement;
 pub use quadrilateral::Quadrilateral;
@@ -85,11 +85,11 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 /// Every mode holds itself in balance: the force of its tractions on the three sides is zero.
 ///
 /// ```
-/// use hypercircle::element::{Compliance, block};
+/// use hypercircle::element::{Material, block};
 /// use hypercircle::scene::Kinematics;
 ///
 /// let (element, corners) = (block(2), [[0.0, 0.0], [2.0, 0.0], [0.5, 1.0]]);
-/// let modes = element.modes(corners, &Compliance::new(Kinematics::PlaneStrain, 1.0, 0.3), [0.0; 2]);
+/// let modes = element.modes(corners, &Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3), [0.0; 2]);
 /// assert_eq!((modes.parameters(), element.tractions()), (6 * 3 - 3, 6 * 3));
 /// for traction in modes.tractions() {
 ///     let force_x: f64 = (0..3)
@@ -122,7 +122,7 @@ pub trait EquilibriumElement: Sync {
     fn kept(&self) -> usize;
 
     /// Computes tractions, particular field and what is kept on the counter-clockwise triangle with the given corners.
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>);
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>);
 
     /// Nodal stresses `particular` · λ̄ + Σ S_k τ_k, nodes as in [`StressField::block`], on the triangle that `modes` were
     /// computed for.
@@ -144,7 +144,7 @@ pub trait EquilibriumElement: Sync {
     }
 
     /// [`Self::compute`] into memory of its own.
-    fn modes(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2]) -> Modes<'static> {
+    fn modes(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2]) -> Modes<'static> {
         let layout = self.layout();
         let mut data = vec![0.0; layout.len()];
         self.compute(corners, material, body_force, layout.split(&mut data));

@@ -8,9 +8,9 @@
 use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
 use super::quadrature::triangle_rule;
-use super::revolved::{Law, NEAR, Ring, Tensor, Weighted, rule};
+use super::revolved::{NEAR, Ring, Tensor, Weighted, rule};
 use super::{
-    Compliance, Displacement, EquilibriumElement, Layout, Modes, ModesMut, Strains, StressField, displacement,
+    Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
     lattice_len, triangle,
 };
 
@@ -94,14 +94,14 @@ impl Section {
         self,
         element: &dyn EquilibriumElement,
         corners: Corners,
-        material: &Compliance,
+        material: &Material,
         force: [f64; 2],
         out: ModesMut<'_>,
     ) {
         match self {
             Section::Slice => element.compute(corners, material, force, out),
             Section::Revolved { axis } => {
-                Ring::new(element.degree(), axis, corners).compute(&Law::of(material), force, out);
+                Ring::new(element.degree(), axis, corners).compute(&material.revolved(), force, out);
             }
         }
     }
@@ -178,15 +178,8 @@ impl Revolved {
     }
 
     /// ∫ aλ:λ r on triangle `t` from above, and what a relative error of one in every number could change of its half. `force` is F_r.
-    pub fn square(
-        self,
-        stress: &StressField,
-        t: usize,
-        corners: Corners,
-        material: &Compliance,
-        force: f64,
-    ) -> [f64; 2] {
-        let (law, degree) = (Law::of(material), stress.degree(t));
+    pub fn square(self, stress: &StressField, t: usize, corners: Corners, material: &Material, force: f64) -> [f64; 2] {
+        let (law, degree) = (material.revolved(), stress.degree(t));
         let (mut sum, mut sensitivity) = (0.0, 0.0);
         for sub in 0..3 {
             let weighted = Self::weighted(stress, t, sub, corners, force);
@@ -202,8 +195,8 @@ impl Revolved {
     }
 
     /// ½∫ c e:e r of what `v` has as its triangle `own` from above, and what a relative error of one in every number could change.
-    pub fn strain_energy(self, v: &Displacement, own: usize, corners: Corners, material: &Compliance) -> [f64; 2] {
-        let (law, k) = (Law::of(material), v.degree(own));
+    pub fn strain_energy(self, v: &Displacement, own: usize, corners: Corners, material: &Material) -> [f64; 2] {
+        let (law, k) = (material.revolved(), v.degree(own));
         let hoop = law.strain_product([0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]);
         let (mut energy, mut sensitivity) = (0.0, 0.0);
         let mut strains = Strains::default();
@@ -228,10 +221,10 @@ impl Revolved {
         v: &Displacement,
         t: usize,
         corners: Corners,
-        material: &Compliance,
+        material: &Material,
         force: f64,
     ) -> f64 {
-        let law = Law::of(material);
+        let law = material.revolved();
         let mut sum = 0.0;
         let mut strains = Strains::default();
         for sub in 0..3 {
@@ -297,10 +290,10 @@ impl Revolved {
         stress: &StressField,
         t: usize,
         corners: Corners,
-        material: &Compliance,
+        material: &Material,
         force: f64,
     ) -> impl Fn(usize, [f64; 3]) -> [f64; 3] {
-        let law = Law::of(material);
+        let law = material.revolved();
         let weighted = [0, 1, 2].map(|sub| Self::weighted(stress, t, sub, corners, force));
         move |sub, bary| {
             let (point, _) = self.off_axis(corners, sub, bary);
@@ -316,10 +309,10 @@ impl Revolved {
         k: usize,
         corners: Corners,
         sub: usize,
-        material: &Compliance,
+        material: &Material,
         mut add: impl FnMut(usize, usize, [f64; 4]),
     ) {
-        let law = Law::of(material);
+        let law = material.revolved();
         let n = triangle::len(k);
         let g = sub_gradients(corners, sub);
         let area = sub_area(corners);

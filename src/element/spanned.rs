@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::geometry::from_centroid;
 use super::quadrature::triangle_rule;
-use super::{Compliance, EquilibriumElement, Modes, ModesMut, StressField, lattice, lattice_len};
+use super::{EquilibriumElement, Material, Modes, ModesMut, StressField, lattice, lattice_len};
 
 /// Corners of a triangle, counter-clockwise.
 pub type Corners = [[f64; 2]; 3];
@@ -57,7 +57,7 @@ impl Spanned {
         balances: Option<Box<Balances>>,
     ) -> Result<Self, String> {
         let mut element = Spanned { name, degree, parameters: 0, spans, balances, fault: Mutex::new(None) };
-        let material = Compliance::new(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
+        let material = Material::isotropic(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
         let (modes, _) = element.basis(USUAL, &material, [0.0; 2])?;
         element.parameters = modes.values.ncols();
         match element.parameters {
@@ -74,7 +74,7 @@ impl Spanned {
     }
 
     /// Modes, and λ̄ as fields of one column.
-    fn basis(&self, corners: Corners, material: &Compliance, force: [f64; 2]) -> Result<(Fields, Fields), String> {
+    fn basis(&self, corners: Corners, material: &Material, force: [f64; 2]) -> Result<(Fields, Fields), String> {
         let given = (self.spans)(corners)?;
         let particular = match &self.balances {
             Some(balances) => balances(corners, force)?,
@@ -103,7 +103,7 @@ impl Spanned {
         Ok((fields.combined(&seen.q().columns(0, rank).into_owned()), particular))
     }
 
-    fn measured(&self, corners: Corners, material: &Compliance, fields: &[Nodal]) -> Fields {
+    fn measured(&self, corners: Corners, material: &Material, fields: &[Nodal]) -> Fields {
         let p = self.degree;
         let mut stress = StressField::zeros(p, fields.len());
         for (block, field) in stress.blocks_mut().into_iter().zip(fields) {
@@ -112,14 +112,14 @@ impl Spanned {
         let area = 0.5
             * ((corners[1][0] - corners[0][0]) * (corners[2][1] - corners[0][1])
                 - (corners[1][1] - corners[0][1]) * (corners[2][0] - corners[0][0]));
-        let [mean, deviator] = [material.kappa, material.gamma].map(|c| (c / material.young).sqrt());
+        let (roots, unit) = (material.roots(), material.unit());
         let rule = triangle_rule(2 * p);
         let energy = |k: usize| {
             let mut column = Vec::with_capacity(9 * rule.len());
             for sub in 0..3 {
                 for &(l, weight) in rule {
-                    let ([xx, yy, xy], root) = (stress.at(k, sub, l), (weight * area / 3.0).sqrt());
-                    column.extend([mean * (xx + yy), 0.5 * deviator * (xx - yy), deviator * xy].map(|x| root * x));
+                    let (tau, root) = (stress.at(k, sub, l), (weight * area / (3.0 * unit)).sqrt());
+                    column.extend(roots.apply(tau).map(|x| root * x));
                 }
             }
             DVector::from_vec(column)
@@ -213,7 +213,7 @@ impl EquilibriumElement for Spanned {
     }
 
     /// Zeros, and a [`Spanned::fault`], where there are no modes to be had.
-    fn compute(&self, corners: Corners, material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: Corners, material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
         let found = self.basis(corners, material, body_force).and_then(|(modes, particular)| {
             match modes.values.ncols() == self.parameters {
                 true => Ok((modes, particular)),
@@ -255,7 +255,7 @@ mod tests {
 
     /// The modes of the block, mixed and with one field twice, as if somebody had found them.
     fn mixed(degree: usize) -> Spanned {
-        let material = Compliance::new(crate::scene::Kinematics::PlaneStress, 3.0, 0.1);
+        let material = Material::isotropic(crate::scene::Kinematics::PlaneStress, 3.0, 0.1);
         let spans = move |corners| {
             let modes = block(degree).modes(corners, &material, [0.0; 2]);
             let fields = block(degree).mode_stresses(corners, &modes);
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn stiffness_and_loads_are_those_of_the_block() {
         let corners = [[0.3, 0.1], [1.9, -0.2], [0.8, 1.1]];
-        let (material, force) = (Compliance::new(crate::scene::Kinematics::PlaneStrain, 2.0, 0.4), [0.4, -0.7]);
+        let (material, force) = (Material::isotropic(crate::scene::Kinematics::PlaneStrain, 2.0, 0.4), [0.4, -0.7]);
         let (own, plain) = (mixed(1), block(1));
         assert_eq!(own.parameters(), plain.parameters());
         let [a, b] = [&own as &dyn EquilibriumElement, plain].map(|e| e.modes(corners, &material, force));
@@ -303,7 +303,7 @@ mod tests {
             false => Err("too far right".to_string()),
         };
         let element = Spanned::new("some", 1, Box::new(sometimes), None).expect("an element");
-        let material = Compliance::new(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
+        let material = Material::isotropic(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
         let modes = element.modes([[2.0, 0.0], [3.0, 0.0], [2.0, 1.0]], &material, [0.0; 2]);
         assert!(modes.traction().iter().all(|x| *x == 0.0));
         assert!(element.fault().is_some_and(|text| text.contains("too far right")) && element.fault().is_none());

@@ -77,6 +77,18 @@ pub fn flexibility(moments: &Moments, constants: [f64; 3]) -> Matrix<7, 7> {
     f
 }
 
+/// The flexibility of any material, from its compliance `a` for stresses (11, 22, 12).
+pub fn flexibility_of(moments: &Moments, a: [[f64; 3]; 3]) -> Matrix<7, 7> {
+    let a = Matrix::<3, 3>::from_fn(|i, j| a[i][j]);
+    let [d1, d2, d12] = moments.delta;
+    let constant = stress_map([0.0; 2]);
+    let [along, up] = [stress_map([1.0, 0.0]) - constant, stress_map([0.0, 1.0]) - constant];
+    let form = |l: &Matrix<3, 7>, m: &Matrix<3, 7>| l.transpose() * a * m;
+    let mixed = form(&along, &up);
+    (form(&constant, &constant) + form(&along, &along) * d1 + form(&up, &up) * d2 + (mixed + mixed.transpose()) * d12)
+        * moments.area
+}
+
 /// Parameters about another origin: S at `centre` from S at the common origin, as S_centre = shift · S.
 pub fn shift([x, y]: [f64; 2]) -> Matrix<7, 7> {
     let mut matrix = Matrix::<7, 7>::identity();

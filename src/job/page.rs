@@ -89,7 +89,7 @@ fn table(gathered: &Gathered) -> Markup {
             table {
                 thead { tr {
                     th { "scene" } th { "status" } th.n { "error at most" } th.n { "lower bound" } th.n { "upper bound" }
-                    th.n { "triangles" } th.n { "seconds" } th { "what is said" }
+                    th.n { "triangles" } th.n { "seconds" } th { "reason" }
                 } }
                 tbody { @for i in job.worst_first() { (row(gathered, i)) } }
             }

@@ -65,7 +65,7 @@ pub fn summary(gathered: &Gathered, out: &Path) -> String {
 }
 
 fn table(text: &mut String, job: &Job, order: &[usize]) {
-    let _ = writeln!(text, "| scene | status | error at most | seconds | what is said |\n|---|---|--:|--:|---|");
+    let _ = writeln!(text, "| scene | status | error at most | seconds | reason |\n|---|---|--:|--:|---|");
     let start = text.len();
     for (row, i) in order.iter().enumerate() {
         let entry = &job.scenes[*i];

@@ -8,7 +8,7 @@ use super::error::at;
 use super::glue::Record;
 use super::polyline::SAME;
 use super::{MeshError, Triangulation};
-use crate::scene::{Contact, Note, Scene, counted};
+use crate::scene::{Joint, Note, Scene, counted};
 
 /// Cosine of the angle between the direction and a normal below which an edge does not face the other side.
 const GRAZING: f64 = 0.05;
@@ -72,11 +72,11 @@ pub(crate) fn outward(mesh: &Triangulation, names: [&str; 2], given: [f64; 2]) -
 pub(super) fn match_along(
     mesh: Triangulation,
     scene: &Scene,
-    contact: &Contact,
-    names: &[String; 2],
+    joint: Joint,
     given: [f64; 2],
     record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
+    let names = joint.sides;
     let d = outward(&mesh, [&names[0], &names[1]], given);
     // Both sides are seen along d, so that positions agree.
     let sides = [facing(&mesh, &names[0], d), turned(facing(&mesh, &names[1], d.map(|x| -x)))];
@@ -84,7 +84,7 @@ pub(super) fn match_along(
         if let Some(w) = side.windows(2).find(|w| w[1].span[0] < w[0].span[1] - CLOSE * (w[0].span[1] - w[0].span[0])) {
             let what = format!("'{name}' folds over itself at {}", at(scene, mesh.points[w[1].vertices[0]]));
             let remedy = "seen along `direction` a contact side has to be a single curve: name the part that can touch";
-            return Err(MeshError::contact(scene, contact.name(), what, remedy));
+            return Err(MeshError::contact(scene, joint.quoted(), what, remedy));
         }
     }
     let mut inserted = Vec::new();
@@ -116,19 +116,18 @@ pub(super) fn match_along(
     if !overlap {
         let what = format!("seen along its direction, '{}' and '{}' do not face each other", names[0], names[1]);
         let remedy = "the direction has to lead from one side to the other: correct `direction`, or the names";
-        return Err(MeshError::contact(scene, contact.name(), what, remedy));
+        return Err(MeshError::contact(scene, joint.quoted(), what, remedy));
     }
     if inserted.is_empty() {
         return Ok(mesh);
     }
     let flat = |p: [f64; 2]| {
         let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
-        MeshError::contact(scene, contact.name(), what, "mesh both sides with about the same edge lengths")
+        MeshError::contact(scene, joint.quoted(), what, "mesh both sides with about the same edge lengths")
     };
     let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(flat)?;
     let [a, b] = [0, 1].map(|i| format!("{} of '{}'", counted(counts[i], "vertex"), names[i]));
-    let text =
-        format!("contact {}: along its direction, {a} and {b} were inserted into the other side", contact.name());
+    let text = format!("{}: along its direction, {a} and {b} were inserted into the other side", joint.name());
     record.notes.push(Note { weakens_guarantee: false, text });
     Ok(mesh)
 }

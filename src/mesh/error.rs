@@ -65,12 +65,12 @@ pub enum MeshError {
         /// What to do.
         remedy: String,
     },
-    /// The two sides of a contact do not coincide.
-    #[error("{mesh}: contact '{contact}': {what}; {remedy}")]
+    /// The two sides of a contact or a bond do not coincide.
+    #[error("{mesh}: {contact}: {what}; {remedy}")]
     Contact {
         /// The mesh file, or `[geometry]`.
         mesh: String,
-        /// `first|second` or `first|rigid`.
+        /// Which: `contact 'first|second'`, `contact 'first|rigid'`, `bond 'first|second'`.
         contact: String,
         /// What was found, with coordinates.
         what: String,

@@ -1,4 +1,4 @@
-//! Contact sides that coincide as curves get coinciding vertices.
+//! Sides of contacts and bonds that coincide as curves get coinciding vertices.
 //!
 //! Every vertex of one side is put into the edges of the other, break points of the gap and of windows into both. What is left is
 //! the condition of the scene: two coinciding polylines.
@@ -6,14 +6,15 @@
 use std::collections::HashMap;
 
 use super::along::match_along;
+use super::bonded::bond;
 use super::boxes::{BoxTree, around};
 use super::error::at;
 use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
 use super::{MeshError, Triangulation, Uncut};
-use crate::scene::{Contact, ContactSides, Note, Scene, counted};
+use crate::scene::{ContactSides, Joint, Note, Scene, counted};
 
-/// A mesh whose contact sides match.
+/// A mesh whose contact sides match and whose bonds are closed.
 #[derive(Debug, Clone)]
 pub struct Glued {
     /// The mesh.
@@ -32,7 +33,7 @@ pub(super) struct Record {
     pub parent: Vec<usize>,
 }
 
-/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit.
+/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit, and those of every bond one.
 ///
 /// # Errors
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.
@@ -46,29 +47,29 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
         mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
     snap(&mut mesh, scene, &mut record.notes);
-    for contact in &scene.contacts {
-        let ContactSides::Between(names) = &contact.sides else { continue };
-        mesh = match contact.direction {
-            None => match_vertices(mesh, scene, contact, names, &mut record)?,
-            Some(direction) => match_along(mesh, scene, contact, names, direction, &mut record)?,
+    for joint in scene.joints() {
+        mesh = match joint.direction {
+            None => match_vertices(mesh, scene, joint, &mut record)?,
+            Some(direction) => match_along(mesh, scene, joint, direction, &mut record)?,
         };
     }
     for index in others {
         mesh = insert_breaks(mesh, scene, index, &mut record)?;
     }
     let changed = mesh.points != before.points;
+    let (mesh, vertex) = bond(mesh, scene)?;
     let Record { notes, parent } = record;
-    Ok(Glued { mesh, notes, uncut: changed.then_some(Uncut { mesh: before, parent }) })
+    Ok(Glued { mesh, notes, uncut: changed.then(|| Uncut::new(before, parent, vertex)) })
 }
 
 /// Puts the vertices of each side into the edges of the other.
 fn match_vertices(
     mesh: Triangulation,
     scene: &Scene,
-    contact: &Contact,
-    names: &[String; 2],
+    joint: Joint,
     record: &mut Record,
 ) -> Result<Triangulation, MeshError> {
+    let names = joint.sides;
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
     let mut moved = 0.0_f64;
@@ -97,7 +98,7 @@ fn match_vertices(
                               there and name the common part only, or give both sides the same points; sides that are no such \
                               polylines, an arc on a line or two arcs of unlike edges, are matched along a `direction`, \
                               with a `gap` beside their distance where there is one";
-                return Err(MeshError::contact(scene, contact.name(), what, remedy));
+                return Err(MeshError::contact(scene, joint.quoted(), what, remedy));
             };
             moved = moved.max(off);
             counts[from] += 1;
@@ -108,7 +109,7 @@ fn match_vertices(
         return Ok(mesh);
     }
     let size = extent(&mesh);
-    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, joint.quoted(), p))?;
     let parts: Vec<String> = [(0, 1), (1, 0)]
         .into_iter()
         .filter(|(from, _)| counts[*from] > 0)
@@ -116,21 +117,19 @@ fn match_vertices(
             format!("{} of '{}' inserted into '{}'", counted(counts[from], "vertex"), names[from], names[into])
         })
         .collect();
-    record
-        .notes
-        .push(Note { weakens_guarantee: false, text: format!("contact {}: {}", contact.name(), parts.join(", ")) });
+    record.notes.push(Note { weakens_guarantee: false, text: format!("{}: {}", joint.name(), parts.join(", ")) });
     if moved > ROUND_OFF * size {
         record.notes.push(Note {
             weakens_guarantee: true,
-            text: format!("contact {}: the sides deviate by {moved:.1e} and were made to coincide", contact.name()),
+            text: format!("{}: the sides deviate by {moved:.1e} and were made to coincide", joint.name()),
         });
     }
     Ok(mesh)
 }
 
-fn too_flat(scene: &Scene, contact: &Contact, p: [f64; 2]) -> MeshError {
+fn too_flat(scene: &Scene, joint: String, p: [f64; 2]) -> MeshError {
     let what = format!("the triangle at {} is too flat to take a vertex of the other side", at(scene, p));
-    MeshError::contact(scene, contact.name(), what, "mesh both sides with the same points")
+    MeshError::contact(scene, joint, what, "mesh both sides with the same points")
 }
 
 /// Puts the break points of a contact into its sides, so that the gap and the weights of quantities are linear on every
@@ -160,7 +159,9 @@ fn insert_breaks(
         let opposite = |i: usize| facing.get(&[key(side[i][1]), key(side[i][0])]);
         inserted.extend(points.iter().filter_map(|(i, p)| Some((*opposite(*i)?, *p))));
     }
-    let mesh = mesh.with_inserted(&inserted, &mut record.parent).map_err(|p| too_flat(scene, contact, p))?;
+    let mesh = mesh
+        .with_inserted(&inserted, &mut record.parent)
+        .map_err(|p| too_flat(scene, format!("contact '{}'", contact.name()), p))?;
     let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
     for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
     {

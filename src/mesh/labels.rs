@@ -6,7 +6,7 @@ use super::error::{MeshError, at, shown_by};
 use super::halves::HalfEdges;
 use super::{Map, RawMesh, cells::Cells};
 use crate::scene::Note;
-use crate::scene::{BoundaryUse, ContactSides, Extent, MeshSource, Scene, Target};
+use crate::scene::{BoundaryUse, ContactSides, Extent, Joint, MeshSource, Scene, Target};
 
 /// An edge without direction.
 pub(super) type Pair = [usize; 2];
@@ -59,13 +59,13 @@ pub(crate) fn used_names(scene: &Scene) -> Vec<&str> {
     names
 }
 
-/// The sides of the contacts.
+/// The sides of contacts and bonds.
 pub(crate) fn contact_names(scene: &Scene) -> Vec<&str> {
-    let sides = scene.contacts.iter().flat_map(|contact| match &contact.sides {
-        ContactSides::Between(names) => names.as_slice(),
-        ContactSides::Rigid(name) => std::slice::from_ref(name),
+    let rigid = scene.contacts.iter().filter_map(|contact| match &contact.sides {
+        ContactSides::Between(_) => None,
+        ContactSides::Rigid(name) => Some(name),
     });
-    sides.map(String::as_str).collect()
+    scene.joints().flat_map(|joint| joint.sides).chain(rigid).map(String::as_str).collect()
 }
 
 /// Gives the named segments of `raw` to the edges of its cells.
@@ -143,11 +143,8 @@ fn facing<'a>(
     scene: &Scene,
 ) -> Result<[(Side, &'a str); 2], MeshError> {
     let name = carrying[0];
-    let contact = scene.contacts.iter().find_map(|contact| match &contact.sides {
-        ContactSides::Between(names) if names.iter().any(|n| n == name) => Some(names),
-        _ => None,
-    });
-    let Some([first, second]) = contact else {
+    let joint = scene.joints().find(|joint| joint.sides.iter().any(|n| n == name));
+    let Some(Joint { kind, sides: [first, second], .. }) = joint else {
         return Err(MeshError::boundary(
             scene,
             name,
@@ -163,8 +160,8 @@ fn facing<'a>(
         return Err(MeshError::boundary(
             scene,
             name,
-            format!("is a side of a contact, but its edge {place} lies inside body '{}'", scene.bodies[bodies[0]].name),
-            "a contact separates two bodies: make two surfaces of it, each a body",
+            format!("is a side of a {kind}, but its edge {place} lies inside body '{}'", scene.bodies[bodies[0]].name),
+            format!("a {kind} joins two bodies: make two surfaces of it, each a body"),
         ));
     }
     let find = |wanted: &str| carrying.iter().copied().find(|n| *n == wanted);
@@ -182,7 +179,7 @@ fn facing<'a>(
             scene,
             name,
             format!(
-                "is a side of the contact {first}|{second}, but the bodies '{}' and '{}' share the edge {place}, \
+                "is a side of the {kind} {first}|{second}, but the bodies '{}' and '{}' share the edge {place}, \
                 which has the names {}",
                 scene.bodies[bodies[0]].name,
                 scene.bodies[bodies[1]].name,

@@ -7,6 +7,7 @@
 mod abaqus;
 pub(crate) mod along;
 pub mod bisect;
+mod bonded;
 mod boxes;
 mod cells;
 mod content;
@@ -115,6 +116,14 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     notes.extend(scene.coarseness(size));
     Ok(Loaded { scene, mesh, notes, uncut })
+}
+
+/// The mesh with the bonds of `scene` closed, whose sides match vertex for vertex.
+///
+/// # Errors
+/// [`MeshError::Contact`] with an edge of one side that has none of the other opposite.
+pub fn bonded(mesh: Triangulation, scene: &Scene) -> Result<Triangulation, MeshError> {
+    Ok(bonded::bond(mesh, scene)?.0)
 }
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::Triangulation;
 use super::along::{Facing, facing, outward, turned};
 use super::boxes::{BoxTree, around};
-use crate::scene::{ContactSides, Note, Scene};
+use crate::scene::{Joint, Note, Scene};
 use crate::vector::distance;
 
 /// Part of an edge within which two vertices are one, and within which a vertex lies on it.
@@ -111,7 +111,7 @@ impl<'a> Moves<'a> {
         Moves { mesh, edges, triangles, stays, farthest: 0.0, changed: 0.0 }
     }
 
-    /// Contacts without a direction: vertices get the coordinates of the one of them with the lowest number.
+    /// Contacts without a direction, and bonds: vertices get the coordinates of the one of them with the lowest number.
     fn onto_each_other(&mut self, scene: &Scene) {
         let mut leader: Vec<usize> = (0..self.mesh.points.len()).collect();
         let find = |leader: &[usize], mut v: usize| {
@@ -120,9 +120,8 @@ impl<'a> Moves<'a> {
             }
             v
         };
-        for contact in &scene.contacts {
-            let (ContactSides::Between(names), None) = (&contact.sides, contact.direction) else { continue };
-            let [first, second] = [0, 1].map(|i| side_vertices(self.mesh, &names[i]));
+        for joint in scene.joints().filter(|joint| joint.direction.is_none()) {
+            let [first, second] = [0, 1].map(|i| side_vertices(self.mesh, &joint.sides[i]));
             first.iter().chain(&second).for_each(|v| self.stays[v.vertex] = true);
             if second.is_empty() {
                 continue;
@@ -148,8 +147,8 @@ impl<'a> Moves<'a> {
 
     /// Contacts along a direction: of two vertices one slides along its edge, that of the second side where it can.
     fn along_directions(&mut self, scene: &Scene) {
-        for contact in &scene.contacts {
-            let (ContactSides::Between(names), Some(given)) = (&contact.sides, contact.direction) else { continue };
+        for Joint { sides: names, direction, .. } in scene.joints() {
+            let Some(given) = direction else { continue };
             let d = outward(self.mesh, [&names[0], &names[1]], given);
             let sides = [facing(self.mesh, &names[0], d), turned(facing(self.mesh, &names[1], d.map(|x| -x)))];
             let [first, second] = [0, 1].map(|i| positions(&sides[i]));

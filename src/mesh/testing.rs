@@ -10,7 +10,7 @@ use crate::scene::{
 
 /// A scene with the named bodies, without conditions, whose mesh is meant to come from a file.
 pub(crate) fn scene(bodies: &[&str]) -> Scene {
-    let body = |name: &&str| Body { name: name.to_string(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
+    let body = |name: &&str| Body::isotropic(*name, 1.0, 0.3);
     let mesh = MeshSource::File("test.msh".into());
     let bodies = bodies.iter().map(body).collect();
     Scene::unchecked(Draft { bodies, ..Draft::new("test", Kinematics::PlaneStrain, mesh) })

@@ -47,9 +47,31 @@ struct ProblemFile<'a> {
 #[derive(Serialize)]
 struct BodyEntry<'a> {
     name: &'a str,
-    young: f64,
-    poisson: f64,
+    #[serde(flatten)]
+    material: MaterialEntry,
     body_force: [f64; 2],
+}
+
+/// An isotropic body by its constants, any other by its stiffness in the plane.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum MaterialEntry {
+    Isotropic { young: f64, poisson: f64 },
+    General { stiffness: [[f64; 3]; 3] },
+}
+
+impl MaterialEntry {
+    fn new(problem: &Problem, body: usize) -> Self {
+        match problem.scene.bodies[body].elasticity.isotropic() {
+            Some([young, poisson]) => MaterialEntry::Isotropic { young, poisson },
+            None => {
+                let material = problem.material(body);
+                let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]].map(|e| material.stress(e));
+                let symmetric = |i: usize| [0, 1, 2].map(|j| 0.5 * (columns[i][j] + columns[j][i]));
+                MaterialEntry::General { stiffness: [0, 1, 2].map(symmetric) }
+            }
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -137,10 +159,10 @@ impl<'a> ProblemFile<'a> {
             bodies: scene
                 .bodies
                 .iter()
-                .map(|body| BodyEntry {
+                .enumerate()
+                .map(|(i, body)| BodyEntry {
                     name: &body.name,
-                    young: body.young,
-                    poisson: body.poisson,
+                    material: MaterialEntry::new(problem, i),
                     body_force: body.body_force,
                 })
                 .collect(),

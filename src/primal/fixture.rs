@@ -40,7 +40,7 @@ pub(crate) fn pressed_square() -> Problem {
     Problem {
         scene: Scene::unchecked(Draft {
             thickness: 0.5,
-            bodies: vec![Body { name: "square".to_owned(), young: 1.0, poisson: 0.0, body_force: [0.0, 0.0] }],
+            bodies: vec![Body::isotropic("square", 1.0, 0.0)],
             ..Draft::new("square", Kinematics::PlaneStress, MeshSource::File(PathBuf::from("square.msh")))
         }),
         mesh,

@@ -75,11 +75,12 @@ impl Problem {
     /// The problem on its mesh before contact cut it, without its contacts; `None` where contact changed nothing.
     ///
     /// # Errors
-    /// None that [`Problem::new`] did not have.
+    /// Bonds whose sides did not match before.
     pub fn before_contact(&self) -> Result<Option<Problem>, ProblemError> {
         let Some(uncut) = &self.uncut else { return Ok(None) };
+        let mesh = mesh::bonded(uncut.mesh.clone(), &self.scene)?;
         let draft = Draft { contacts: Vec::new(), ..(*self.scene).clone() };
-        Problem::new(Scene::unchecked(draft), uncut.mesh.clone(), Vec::new()).map(Some)
+        Problem::new(Scene::unchecked(draft), mesh, Vec::new()).map(Some)
     }
 
     /// Puts the conditions of `scene` on a mesh whose contact sides match bit for bit. `notes` says how the mesh was

@@ -19,10 +19,10 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
-use crate::element::{Compliance, Section};
+use crate::element::{Material, Section};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
-use crate::scene::{Body, Scene};
+use crate::scene::Scene;
 
 /// A scene and a mesh that fit together.
 #[derive(Debug, Clone)]
@@ -44,10 +44,14 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Compliance of each body of the scene.
-    pub fn materials(&self) -> Vec<Compliance> {
-        let of = |body: &Body| Compliance::new(self.scene.kinematics, body.young, body.poisson);
-        self.scene.bodies.iter().map(of).collect()
+    /// Material of each body of the scene.
+    pub fn materials(&self) -> Vec<Material> {
+        (0..self.scene.bodies.len()).map(|body| self.material(body)).collect()
+    }
+
+    /// Material of one body of the scene.
+    pub fn material(&self, body: usize) -> Material {
+        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
     }
 
     /// What the plane figure stands for.

@@ -8,7 +8,7 @@
 //! their rounding errors.
 
 use super::{Condition, Problem};
-use crate::scene::{Body, Kinematics};
+use crate::element::Material;
 use crate::vector::norm;
 
 /// Rounding errors that a computed number carries, relative to the largest that it was computed from.
@@ -53,15 +53,16 @@ impl Scales {
             0.0 if loads.force == 0.0 => widest_gap(problem),
             imposed => imposed,
         };
-        let modulus: Vec<f64> = scene.bodies.iter().map(|body| modulus(scene.kinematics, body)).collect();
+        let materials = problem.materials();
+        let modulus: Vec<f64> = materials.iter().map(Material::uniaxial).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let used = || scene.bodies.iter().zip(&bodies).filter(|(_, extent)| extent.any());
-        let stiffest = largest(&mut used().map(|(body, _)| body.young));
-        let softest = used().map(|(body, _)| body.young).fold(f64::INFINITY, f64::min);
+        let used = || materials.iter().zip(&bodies).filter(|(_, extent)| extent.any());
+        let stiffest = largest(&mut used().map(|(material, _)| material.young()[1]));
+        let softest = used().map(|(material, _)| material.young()[0]).fold(f64::INFINITY, f64::min);
         let hardest = largest(&mut modulus.iter().copied());
         let displacement = imposed + loads.force / (scene.thickness * softest);
         let energy = |stiffness: f64| loads.force * displacement + scene.thickness * stiffness * imposed * imposed;
-        let strained = largest(&mut used().map(|(body, extent)| body.young * imposed / extent.diameter()));
+        let strained = largest(&mut used().map(|(material, extent)| material.young()[1] * imposed / extent.diameter()));
         let resolved = largest(&mut (0..problem.mesh.triangles.len()).map(|t| per_length(problem, &modulus, t)));
         Scales {
             data: Sizes {
@@ -102,14 +103,6 @@ impl Scales {
             return 0.0;
         }
         ROUND_OFF * amplified(degree) * self.imposed * per_length(problem, &self.modulus, t)
-    }
-}
-
-fn modulus(kinematics: Kinematics, body: &Body) -> f64 {
-    let (young, nu) = (body.young, body.poisson);
-    match kinematics {
-        Kinematics::PlaneStrain | Kinematics::Axisymmetric => young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-        Kinematics::PlaneStress => young / (1.0 - nu * nu),
     }
 }
 
@@ -217,6 +210,7 @@ fn widest_gap(problem: &Problem) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elasticity::Elasticity;
     use crate::mesh::testing::*;
     use crate::scene::{Affine, Gap, Load, Scene, SupportKind};
 
@@ -243,7 +237,7 @@ mod tests {
             load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
         scene.draft.bodies[1].body_force = [0.0, -2.0];
-        scene.draft.bodies[1].young = 10.0;
+        scene.draft.bodies[1].elasticity = Elasticity::Isotropic { young: 10.0, poisson: 0.3 };
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);
         assert!((found.data.displacement - 7.0).abs() < 1e-14 && (found.data.energy - 24.5).abs() < 1e-13);
@@ -265,7 +259,7 @@ mod tests {
             let mut scene = load(squares(0.0), "a_left", Load::Pressure(2.0 * stress));
             scene.draft.supports[0].kind =
                 SupportKind::Clamped { displacement: Affine::constant([0.01 * length, 0.0]) };
-            scene.draft.bodies.iter_mut().for_each(|body| body.young *= stress);
+            scene.draft.bodies.iter_mut().for_each(|body| body.elasticity = body.elasticity.stiffened(stress));
             let mut problem = Problem::load(scene).expect("a good scene");
             problem.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
             Scales::new(&problem)

@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use super::errors::fault;
 use super::kinematics::kinematics_named;
 use crate::element::subtriangle::{self, Moments};
-use crate::element::{Block, Compliance, EquilibriumElement};
+use crate::element::{Block, EquilibriumElement, Material};
 
 /// A counter-clockwise triangle with finite corners.
 fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {
@@ -38,7 +38,7 @@ pub fn element<'py>(
     if !elastic || !body_force.iter().all(|f| f.is_finite()) {
         return Err(fault("young must be above zero, poisson in (-1, 1/2), and body_force finite"));
     }
-    let material = Compliance::new(kinematics_named(kinematics)?, young, poisson);
+    let material = Material::isotropic(kinematics_named(kinematics)?, young, poisson);
     let modes = Block.modes(corners, &material, body_force);
     let count = modes.parameters();
     let fields = Block.mode_stresses(corners, &modes);

@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
 use crate::problem::{Condition, Interface, Problem};
 use crate::scene::Body;
 
@@ -43,12 +44,32 @@ pub fn list<'py, T>(
     PyList::new(py, all.iter().map(|one| entry(py, one)).collect::<PyResult<Vec<_>>>()?)
 }
 
-/// A body: `name`, `young`, `poisson`, `body_force`.
+/// A body: `name`, `body_force` and the constants of its material: `young` and `poisson`, or `orthotropic` with `young`, `poisson`,
+/// `shear` and `angle`, or a matrix, `stiffness` or `compliance`, and `angle`.
 pub fn body_entry<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
     let entry = PyDict::new(py);
     entry.set_item("name", &body.name)?;
-    entry.set_item("young", body.young)?;
-    entry.set_item("poisson", body.poisson)?;
+    match &body.elasticity {
+        Elasticity::Isotropic { young, poisson } => {
+            entry.set_item("young", young)?;
+            entry.set_item("poisson", poisson)?;
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => {
+            let law = PyDict::new(py);
+            law.set_item("young", young)?;
+            law.set_item("poisson", poisson)?;
+            law.set_item("shear", shear)?;
+            law.set_item("angle", angle)?;
+            entry.set_item("orthotropic", law)?;
+        }
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            match matrix {
+                Matrix::Three(rows) => entry.set_item(kind.key(), rows.map(|row| row.to_vec()).to_vec())?,
+                Matrix::Six(rows) => entry.set_item(kind.key(), rows.map(|row| row.to_vec()).to_vec())?,
+            }
+            entry.set_item("angle", angle)?;
+        }
+    }
     entry.set_item("body_force", body.body_force)?;
     Ok(entry)
 }

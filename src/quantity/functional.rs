@@ -274,7 +274,7 @@ fn on_contact(
             if i == contact {
                 functional.load.weights[next] = weight(problem, pair);
                 let young = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]);
-                let young = young.map_or(0.0, |t| problem.scene.bodies[problem.mesh.body[t]].young);
+                let young = young.map_or(0.0, |t| problem.material(problem.mesh.body[t]).young()[1]);
                 functional.natural += young * functional.load.weights[next].iter().map(|w| w * w).sum::<f64>();
             }
             next += 1;
@@ -320,8 +320,7 @@ fn on_support(
     let moved = Displacement::from_p1(mesh, &vertex);
     let mut functional = Functional::empty(problem, kind);
     functional.constant = work(problem, &moved).value();
-    let materials = problem.scene.bodies.iter();
-    let young: Vec<f64> = materials.map(|body| body.young).collect();
+    let young: Vec<f64> = problem.materials().iter().map(|material| material.young()[1]).collect();
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let u = triangle.map(|v| vertex[v]);
         if u == [[0.0; 2]; 3] {

@@ -9,7 +9,7 @@ use crate::bounds::energy::{shape, square_on};
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Compliance, Displacement, Samples, StressField, contraction};
+use crate::element::{Displacement, Material, Samples, StressField, contraction};
 use crate::problem::Problem;
 
 /// m, and the fields of an adjoint pair.
@@ -92,13 +92,7 @@ enum Strain<'a> {
 }
 
 /// The sums of one triangle.
-fn triangle(
-    problem: &Problem,
-    material: &Compliance,
-    t: usize,
-    strain: Strain<'_>,
-    fields: Fields<'_>,
-) -> [f64; TERMS] {
+fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>, fields: Fields<'_>) -> [f64; TERMS] {
     let Fields { middle, adjoint, lifted, factor } = fields;
     let corners = problem.mesh.corners(t);
     let area = sub_area(corners);
@@ -169,7 +163,7 @@ pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displ
 }
 
 /// c χ : χ for a strain of one along x, of the size of the largest that there is.
-fn largest_modulus(material: &Compliance) -> f64 {
+fn largest_modulus(material: &Material) -> f64 {
     material.strain_product([1.0, 0.0, 0.0], [1.0, 0.0, 0.0])
 }
 

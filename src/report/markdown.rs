@@ -122,7 +122,7 @@ fn checks(text: &mut String, report: &Report) {
         let _ = writeln!(text, "All {} checks passed.\n", report.checks.len());
     } else {
         let _ = writeln!(text, "**{} of {} checks did not pass:**\n", failing.len(), report.checks.len());
-        let _ = writeln!(text, "| check | value | reference | difference | allowed | basis | what came of it |");
+        let _ = writeln!(text, "| check | value | reference | difference | allowed | basis | result |");
         let _ = writeln!(text, "|---|--:|--:|--:|--:|---|---|");
         for check in failing.iter().take(LISTED) {
             let _ = writeln!(

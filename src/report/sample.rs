@@ -95,7 +95,7 @@ impl Sample {
             mid: None,
             stresses: Vec::new(),
             maps: vec![
-                map("stress_difference", MapKind::Difference, "dual less FEniCSx P2 <a&b>", &|x, y| {
+                map("stress_difference", MapKind::Difference, "difference dual − FEniCSx P2 <a&b>", &|x, y| {
                     (x - 1.0).powi(2) + 0.1 * (9.0 * y).sin().abs()
                 }),
                 map("error_contribution", MapKind::GapShare, "free upper bound", &|x, y| {
@@ -241,7 +241,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
 }
 
 fn scene() -> Scene {
-    let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0, 0.0] };
+    let body = |name: &str| Body::isotropic(name, 1.0, 0.3);
     let mesh = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Scene::unchecked(Draft {
         title: "Two blocks <a&b>, \"eccentric\" traction".into(),

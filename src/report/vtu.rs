@@ -10,7 +10,6 @@ use super::Dossier;
 use super::lattice::Lattice;
 use crate::compare::von_mises_of;
 use crate::problem::Problem;
-use crate::scene::Kinematics;
 pub(super) use sheet::shortened;
 use sheet::{Precision, Sheet};
 
@@ -230,22 +229,14 @@ fn on_triangle(sub: usize, l: [f64; 3]) -> [f64; 3] {
     all
 }
 
-/// σ_33: ν (σ_11 + σ_22) in plane strain, zero in plane stress.
+/// σ_33, nothing in plane stress.
 fn out_of_plane(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    match problem.scene.kinematics {
-        Kinematics::PlaneStress => 0.0,
-        Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
-            let body = problem.mesh.body.get(t).and_then(|&b| problem.scene.bodies.get(b));
-            body.map_or(0.0, |body| body.poisson * (s[0] + s[1]))
-        }
-    }
+    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).out_of_plane(s))
 }
 
 /// Von Mises stress of (xx, yy, xy) in triangle `t`.
 pub(crate) fn von_mises(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    let zz = out_of_plane(problem, t, s);
-    let differences = (s[0] - s[1]).powi(2) + (s[1] - zz).powi(2) + (zz - s[0]).powi(2);
-    (0.5 * differences + 3.0 * s[2] * s[2]).sqrt()
+    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).von_mises(s))
 }
 
 /// tr σ / 3.

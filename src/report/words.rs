@@ -73,7 +73,7 @@ pub(crate) fn meaning(check: &Check) -> &'static str {
              One of them was computed or transferred wrongly."
         }
         (_, Basis::Claimed) => {
-            "Claimed: the field is not what it is handed in as. Nothing is said by this about the bound, which belongs to the nearest \
+            "Claimed: the field is not the solution it claims to be. The bound is not affected: it belongs to the nearest \
              admissible field; --allow NAME=VALUE takes a larger difference for none."
         }
         (_, Basis::Chosen) => {

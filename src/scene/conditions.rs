@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::bonds::{Bond, bond};
 use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::obstacle::obstacle;
@@ -21,6 +22,7 @@ pub(super) struct Conditions {
     pub supports: Vec<Support>,
     pub tractions: Vec<Traction>,
     pub contacts: Vec<Contact>,
+    pub bonds: Vec<Bond>,
 }
 
 /// Checks the three lists, in the order of the file within each.
@@ -34,7 +36,8 @@ pub(super) fn conditions(
     let supports = each(&raw.supports, "supports", |raw, table| support(raw, table, &mut taken))?;
     let tractions = each(&raw.tractions, "tractions", |raw, table| traction(raw, table, &mut taken))?;
     let contacts = each(&raw.contacts, "contacts", |raw, table| contact(raw, table, &mut taken))?;
-    Ok(Conditions { supports, tractions, contacts })
+    let bonds = each(&raw.bonds, "bonds", |raw, table| bond(raw, table, &mut taken))?;
+    Ok(Conditions { supports, tractions, contacts, bonds })
 }
 
 fn each<R, T>(
@@ -57,8 +60,8 @@ pub(super) fn edge_names(mesh: &MeshSource, boundaries: &[Boundary]) -> Option<V
 }
 
 /// The boundaries that have a condition already.
-struct Taken<'a> {
-    source: &'a Source<'a>,
+pub(super) struct Taken<'a> {
+    pub(super) source: &'a Source<'a>,
     /// Names of the polygon edges; `None` where only a mesh file knows them.
     known: Option<Vec<String>>,
     by: HashMap<String, (String, Range<usize>)>,
@@ -66,7 +69,7 @@ struct Taken<'a> {
 
 impl Taken<'_> {
     /// The name, if it exists and is free; from now on it belongs to `table`.
-    fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
+    pub(super) fn claim(&mut self, name: &At<String>, table: &str, key: &str) -> Result<String, SceneError> {
         let on = self.source.name(name, (table, key), NAME_A_BOUNDARY)?;
         if let Some(known) = &self.known
             && known.binary_search(&on).is_err()
@@ -209,18 +212,8 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
         (None, None) => return Err(source.error(raw.span(), one_of(false))),
         (None, Some(on)) => ContactSides::Rigid(taken.claim(on, table, "on")?),
         (Some(between), None) => {
-            let [first, second] = between.value.as_slice() else {
-                let found = counted(between.value.len(), "name");
-                let remedy = "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle";
-                let (key, expected) = ("between".to_owned(), "2".to_owned());
-                return Err(source
-                    .error(between.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
-            };
-            if first.value == second.value && !first.value.trim().is_empty() {
-                let fault = Fault::SelfContact { name: first.value.clone(), table: table.to_owned() };
-                return Err(source.error(second.span(), fault));
-            }
-            ContactSides::Between([taken.claim(first, table, "between")?, taken.claim(second, table, "between")?])
+            let remedy = "name the two boundaries that face each other, or write on = \"…\" for a rigid obstacle";
+            ContactSides::Between(taken.between(between, table, remedy)?)
         }
     };
     let obstacle = obstacle(contact, table, source)?;

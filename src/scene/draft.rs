@@ -11,10 +11,11 @@ use toml::Value;
 
 use super::selection::written;
 use super::{
-    Affine, Body, BodyCells, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics, Load,
-    MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support, SupportKind,
-    Target, Touching, Traction,
+    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
+    Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
+    SupportKind, Target, Touching, Traction,
 };
+use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +47,8 @@ pub struct Draft {
     pub tractions: Vec<Traction>,
     /// Γ_K.
     pub contacts: Vec<Contact>,
+    /// Boundaries that are glued to each other.
+    pub bonds: Vec<Bond>,
     /// What the scene is solved for, in the order of the file.
     pub quantities: Vec<Quantity>,
 }
@@ -67,6 +70,7 @@ impl Draft {
             supports: Vec::new(),
             tractions: Vec::new(),
             contacts: Vec::new(),
+            bonds: Vec::new(),
             quantities: Vec::new(),
         }
     }
@@ -103,17 +107,18 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, young, poisson, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, young, poisson, force) = (quoted(name), number(*young), number(*poisson), list(body_force));
-            writeln!(text, "bodies.{name} = {{ young = {young}, poisson = {poisson}, body_force = {force}{cells} }}")?;
+            let (name, material, force) = (quoted(name), material(elasticity), list(body_force));
+            writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
             ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
             ("tractions", self.tractions.iter().map(traction).collect()),
             ("contacts", self.contacts.iter().map(contact).collect()),
+            ("bonds", self.bonds.iter().map(bond).collect()),
             ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
         ];
         for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
@@ -242,6 +247,29 @@ fn number(number: f64) -> String {
     Value::from(number).to_string()
 }
 
+/// The keys of a material.
+pub(crate) fn material(elasticity: &Elasticity) -> String {
+    match elasticity {
+        Elasticity::Isotropic { young, poisson } => {
+            format!("young = {}, poisson = {}", number(*young), number(*poisson))
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => format!(
+            "orthotropic = {{ young = {}, poisson = {}, shear = {}, angle = {} }}",
+            list(young),
+            list(poisson),
+            number(*shear),
+            number(*angle)
+        ),
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            let rows = match matrix {
+                Matrix::Three(rows) => rows.iter().map(|row| list(row)).collect::<Vec<_>>(),
+                Matrix::Six(rows) => rows.iter().map(|row| list(row)).collect(),
+            };
+            format!("{} = [{}], angle = {}", kind.key(), rows.join(", "), number(*angle))
+        }
+    }
+}
+
 fn list(numbers: &[f64]) -> String {
     Value::from(numbers.to_vec()).to_string()
 }
@@ -317,6 +345,10 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
         return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
     }
     format!("{sides}, gap = {gap}{normals}{direction}")
+}
+
+fn bond(Bond { sides: [a, b] }: &Bond) -> String {
+    format!("between = [{}, {}]", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

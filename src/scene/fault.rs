@@ -256,7 +256,7 @@ impl Fault {
                 "keep one of them, or split the edge and give the parts names of their own".into()
             }
             Fault::SelfContact { .. } => {
-                "a contact has two sides that face each other: give each a name of its own, and name both".into()
+                "a contact or a bond has two sides that face each other: give each a name of its own, and name both".into()
             }
             Fault::GapOrder { .. } => "sort the rows so that the arc length s increases strictly".into(),
             Fault::Quantity(fault) => fault.remedy(),

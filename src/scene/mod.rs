@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod bonds;
 mod centre;
 mod circle;
 mod conditions;
@@ -13,6 +14,7 @@ pub mod error;
 mod fault;
 mod files;
 mod geometry;
+mod material;
 mod nearest;
 mod obstacle;
 mod parse;
@@ -27,6 +29,10 @@ mod validate;
 
 use std::path::PathBuf;
 
+use crate::elasticity::Elasticity;
+
+pub use bonds::Bond;
+pub(crate) use bonds::Joint;
 pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
@@ -128,17 +134,22 @@ pub struct Arc {
     pub through: [f64; 2],
 }
 
-/// A homogeneous isotropic body.
+/// A homogeneous body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Its name, equal to the physical surface or `geometry.polygons.body`.
     pub name: String,
-    /// Young's modulus E > 0.
-    pub young: f64,
-    /// Poisson's ratio ν in (−1, ½).
-    pub poisson: f64,
+    /// What it is made of.
+    pub elasticity: Elasticity,
     /// Constant body force F (force per volume).
     pub body_force: [f64; 2],
+}
+
+impl Body {
+    /// A body with Young's modulus E > 0 and Poisson's ratio ν in (−1, ½), without body force.
+    pub fn isotropic(name: impl Into<String>, young: f64, poisson: f64) -> Self {
+        Body { name: name.into(), elasticity: Elasticity::Isotropic { young, poisson }, body_force: [0.0; 2] }
+    }
 }
 
 /// A supported boundary.

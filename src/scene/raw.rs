@@ -106,6 +106,9 @@ pub(super) struct RawScene {
     /// Boundaries that may touch, without friction.
     #[serde(default)]
     pub contacts: Vec<At<Table<RawContact>>>,
+    /// Boundaries that are glued to each other.
+    #[serde(default)]
+    pub bonds: Vec<At<Table<RawBond>>>,
     /// What the scene is solved for.
     #[serde(default)]
     pub quantities: Vec<At<Table<RawQuantity>>>,
@@ -199,17 +202,31 @@ pub(super) struct RawArc {
     pub through: Pair,
 }
 
-/// A homogeneous isotropic body.
+/// A homogeneous body: isotropic by `young` and `poisson`, or `orthotropic`, or a matrix, `stiffness` or `compliance`.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Body")]
+#[schemars(
+    rename = "Body",
+    extend("oneOf" = [{"required": ["young", "poisson"]}, {"required": ["orthotropic"]}, {"required": ["stiffness"]},
+                      {"required": ["compliance"]}])
+)]
 pub(super) struct RawBody {
     /// Young's modulus.
     #[schemars(extend("exclusiveMinimum" = 0))]
-    pub young: At<f64>,
+    pub young: Option<At<f64>>,
     /// Poisson's ratio.
     #[schemars(extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 0.5))]
-    pub poisson: At<f64>,
+    pub poisson: Option<At<f64>>,
+    /// Engineering constants of a body with three planes of symmetry.
+    pub orthotropic: Option<At<Table<RawOrthotropic>>>,
+    /// Stiffness in the axes of the body: six rows of six in the order 11, 22, 33, 23, 13, 12 with engineering shear strains, or in plane stress three of three for 11, 22, 12.
+    #[schemars(with = "Option<Vec<Vec<f64>>>", extend("minItems" = 3, "maxItems" = 6))]
+    pub stiffness: Option<At<Vec<Pair>>>,
+    /// Compliance, likewise.
+    #[schemars(with = "Option<Vec<Vec<f64>>>", extend("minItems" = 3, "maxItems" = 6))]
+    pub compliance: Option<At<Vec<Pair>>>,
+    /// Degrees from x to axis 1 of the matrix, anticlockwise.
+    pub angle: Option<At<f64>>,
     /// Constant force per volume, none where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
     pub body_force: Option<Pair>,
@@ -218,6 +235,24 @@ pub(super) struct RawBody {
     /// Its cells are those of this set of the mesh file.
     #[schemars(length(min = 1))]
     pub set: Option<At<String>>,
+}
+
+/// Engineering constants. Axis 3 is out of the plane.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Orthotropic")]
+pub(super) struct RawOrthotropic {
+    /// E1, E2, E3.
+    #[schemars(with = "[f64; 3]")]
+    pub young: Pair,
+    /// nu12, nu13, nu23: strain along j over strain along i, with the sign turned, under stress along i.
+    #[schemars(with = "[f64; 3]")]
+    pub poisson: Pair,
+    /// G12.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub shear: At<f64>,
+    /// Degrees from x to axis 1, anticlockwise.
+    pub angle: Option<At<f64>>,
 }
 
 /// A name for edges of the outline; tables of one name are one boundary.
@@ -386,6 +421,16 @@ pub(super) struct RawContact {
     #[serde(rename = "move")]
     #[schemars(with = "Option<[f64; 2]>")]
     pub moved: Option<Pair>,
+}
+
+/// Two boundaries that are glued to each other. Their vertices need not be the same.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Bond")]
+pub(super) struct RawBond {
+    /// Two boundaries that coincide as polylines.
+    #[schemars(with = "[String; 2]")]
+    pub between: At<Vec<At<String>>>,
 }
 
 /// A rigid obstacle: a straight line or a circle.

@@ -20,6 +20,8 @@ pub enum BoundaryUse {
     Traction(usize),
     /// `contacts[i]`.
     Contact(usize),
+    /// `bonds[i]`.
+    Bond(usize),
     /// `quantities[i]`.
     Quantity(usize),
 }
@@ -31,6 +33,7 @@ impl fmt::Display for BoundaryUse {
             BoundaryUse::Support(i) => ("supports", i),
             BoundaryUse::Traction(i) => ("tractions", i),
             BoundaryUse::Contact(i) => ("contacts", i),
+            BoundaryUse::Bond(i) => ("bonds", i),
             BoundaryUse::Quantity(i) => ("quantities", i),
         };
         write!(f, "[[{table}]] number {}", i + 1)
@@ -96,10 +99,14 @@ impl Scene {
             };
             sides.into_iter().map(move |side| (side, BoundaryUse::Contact(i)))
         });
+        let bonds = self.bonds.iter().enumerate().flat_map(|(i, bond)| {
+            let sides = bond.sides.iter().cloned();
+            sides.map(move |side| (side, BoundaryUse::Bond(i)))
+        });
         let quantities = self.quantities.iter().enumerate().filter_map(|(i, quantity)| match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), .. } => Some((name.clone(), BoundaryUse::Quantity(i))),
             _ => None,
         });
-        supports.chain(tractions).chain(contacts).chain(quantities).collect()
+        supports.chain(tractions).chain(contacts).chain(bonds).chain(quantities).collect()
     }
 }

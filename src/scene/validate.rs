@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
+use super::material::elasticity;
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
@@ -14,14 +15,14 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let source = Source { text, path };
     let name = scene_name(path);
     let (kinematics, thickness) = model(&raw.model, &source)?;
-    let (bodies, cells) = bodies(&raw, &source)?;
+    let (bodies, cells) = bodies(&raw, kinematics, &source)?;
     let mesh = mesh(&raw, &bodies, &source)?;
     selection::only_of_files(&raw, &mesh, &source)?;
     let boundaries = selection::boundaries(&raw, &mesh, &bodies, &source)?;
     let edges = edge_names(&mesh, &boundaries);
     let conditions = conditions(&raw, edges.clone(), &source)?;
     let quantities = quantities(&raw, edges, &bodies, &conditions, &source)?;
-    let Conditions { supports, tractions, contacts } = conditions;
+    let Conditions { supports, tractions, contacts, bonds } = conditions;
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene::unchecked(Draft {
@@ -38,6 +39,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         supports,
         tractions,
         contacts,
+        bonds,
         quantities,
     }))
 }
@@ -76,7 +78,7 @@ fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64)
     Ok((kinematics, thickness))
 }
 
-fn bodies(raw: &RawScene, source: &Source) -> Result<(Vec<Body>, Vec<BodyCells>), SceneError> {
+fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Vec<Body>, Vec<BodyCells>), SceneError> {
     if raw.bodies.is_empty() {
         return Err(source.error(0..0, Fault::NoBodies));
     }
@@ -88,36 +90,16 @@ fn bodies(raw: &RawScene, source: &Source) -> Result<(Vec<Body>, Vec<BodyCells>)
         let label = format!("[bodies.{}]", name.value);
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
-        let words = ("Young's modulus must be positive", "write a positive number, in units of stress");
-        let young = source.positive(&raw.young, (&label, "young"), words)?;
-        let words = poisson_words(raw.poisson.value);
-        let poisson = source.number(&raw.poisson, (&label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
+        let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
         let body_force = match &raw.body_force {
             None => [0.0; 2],
             Some(force) => source.vector(force, (&label, "body_force"))?,
         };
         cells.extend(selection::cells(raw, &label, index, source)?);
-        Ok(Body { name, young, poisson, body_force })
+        Ok(Body { name, elasticity, body_force })
     };
     let bodies = bodies.into_iter().enumerate().map(body).collect::<Result<_, SceneError>>()?;
     Ok((bodies, cells))
-}
-
-/// Why a Poisson's ratio outside (−1, ½) is none.
-fn poisson_words(nu: f64) -> (&'static str, &'static str) {
-    if nu == 0.5 {
-        ("ν must lie in (−1, 0.5): at 0.5 the body is incompressible", "write a value below 0.5, for instance 0.4999")
-    } else if nu > 0.5 {
-        (
-            "ν must lie in (−1, 0.5): beyond the incompressible limit 0.5 the strain energy is not positive",
-            "write a value below 0.5, for instance 0.3",
-        )
-    } else {
-        (
-            "ν must lie in (−1, 0.5): at −1 and below the strain energy is not positive",
-            "write a value above −1, for instance 0.3",
-        )
-    }
 }
 
 fn mesh(raw: &RawScene, bodies: &[Body], source: &Source) -> Result<MeshSource, SceneError> {

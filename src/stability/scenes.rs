@@ -28,7 +28,7 @@ impl Sketch {
     /// A rectangle of cells between the lines `xs` and `ys`, each cut along one diagonal, alternating; its sides are
     /// called `<name>_bottom`, `_right`, `_top`, `_left`.
     pub fn block(mut self, name: &str, [young, poisson]: [f64; 2], xs: &[f64], ys: &[f64]) -> Self {
-        self.scene.bodies.push(Body { name: name.to_string(), young, poisson, body_force: [0.0; 2] });
+        self.scene.bodies.push(Body::isotropic(name, young, poisson));
         let base = self.raw.points.len();
         let (columns, rows) = (xs.len() - 1, ys.len() - 1);
         for y in ys {
@@ -180,7 +180,7 @@ impl Sketch {
 
     /// A body without triangles of its own, for [`Sketch::polygons`].
     pub fn body(mut self, name: &str, young: f64, poisson: f64) -> Self {
-        self.scene.bodies.push(Body { name: name.to_string(), young, poisson, body_force: [0.0; 2] });
+        self.scene.bodies.push(Body::isotropic(name, young, poisson));
         self
     }
 }

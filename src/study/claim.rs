@@ -72,10 +72,11 @@ pub fn claim_before_contact(
     (before, own): (&Problem, &Candidate),
     judged: &Judged,
     bracket: &Bracket,
+    weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
     let solution = Solution::new(before, own, judged.field.potential.strain)?.within(Extent::of(bracket));
-    let solution = Nonmatching::new(solution, problem);
+    let solution = Nonmatching::new(solution.with_weak_contact(weak), problem);
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
 }

@@ -36,7 +36,7 @@ impl Fields {
         maps.extend(mid.as_ref().map(|mid| mises("half-way between the bounds", "mid", &means(mid))));
         maps.extend(models().map(|(name, judged)| Map {
             key: format!("difference_density_{}", plain(name)),
-            title: format!("dual less {name}"),
+            title: format!("difference dual − {name}"),
             kind: MapKind::Difference,
             values: density(problem, &judged.field.local.triangles),
         }));

@@ -39,7 +39,9 @@ pub(super) fn verdict(findings: &Findings<'_>, status: Status, energy: Option<&E
         ([], _) if status == Status::Undecided => {
             format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
         }
-        ([], 0) => format!("{}{bound}", given_values(findings).unwrap_or("The bracket holds.".to_string())),
+        ([], 0) => {
+            format!("{}{bound}", given_values(findings).unwrap_or("Both bounds passed every check.".to_string()))
+        }
         ([], _) if findings.command == "certify" => {
             let claim = if findings.is_claimed { "the discrete solution it claims to be" } else { "admissible" };
             format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")

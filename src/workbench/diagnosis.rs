@@ -104,7 +104,7 @@ pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
     for k in 0..views[0].references.len() {
         let differing: Vec<&View> = views.iter().filter(|v| !v.is(k) && v.references.len() > k).collect();
         if let Some((trial, explained)) = common(&differing, k) {
-            let sentence = format!("{prefix} explained to {} by this: {}.", percent(explained), trial.sentence);
+            let sentence = format!("{prefix} explained to {}: {}.", percent(explained), trial.sentence);
             return Some(Diagnosis { cause: trial.cause.into(), explained, sentence });
         }
     }
@@ -113,7 +113,7 @@ pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
         && let Some((trial, explained)) = common(&[&views[0]], 0)
     {
         let sentence = format!(
-            "On the nodes given the difference is explained to {} by this, and on other shapes it is not: {}.",
+            "On the nodes given the difference is explained to {}, but not on other shapes: {}.",
             percent(explained),
             trial.sentence
         );
@@ -175,7 +175,7 @@ fn nearest(view: &View, prefix: &str) -> Diagnosis {
         ),
         Some(best) if explained >= WORTH_NAMING => {
             let where_ = if prefix.starts_with("On") { " on other shapes than the one given" } else { "" };
-            format!("{none}{where_}; nearest, to {}, comes this one: {}.", percent(explained), best.sentence)
+            format!("{none}{where_}; the nearest explains {}: {}.", percent(explained), best.sentence)
         }
         _ => format!("{none}."),
     };

@@ -4,7 +4,7 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::element::Compliance;
+use crate::element;
 use crate::scene::Kinematics;
 
 /// An isotropic material in the plane.
@@ -50,8 +50,8 @@ impl Material {
     }
 
     /// The inverse of Hooke's law.
-    pub fn compliance(&self) -> Compliance {
-        Compliance::new(self.kinematics, self.young, self.poisson)
+    pub fn compliance(&self) -> element::Material {
+        element::Material::isotropic(self.kinematics, self.young, self.poisson)
     }
 
     /// Hooke's law as a matrix: (σ_xx, σ_yy, σ_xy) = D (ε_xx, ε_yy, γ_xy), γ_xy = 2 ε_xy.

@@ -14,7 +14,7 @@ MAPS = {
     "dual": "von_mises_dual",
     "FEniCSx P1": "von_mises_FEniCSx_P1",
     "FEniCSx P2": "von_mises_FEniCSx_P2",
-    "dual less FEniCSx P2": "difference_density_FEniCSx_P2",
+    "difference dual − FEniCSx P2": "difference_density_FEniCSx_P2",
 }
 
 

@@ -189,7 +189,8 @@ fn solutions_of_other_data_are_out_of_balance_by_the_size_of_the_change() {
                 ..problem.clone()
             };
             let heavier = with(&|draft| draft.bodies[0].body_force = [0.0, change]);
-            let stiffer = with(&|draft| draft.bodies[0].young *= 1.0 + change);
+            let stiffer =
+                with(&|draft| draft.bodies[0].elasticity = draft.bodies[0].elasticity.stiffened(1.0 + change));
             let thicker = with(&|draft| draft.thickness *= 1.0 + change);
             for other in [heavier, stiffer] {
                 let left = remainder(&checks(&other, candidate()));

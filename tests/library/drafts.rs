@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use hypercircle::elasticity::Elasticity;
 use hypercircle::scene::{
-    Affine, Body, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource, Polygon,
-    Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
+    Affine, Body, Bond, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource,
+    Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
 };
 
 use crate::support::scenes::sample;
@@ -13,8 +14,8 @@ use crate::support::scenes::sample;
 fn square() -> Draft {
     let polygon = Polygon {
         body: "block \"a\"".into(),
-        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-        edges: ["ground", "wall", "top", ""].map(String::from).to_vec(),
+        points: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 1.0], [0.0, 1.0]],
+        edges: ["ground", "wall", "top", "left", "right"].map(String::from).to_vec(),
         arcs: Vec::new(),
     };
     let quantity = |name: &str, target| Quantity { name: name.into(), target };
@@ -22,7 +23,7 @@ fn square() -> Draft {
     let along = Component::along([0.8, -0.6]);
     Draft {
         title: "A \u{201c}square\u{201d}\\ \u{1}".into(),
-        bodies: vec![Body { name: "block \"a\"".into(), young: 0.1 + 0.2, poisson: -0.25, body_force: [0.0, -1e-300] }],
+        bodies: vec![Body { body_force: [0.0, -1e-300], ..Body::isotropic("block \"a\"", 0.1 + 0.2, -0.25) }],
         supports: vec![Support {
             on: "wall".into(),
             kind: SupportKind::Clamped { displacement: Affine::constant([1.0 / 3.0, 0.0]) },
@@ -32,6 +33,7 @@ fn square() -> Draft {
             load: Load::Affine(Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] }),
         }],
         contacts: vec![Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))],
+        bonds: vec![Bond { sides: ["left".into(), "right".into()] }],
         quantities: vec![
             quantity("side", side),
             quantity("all", Target::Displacement { of: Extent::Body(0), direction: [0.0, 1.0] }),
@@ -69,8 +71,8 @@ fn parts_that_make_no_scene_are_refused_as_in_a_file() {
         let error: SceneError = scene.changed(change).expect_err(fragment);
         assert!(error.to_string().contains(fragment), "{error}");
     };
-    refused(&|draft| draft.bodies[0].poisson = 0.5, "incompressible");
-    refused(&|draft| draft.bodies[0].young = f64::NAN, "finite");
+    refused(&|draft| draft.bodies[0].elasticity = Elasticity::Isotropic { young: 1.0, poisson: 0.5 }, "incompressible");
+    refused(&|draft| draft.bodies[0].elasticity = Elasticity::Isotropic { young: f64::NAN, poisson: 0.3 }, "finite");
     refused(&|draft| draft.thickness = f64::INFINITY, "finite");
     refused(&|draft| draft.bodies.clear(), "bod");
     refused(&|draft| draft.supports[0].on = "ceiling".into(), "ceiling");

@@ -4,6 +4,7 @@ mod accuracy;
 mod adaptive;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod bonds;
 mod circular_gap;
 mod comparison;
 mod congruent;
@@ -30,6 +31,7 @@ mod invariance;
 mod known_solutions;
 #[path = "../support/lame.rs"]
 mod lame;
+mod layers;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_scenes;

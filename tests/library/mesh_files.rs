@@ -13,7 +13,7 @@ fn meshes() -> PathBuf {
 
 /// Two blocks in contact, pressed against a wall; the boundaries by their names.
 fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4]) -> Scene {
-    let body = |name: &str| Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
+    let body = |name: &str| Body::isotropic(name, 1.0, 0.3);
     let draft = Draft {
         bodies: bodies.map(body).into(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],

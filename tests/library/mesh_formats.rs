@@ -10,7 +10,7 @@ use hypercircle::scene::{Body, Draft, Kinematics, Load, MeshSource, Scene, Suppo
 const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
 
 fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
-    let body = |name: &&str| Body { name: (*name).into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] };
+    let body = |name: &&str| Body::isotropic(*name, 1.0, 0.3);
     let draft = Draft {
         bodies: bodies.iter().map(body).collect(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],
@@ -98,7 +98,7 @@ fn nine_nodes_of_unv_are_told_by_where_they_lie() {
         text += "\n    -1\n";
         let path = folder.write(&format!("{name}.unv"), text);
         let draft = Draft {
-            bodies: vec![Body { name: "plate".into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] }],
+            bodies: vec![Body::isotropic("plate", 1.0, 0.3)],
             ..Draft::new("plate", Kinematics::PlaneStrain, MeshSource::File(path))
         };
         let problem =

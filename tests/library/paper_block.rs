@@ -2,7 +2,7 @@
 
 use hypercircle::dual::paper::BlockMatrices;
 use hypercircle::element::subtriangle::{Matrix, Moments, flexibility, shift, side_map, stress_map};
-use hypercircle::element::{Block, Compliance, EquilibriumElement};
+use hypercircle::element::{Block, EquilibriumElement, Material};
 use hypercircle::scene::Kinematics;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use crate::support::theory::quadrature::{self, area};
 proptest! {
     #[test]
     fn compensation_separates_the_continuity(corners in triangle(0.05)) {
-        let block = BlockMatrices::new(corners, &Compliance::new(Kinematics::PlaneStrain, 2.0, 0.3));
+        let block = BlockMatrices::new(corners, &Material::isotropic(Kinematics::PlaneStrain, 2.0, 0.3));
         let product = block.continuity * block.compensation;
         for i in 0..12 {
             for j in 0..21 {
@@ -23,7 +23,7 @@ proptest! {
         }
         // Scaled coordinates: condition depends on the shape alone.
         let moved = corners.map(|p| [16.0 * p[0] + 3.0, 16.0 * p[1] - 5.0]);
-        let other = BlockMatrices::new(moved, &Compliance::new(Kinematics::PlaneStrain, 2e11, 0.3));
+        let other = BlockMatrices::new(moved, &Material::isotropic(Kinematics::PlaneStrain, 2e11, 0.3));
         for (a, b) in block.condition_numbers().into_iter().zip(other.condition_numbers()) {
             prop_assert!(a >= 1.0 && (a - b).abs() < 1e-6 * a, "{a} and {b}");
         }
@@ -31,7 +31,7 @@ proptest! {
 
     #[test]
     fn q1_spans_the_block_element(corners in triangle(0.05)) {
-        let material = Compliance::new(Kinematics::PlaneStress, 3.0, 0.2);
+        let material = Material::isotropic(Kinematics::PlaneStress, 3.0, 0.2);
         let block = BlockMatrices::new(corners, &material);
         let modes = Block.modes(corners, &material, [0.0; 2]);
         let q1 = block.q1();
@@ -63,7 +63,7 @@ proptest! {
         let product = |l: [f64; 3], m: [f64; 3]| {
             (alpha * (l[0] * m[0] + l[1] * m[1]) + beta * (l[0] * m[1] + l[1] * m[0]) + gamma * l[2] * m[2]) / 7.0
         };
-        let block = BlockMatrices::new(corners, &Compliance::new(kinematics, 7.0, nu));
+        let block = BlockMatrices::new(corners, &Material::isotropic(kinematics, 7.0, nu));
         let mut by_quadrature = Matrix::<21, 21>::zeros();
         for sub in 0..3 {
             let q = [corners[(sub + 1) % 3], corners[(sub + 2) % 3], block.centre];

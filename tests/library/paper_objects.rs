@@ -6,7 +6,6 @@ use hypercircle::dual::paper::{
     Auxiliary, BlockMatrices, Constraints, Iteration, Meaning, Program, Reaction, TractionShape, dependences,
     multipliers,
 };
-use hypercircle::element::Compliance;
 use hypercircle::element::subtriangle::Matrix;
 use hypercircle::problem::{Condition, Problem};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -32,10 +31,9 @@ fn with_everything() -> Problem {
 }
 
 fn blocks(problem: &Problem) -> Vec<BlockMatrices> {
-    let body = |t: usize| &problem.scene.bodies[problem.mesh.body[t]];
     (0..problem.mesh.triangles.len())
         .map(|t| {
-            let material = Compliance::new(problem.scene.kinematics, body(t).young, body(t).poisson);
+            let material = problem.material(problem.mesh.body[t]);
             BlockMatrices::new(problem.mesh.corners(t), &material)
         })
         .collect()

@@ -7,7 +7,7 @@ use crate::support::random::Random;
 use hypercircle::bounds::{strain_energy, strain_energy_by};
 use hypercircle::compare::Judged;
 use hypercircle::dual::{Condensed, Options};
-use hypercircle::element::{Compliance, Quadrilateral};
+use hypercircle::element::{Material, Quadrilateral};
 use hypercircle::problem::Problem;
 use hypercircle::scene::{Kinematics, Scene};
 use hypercircle::study::{self, Certified, FieldArrays, ForeignField};
@@ -74,7 +74,7 @@ fn any(random: &mut Random, nodes: usize) -> Option<Quadrilateral> {
 
 #[test]
 fn energies_by_few_and_many_points_differ_by_no_more_than_the_proven_error() {
-    let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStress, 1.0, 0.3);
     let mut random = Random::new(45);
     let (mut tried, mut bounded) = (0, 0);
     while tried < 300 {
@@ -97,7 +97,7 @@ fn energies_by_few_and_many_points_differ_by_no_more_than_the_proven_error() {
 /// With a corner of nearly 180 degrees, a side of nearly no length, and values that overflow.
 #[test]
 fn quadrilaterals_that_are_nearly_none_cost_no_more_than_others() {
-    let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStress, 1.0, 0.3);
     let values = [[0.1, 0.2], [-0.3, 0.5], [0.4, 0.1], [0.0, -0.2]];
     for small in [1e-2, 1e-5, 1e-8] {
         for corners in [
@@ -117,7 +117,7 @@ fn quadrilaterals_that_are_nearly_none_cost_no_more_than_others() {
 
 #[test]
 fn energies_are_those_of_other_quadrature() {
-    let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStress, 1.0, 0.3);
     let mut random = Random::new(8);
     let mut tried = 0;
     while tried < 12 {
@@ -260,7 +260,7 @@ fn solved(problem: Problem) -> Certified {
 #[test]
 fn the_certificate_of_a_field_on_a_distorted_mesh_is_its_error() {
     let folder = tempfile::tempdir().expect("a folder");
-    let material = Compliance::new(Kinematics::PlaneStress, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStress, 1.0, 0.3);
     let mut random = Random::new(2);
     let mut tried = 0;
     while tried < 200 {

@@ -35,8 +35,9 @@ fn sub_triangle(problem: &Problem, t: usize, sub: usize) -> ([Point; 3], Dd) {
 /// κ and γ of plane strain, from E and ν as written.
 fn constants(problem: &Problem, t: usize) -> (Dd, Dd, Dd) {
     let body = &problem.scene.bodies[problem.mesh.body[t]];
-    let (one, nu) = (dd(1.0), dd(body.poisson));
-    ((one + nu) * (one - nu - nu) / dd(2.0), dd(2.0) * (one + nu), dd(body.young))
+    let [young, poisson] = body.elasticity.isotropic().expect("isotropic");
+    let (one, nu) = (dd(1.0), dd(poisson));
+    ((one + nu) * (one - nu - nu) / dd(2.0), dd(2.0) * (one + nu), dd(young))
 }
 
 /// −Π of the stress as stored: plane strain, u0 = 0, contact on a vertical line.

@@ -9,6 +9,7 @@ mod claimed;
 mod command;
 mod command_line;
 mod contact_in_the_mean;
+mod contact_of_others;
 mod diff;
 mod element;
 mod fields;

@@ -54,7 +54,10 @@ fn a_value_is_answered_and_what_is_replaced_or_accepted_is_named() {
 
     let solve = ["solve", scene, "--refine", "1"];
     let said = printed(&run(hypercircle(folder.path(), solve)));
-    assert!(said.starts_with("The bracket holds.") && said.contains("in place of the report of `certify`"), "{said}");
+    assert!(
+        said.starts_with("Both bounds passed every check.") && said.contains("in place of the report of `certify`"),
+        "{said}"
+    );
     let said = printed(&run(hypercircle(folder.path(), solve)));
     assert!(!said.contains("in place of the report"), "{said}");
 }

@@ -1,6 +1,6 @@
 //! What every equilibrium element is held against: random triangles and materials, and energies with a quadrature of their own.
 
-use hypercircle::element::{Compliance, EquilibriumElement, Modes};
+use hypercircle::element::{self, EquilibriumElement, Modes};
 use hypercircle::scene::Kinematics;
 use hypercircle::workbench::stress::{Fields, Nodal};
 use proptest::prelude::*;
@@ -25,8 +25,8 @@ pub struct Material {
 
 impl Material {
     /// As the elements take it.
-    pub fn compliance(&self) -> Compliance {
-        Compliance::new(self.kinematics, self.young, self.poisson)
+    pub fn compliance(&self) -> element::Material {
+        element::Material::isotropic(self.kinematics, self.young, self.poisson)
     }
 
     /// a λ:λ is the sum of the squares of these times λ11 + λ22, λ11 − λ22 and λ12; from the constants after (3.2).

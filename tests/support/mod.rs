@@ -57,12 +57,7 @@ impl Blocks {
     }
 
     pub fn scene(&self) -> Scene {
-        let body = |name: &str, (young, poisson): (f64, f64)| Body {
-            name: name.to_string(),
-            young,
-            poisson,
-            body_force: [0.0, 0.0],
-        };
+        let body = |name: &str, (young, poisson): (f64, f64)| Body::isotropic(name, young, poisson);
         let draft = Draft {
             bodies: vec![body("left", self.materials[0]), body("right", self.materials[1])],
             supports: vec![

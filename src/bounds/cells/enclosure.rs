@@ -10,7 +10,7 @@
 //! an end of the larger axis. Where d is nearly zero at a corner or along a side, the square is cut in two across the direction that errs most.
 
 use crate::element::quadrature::segment_rule;
-use crate::element::{Compliance, Quadrilateral};
+use crate::element::{Material, Quadrilateral};
 
 /// Numbers of points that are tried, and how often a part of the square is cut in two.
 const FEWEST: usize = 3;
@@ -72,17 +72,17 @@ impl Part {
 }
 
 /// The energy of `cell` with as many points and parts as its error needs.
-pub fn strain_energy(cell: &Quadrilateral, material: &Compliance) -> Enclosed {
+pub fn strain_energy(cell: &Quadrilateral, material: &Material) -> Enclosed {
     part_energy(cell, material, WHOLE, CUTS)
 }
 
 /// The energy by a rule of `points` in each direction on the whole square.
-pub fn strain_energy_by(cell: &Quadrilateral, material: &Compliance, points: usize) -> Enclosed {
+pub fn strain_energy_by(cell: &Quadrilateral, material: &Material, points: usize) -> Enclosed {
     let bound = Bound::new(cell, material, WHOLE);
     Enclosed { error: bound.error(points), ..by_rule(cell, material, WHOLE, points) }
 }
 
-fn part_energy(cell: &Quadrilateral, material: &Compliance, part: Part, cuts: usize) -> Enclosed {
+fn part_energy(cell: &Quadrilateral, material: &Material, part: Part, cuts: usize) -> Enclosed {
     let bound = Bound::new(cell, material, part);
     let rough = by_rule(cell, material, part, FEWEST);
     let enough = ENOUGH * rough.sensitivity;
@@ -97,7 +97,7 @@ fn part_energy(cell: &Quadrilateral, material: &Compliance, part: Part, cuts: us
     Enclosed { error: bound.error(points), ..by_rule(cell, material, part, points) }
 }
 
-fn by_rule(cell: &Quadrilateral, material: &Compliance, part: Part, points: usize) -> Enclosed {
+fn by_rule(cell: &Quadrilateral, material: &Material, part: Part, points: usize) -> Enclosed {
     let rule = segment_rule(2 * points - 1);
     let mut sum = Enclosed::default();
     for (s, v) in rule {
@@ -124,7 +124,7 @@ struct Bound {
 }
 
 impl Bound {
-    fn new(cell: &Quadrilateral, material: &Compliance, part: Part) -> Self {
+    fn new(cell: &Quadrilateral, material: &Material, part: Part) -> Self {
         let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| material.stress(e));
         let counted = |i: usize| if i == 2 { 2.0 } else { 1.0 };
         let moduli = [0, 1, 2].map(|i| [0, 1, 2].map(|j| counted(i) * columns[j][i].abs()));

@@ -21,7 +21,7 @@ use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
 use crate::element::geometry::sub_area;
-use crate::element::{Compliance, Displacement, Quadrilateral, triangle};
+use crate::element::{Displacement, Quadrilateral, triangle};
 use crate::problem::Problem;
 
 pub use enclosure::{Enclosed, strain_energy, strain_energy_by};
@@ -61,7 +61,7 @@ impl Correction {
         let body = cell.triangles.first().map_or(0, |t| mesh.body[*t]);
         let data = &problem.scene.bodies[body];
         let thickness = problem.scene.thickness;
-        let own = strain_energy(&cell.field, &Compliance::new(problem.scene.kinematics, data.young, data.poisson));
+        let own = strain_energy(&cell.field, &problem.material(body));
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
         let force = data.body_force;
         let mut work = 0.0;

@@ -21,7 +21,7 @@ pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 pub fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
     let young = |e: Option<usize>| {
         let triangle = e.and_then(|e| problem.mesh.edges[e].triangles[0]);
-        triangle.map(|t| problem.scene.bodies[problem.mesh.body[t]].young)
+        triangle.map(|t| problem.material(problem.mesh.body[t]).young()[0])
     };
     match [young(pair.edges[0]), young(pair.edges[1])] {
         [Some(first), Some(second)] => [1.0 / (1.0 + first / second), 1.0 / (1.0 + second / first)],

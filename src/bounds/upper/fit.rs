@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::element::displacement::MOST;
 use crate::element::geometry::{from_centroid, gradients};
 use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Compliance, Samples, SideValues, StressField, triangle, weighed};
+use crate::element::{Material, Samples, SideValues, StressField, triangle, weighed};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
@@ -51,7 +51,7 @@ fn corner_values(
     problem: &Problem,
     stress: &StressField,
     moments: &SideValues<[f64; 2]>,
-    material: &Compliance,
+    material: &Material,
     t: usize,
 ) -> [[f64; 2]; 3] {
     let mesh = &problem.mesh;

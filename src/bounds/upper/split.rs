@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_gradients};
-use crate::element::{Compliance, Samples, Section, StressField, triangle};
+use crate::element::{Material, Samples, Section, StressField, triangle};
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.
 #[derive(Debug, Clone)]
@@ -27,7 +27,7 @@ pub struct Split {
 
 impl Split {
     /// That of a counter-clockwise triangle for displacements of degree `k`.
-    pub fn new(k: usize, corners: [[f64; 2]; 3], material: &Compliance) -> Self {
+    pub fn new(k: usize, corners: [[f64; 2]; 3], material: &Material) -> Self {
         let all = 2 * split_len(k);
         let mut split = Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all] };
         let area = sub_area(corners);
@@ -47,7 +47,7 @@ impl Split {
     }
 
     /// The same of a triangle of the given section.
-    pub fn of(section: Section, k: usize, corners: [[f64; 2]; 3], material: &Compliance) -> Self {
+    pub fn of(section: Section, k: usize, corners: [[f64; 2]; 3], material: &Material) -> Self {
         let Some(revolved) = section.revolved() else { return Self::new(k, corners, material) };
         let all = 2 * split_len(k);
         let mut split = Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all] };
@@ -161,17 +161,9 @@ impl Reference {
 }
 
 /// ∫ c e(l_i x̂_p) : e(l_j x̂_q) for barycentric coordinates l with gradients `g`.
-fn pairs(g: [[f64; 2]; 3], area: f64, material: &Compliance) -> [[Pair; 3]; 3] {
-    // c e:e = λ (tr e)² + 2μ e:e.
-    let shear = area * material.young / material.gamma;
-    let bulk = area * 0.25 * material.young / material.kappa - shear;
-    g.map(|a| {
-        g.map(|b| {
-            let both = shear * (a[0] * b[0] + a[1] * b[1]);
-            let entry = |p: usize, q: usize| bulk * a[p] * b[q] + shear * a[q] * b[p];
-            [entry(0, 0) + both, entry(0, 1), entry(1, 0), entry(1, 1) + both]
-        })
-    })
+fn pairs(g: [[f64; 2]; 3], area: f64, material: &Material) -> [[Pair; 3]; 3] {
+    let stiffness = material.stiffness(area);
+    g.map(|a| g.map(|b| stiffness.between(a, b)))
 }
 
 #[cfg(test)]
@@ -188,7 +180,7 @@ mod tests {
         for (kinematics, nu) in
             [(Kinematics::PlaneStrain, 0.3), (Kinematics::PlaneStrain, 0.499), (Kinematics::PlaneStress, 0.2)]
         {
-            let material = Compliance::new(kinematics, 3.0, nu);
+            let material = Material::isotropic(kinematics, 3.0, nu);
             for k in 1..=MOST {
                 let split = Split::new(k, CORNERS, &material);
                 let value = |n: usize| f64::from((20 * k as u32 + n as u32 + 1) * 7919 % 1009) / 1009.0 - 0.5;

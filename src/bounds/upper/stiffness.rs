@@ -3,7 +3,7 @@
 use super::cholesky;
 use super::split::Split;
 #[cfg(test)]
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::side::elevation;
 use crate::lanes::wide;
 
@@ -28,7 +28,7 @@ impl Stiffness {
     /// That of a triangle of degree `k` with sides of degrees `degrees`; `None` where the inside has no unique minimum in
     /// numbers.
     #[cfg(test)]
-    pub fn new(k: usize, degrees: [usize; 3], corners: [[f64; 2]; 3], material: &Compliance) -> Option<Self> {
+    pub fn new(k: usize, degrees: [usize; 3], corners: [[f64; 2]; 3], material: &Material) -> Option<Self> {
         Self::of(k, degrees, Split::new(k, corners, material))
     }
 

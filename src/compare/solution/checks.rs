@@ -156,7 +156,7 @@ impl Solution<'_> {
                 "solution/energy-identity",
                 left,
                 right,
-                scale * part + scales.round_off.energy,
+                scale * part + self.of_the_rule + scales.round_off.energy,
                 Basis::Claimed,
                 "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
                  prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",

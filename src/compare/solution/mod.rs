@@ -21,7 +21,7 @@ use super::candidate::Candidate;
 use super::cells;
 use super::forces::NodalForces;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};
 
 /// What a solver may leave in the equations that it solves, relative to what they balance.
@@ -92,6 +92,8 @@ pub struct Solution<'a> {
     pub reference: f64,
     /// What contact does on gaps beside what acts at [`Self::sites`].
     on_gaps: f64,
+    /// What the rule of a method whose contact holds in the mean may leave of the energy identity.
+    of_the_rule: f64,
     /// By what forces of the field are multiplied so that they are those of a solution at most.
     larger: f64,
     /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
@@ -103,7 +105,7 @@ pub struct Solution<'a> {
     /// What supports leave of the nodal forces, contact forces among them.
     unsupported: Vec<[f64; 2]>,
     /// Material of every body.
-    materials: Vec<Compliance>,
+    materials: Vec<Material>,
     /// How every contact holds in the mean, where it does and not at the nodes.
     pub weak: Vec<Option<Weak>>,
     /// Whether contact is claimed to hold in the mean.
@@ -161,6 +163,7 @@ impl<'a> Solution<'a> {
             largest: candidate.largest(),
             reference: candidate.largest(),
             on_gaps: 0.0,
+            of_the_rule: 0.0,
             larger: 1.0,
             ceiling: f64::INFINITY,
             pushed: balance.left / balance.scale.max(f64::MIN_POSITIVE),

@@ -4,8 +4,8 @@
 //! about the centroid: S = (S of K_0, S of K_1, S of K_2) ∈ ℝ²¹. Parameters are stresses; areas and moduli enter the
 //! flexibility only.
 
-use crate::element::Compliance;
-use crate::element::subtriangle::{Matrix, Moments, flexibility, shift, side_map, stress_map};
+use crate::element::Material;
+use crate::element::subtriangle::{Matrix, Moments, flexibility, flexibility_of, shift, side_map, stress_map};
 
 /// One triangle of the mesh in the parameters of Section 3.
 #[derive(Debug, Clone)]
@@ -29,21 +29,23 @@ pub struct BlockMatrices {
 
 impl BlockMatrices {
     /// Sets up the block on the counter-clockwise triangle `corners`.
-    pub fn new(corners: [[f64; 2]; 3], material: &Compliance) -> Self {
+    pub fn new(corners: [[f64; 2]; 3], material: &Material) -> Self {
         let (centre, scale) = frame(corners);
         let local = corners.map(|p| [(p[0] - centre[0]) / scale, (p[1] - centre[1]) / scale]);
         let continuity = continuity(local);
         let mut side = Matrix::<12, 21>::zeros();
         let mut full = Matrix::<21, 21>::zeros();
-        let constants =
-            [material.kappa + 0.25 * material.gamma, material.kappa - 0.25 * material.gamma, material.gamma];
         for sub in 0..3 {
             let (a, b) = (local[(sub + 1) % 3], local[(sub + 2) % 3]);
             side.fixed_view_mut::<4, 7>(4 * sub, 7 * sub).copy_from(&side_map(a, b));
             let moments = Moments::new([a, b, [0.0, 0.0]]);
             let to_centre = shift(moments.centre);
-            let f = to_centre.transpose() * flexibility(&moments, constants) * to_centre;
-            full.fixed_view_mut::<7, 7>(7 * sub, 7 * sub).copy_from(&(f * (scale * scale / material.young)));
+            let own = match material.pressure_and_shear() {
+                Some([kappa, gamma]) => flexibility(&moments, [kappa + 0.25 * gamma, kappa - 0.25 * gamma, gamma]),
+                None => flexibility_of(&moments, material.matrix()),
+            };
+            let f = to_centre.transpose() * own * to_centre;
+            full.fixed_view_mut::<7, 7>(7 * sub, 7 * sub).copy_from(&(f * (scale * scale / material.unit())));
         }
         BlockMatrices {
             centre,

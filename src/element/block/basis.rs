@@ -1,10 +1,14 @@
 //! Nine fields that span N(K), with their energies and tractions.
 
 use super::{COMMON, N};
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::frame::Frame;
 use crate::element::geometry::from_centroid;
+use crate::element::quadrature::triangle_rule;
 use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
+
+/// Numbers of which the energy of a field is the sum of the squares: three at each of three points of each subtriangle.
+const ROWS: usize = 27;
 
 /// A basis of N(K), in the parameters (3.1) about the centroid of the block.
 ///
@@ -33,13 +37,9 @@ impl BlockBasis {
 
     /// Nodal stresses of Σ c_k τ_k, in the order of [`crate::element::StressField::block`].
     pub fn field(&self, c: &[f64; N]) -> [[f64; 3]; 9] {
-        let common = [c[0] + c[1], c[0] - c[1], c[2], c[3], c[4], c[5], c[6]];
         let mut out = [[0.0; 3]; 9];
         for sub in 0..3 {
-            let mut s = common;
-            for (c, piecewise) in c[COMMON..].iter().zip(&self.piecewise) {
-                s[3..].iter_mut().zip(&piecewise[sub]).for_each(|(s, p)| *s += c * p);
-            }
+            let s = self.parameters(c, sub);
             for (node, point) in self.sub(sub).into_iter().enumerate() {
                 out[3 * sub + node] = self.frame.tensor_to_global(stress(&s, point));
             }
@@ -47,8 +47,9 @@ impl BlockBasis {
         out
     }
 
-    /// F_9 in local units, summed separately over trace and deviator.
-    pub fn flexibility(&self, material: &Compliance) -> [[f64; N]; N] {
+    /// F_9 of an isotropic material in local units, summed separately over trace and deviator.
+    pub fn flexibility(&self, material: &Material) -> Option<[[f64; N]; N]> {
+        let [kappa, gamma] = material.pressure_and_shear()?;
         let whole = Moments::new(self.local);
         let subs = [0, 1, 2].map(|sub| Moments::new(self.sub(sub)));
         let of = |constants: [f64; 3]| {
@@ -62,9 +63,52 @@ impl BlockBasis {
         deviator.iter_mut().for_each(|row| row[0] = 0.0);
         let mut out = trace;
         for (out, deviator) in out.as_flattened_mut().iter_mut().zip(deviator.as_flattened()) {
-            *out = material.kappa * *out + material.gamma * deviator;
+            *out = kappa * *out + gamma * deviator;
         }
-        out
+        Some(out)
+    }
+
+    /// L⁻ᵀ of F_9 = L Lᵀ of any material, column by column, from the Householder factor of the fields in their energy.
+    pub fn inverse_factor(&self, material: &Material) -> [[f64; N]; N] {
+        let roots = self.frame.roots(material);
+        let rule = triangle_rule(2);
+        let mut measured = Matrix::<ROWS, N>::zeros();
+        for k in 0..N {
+            let unit = std::array::from_fn(|i| f64::from(i == k));
+            let mut row = 0;
+            for sub in 0..3 {
+                let s = self.parameters(&unit, sub);
+                let corners = self.sub(sub);
+                let third = 0.5 * (corners[0][0] * corners[1][1] - corners[0][1] * corners[1][0]);
+                for &(l, weight) in rule {
+                    let point = [0, 1].map(|c| l[0] * corners[0][c] + l[1] * corners[1][c]);
+                    let size = self.frame.scale * (weight * third / material.unit()).sqrt();
+                    for part in roots.apply(stress(&s, point)) {
+                        measured[(row, k)] = size * part;
+                        row += 1;
+                    }
+                }
+            }
+        }
+        let r = measured.qr().r();
+        let mut inverse = [[0.0; N]; N];
+        for (k, column) in inverse.iter_mut().enumerate() {
+            for i in (0..=k).rev() {
+                let unit = if i == k { 1.0 } else { 0.0 };
+                let sum: f64 = (i + 1..=k).map(|j| r[(i, j)] * column[j]).sum();
+                column[i] = (unit - sum) / r[(i, i)];
+            }
+        }
+        inverse
+    }
+
+    /// S of Σ c_k τ_k on a subtriangle.
+    fn parameters(&self, c: &[f64; N], sub: usize) -> [f64; 7] {
+        let mut s = [c[0] + c[1], c[0] - c[1], c[2], c[3], c[4], c[5], c[6]];
+        for (c, piecewise) in c[COMMON..].iter().zip(&self.piecewise) {
+            s[3..].iter_mut().zip(&piecewise[sub]).for_each(|(s, p)| *s += c * p);
+        }
+        s
     }
 
     /// Σ Q_iᵀ f_i Q_i, with the flexibilities of the whole triangle and, about their centres, of the subtriangles.

@@ -11,7 +11,7 @@ mod particular;
 
 use self::basis::BlockBasis;
 use self::particular::Particular;
-use super::{Compliance, EquilibriumElement, Modes, ModesMut};
+use super::{EquilibriumElement, Material, Modes, ModesMut};
 
 /// The element of the paper: p = 1, nine parameters.
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,11 +42,15 @@ impl EquilibriumElement for Block {
         UPPER + N
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
         let basis = BlockBasis::new(corners);
         let scale = basis.frame.scale;
-        let flexibility = basis.flexibility(material).map(|row| row.map(|f| f * (scale * scale / material.young)));
-        let inverse = inverse_factor(&flexibility);
+        let inverse = match basis.flexibility(material) {
+            Some(flexibility) => {
+                inverse_factor(&flexibility.map(|row| row.map(|f| f * (scale * scale / material.unit()))))
+            }
+            None => basis.inverse_factor(material),
+        };
         for (column, k) in inverse.iter().zip(0..) {
             out.kept[upper(k)..][..=k].copy_from_slice(&column[..=k]);
         }

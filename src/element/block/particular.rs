@@ -2,7 +2,7 @@
 
 use super::N;
 use super::basis::BlockBasis;
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::geometry::from_centroid;
 
 /// The particular field (−F1 x, −F2 y, 0) about the centroid.
@@ -54,7 +54,7 @@ impl Particular {
     }
 
     /// ∫ a σ:τ of two fields linear on each subtriangle, from their nodal values.
-    pub fn energy(&self, l: &[[f64; 3]; 9], m: &[[f64; 3]; 9], material: &Compliance) -> f64 {
+    pub fn energy(&self, l: &[[f64; 3]; 9], m: &[[f64; 3]; 9], material: &Material) -> f64 {
         let [b, c] = self.sides();
         let sub_area = (b[0] * c[1] - b[1] * c[0]) / 6.0;
         let mut sum = 0.0;
@@ -70,7 +70,7 @@ impl Particular {
     }
 
     /// Its products with the modes.
-    pub fn overlaps(&self, basis: &BlockBasis, inverse: &[[f64; N]; N], material: &Compliance) -> [f64; N] {
+    pub fn overlaps(&self, basis: &BlockBasis, inverse: &[[f64; N]; N], material: &Material) -> [f64; N] {
         let stress = self.stress();
         inverse.map(|column| self.energy(&stress, &basis.field(&column), material))
     }

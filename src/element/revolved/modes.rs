@@ -66,7 +66,7 @@ impl Ring {
         let balancing = self.balancing(force[1]);
         let triangle = self.triangle(law, &raw, &fields.columns, loaded.then_some((&balancing[..], force[0])));
         let (count, free) = (fields.columns.ncols(), fields.free);
-        let unit = law.young().sqrt();
+        let unit = law.unit().sqrt();
         // Modes are what is left of uniform pressure and of the fields with traction by those before.
         let parameters = count - free;
         let mut x = DMatrix::zeros(count, parameters);
@@ -174,7 +174,7 @@ impl Ring {
         out
     }
 
-    /// R of the columns in their energy, times E; behind them a field with a radial force, where there is one.
+    /// R of the columns in their energy, times the unit of the law; behind them a field with a radial force, where there is one.
     fn triangle(
         &self,
         law: &Law,

@@ -1,7 +1,6 @@
 use super::*;
-use crate::element::Compliance;
+use crate::elasticity::Elasticity;
 use crate::element::revolved::{NEAR, Weighted};
-use crate::scene::Kinematics;
 
 const SHAPES: [(&str, [[f64; 2]; 3], usize); 7] = [
     ("general", [[1.0, 0.2], [2.1, 0.1], [1.4, 1.3]], 0),
@@ -14,7 +13,7 @@ const SHAPES: [(&str, [[f64; 2]; 3], usize); 7] = [
 ];
 
 fn law(nu: f64) -> Law {
-    Law::of(&Compliance::new(Kinematics::PlaneStrain, 3.0, nu))
+    Law::of(&Elasticity::Isotropic { young: 3.0, poisson: nu }).expect("a law")
 }
 
 fn modes(ring: &Ring, nu: f64, force: [f64; 2]) -> Modes<'static> {

@@ -7,38 +7,19 @@ use faer::{Mat, Par, Spec};
 use super::Triangle;
 use super::across::Across;
 use super::reference::Field;
-use crate::element::Compliance;
+use crate::element::{Material, Roots};
 use crate::lanes::wide;
 
-/// R of A = QR. The square of a column of A is three times the energy of a field on a triangle of area one with E = 1.
+/// R of A = QR. The square of a column of A is three times the energy of a field on a triangle of area one where moduli are in units of [`Material::unit`].
 pub struct Factor {
     r: Mat<f64>,
 }
 
-/// Roots of the eigenvalues of the compliance.
-struct Roots {
-    trace: f64,
-    deviator: f64,
-    shear: f64,
-}
-
-impl Roots {
-    fn new(material: &Compliance) -> Self {
-        let shear = material.gamma.sqrt();
-        Roots { trace: material.kappa.sqrt(), deviator: 0.5 * shear, shear }
-    }
-
-    /// The three numbers of which a τ:τ is the sum of the squares.
-    fn apply(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
-        [self.trace * (xx + yy), self.deviator * (xx - yy), self.shear * xy]
-    }
-}
-
 impl Factor {
     /// The factor of the columns listed in the page of the module, the last only where there is a body force.
-    pub fn new(triangle: &Triangle, material: &Compliance) -> Self {
+    pub fn new(triangle: &Triangle, material: &Material) -> Self {
         let reference = triangle.reference;
-        let roots = Roots::new(material);
+        let roots = triangle.shape.frame.roots(material);
         let (modes, p) = (reference.modes, triangle.degree);
         let across = 1 + reference.free.len() + reference.off_base.len();
         let balancing = across + Across::len(p);
@@ -46,7 +27,7 @@ impl Factor {
         let mut r = Mat::<f64>::zeros(9 * modes, balancing + usize::from(loaded));
         for sub in 0..3 {
             // No deviator: nothing of it may drown κ.
-            r[(3 * sub * modes, 0)] = 2.0 * roots.trace;
+            r[(3 * sub * modes, 0)] = roots.of_pressure();
         }
         for (i, field) in reference.free.iter().chain(&reference.off_base).enumerate() {
             fill(r.col_as_slice_mut(1 + i), modes, field, triangle, &roots);

@@ -13,7 +13,7 @@
 //!
 //! Fields without traction on the longest side come from the reference triangle (`reference.rs`), the others are written down in the frame
 //! of the triangle (`across.rs`): with each kind of stress by itself, flat triangles lose no digits. The orthonormal basis comes from the
-//! Householder factor of the coefficients of all fields, times the roots of the eigenvalues of a (`factor.rs`); the matrix of energies is never formed,
+//! Householder factor of the coefficients of all fields, times a root of a (`factor.rs`); the matrix of energies is never formed,
 //! for its condition would be the square. Columns of R are, in this order,
 //!
 //! 1. the uniform pressure, soft as ν → ½ and orthogonal to all fields without traction;
@@ -34,7 +34,7 @@ use self::across::Across;
 use self::factor::Factor;
 use self::reference::{Field, Reference};
 use self::shape::Shape;
-use super::{Compliance, EquilibriumElement, MAX_DEGREE, Modes, ModesMut};
+use super::{EquilibriumElement, MAX_DEGREE, Material, Modes, ModesMut};
 use crate::lanes::wide;
 
 /// The block of degree p.
@@ -90,13 +90,13 @@ impl EquilibriumElement for Split {
         n * (n + 1) / 2 + n * free + n + free
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
         let triangle = self.triangle(corners, body_force);
         let (n, free) = (self.parameters(), self.free());
         let factor = Factor::new(&triangle, material);
         // ∫ a τ:τ is the square of a column times area/(3E).
         let area = triangle.shape.frame.scale * triangle.shape.frame.scale;
-        let unit = (3.0 * material.young / area).sqrt();
+        let unit = (3.0 * material.unit() / area).sqrt();
         let raw = triangle.tractions();
         let tractions = self.tractions();
         let (upper, rest) = out.kept.split_at_mut(n * (n + 1) / 2);
@@ -294,7 +294,7 @@ mod tests {
         let flat = [[0.0, 0.0], [1.0, 0.2], [0.4, 0.081]];
         for corners in [[[0.0, 0.0], [1.0, 0.1], [0.3, 0.8]], [[7.0, 3.0], [9.0, 3.5], [7.5, 8.0]], flat] {
             for nu in [0.0, 0.3, 0.499_999_9] {
-                let material = Compliance::new(Kinematics::PlaneStrain, 3.0, nu);
+                let material = Material::isotropic(Kinematics::PlaneStrain, 3.0, nu);
                 let (first, second) = (
                     Block.modes(corners, &material, [2.0, -1.0]),
                     Split::new(1).modes(corners, &material, [2.0, -1.0]),

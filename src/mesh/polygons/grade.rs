@@ -6,9 +6,10 @@
 use std::collections::HashSet;
 
 use super::outline::Piece;
+use crate::mesh::labels::contact_names;
 use crate::mesh::polyline::key;
 use crate::mesh::quarter::middle;
-use crate::scene::{Circle, ContactSides, Polygon, Scene};
+use crate::scene::{Circle, Polygon, Scene};
 
 /// A piece more than this many times as long as the next is halved.
 const LONGER: f64 = 4.0;
@@ -18,14 +19,7 @@ const MOST_ROUNDS: usize = 20;
 /// Halves pieces until none is much longer than the one before or after it, on every polygon that has them. Pieces of a
 /// contact and of an arc stay whole: their vertices say which curve they stand for.
 pub(super) fn grade(outlines: &mut [Vec<Piece>], scene: &Scene, polygons: &[Polygon]) {
-    let sides: HashSet<&str> = scene
-        .contacts
-        .iter()
-        .flat_map(|contact| match &contact.sides {
-            ContactSides::Between(names) => names.iter().map(String::as_str).collect(),
-            ContactSides::Rigid(name) => vec![name.as_str()],
-        })
-        .collect();
+    let sides: HashSet<&str> = contact_names(scene).into_iter().collect();
     let circles = circles(polygons);
     let whole = |piece: &Piece| {
         sides.contains(piece.name.as_str())

@@ -5,6 +5,7 @@ use super::svg::{Anchor, Svg, look, px};
 use crate::report::number::significant;
 use crate::report::quantity::Held;
 use crate::report::{QuantitySummary, Report};
+use crate::scene::counted;
 
 const WIDTH: f64 = 560.0;
 const LANE: f64 = 28.0;
@@ -34,9 +35,9 @@ pub fn quantity(summary: &QuantitySummary, report: &Report) -> Option<String> {
     let bottom = TOP + LANE * (list.len() + 1) as f64;
     let [lower, upper] = summary.ends();
     let label = format!(
-        "{}: the exact value lies between {lower} and {upper}; {} value(s) are marked on the axis",
+        "{}: the exact value lies between {lower} and {upper}; marked on the axis: {}",
         summary.name,
-        list.len()
+        counted(list.len(), "value")
     );
     let mut svg = Svg::new(WIDTH, bottom + 42.0, label);
     band(&mut svg, summary, &axis, bottom);

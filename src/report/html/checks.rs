@@ -36,7 +36,7 @@ pub(super) fn remarks(report: &Report) -> Markup {
     all.sort_by_key(|remark| remark.passed);
     html! {
         p {
-            "Theory sets no limit to these differences. What exceeds the usual size is worth a look and turns no verdict; "
+            "Theory sets no limit to these differences. What exceeds the usual size is worth a look and does not change the verdict; "
             code { "--allow NAME=VALUE" } " makes a check of a remark."
         }
         (table(report, "remarks", "usual", &all, |remark| html! {
@@ -52,7 +52,7 @@ fn table(report: &Report, label: &str, passed: &str, list: &[&Check], word: impl
         html! {
             table.sortable {
                 thead { tr {
-                    th { "name" } th { (passed) } @for head in heads { th.n { (head) } } th { "basis" } th { "what came of it" }
+                    th { "name" } th { (passed) } @for head in heads { th.n { (head) } } th { "basis" } th { "result" }
                 } }
                 tbody { @for check in list {
                     tr.no[!check.passed && check.decides()] id=(links::row(report, check)) {

@@ -54,7 +54,7 @@ pub(super) fn checks_of(id: &str, report: &Report) -> Markup {
         @if !own.is_empty() {
             details.back open[failed > 0] {
                 summary {
-                    (own.len()) @if own.len() == 1 { " check of this" } @else { " checks of this" }
+                    (own.len()) @if own.len() == 1 { " related check" } @else { " related checks" }
                     @if failed > 0 { ", " b.not { (failed) " not passed" } }
                 }
                 ul { @for check in own {

@@ -43,7 +43,7 @@ pub(super) fn figure(dossier: &Dossier, marks: &[Mark]) -> Markup {
                         }
                     }
                 }
-                button type="button" data-zoom="1.5" { "Closer" } button type="button" data-zoom="0.6667" { "Farther" }
+                button type="button" data-zoom="1.5" { "Zoom in" } button type="button" data-zoom="0.6667" { "Zoom out" }
                 button type="button" data-zoom="0" { "All" }
             }
             div.stage { (PreEscaped(map::map(dossier.problem, &title, &first.values, &scaled[0].1, marks))) }

@@ -87,7 +87,7 @@ fn pressure_figure(dossier: &Dossier, index: usize) -> Markup {
                 b { "Pressure on " bdi { code { (clean(&contact.name)) } } ". " }
                 "The dual pressure may jump from edge to edge. Zero: the contact is open; it is open on "
                 (percent(contact.open_fraction)) " of its length."
-                @if !contact.contact_ends.is_empty() { " Dotted upright: end of contact." }
+                @if !contact.contact_ends.is_empty() { " Dotted vertical line: end of contact." }
                 @if to - from < contact.length {
                     " Shown from " (significant(from, 4)) " to " (significant(to, 4)) " of the length " (significant(contact.length, 4))
                     "; no model has a pressure beyond."

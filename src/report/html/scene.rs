@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
@@ -28,18 +29,43 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
                 dt { "State" } dd { (state(scene)) "; units as in the scene" }
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
-                    bdi { (clean(&body.name)) } ": E = " (significant(body.young, 6)) ", ν = " (significant(body.poisson, 6))
+                    bdi { (clean(&body.name)) } ": " (elasticity(&body.elasticity))
                     @if body.body_force != [0.0; 2] { ", body force " (vector(body.body_force, 5)) }
                 } } } }
                 dt { "Loads" } dd { (loads(scene)) }
                 dt { "Supports" } dd { (supports(scene)) }
                 @if !scene.contacts.is_empty() { dt { "Contact" } dd { (contacts(problem)) } }
+                @if !scene.bonds.is_empty() { dt { "Bonds" } dd { (bonds(scene)) } }
                 dt { "Mesh" } dd { (counts(report, problem)) }
                 @if !report.provenance.command_line.is_empty() {
                     dt { "Command" } dd { code { (clean(&report.provenance.command_line)) } }
                 }
                 dt { "Made" } dd { (report.provenance.date) " by hypercircle " (clean(&report.provenance.version)) }
             }
+        }
+    }
+}
+
+/// The constants of a material.
+fn elasticity(law: &Elasticity) -> String {
+    let list = |values: &[f64]| values.iter().map(|x| significant(*x, 6)).collect::<Vec<_>>().join(", ");
+    match law {
+        Elasticity::Isotropic { young, poisson } => {
+            format!("E = {}, ν = {}", significant(*young, 6), significant(*poisson, 6))
+        }
+        Elasticity::Orthotropic(Orthotropic { young, poisson, shear, angle }) => format!(
+            "orthotropic, E₁, E₂, E₃ = {}; ν₁₂, ν₁₃, ν₂₃ = {}; G₁₂ = {}; axis 1 at {}° to x",
+            list(young),
+            list(poisson),
+            significant(*shear, 6),
+            significant(*angle, 6)
+        ),
+        Elasticity::Anisotropic(Anisotropic { kind, matrix, angle }) => {
+            let rows = match matrix {
+                Matrix::Three(rows) => rows.iter().map(|row| list(row)).collect::<Vec<_>>(),
+                Matrix::Six(rows) => rows.iter().map(|row| list(row)).collect(),
+            };
+            format!("{} ({}), axis 1 at {}° to x", kind.key(), rows.join("; "), significant(*angle, 6))
         }
     }
 }
@@ -100,6 +126,12 @@ fn contacts(problem: &Problem) -> Markup {
             }
             @if contact.direction.is_some() { ", matched along a direction" }
         } } }
+    }
+}
+
+fn bonds(scene: &Scene) -> Markup {
+    html! {
+        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": glued" } } }
     }
 }
 

@@ -83,7 +83,7 @@ fn agreement(report: &Report) -> Markup {
     let (passed, all) = (report.checks.len() - failing(report).len(), report.checks.len());
     html! {
         section.card {
-            h2 { (if of_field(report) { "Is the field what it is handed in as?" } else { "Do the two models agree?" }) }
+            h2 { (if of_field(report) { "Is the field the solution it claims to be?" } else { "Do the two models agree?" }) }
             div.big {
                 @match report.status {
                     Status::Agree if report.primal.is_empty() => "No second model",

@@ -108,6 +108,16 @@ impl Context<'_> {
             // A mesh file may have any boundary; those of conditions it has to have.
             None => body.is_none() || self.named.conditions.have(&name),
         };
+        if self.named.conditions.bonds.iter().any(|bond| bond.sides.contains(&name)) {
+            let remedy =
+                "take the mean over a body, over a boundary that is no side of a bond, or of a stress beside it";
+            return self.misplaced(
+                "displacement",
+                of.span(),
+                "a side of a bond, which is inside the bonded body",
+                remedy,
+            );
+        }
         let of = match (body, boundary) {
             (Some(body), false) => Extent::Body(body),
             (None, true) => Extent::Boundary(name),

@@ -138,7 +138,9 @@ impl Context<'_> {
 impl Conditions {
     /// Whether one of them is on the boundary of this name.
     pub(super) fn have(&self, name: &str) -> bool {
-        self.owner(name).is_some() || self.tractions.iter().any(|traction| traction.on == name)
+        self.owner(name).is_some()
+            || self.tractions.iter().any(|traction| traction.on == name)
+            || self.bonds.iter().any(|bond| bond.sides.iter().any(|side| side == name))
     }
 
     /// The contact or support whose boundary has this name.

@@ -26,7 +26,7 @@ impl Build {
         if let Some(found) = self.bodies.iter().position(|body| body.name == name) {
             return found;
         }
-        self.bodies.push(Body { name: name.into(), young: 1.0, poisson: 0.3, body_force: [0.0; 2] });
+        self.bodies.push(Body::isotropic(name, 1.0, 0.3));
         self.bodies.len() - 1
     }
 

@@ -139,7 +139,7 @@ impl Carried<'_> {
         let (field, mesh) = (self.field, &self.problem.mesh);
         let known = place.known(field, self.problem, t);
         let corners = mesh.corners(t);
-        let before = |v: usize| self.problem.uncut.as_ref().and_then(|uncut| uncut.mesh.points.get(v).copied());
+        let before = |v: usize| self.problem.uncut.as_ref().and_then(|uncut| uncut.place_before(v));
         for i in 0..3 {
             let v = mesh.triangles[t][i];
             match known.iter().find(|(_, vertex)| *vertex == v) {
@@ -181,8 +181,8 @@ impl Carried<'_> {
         let (field, problem) = (self.field, self.problem);
         let mesh = &problem.mesh;
         // Contact has not moved these.
-        let points = problem.uncut.as_ref().map_or(&mesh.points, |uncut| &uncut.mesh.points);
-        let place = |v: usize| points.get(v).copied().unwrap_or(mesh.points[v]);
+        let before = |v: usize| problem.uncut.as_ref().and_then(|uncut| uncut.place_before(v));
+        let place = |v: usize| before(v).unwrap_or(mesh.points[v]);
         let (nodes, corners) = (&field.triangles[number].nodes, mesh.triangles[t].map(place));
         for i in 0..3 {
             let (v, node) = (mesh.triangles[t][i], nodes[order[i]]);
@@ -265,8 +265,15 @@ fn put(slot: &mut Option<[f64; 2]>, u: [f64; 2], size: f64) -> Option<()> {
 }
 
 fn jump(field: &ForeignField, scene: &Scene, point: [f64; 2]) -> FieldError {
-    let what = format!("the displacement jumps inside a body, at {}", at(scene, point));
-    field.fault(what, "only a continuous field has an energy: write it in a continuous space")
+    if scene.bonds.is_empty() {
+        let what = format!("the displacement jumps inside a body, at {}", at(scene, point));
+        return field.fault(what, "only a continuous field has an energy: write it in a continuous space");
+    }
+    let what = format!("the displacement jumps inside a body or across a bond, at {}", at(scene, point));
+    field.fault(
+        what,
+        "only a continuous field has an energy: write it in a continuous space; one of a method that ties unlike meshes in the mean          is made continuous by projecting it onto equal vertices of both sides",
+    )
 }
 
 pub(super) fn mean(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -110,7 +110,8 @@ fn before(
             return Ok(Place::Same(number, order));
         }
         let mut vertices = [0; 3];
-        (0..3).for_each(|i| vertices[order[i]] = uncut.mesh.triangles[parent][i]);
+        let corners = uncut.corners_after(parent);
+        (0..3).for_each(|i| vertices[order[i]] = corners[i]);
         Ok(Place::Part { number, corners: vertices.map(|v| mesh.points[v]), vertices: Some(vertices) })
     };
     let triangles: Result<Vec<Place>, Lost> = (0..mesh.triangles.len()).map(place).collect();

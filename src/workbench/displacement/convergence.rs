@@ -85,7 +85,7 @@ fn bound(e: &DisplacementElement) -> Result<Measured, Fault> {
     let sentence = match worst.0 <= ROUNDING {
         true => format!("Energies of {} meshes lie above the guaranteed bound; by this part below it", levels.len()),
         false => format!(
-            "On {0} × {0} cells the energy lies below the guaranteed bound by this part, which no conforming element with exact integrals can do",
+            "On {0} × {0} cells the energy lies below the guaranteed bound by the fraction given, which no conforming element with exact integrals can do",
             worst.1
         ),
     };
@@ -98,7 +98,9 @@ fn rate(e: &DisplacementElement) -> Result<Measured, Fault> {
     // The energy of an element that does not conform may lie on either side.
     let conforms = known(e).is_none_or(|r| r.is_conforming());
     if conforms && levels.iter().any(|l| below(exact, l) > ROUNDING) {
-        return Err(Fault::Failed("The energy lies below the guaranteed bound: there is no error to fall.".into()));
+        return Err(Fault::Failed(
+            "The energy lies below the guaranteed bound: convergence cannot be measured.".into(),
+        ));
     }
     let error = |l: &Level| if conforms { exact.guaranteed(l.energy) } else { exact.apart(l.energy) };
     let errors: Vec<f64> = levels.iter().map(error).collect();

@@ -10,7 +10,7 @@ use crate::workbench::picture;
 
 pub const RANK: Property<DisplacementElement> = Property {
     name: "rank",
-    asks: "no motion but the rigid ones stores nothing: the rank of K is 2n − 3",
+    asks: "only rigid motions store no energy: the rank of K is 2n − 3",
     usual: true,
     measure,
 };
@@ -75,7 +75,7 @@ fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
     if count == 0 {
         let next = sizes.into_iter().find(|s| *s > e.precision).unwrap_or(0.0);
         let text = format!(
-            "No motion beside the rigid ones stores nothing; the softest stores {} times the energy of the stiffest.",
+            "Only rigid motions store no energy; the softest other motion stores {} times the energy of the stiffest.",
             significant(next, 3)
         );
         return Ok(Measured::count(0, text));

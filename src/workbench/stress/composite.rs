@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use super::StressElement;
 use super::divergence::at_points;
 use super::fields::{Fields, Nodal, side, traction};
-use crate::element::Compliance;
+use crate::element::Material;
 use crate::element::geometry::sub_corners;
 
 /// A space of linear stresses.
@@ -40,7 +40,7 @@ impl StressElement for Composite {
         1
     }
 
-    fn fields(&self, corners: [[f64; 2]; 3], material: &Compliance, _: [f64; 2]) -> Fields {
+    fn fields(&self, corners: [[f64; 2]; 3], material: &Material, _: [f64; 2]) -> Fields {
         let parts: Vec<_> =
             if self.is_split { (0..3).map(|s| sub_corners(corners, s)).collect() } else { vec![corners] };
         let values = 9 * parts.len();

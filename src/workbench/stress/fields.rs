@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::element::geometry::sub_corners;
 use crate::element::quadrature::triangle_rule;
-use crate::element::{Compliance, EquilibriumElement, lattice_len};
+use crate::element::{EquilibriumElement, Material, lattice_len};
 
 /// A stress of degree p on every part of a triangle, by its values (xx, yy, xy) on the lattice.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,17 +81,12 @@ pub struct Fields {
     /// λ̄, where the element has one.
     pub particular: Option<Particular>,
     /// a.
-    pub material: Compliance,
+    pub material: Material,
 }
 
 impl Fields {
     /// The fields of an equilibrium element.
-    pub fn of(
-        element: &dyn EquilibriumElement,
-        corners: [[f64; 2]; 3],
-        material: &Compliance,
-        force: [f64; 2],
-    ) -> Self {
+    pub fn of(element: &dyn EquilibriumElement, corners: [[f64; 2]; 3], material: &Material, force: [f64; 2]) -> Self {
         let (degree, modes) = (element.degree(), element.modes(corners, material, force));
         let nodal = |values| Nodal { degree, values };
         let mut values = vec![[0.0; 3]; 3 * lattice_len(degree)];
@@ -138,14 +133,12 @@ impl Fields {
 
     /// Values of a stress given by part and barycentric place, as a column whose products are energies ∫ a λ:μ.
     pub fn column(&self, stress: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> Vec<f64> {
-        let Compliance { young, kappa, gamma } = self.material;
-        let [mean, deviator] = [kappa / young, gamma / young].map(f64::sqrt);
+        let (roots, unit) = (self.material.roots(), self.material.unit());
         let mut column = Vec::new();
         for (part, corners) in self.parts.iter().enumerate() {
             for &(l, w) in triangle_rule(2 * self.degree + 2) {
-                let (tau, root) = (stress(part, l), (w * area(*corners)).sqrt());
-                let half = 0.5 * deviator * (tau[0] - tau[1]);
-                column.extend([mean * (tau[0] + tau[1]), half, deviator * tau[2]].map(|x| root * x));
+                let (tau, root) = (stress(part, l), (w * area(*corners) / unit).sqrt());
+                column.extend(roots.apply(tau).map(|x| root * x));
             }
         }
         column

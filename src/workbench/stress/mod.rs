@@ -23,7 +23,7 @@ pub use tractions::{coefficients, resultant};
 use super::displacement::Shape;
 use super::finding::{Fault, Property};
 use super::material::Material;
-use crate::element::{Compliance, EquilibriumElement};
+use crate::element::{self, EquilibriumElement};
 
 /// A space of stresses under test.
 ///
@@ -43,7 +43,7 @@ pub trait StressElement {
     fn degree(&self) -> usize;
 
     /// Its fields on a counter-clockwise triangle.
-    fn fields(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2]) -> Fields;
+    fn fields(&self, corners: [[f64; 2]; 3], material: &element::Material, body_force: [f64; 2]) -> Fields;
 
     /// The element as the dual methods take it, where it is one for them.
     fn solver(&self) -> Option<&'static dyn EquilibriumElement> {
@@ -63,7 +63,7 @@ impl StressElement for SolverElement {
         self.0.degree()
     }
 
-    fn fields(&self, corners: [[f64; 2]; 3], material: &Compliance, body_force: [f64; 2]) -> Fields {
+    fn fields(&self, corners: [[f64; 2]; 3], material: &element::Material, body_force: [f64; 2]) -> Fields {
         Fields::of(self.0, corners, material, body_force)
     }
 

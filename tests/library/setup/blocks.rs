@@ -61,7 +61,7 @@ pub fn scaled(problem: &Problem, length: f64, force: f64, young: f64) -> Problem
     p.mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= length);
     let change = |draft: &mut Draft| {
         for body in &mut draft.bodies {
-            body.young *= young;
+            body.elasticity = body.elasticity.stiffened(young);
             body.body_force.iter_mut().for_each(|f| *f *= force / length);
         }
     };

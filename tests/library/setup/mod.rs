@@ -65,7 +65,7 @@ impl Setup {
         body_force: [f64; 2],
     ) -> Self {
         let body = self.bodies.len();
-        self.bodies.push(Body { name: name.into(), young, poisson, body_force });
+        self.bodies.push(Body { body_force, ..Body::isotropic(name, young, poisson) });
         let first = self.points.len();
         let [nx, ny] = cells;
         let lerp = |c: usize, i: usize, n: usize| lower[c] + (upper[c] - lower[c]) * i as f64 / n as f64;

@@ -72,12 +72,7 @@ impl Solution {
 
     fn scene(&self) -> Scene {
         let materials = self.materials();
-        let body = |k: usize, name: &str| Body {
-            name: name.to_string(),
-            young: materials[k].0,
-            poisson: materials[k].1,
-            body_force: [0.0, 0.0],
-        };
+        let body = |k: usize, name: &str| Body::isotropic(name, materials[k].0, materials[k].1);
         let support = |on: &str, kind| Support { on: on.to_string(), kind };
         let other = match self {
             Solution::Pressed(_) => support("right_east", SupportKind::CLAMPED),

@@ -3,7 +3,7 @@
 use hypercircle::bounds::{admissible, complementary, potential};
 use hypercircle::dual::{self, Condensed, Options};
 use hypercircle::element::{
-    Compliance, Elements, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
+    Elements, Material, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
 };
 use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
@@ -100,7 +100,7 @@ pub const DEGREES: [usize; 4] = [1, 2, 3, 4];
 fn projected(mesh: &Triangulation, degree: usize, stress: Stress) -> StressField {
     let (element, rule) = (block(degree), gauss(degree + 8));
     // Which of the fields with its tractions an element has hangs on the material; elastic stresses belong to all.
-    let material = Compliance::new(Kinematics::PlaneStrain, 1.0, 0.3);
+    let material = Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3);
     let mut field = StressField::zeros(degree, mesh.triangles.len());
     for t in 0..mesh.triangles.len() {
         let corners = mesh.corners(t);

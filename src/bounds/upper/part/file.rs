@@ -8,6 +8,7 @@ use super::traffic::Traffic;
 use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
+use crate::elasticity::{Elasticity, NUMBERS};
 use crate::element::{SideValues, StressField};
 use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
@@ -143,7 +144,8 @@ fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     };
     out.indices([kinematics])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
-    out.numbers(scene.bodies.iter().flat_map(|b| [b.young, b.poisson, b.body_force[0], b.body_force[1]]))
+    out.numbers(scene.bodies.iter().flat_map(|body| body.elasticity.to_numbers()))?;
+    out.numbers(scene.bodies.iter().flat_map(|body| body.body_force))
 }
 
 fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
@@ -153,8 +155,13 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
         _ => Kinematics::Axisymmetric,
     };
     let [thickness, x, y] = one(from.vectors()?)?;
-    let body = |[young, poisson, fx, fy]: [f64; 4]| Body { name: String::new(), young, poisson, body_force: [fx, fy] };
-    let bodies = from.vectors()?.into_iter().map(body).collect();
+    let laws: Vec<[f64; NUMBERS]> = from.vectors()?;
+    let forces: Vec<[f64; 2]> = from.vectors()?;
+    let body = |(law, body_force): (&[f64; NUMBERS], [f64; 2])| {
+        let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
+        Ok(Body { name: String::new(), elasticity, body_force })
+    };
+    let bodies = laws.iter().zip(forces).map(body).collect::<io::Result<_>>()?;
     let none = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Ok(Scene { draft: Draft { thickness, origin: [x, y], bodies, ..Draft::new("", kinematics, none) } })
 }

@@ -10,12 +10,13 @@ mod nitsche;
 mod stations;
 
 pub use mortar::Multiplier;
-pub use stations::{Shape, Station};
+pub use nitsche::{Point, longest, nitsche};
+pub use stations::{Rows, Shape, Station};
 
 use super::{SOLVER, Solution};
 
 /// What the rule of another program may change where contact begins or ends inside an edge, relative to the forces of contact.
-const OF_THE_RULE: f64 = 0.02;
+pub const OF_THE_RULE: f64 = 0.02;
 /// Forces this small beside all others are none.
 const NO_FORCE: f64 = 1e-6;
 /// Rounded displacements that meet in the force of a node: all may be off the same way.
@@ -55,7 +56,7 @@ pub struct Weak {
 }
 
 /// What counts as nothing along one contact.
-pub(super) struct Limits {
+pub struct Limits {
     /// A length.
     pub length: f64,
     /// A force.
@@ -106,8 +107,9 @@ impl Solution<'_> {
             }
             let shapes: &[Shape] =
                 if self.is_curved(interface) { &[Shape::Chords, Shape::Curve] } else { &[Shape::Chords] };
+            let points = |rule: usize, shape: Shape| self.points_along(interface, rule, shape, &limits);
             let mortar = shapes.iter().find_map(|shape| mortar::mortar(self, interface, &limits, *shape));
-            let nitsche = mortar.is_none().then(|| nitsche::nitsche(self, interface, &limits, shapes)).flatten();
+            let nitsche = mortar.is_none().then(|| nitsche(self, &limits, shapes, points)).flatten();
             let augmented = || shapes.iter().find_map(|shape| mortar::augmented(self, interface, &limits, *shape));
             let exact = nitsche.as_ref().is_some_and(|weak| weak.misfit <= limits.part);
             mortar.or_else(|| if exact { nitsche } else { augmented().or(nitsche) })
@@ -115,7 +117,8 @@ impl Solution<'_> {
         self.weak = (0..self.problem.interfaces.len()).map(of).collect();
     }
 
-    fn limits(&self, interface: usize) -> Limits {
+    /// What counts as nothing along contact `interface`.
+    pub fn limits(&self, interface: usize) -> Limits {
         let part = (NO_FORCE + MEETING * self.rounding / self.scale).min(OF_THE_RULE);
         let total = self.applied().max(self.carried(interface));
         Limits { length: 2.0 * (SOLVER + self.candidate.precision) * self.largest, force: part * total, part }
@@ -125,6 +128,12 @@ impl Solution<'_> {
     pub(super) fn weak_part(&self, interface: usize) -> f64 {
         let part = self.limits(interface).part;
         if self.claims_weak { part.max(OF_THE_RULE) } else { part }
+    }
+
+    /// What the rule of another program may change of contact that claims to hold in the mean, as a part of a penetration; nothing of
+    /// contact that does not.
+    pub(super) fn rule(&self) -> f64 {
+        if self.claims_weak { OF_THE_RULE } else { 0.0 }
     }
 
     /// Whether contact is closed or open node by node, or in its Bernstein coefficients.

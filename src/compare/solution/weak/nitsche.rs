@@ -6,9 +6,9 @@
 use std::collections::BTreeMap;
 
 use super::super::Solution;
-use super::stations::{Shape, Station};
+use super::stations::{Rows, Shape, Station};
 use super::{Law, Limits, Weak};
-use crate::vector::distance;
+use crate::vector::{distance, dot};
 
 /// Degrees of the rules that are tried; the first is the one by which all else is chosen.
 const RULES: [usize; 6] = [4, 0, 2, 6, 8, 24];
@@ -22,12 +22,20 @@ const NEAR: f64 = 0.2;
 /// Penetrations and normal stresses each have to explain this many times what is left without them.
 const MATTERS: f64 = 10.0;
 
-/// The length that γ is proportional to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Size {
-    Edge,
-    Diameter,
-    One,
+/// A quadrature point along a contact, on the nodes of the field.
+pub struct Point {
+    /// ds times the thickness.
+    pub weight: f64,
+    /// (v' − v'')·n̂ − g.
+    pub excess: f64,
+    /// Lengths that γ may be proportional to: those of an edge and of an element of either side.
+    pub lengths: [f64; 4],
+    /// Whether the edge carries a force.
+    pub carries: bool,
+    /// Shape functions of the jump.
+    pub jump: Rows,
+    /// n̂·σ(φ)n̂ of the shape functions of either side.
+    pub stress: [Rows; 2],
 }
 
 /// What all quadrature points give, on the nodes that take part.
@@ -54,49 +62,59 @@ struct Fit {
 /// How stations are weighed.
 #[derive(Clone, Copy)]
 struct Variant {
-    size: Size,
+    /// Which of [`Point::lengths`], or none.
+    size: Option<usize>,
     shares: [f64; 2],
     signed: bool,
     shape: Shape,
 }
 
-/// Nitsche's law nearest to the forces along contact `interface`.
-pub fn nitsche(solution: &Solution<'_>, interface: usize, limits: &Limits, shapes: &[Shape]) -> Option<Weak> {
-    let rigid = solution.problem.interfaces[interface].pairs.iter().all(|pair| pair.second.is_none());
-    let shares: &[[f64; 2]] = if rigid { &[[1.0, 0.0]] } else { &[[0.5, 0.5], [1.0, 0.0], [0.0, 1.0]] };
+/// Nitsche's law nearest to the forces along a contact, which `points` gives by the degree of a rule and the shape of the gap.
+pub fn nitsche(
+    solution: &Solution<'_>,
+    limits: &Limits,
+    shapes: &[Shape],
+    points: impl Fn(usize, Shape) -> Vec<Point>,
+) -> Option<Weak> {
     let mut best: Option<(Variant, Fit)> = None;
     for &shape in shapes {
+        let points = points(RULES[0], shape);
+        let rigid = points.iter().all(|point| point.stress[1].is_empty());
+        let shares: &[[f64; 2]] = if rigid { &[[1.0, 0.0]] } else { &[[0.5, 0.5], [1.0, 0.0], [0.0, 1.0]] };
         for signed in [false, true] {
-            for size in [Size::Edge, Size::Diameter, Size::One] {
+            for size in sizes(&points) {
                 for &shares in shares {
                     let variant = Variant { size, shares, signed, shape };
-                    let fit = Terms::new(solution, interface, RULES[0], variant, limits).fit(solution, signed);
+                    let terms = Terms::new(solution, &points, variant);
+                    let fit = terms.fit(solution, signed);
                     if best.as_ref().is_none_or(|(_, known)| fit.misfit < known.misfit) {
                         best = Some((variant, fit));
                     }
                     if fit.misfit <= limits.part {
-                        return weak(solution, interface, RULES[0], variant, fit, limits);
+                        return weak(solution, terms, variant, fit);
                     }
                 }
             }
         }
     }
     let (variant, _) = best.filter(|(_, fit)| fit.misfit <= NEAR)?;
-    let fit =
-        |rule: usize| (rule, Terms::new(solution, interface, rule, variant, limits).fit(solution, variant.signed));
-    let (rule, fit) = RULES.map(fit).into_iter().min_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit))?;
-    weak(solution, interface, rule, variant, fit, limits)
+    let fit = |rule: usize| {
+        let terms = Terms::new(solution, &points(rule, variant.shape), variant);
+        let fit = terms.fit(solution, variant.signed);
+        (terms, fit)
+    };
+    let (terms, fit) = RULES.map(fit).into_iter().min_by(|a, b| a.1.misfit.total_cmp(&b.1.misfit))?;
+    weak(solution, terms, variant, fit)
 }
 
-fn weak(
-    solution: &Solution<'_>,
-    interface: usize,
-    rule: usize,
-    variant: Variant,
-    fit: Fit,
-    limits: &Limits,
-) -> Option<Weak> {
-    let terms = Terms::new(solution, interface, rule, variant, limits);
+/// The lengths worth a try: those of the second side where they are others than those of the first.
+fn sizes(points: &[Point]) -> impl Iterator<Item = Option<usize>> {
+    let differ = |size: usize| points.iter().any(|point| point.lengths[size] != point.lengths[size - 2]);
+    let second = [2, 3].into_iter().filter(|size| differ(*size)).map(Some).collect::<Vec<_>>();
+    [Some(0), Some(1), None].into_iter().chain(second)
+}
+
+fn weak(solution: &Solution<'_>, terms: Terms, variant: Variant, fit: Fit) -> Option<Weak> {
     let gamma = 10.0_f64.powf(fit.power);
     if MATTERS * fit.misfit > terms.misfit_of_less(solution) {
         return None;
@@ -109,7 +127,7 @@ fn weak(
         .map(|(i, node)| (*node, [fit.theta * against[2 * i], fit.theta * against[2 * i + 1]]));
     let pulling = terms.points.iter().map(|point| point.0 * (-pressure(point, gamma, variant.signed)).max(0.0)).sum();
     Some(Weak {
-        law: Law::Nitsche { theta: fit.theta, gamma, per_length: variant.size != Size::One },
+        law: Law::Nitsche { theta: fit.theta, gamma, per_length: variant.size.is_some() },
         penetration: 0.0,
         misfit: fit.misfit,
         pulling,
@@ -128,45 +146,35 @@ fn pressure(&(_, excess, stress, length, carries): &(f64, f64, f64, f64, bool), 
 }
 
 impl Terms {
-    fn new(solution: &Solution<'_>, interface: usize, rule: usize, variant: Variant, limits: &Limits) -> Self {
-        let stations = solution.stations(interface, rule, variant.shape);
+    fn new(solution: &Solution<'_>, points: &[Point], variant: Variant) -> Self {
         let mut known: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut terms = Terms {
-            points: Vec::new(),
-            jumps: Vec::new(),
-            stresses: Vec::new(),
-            nodes: Vec::new(),
-            wanted: Vec::new(),
-        };
-        for station in &stations {
-            let trace = solution.trace(station, variant.shares);
-            let carries = station.sites.iter().all(|(site, _)| solution.pressing[*site].abs() > limits.force);
-            let length = length(solution, station, variant.size);
-            terms.points.push((station.weight, station.excess, trace.stress, length, carries));
-            let mut entry = |node: usize, value: [f64; 2]| {
+        let mut nodes = Vec::new();
+        let mut entries = |rows: &mut dyn Iterator<Item = (usize, [f64; 2])>| {
+            let mut list = Vec::new();
+            for (node, value) in rows {
                 let next = known.len();
                 let i = *known.entry(node).or_insert(next);
                 if i == next {
-                    terms.nodes.push(node);
+                    nodes.push(node);
                 }
-                [(2 * i, value[0]), (2 * i + 1, value[1])]
-            };
-            let span = &solution.sites.edges[station.edge];
-            let n = solution.problem.interfaces[span.interface].pairs[span.pair].direction.at(station.at);
-            let mut jump = Vec::new();
-            for (site, value) in &station.sites {
-                let site = &solution.sites.list[*site];
-                for (node, sign) in [(Some(site.first), 1.0), (site.second, -1.0)] {
-                    if let Some(node) = node {
-                        jump.extend(entry(node, n.map(|x| sign * value * x)));
-                    }
-                }
+                list.extend([(2 * i, value[0]), (2 * i + 1, value[1])]);
             }
-            let stress = trace.rows.into_iter().flat_map(|(node, row)| entry(node, row)).collect();
-            terms.jumps.push(jump);
-            terms.stresses.push(stress);
+            list
+        };
+        let (mut found, mut jumps, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
+        for point in points {
+            let sides = point.stress.iter().zip(variant.shares).filter(|(_, share)| *share != 0.0);
+            let rows: Rows = sides
+                .flat_map(|(rows, share)| rows.iter().map(move |(node, row)| (*node, row.map(|x| share * x))))
+                .collect();
+            let stress = rows.iter().map(|(node, row)| dot(*row, solution.candidate.value(*node))).sum();
+            let length = variant.size.map_or(1.0, |size| point.lengths[size]);
+            found.push((point.weight, point.excess, stress, length, point.carries));
+            jumps.push(entries(&mut point.jump.iter().copied()));
+            stresses.push(entries(&mut rows.into_iter()));
         }
-        let forces: Vec<f64> = terms.nodes.iter().flat_map(|node| solution.unsupported[*node]).collect();
+        let forces: Vec<f64> = nodes.iter().flat_map(|node| solution.unsupported[*node]).collect();
+        let mut terms = Terms { points: found, jumps, stresses, nodes, wanted: Vec::new() };
         terms.wanted = terms.weighed(solution, &forces);
         terms
     }
@@ -235,7 +243,8 @@ impl Terms {
 
     /// The γ that brings the forces nearest.
     fn fit(&self, solution: &Solution<'_>, signed: bool) -> Fit {
-        let young = solution.problem.scene.bodies.iter().map(|body| body.young).fold(f64::INFINITY, f64::min);
+        let materials = solution.problem.materials();
+        let young = materials.iter().map(|material| material.young()[0]).fold(f64::INFINITY, f64::min);
         let [low, high, step] = POWERS;
         let count = ((high - low) / step) as usize;
         let tried = (0..=count).map(|k| self.at(solution, low + step * k as f64 - young.log10(), signed));
@@ -261,20 +270,39 @@ impl Terms {
     }
 }
 
-/// The length of the mesh at a station.
-fn length(solution: &Solution<'_>, station: &Station, size: Size) -> f64 {
-    let span = &solution.sites.edges[station.edge];
-    let mesh = &solution.problem.mesh;
-    let pair = &solution.problem.interfaces[span.interface].pairs[span.pair];
-    match size {
-        Size::One => 1.0,
-        Size::Edge => span.length,
-        Size::Diameter => {
-            let triangle = pair.edges[0].and_then(|e| mesh.edges[e].triangles[0]);
-            triangle.map_or(span.length, |t| {
-                let [a, b, c] = mesh.corners(t);
-                distance(a, b).max(distance(b, c)).max(distance(c, a))
-            })
-        }
+impl Solution<'_> {
+    /// The points of a rule along contact `interface`, whose sides match.
+    pub(super) fn points_along(&self, interface: usize, rule: usize, shape: Shape, limits: &Limits) -> Vec<Point> {
+        let point = |station: Station| {
+            let pairs = &self.problem.interfaces[interface].pairs;
+            let span = &self.sites.edges[station.edge];
+            let n = pairs[span.pair].direction.at(station.at);
+            let sides = |site: &(usize, f64)| {
+                let (of, value) = (&self.sites.list[site.0], site.1);
+                let node = |node: Option<usize>, sign: f64| Some((node?, n.map(|x| sign * value * x)));
+                node(Some(of.first), 1.0).into_iter().chain(node(of.second, -1.0))
+            };
+            let lengths = [span.length, self.diameter(pairs[span.pair].edges[0], span.length)];
+            Point {
+                weight: station.weight,
+                excess: station.excess,
+                lengths: [lengths[0], lengths[1], lengths[0], lengths[1]],
+                carries: station.sites.iter().all(|(site, _)| self.pressing[*site].abs() > limits.force),
+                jump: station.sites.iter().flat_map(sides).collect(),
+                stress: self.traces(&station),
+            }
+        };
+        self.stations(interface, rule, shape).into_iter().map(point).collect()
     }
+
+    /// The longest side of the triangle at an edge.
+    fn diameter(&self, edge: Option<usize>, otherwise: f64) -> f64 {
+        let mesh = &self.problem.mesh;
+        edge.and_then(|e| mesh.edges[e].triangles[0]).map_or(otherwise, |t| longest(mesh.corners(t)))
+    }
+}
+
+/// The longest side of a triangle.
+pub fn longest([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    distance(a, b).max(distance(b, c)).max(distance(c, a))
 }

@@ -3,7 +3,6 @@
 use super::super::Solution;
 use crate::element::geometry::gradients;
 use crate::element::quadrature::segment_rule;
-use crate::vector::dot;
 
 /// One quadrature point.
 pub struct Station {
@@ -28,13 +27,8 @@ pub enum Shape {
     Curve,
 }
 
-/// Normal stress at a point of a contact, with the nodal forces that it is conjugate to.
-pub struct Trace {
-    /// n̂·σ(u)n̂.
-    pub stress: f64,
-    /// n̂·σ(φ)n̂ of both components of every node that has a part in it.
-    pub rows: Vec<(usize, [f64; 2])>,
-}
+/// A number that is linear in the displacements of nodes: the node, and what both of its components are multiplied by.
+pub type Rows = Vec<(usize, [f64; 2])>;
 
 /// Shape functions of an edge at `s`: its ends and, of degree 2, its middle.
 pub fn shapes(degree: usize, s: f64) -> [f64; 3] {
@@ -83,33 +77,35 @@ impl Solution<'_> {
         stations
     }
 
-    /// The normal stress at a point, from the triangle of the first side and that of the second with the weights `shares`.
-    pub fn trace(&self, station: &Station, shares: [f64; 2]) -> Trace {
+    /// The normal stress n̂·σ(φ)n̂ at a point, from the triangle of either side.
+    pub fn traces(&self, station: &Station) -> [Rows; 2] {
         let span = &self.sites.edges[station.edge];
         let pair = &self.problem.interfaces[span.interface].pairs[span.pair];
         let (mesh, n) = (&self.problem.mesh, pair.direction.at(station.at));
-        let mut trace = Trace { stress: 0.0, rows: Vec::new() };
-        for ((edge, ends), share) in pair.edges.into_iter().zip([Some(pair.first), pair.second]).zip(shares) {
-            let (Some(edge), Some(ends)) = (edge, ends) else { continue };
-            let Some(t) = mesh.edges[edge].triangles[0].filter(|_| share != 0.0) else { continue };
+        let side = |edge: Option<usize>, ends: Option<[usize; 2]>| {
+            let t = mesh.edges[edge?].triangles[0]?;
             let mut l = [0.0; 3];
-            for (vertex, part) in ends.into_iter().zip([1.0 - station.at, station.at]) {
+            for (vertex, part) in ends?.into_iter().zip([1.0 - station.at, station.at]) {
                 if let Some(corner) = mesh.triangles[t].iter().position(|v| *v == vertex) {
                     l[corner] = part;
                 }
             }
-            let body = &self.materials[mesh.body[t]];
-            for (node, d) in self.gradients(t, l) {
-                let row = [0, 1].map(|c| {
-                    let e = if c == 0 { [d[0], 0.0, 0.5 * d[1]] } else { [0.0, d[1], 0.5 * d[0]] };
-                    let s = body.stress(e);
-                    share * (n[0] * (s[0] * n[0] + s[2] * n[1]) + n[1] * (s[2] * n[0] + s[1] * n[1]))
-                });
-                trace.stress += dot(row, self.candidate.value(node));
-                trace.rows.push((node, row));
-            }
-        }
-        trace
+            Some(self.normal_stress(t, l, n))
+        };
+        [side(pair.edges[0], Some(pair.first)), side(pair.edges[1], pair.second)].map(Option::unwrap_or_default)
+    }
+
+    /// n·σ(φ)n of the shape functions of triangle `t` at barycentric coordinates `l`.
+    pub fn normal_stress(&self, t: usize, l: [f64; 3], n: [f64; 2]) -> Rows {
+        let body = &self.materials[self.problem.mesh.body[t]];
+        let row = |d: [f64; 2]| {
+            [0, 1].map(|c| {
+                let e = if c == 0 { [d[0], 0.0, 0.5 * d[1]] } else { [0.0, d[1], 0.5 * d[0]] };
+                let s = body.stress(e);
+                n[0] * (s[0] * n[0] + s[2] * n[1]) + n[1] * (s[2] * n[0] + s[1] * n[1])
+            })
+        };
+        self.gradients(t, l).into_iter().map(|(node, d)| (node, row(d))).collect()
     }
 
     /// The gradients of the shape functions of triangle `t` at barycentric coordinates `l`.
