@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod adaptive;
+mod anisotropic;
 #[path = "../support/arcs.rs"]
 mod arcs;
 mod bonds;

@@ -10,6 +10,8 @@ pub struct Toml {
     mesh: Option<String>,
     polygons: String,
     bodies: Vec<(String, [f64; 2], (f64, f64))>,
+    /// Keys of bodies in place of `young` and `poisson`, or beside them.
+    matter: Vec<(String, String)>,
     conditions: String,
 }
 
@@ -98,6 +100,12 @@ impl Toml {
         self.table(&format!("[[contacts]]\non = \"{on}\""))
     }
 
+    /// The keys of a body's material; those that stand beside `young` and `poisson` begin with them.
+    pub fn matter(mut self, body: &str, keys: &str) -> Self {
+        self.matter.push((body.to_owned(), keys.to_owned()));
+        self
+    }
+
     /// The scene file.
     pub fn text(&self) -> String {
         let model = self.model.as_deref().unwrap_or("kinematics = \"plane-strain\"");
@@ -107,8 +115,9 @@ impl Toml {
             None => format!("[model]\n{model}\n[geometry]\n{size}{}", self.polygons),
         };
         for (name, [fx, fy], (young, poisson)) in &self.bodies {
-            write!(text, "[bodies.{name}]\nyoung = {young:?}\npoisson = {poisson:?}\nbody_force = [{fx:?}, {fy:?}]\n")
-                .expect("a string takes any text");
+            let isotropic = format!("young = {young:?}\npoisson = {poisson:?}");
+            let keys = self.matter.iter().rfind(|(of, _)| of == name).map_or(&isotropic, |(_, keys)| keys);
+            write!(text, "[bodies.{name}]\n{keys}\nbody_force = [{fx:?}, {fy:?}]\n").expect("a string takes any text");
         }
         text.push_str(&self.conditions);
         text
