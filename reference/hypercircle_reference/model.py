@@ -19,7 +19,7 @@ from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
-from .lattice import Lattice, square, traction_weights, weights
+from .lattice import Lattice, square, traction_weights, weighted_traction_weights, weights
 
 GAUSS_POINTS = 6
 """Points of the rule on quadrilaterals, in each direction."""
@@ -169,7 +169,8 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     """
     problem, comm = mesh.problem, mesh.comm
     start = perf_counter()
-    space, dx = compat.vector_space(mesh.mesh, mesh.corners, degree), mesh.measure
+    space = compat.vector_space(mesh.mesh, mesh.corners, degree)
+    section = Slice(mesh) if problem.revolution is None else Revolved(mesh)
     materials = np.array([_lame(body, problem.kinematics, flip_sign) for body in problem.bodies]) * problem.thickness
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
@@ -179,15 +180,16 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     displacement = compat.function(space)
 
     def work(u, v):
-        isotropic = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
+        isotropic = lame * section.trace(u) * section.trace(v) + 2 * shear * section.product(u, v)
         if stiffness is None:
-            return isotropic * dx
-        return (isotropic + ufl.inner(ufl.dot(stiffness, _engineering(u)), _engineering(v))) * dx
+            return section.integral(isotropic)
+        of_others = ufl.inner(ufl.dot(stiffness, section.engineering(u)), section.engineering(v))
+        return section.integral(isotropic + of_others)
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
     energy = compat.form(comm, 0.5 * work(displacement, displacement))
-    linear = compat.form(comm, ufl.inner(force, v) * dx)
+    linear = compat.form(comm, section.integral(ufl.inner(force, v)))
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)
@@ -203,10 +205,58 @@ def _strain(v):
     return ufl.sym(ufl.grad(v))
 
 
-def _engineering(v):
-    """ε_xx, ε_yy and 2 ε_xy."""
-    strain = _strain(v)
-    return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+class Slice:
+    """A slice of a body: strains are those of the plane."""
+
+    def __init__(self, mesh: Mesh):
+        self.measure = mesh.measure
+
+    def integral(self, density):
+        """Over the figure, times what a point of it stands for."""
+        return density * self.measure
+
+    def trace(self, v):
+        """The change of volume."""
+        return ufl.div(v)
+
+    def product(self, u, v):
+        """e(u):e(v)."""
+        return ufl.inner(_strain(u), _strain(v))
+
+    def engineering(self, v):
+        """ε_xx, ε_yy and 2 ε_xy."""
+        strain = _strain(v)
+        return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+
+
+class Revolved(Slice):
+    """A body of revolution: integrals have the weight r and the rule of the exchange file, and v_r/r is the strain of the hoop."""
+
+    def __init__(self, mesh: Mesh):
+        if mesh.corners != 3:
+            raise BadExchange("kinematics: a body of revolution is modelled on triangles")
+        revolution = mesh.problem.revolution
+        rule = {"quadrature_points": revolution.points, "quadrature_weights": revolution.weights}
+        self.measure = ufl.dx(metadata={"quadrature_rule": "custom", **rule})
+        self.radius = ufl.SpatialCoordinate(mesh.mesh)[0] - revolution.axis
+
+    def integral(self, density):
+        return self.radius * density * self.measure
+
+    def hoop(self, v):
+        """ε_θθ."""
+        return v[0] / self.radius
+
+    def trace(self, v):
+        return ufl.div(v) + self.hoop(v)
+
+    def product(self, u, v):
+        return ufl.inner(_strain(u), _strain(v)) + self.hoop(u) * self.hoop(v)
+
+    def engineering(self, v):
+        """ε_rr, ε_zz, ε_θθ and 2 ε_rz."""
+        strain = _strain(v)
+        return ufl.as_vector([strain[0, 0], strain[1, 1], self.hoop(v), 2 * strain[0, 1]])
 
 
 def _stiffness(mesh: Mesh, owner: np.ndarray):
@@ -214,11 +264,12 @@ def _stiffness(mesh: Mesh, owner: np.ndarray):
     problem = mesh.problem
     if all(body.stiffness is None for body in problem.bodies):
         return None
-    none = np.zeros((3, 3))
+    size = 3 if problem.revolution is None else 4
+    none = np.zeros((size, size))
     values = np.array([none if body.stiffness is None else body.stiffness for body in problem.bodies])
     values = values[owner] * problem.thickness
-    entry = {(i, j): compat.constant_per_cell(mesh.mesh, values[:, i, j]) for i in range(3) for j in range(i, 3)}
-    return ufl.as_matrix([[entry[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
+    entry = {(i, j): compat.constant_per_cell(mesh.mesh, values[:, i, j]) for i in range(size) for j in range(i, size)}
+    return ufl.as_matrix([[entry[min(i, j), max(i, j)] for j in range(size)] for i in range(size)])
 
 
 def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
@@ -227,7 +278,7 @@ def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
         return 0.0, 0.0
     young, poisson, sign = body.young, body.poisson, -1.0 if flip_sign else 1.0
     shear = young / (2.0 * (1.0 + poisson))
-    if kinematics == "plane-strain":
+    if kinematics != "plane-stress":
         return young * poisson / ((1.0 + poisson) * (1.0 - sign * 2.0 * poisson)), shear
     return young * poisson / (1.0 - sign * poisson * poisson), shear
 
@@ -239,7 +290,16 @@ def _traction_load(problem: Problem, lattice: Lattice) -> np.ndarray:
     ends = problem.edges[edges]
     nodes = np.concatenate([ends[:, :1], lattice.inside_edges(edges), ends[:, 1:]], axis=1)
     length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)
-    np.add.at(load, nodes, length[:, None, None] * (traction_weights(lattice.degree) @ problem.traction_values))
+    if problem.revolution is None:
+        shares = traction_weights(lattice.degree) @ problem.traction_values
+    else:
+        # r P is a quadratic.
+        first, last = problem.traction_values[:, 0], problem.traction_values[:, 1]
+        radius = problem.points[ends][:, :, :1] - problem.revolution.axis
+        middle = radius[:, 0] * last + radius[:, 1] * first
+        quadratic = np.stack([radius[:, 0] * first, middle, radius[:, 1] * last], axis=1)
+        shares = weighted_traction_weights(lattice.degree) @ quadratic
+    np.add.at(load, nodes, length[:, None, None] * shares)
     return problem.thickness * load
 
 

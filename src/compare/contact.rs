@@ -8,7 +8,7 @@ use super::outcome::{ContactSummary, Profile, TwoSides};
 use super::peak::Peaks;
 use super::pressure::{
     Piece, contact_ends, disagreement, dual_pressure, l2, maximum, open_length, profile, reaction_moment,
-    reaction_pressure, resultant, trace_pressure, unweighted,
+    reaction_pressure, resultant, trace_pressure, unweighted, without_radial,
 };
 use super::resultant::{forces, resultant_check};
 use super::tolerance::chosen;
@@ -52,8 +52,9 @@ impl Sides<'_> {
     pub fn compare(&self, all: &[Judged]) -> (Vec<ContactSummary>, Vec<Check>) {
         let (mut summaries, mut checks) = (Vec::new(), Vec::new());
         for (index, interface) in self.problem.interfaces.iter().enumerate() {
-            let own = dual_pressure(self.dual, index);
-            let mut summary = self.summary((index, interface), &own);
+            let weighted = dual_pressure(self.dual, index);
+            let own = unweighted(self.problem, interface, &weighted);
+            let mut summary = self.summary((index, interface), &weighted);
             for judged in all {
                 summary.profiles.extend(self.profiles(index, interface, judged));
             }
@@ -117,7 +118,7 @@ impl Sides<'_> {
             None => trace_pressure(problem, interface, best),
         };
         let (force, moment) = resultant(problem, interface, &pieces);
-        let force = reactions.map_or(force, |r| r.resultant);
+        let force = reactions.map_or(force, |r| without_radial(problem, r.resultant));
         let moment = reactions.map_or(moment, |r| reaction_moment(problem, interface, r));
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
@@ -137,7 +138,8 @@ impl Sides<'_> {
             return checks;
         }
         // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
-        let bounded = reactions.filter(|_| best.candidate.is_polynomial());
+        let by_rule = !best.candidate.is_polynomial() || problem.section().is_revolved();
+        let bounded = reactions.filter(|_| !by_rule);
         let nodes = bounded.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
         let means = nodes.as_deref().and_then(nodal::difference);
         let floor = self.no_pressure().max(SEEN * self.scales.data.stress);

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::candidate::{Judged, Reactions};
 pub use super::piece::{Piece, variation};
+use super::revolved::stress_at;
 use crate::dual::DualSolution;
 use crate::element::displacement::through;
 use crate::element::{Strains, side};
@@ -39,6 +40,23 @@ pub fn unweighted(problem: &Problem, interface: &Interface, own: &[Piece]) -> Ve
     interface.pairs.iter().zip(own).map(of_pair).collect()
 }
 
+/// The mean weight of the section beside vertex `v` of a pair, as the Bernstein polynomial of that vertex weighs it where there are `inner`
+/// more between.
+fn around(problem: &Problem, pair: &ContactPair, v: usize, inner: usize) -> f64 {
+    let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+    let degree = (inner + 1) as f64;
+    let (own, other) = if v == pair.first[0] { (a, b) } else { (b, a) };
+    if a == b { a } else { ((degree + 1.0) * own + other) / (degree + 2.0) }
+}
+
+/// The same of the polynomials between.
+fn around_between(problem: &Problem, pair: &ContactPair, inner: usize) -> Vec<f64> {
+    let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+    let degree = (inner + 1) as f64;
+    let at = |j: usize| ((degree + 1.0 - j as f64) * a + (j as f64 + 1.0) * b) / (degree + 2.0);
+    (1..=inner).map(|j| if a == b { a } else { at(j) }).collect()
+}
+
 /// Part of an edge that is as near to its end as pressures beside an axis are taken.
 const ASIDE: f64 = 1e-6;
 
@@ -51,7 +69,8 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
     let mut weight = HashMap::new();
     for (k, pair) in interface.pairs.iter().enumerate() {
         for v in pair.first {
-            *weight.entry(v).or_insert(0.0) += share(k) * pair.length * thickness;
+            *weight.entry(v).or_insert(0.0) +=
+                share(k) * pair.length * thickness * around(problem, pair, v, inner(k).len());
         }
     }
     let force: HashMap<_, _> = reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
@@ -63,7 +82,8 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
         .map(|(k, pair)| {
             let [a, b] = pair.first.map(at);
             let part = share(k) * pair.length * thickness;
-            let inner = inner(k).iter().map(|r| r / part);
+            let between = around_between(problem, pair, inner(k).len());
+            let inner = inner(k).iter().zip(between).map(|(r, around)| r / (part * around));
             if !pair.direction.is_constant() && inner.len() > 0 {
                 // Apart, those of a direction that hardly turns say little; together they do.
                 let count = inner.len() as f64;
@@ -85,15 +105,22 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         let mut strains = Strains::default();
         strains.on(mesh.corners(t), &judged.field.displacement, t, sub);
         let n = pair.normal;
-        let pressure = |e: [f64; 3]| {
-            let s = materials[mesh.body[t]].stress(e);
+        let revolved = problem.section().revolved();
+        let pressure = |e: [f64; 3], l: [f64; 3]| {
+            let s = match revolved {
+                None => materials[mesh.body[t]].stress(e),
+                Some(revolved) => {
+                    let [rr, zz, _, rz] = stress_at(problem, revolved, &judged.field.displacement, t, sub, l);
+                    [rr, zz, rz]
+                }
+            };
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
         // Of degree k − 1 on the edge, from corner to corner of the subtriangle.
         let degree = judged.field.displacement.degree(t) - 1;
         let values: Vec<[f64; 2]> = (0..=degree.max(1))
             .map(|j| j as f64 / degree.max(1) as f64)
-            .map(|s| [pressure(strains.at([1.0 - s, s, 0.0])), 0.0])
+            .map(|s| [pressure(strains.at([1.0 - s, s, 0.0]), [1.0 - s, s, 0.0]), 0.0])
             .collect();
         let mut pressures: Vec<f64> = through(&values).into_iter().map(|p| p[0]).collect();
         if mesh.edges[e].vertices[0] != pair.first[0] {
@@ -118,13 +145,20 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
         // The arm of a force along a direction that turns is quadratic.
         moment -= size * p.integral(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);
     }
-    // Around the axis radial forces and moments cancel.
-    if problem.section().is_revolved() { ([0.0, force[1]], 0.0) } else { (force, moment) }
+    (without_radial(problem, force), if problem.section().is_revolved() { 0.0 } else { moment })
+}
+
+/// A force, of a body of revolution along its axis: around it radial forces and moments cancel.
+pub fn without_radial(problem: &Problem, force: [f64; 2]) -> [f64; 2] {
+    if problem.section().is_revolved() { [0.0, force[1]] } else { force }
 }
 
 /// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.
 pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
+    if problem.section().is_revolved() {
+        return 0.0;
+    }
     let mut normal = HashMap::new();
     let mut moment = 0.0;
     for (k, pair) in interface.pairs.iter().enumerate() {

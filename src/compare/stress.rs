@@ -2,6 +2,7 @@
 
 use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
+use super::revolved::{compare_stresses, von_mises_of_displacement};
 use crate::dual::DualSolution;
 use crate::element::Strains;
 use crate::element::{Samples, StressField, contraction};
@@ -23,6 +24,14 @@ pub fn von_mises_of_means(problem: &Problem, stress: &StressField) -> Vec<f64> {
             let force = |t: usize| problem.scene.bodies[mesh.body[t]].body_force[0];
             all.map(|t| von_mises_of(revolved.mean(stress, t, mesh.corners(t), force(t)))).collect()
         }
+    }
+}
+
+/// Von Mises stress of the mean stress of a displacement solution on each triangle.
+pub fn von_mises_of_field(problem: &Problem, judged: &Judged) -> Vec<f64> {
+    match problem.section().revolved() {
+        None => von_mises_map(problem, &primal_means(problem, judged)),
+        Some(revolved) => von_mises_of_displacement(problem, revolved, &judged.field.displacement),
     }
 }
 
@@ -56,6 +65,9 @@ pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
 
 /// Compares the stresses.
 pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judged: &Judged) -> StressSummary {
+    if let Some(revolved) = problem.section().revolved() {
+        return compare_stresses(problem, revolved, (dual, complementary), judged);
+    }
     let mesh = &problem.mesh;
     let materials = problem.materials();
     // ½‖λ_h − σ(u_h)‖² on each triangle.
@@ -100,6 +112,7 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
         component_l2_difference: ComponentDifference {
             xx: relative(difference[0]),
             yy: relative(difference[1]),
+            tt: None,
             xy: relative(difference[2]),
             von_mises: relative(mises),
         },
