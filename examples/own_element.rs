@@ -11,6 +11,7 @@ use hypercircle::bounds::complementary;
 use hypercircle::dual::{self, Condensed, DualError, DualSolution, Options};
 use hypercircle::element::quadrature::triangle_rule;
 use hypercircle::element::{Elements, EquilibriumElement, Material, Modes, ModesMut, block};
+use hypercircle::load::{BodyForce, balancing};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use nalgebra::{DMatrix, DVector};
@@ -49,7 +50,7 @@ impl EquilibriumElement for Plain {
         (MODES + 1) * VALUES
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce, out: ModesMut<'_>) {
         let parts = [0, 1, 2].map(|sub| Part::new(corners, sub));
         let (energy, traction) = (energy(&parts, material), tractions(&parts));
         let balanced = null_space(&equations(&parts));
@@ -62,12 +63,13 @@ impl EquilibriumElement for Plain {
         let fields = r.transpose().solve_lower_triangular(&basis.transpose()).map_or(basis, |f| f.transpose());
         let modes = fields.columns(columns.len() - MODES, MODES).into_owned();
 
+        let force = force.about_centroid(corners);
         let mut particular = DVector::zeros(VALUES);
         for (sub, part) in parts.iter().enumerate() {
             for (node, between) in NODES.iter().enumerate() {
-                let [x, y] = part.middle(*between);
-                particular[value(sub, node, 0)] = -body_force[0] * x;
-                particular[value(sub, node, 1)] = -body_force[1] * y;
+                for (c, stress) in balancing(&force, part.middle(*between)).into_iter().enumerate() {
+                    particular[value(sub, node, c)] = stress;
+                }
             }
         }
         particular -= &fields * ((&energy * &fields).transpose() * (&energy * &particular));
@@ -83,7 +85,7 @@ impl EquilibriumElement for Plain {
     fn stresses(
         &self,
         _: [[f64; 2]; 3],
-        _: [f64; 2],
+        _: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         particular: f64,

@@ -70,12 +70,14 @@ pub mod elasticity;
 pub mod element;
 pub mod job;
 mod lanes;
+pub mod load;
 pub mod measure;
 pub mod mesh;
 pub mod plot;
 pub mod primal;
 pub mod problem;
 pub mod process;
+pub mod proof;
 #[cfg(feature = "python")]
 mod python;
 pub mod quantity;

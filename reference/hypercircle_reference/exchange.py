@@ -19,17 +19,20 @@ VERSION = 1
 
 @dataclass(frozen=True)
 class Body:
-    """Homogeneous material and body force per volume (2,).
+    """Homogeneous material, body force per volume (2,) at the origin and its gradient (2, 2).
 
     Isotropic by Young's modulus and Poisson's ratio, or any other by ``stiffness`` (3, 3), the stresses xx, yy, xy of unit strains
     ε_xx, ε_yy, 2 ε_xy; ``young`` is then the largest entry on its diagonal, which only tells stiff bodies from soft ones.
+    ``initial_strain`` (3, 3) has a row (value, ∂x, ∂y) for each of ε_xx, ε_yy, ε_xy: the strain without stress, affine in x.
     """
 
     name: str
     young: float
     poisson: float
     body_force: np.ndarray
+    force_gradient: np.ndarray
     stiffness: np.ndarray | None = None
+    initial_strain: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -123,6 +126,10 @@ class Problem:
     traction_edges: np.ndarray
     traction_values: np.ndarray
     contacts: list[Contact]
+    spring_edges: np.ndarray
+    spring_opposite: np.ndarray
+    spring_axes: np.ndarray
+    spring_stiffness: np.ndarray
     pin_vertices: np.ndarray
     pin_directions: np.ndarray
 
@@ -171,6 +178,14 @@ def parse_problem(data: dict) -> Problem:
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
     pins = _records(data, "pins")
+    springs = _records(data, "springs") if "springs" in data else []
+    alone = [{**entry, "opposite": -1} if entry.get("opposite") is None else entry for entry in springs]
+    axes = _column(springs, "springs", "axes", (2, 2))
+    for axis in range(2):
+        _check_unit(axes[:, axis], "springs", "axes")
+    stiffness = _column(springs, "springs", "stiffness", (2,))
+    if np.any(stiffness < 0.0):
+        raise BadExchange(f"springs[{np.argmin(stiffness.min(axis=1))}].stiffness is negative")
     along = _column(roller, "roller", "normal", (2,))
     _check_unit(along, "roller", "normal")
     directions = _column(pins, "pins", "direction", (2,))
@@ -197,6 +212,10 @@ def parse_problem(data: dict) -> Problem:
         contacts=[
             _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(_records(data, "contacts"))
         ],
+        spring_edges=_index_column(springs, "springs", "edge", (), len(edges)),
+        spring_opposite=_index_column(alone, "springs", "opposite", (), len(edges), lowest=-1),
+        spring_axes=axes,
+        spring_stiffness=stiffness,
         pin_vertices=_index_column(pins, "pins", "vertex", (), len(points)),
         pin_directions=directions,
     )
@@ -214,19 +233,25 @@ def _revolution(entry) -> Revolution:
 
 
 def _body(entry: dict, where: str, stresses: int) -> Body:
-    name, force = str(_get(entry, "name", where)), _array(entry, "body_force", where, (2,))
+    name, force, slope = str(_get(entry, "name", where)), _get(entry, "body_force", where), np.zeros((2, 2))
+    if isinstance(force, dict):
+        inside = f"{where}.body_force"
+        force, slope = _array(force, "value", inside, (2,)), _array(force, "gradient", inside, (2, 2))
+    else:
+        force = _array(entry, "body_force", where, (2,))
+    initial = _array(entry, "initial_strain", where, (3, 3)) if "initial_strain" in entry else None
     if "stiffness" in entry:
         stiffness = _array(entry, "stiffness", where, (stresses, stresses))
         if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
             raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
-        return Body(name, float(stiffness.diagonal().max()), 0.0, force, stiffness)
+        return Body(name, float(stiffness.diagonal().max()), 0.0, force, slope, stiffness, initial)
     young = _scalar(entry, "young", f"{where}.young")
     poisson = _scalar(entry, "poisson", f"{where}.poisson")
     if not young > 0.0:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
         raise BadExchange(f"{where}.poisson is {poisson}, expected a number in (-1, 1/2)")
-    return Body(name, young, poisson, force)
+    return Body(name, young, poisson, force, slope, None, initial)
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:

@@ -13,13 +13,16 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
+import scipy.sparse as sp
 import ufl
+from petsc4py import PETSc
 
 from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
 from .lattice import Lattice, square, traction_weights, weighted_traction_weights, weights
+from .springs import stiffness as spring_stiffness
 
 GAUSS_POINTS = 6
 """Points of the rule on quadrilaterals, in each direction."""
@@ -51,21 +54,27 @@ class Numbering:
 class Model:
     """Stiffness (PETSc matrix) and load (PETSc vector) in FEniCSx's numbering, two components per node.
 
-    ``displacement`` is a function of the space, and ``energy`` the compiled form of its strain energy. The space owns
+    ``load`` counts what initial strains pull, ``working`` does not: the work that enters the energy is that of the latter.
+    ``displacement`` is a function of the space, ``energy`` the compiled form of its strain energy, and ``springs`` the part of the
+    stiffness that springs have, if there are any. The space owns
     the communicator of matrix and vector, and has to live as long as they and all that is duplicated from them.
     """
 
     stiffness: object
     load: object
+    working: object
     displacement: object
     energy: object
+    springs: object
     numbering: Numbering
     seconds_compile: float
     seconds_assemble: float
 
     def strain_energy(self, u) -> float:
-        """½ ∫ c e(u):e(u), summed over the triangles. In uᵀK u, a rigid motion would take more digits: all of |u|²."""
-        return compat.evaluate(self.energy, self.displacement, u)
+        """½ ∫ c (e(u) − ε0):(e(u) − ε0), summed over the triangles, and what springs store. In uᵀK u, a rigid motion would take more
+        digits: all of |u|²."""
+        strain = compat.evaluate(self.energy, self.displacement, u)
+        return strain if self.springs is None else strain + 0.5 * u.dot(self.springs * u)
 
 
 class Mesh:
@@ -175,30 +184,72 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
     lame, shear = (compat.constant_per_cell(mesh.mesh, materials[owner, i]) for i in range(2))
-    stiffness = _stiffness(mesh, owner)
+    law = _stiffness(mesh, owner)
     force = ufl.as_vector([compat.constant_per_cell(mesh.mesh, forces[owner, i]) for i in range(2)])
+    gradients = np.array([body.force_gradient for body in problem.bodies]) * problem.thickness
+    if np.any(gradients):
+        slope = [[compat.constant_per_cell(mesh.mesh, gradients[owner, i, j]) for j in range(2)] for i in range(2)]
+        force = force + ufl.dot(ufl.as_matrix(slope), ufl.SpatialCoordinate(mesh.mesh))
     displacement = compat.function(space)
 
-    def work(u, v):
-        isotropic = lame * section.trace(u) * section.trace(v) + 2 * shear * section.product(u, v)
-        if stiffness is None:
+    def product(e, d):
+        isotropic = lame * section.trace(e) * section.trace(d) + 2 * shear * section.contraction(e, d)
+        if law is None:
             return section.integral(isotropic)
-        of_others = ufl.inner(ufl.dot(stiffness, section.engineering(u)), section.engineering(v))
+        of_others = ufl.inner(ufl.dot(law, section.engineering(e)), section.engineering(d))
         return section.integral(isotropic + of_others)
+
+    def work(u, v):
+        if law is None and problem.revolution is None:
+            both = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
+            return section.integral(both)
+        return product(section.strain(u), section.strain(v))
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
-    energy = compat.form(comm, 0.5 * work(displacement, displacement))
+    initial = _initial_strain(mesh, owner)
+    if initial is None:
+        energy, pull = compat.form(comm, 0.5 * work(displacement, displacement)), None
+    else:
+        elastic = _strain(displacement) - initial
+        energy = compat.form(comm, 0.5 * product(elastic, elastic))
+        pull = compat.form(comm, product(initial, _strain(v)))
     linear = compat.form(comm, section.integral(ufl.inner(force, v)))
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)
     numbering = mesh.numbering(space, lattice)
     stiffness = compat.assemble_matrix(bilinear)
+    springs = _springs(mesh, degree, numbering)
+    if springs is not None:
+        stiffness.axpy(1.0, springs, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     load = compat.assemble_vector(linear)
     tractions = _traction_load(problem, lattice)
     load.array[:] += tractions[numbering.owned(mesh.comm.rank)].reshape(-1)
-    return Model(stiffness, load, displacement, energy, numbering, compiled - start, perf_counter() - compiled)
+    working = load
+    if pull is not None:
+        working = load.copy()
+        load.axpy(1.0, compat.assemble_vector(pull))
+    return Model(stiffness, load, working, displacement, energy, springs, numbering, compiled - start, perf_counter() - compiled)
+
+
+def _springs(mesh: Mesh, degree: int, numbering: Numbering):
+    """The stiffness of springs in FEniCSx's numbering; None where there are none."""
+    problem, rank = mesh.problem, mesh.comm.rank
+    if len(problem.spring_edges) == 0:
+        return None
+    of_nodes = spring_stiffness(problem, degree).tocoo()
+    number = (2 * numbering.nodes[:, None] + np.arange(2)).reshape(-1)
+    rows, columns = number[of_nodes.row], number[of_nodes.col]
+    begin, end = 2 * numbering.ranges[rank]
+    size = 2 * int(numbering.ranges.max())
+    mine = (rows >= begin) & (rows < end)
+    local = sp.csr_matrix((of_nodes.data[mine], (rows[mine] - begin, columns[mine])), shape=(end - begin, size))
+    local.sort_indices()
+    csr = (local.indptr.astype(PETSc.IntType), local.indices.astype(PETSc.IntType), local.data)
+    matrix = PETSc.Mat().createAIJ(((int(end - begin), size), (int(end - begin), size)), csr=csr, comm=mesh.comm)
+    matrix.assemble()
+    return matrix
 
 
 def _strain(v):
@@ -215,18 +266,21 @@ class Slice:
         """Over the figure, times what a point of it stands for."""
         return density * self.measure
 
-    def trace(self, v):
+    def strain(self, v):
+        """e(v)."""
+        return _strain(v)
+
+    def trace(self, e):
         """The change of volume."""
-        return ufl.div(v)
+        return ufl.tr(e)
 
-    def product(self, u, v):
-        """e(u):e(v)."""
-        return ufl.inner(_strain(u), _strain(v))
+    def contraction(self, e, d):
+        """e:d."""
+        return ufl.inner(e, d)
 
-    def engineering(self, v):
+    def engineering(self, e):
         """ε_xx, ε_yy and 2 ε_xy."""
-        strain = _strain(v)
-        return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+        return ufl.as_vector([e[0, 0], e[1, 1], 2 * e[0, 1]])
 
 
 class Revolved(Slice):
@@ -243,20 +297,26 @@ class Revolved(Slice):
     def integral(self, density):
         return self.radius * density * self.measure
 
-    def hoop(self, v):
-        """ε_θθ."""
-        return v[0] / self.radius
+    def strain(self, v):
+        """e(v) in the directions r, z and θ."""
+        e, hoop = _strain(v), v[0] / self.radius
+        return ufl.as_matrix([[e[0, 0], e[0, 1], 0], [e[0, 1], e[1, 1], 0], [0, 0, hoop]])
 
-    def trace(self, v):
-        return ufl.div(v) + self.hoop(v)
-
-    def product(self, u, v):
-        return ufl.inner(_strain(u), _strain(v)) + self.hoop(u) * self.hoop(v)
-
-    def engineering(self, v):
+    def engineering(self, e):
         """ε_rr, ε_zz, ε_θθ and 2 ε_rz."""
-        strain = _strain(v)
-        return ufl.as_vector([strain[0, 0], strain[1, 1], self.hoop(v), 2 * strain[0, 1]])
+        return ufl.as_vector([e[0, 0], e[1, 1], e[2, 2], 2 * e[0, 1]])
+
+
+def _initial_strain(mesh: Mesh, owner: np.ndarray):
+    """ε0, affine in x, or None where no body has one."""
+    bodies = mesh.problem.bodies
+    if all(body.initial_strain is None for body in bodies):
+        return None
+    values = np.array([np.zeros((3, 3)) if body.initial_strain is None else body.initial_strain for body in bodies])[owner]
+    x = ufl.SpatialCoordinate(mesh.mesh)
+    part = [[compat.constant_per_cell(mesh.mesh, values[:, i, j]) for j in range(3)] for i in range(3)]
+    xx, yy, xy = (value + along_x * x[0] + along_y * x[1] for value, along_x, along_y in part)
+    return ufl.as_matrix([[xx, xy], [xy, yy]])
 
 
 def _stiffness(mesh: Mesh, owner: np.ndarray):

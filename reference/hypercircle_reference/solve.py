@@ -159,7 +159,7 @@ class Reduced:
         for at, bound in zip(closed, (self.constraints.upper, self.constraints.lower)):
             w.array[at] = bound[mine[at]]
         u = self._displacement(w)
-        strain_energy, work = self.model.strain_energy(u), u.dot(self.model.load)
+        strain_energy, work = self.model.strain_energy(u), u.dot(self.model.working)
         displacement = np.zeros(len(self.constraints.offset))
         pieces = self.comm.allgather((self.dofs, u.array_r.copy(), w.array_r.copy(), gradient.array_r.copy()))
         for dofs, values, *_ in pieces:

@@ -47,8 +47,8 @@ impl UpperBound {
 
     /// The same with all terms that there are.
     pub fn of_terms(problem: &Problem, displacement: Displacement, terms: UpperTerms) -> Self {
-        let UpperTerms { potential, widening, triangles, pairs } = terms;
-        let local = LocalGap::of(problem, triangles, pairs);
+        let UpperTerms { potential, widening, triangles, pairs, springs } = terms;
+        let local = LocalGap::of(problem, triangles, pairs, springs);
         UpperBound { displacement, potential, widening, local, prepared: Prepared::default() }
     }
 

@@ -1,14 +1,17 @@
-//! Complementary and potential energy: −Π(λ) = −½∫ a λ:λ + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g and 𝓛(v) = ½∫ c e(v):e(v) − ∫F·v − ∫_{Γτ} P·v.
+//! Complementary and potential energy: −Π(λ) = −½∫ a λ:λ − ∫ λ:ε0 + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g and 𝓛(v) = ½∫ c (e(v) − ε0):(e(v) − ε0) − ∫F·v − ∫_{Γτ} P·v.
 
 use rayon::prelude::*;
 
 use super::counted::Counted;
 use super::jump::side_coefficients;
+use super::mid::stress_of;
+use super::springs::{complementary_of_springs, potential_of_springs};
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
-use crate::element::Strains;
-use crate::element::geometry::sub_area;
-use crate::element::{Displacement, Material, Samples, Section, StressField, side, triangle};
+use crate::element::geometry::{sub_area, sub_corners};
+use crate::element::{Displacement, Material, Samples, Section, StressField, contraction, side, triangle};
+use crate::element::{Strains, elastic_degree};
+use crate::load::BodyForce;
 use crate::problem::{ContactPair, Problem};
 
 /// Complementary energy of a stress field.
@@ -16,10 +19,14 @@ use crate::problem::{ContactPair, Problem};
 pub struct Complementary {
     /// 𝒮(λ) = ½∫ a λ:λ.
     pub strain: f64,
+    /// ∫ λ:ε0.
+    pub initial: f64,
     /// ∫_{Γu} T·u0.
     pub support_work: f64,
     /// ∫_{ΓK} T_n g ≤ 0.
     pub gap_work: f64,
+    /// ∫ t²/2k of springs and elastic layers.
+    pub springs: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
     /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
@@ -27,9 +34,14 @@ pub struct Complementary {
 }
 
 impl Complementary {
+    /// 𝒮(λ) and what springs store.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.springs
+    }
+
     /// −Π(λ), the lower bound.
     pub fn lower(&self) -> f64 {
-        (self.support_work + self.gap_work) - self.strain
+        (self.support_work + self.gap_work) - self.stored() - self.initial
     }
 }
 
@@ -44,6 +56,26 @@ pub fn square_on(stress: &StressField, t: usize, material: &Material, third: f64
         }
     }
     sum
+}
+
+/// ∫ σ:ε0 on triangle `t`, a third of which has the area `third`, and the integral of its absolute value.
+pub fn initial_on(stress: &StressField, t: usize, material: &Material, corners: [[f64; 2]; 3], third: f64) -> [f64; 2] {
+    let initial = material.initial();
+    if initial.is_none() {
+        return [0.0; 2];
+    }
+    let shapes = Samples::of_stress(stress.degree(t), 1);
+    let (mut sum, mut size) = (0.0, 0.0);
+    for sub in 0..3 {
+        let q = sub_corners(corners, sub);
+        for (i, (l, weight)) in shapes.points.iter().enumerate() {
+            let value = stress.sample(t, sub, shapes, i);
+            let strain = initial.at([0, 1].map(|c| (0..3).map(|k| l[k] * q[k][c]).sum()));
+            sum += weight * third * contraction(value, strain);
+            size += weight.abs() * third * absolute(value) * absolute(strain);
+        }
+    }
+    [sum, size]
 }
 
 /// ‖σ‖²_a, per unit thickness.
@@ -64,42 +96,48 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
 pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> Complementary {
     let mesh = &problem.mesh;
     let materials = problem.materials();
-    let terms: Vec<(f64, f64)> = (0..mesh.triangles.len())
+    let terms: Vec<[f64; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
         .map(|t| {
             if !counted.triangle(t) {
-                return (0.0, 0.0);
+                return [0.0; 3];
             }
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
             if let Some(revolved) = problem.section().revolved() {
-                let force = problem.scene.bodies[mesh.body[t]].body_force[0];
+                let force = problem.body_force(t);
                 let [square, sensitivity] = revolved.square(stress, t, mesh.corners(t), material, force);
-                return (0.5 * square, sensitivity * shape(mesh.corners(t)));
+                return [0.5 * square, sensitivity * shape(mesh.corners(t)), 0.0];
             }
             let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
             let product = |value: &[f64; 3]| material.spread(*value);
             let sensitivity = 3.0 * third / nodes.len() as f64 * nodes.iter().map(product).sum::<f64>();
-            (sum, sensitivity * shape(mesh.corners(t)))
+            let [initial, size] = initial_on(stress, t, material, mesh.corners(t), third);
+            [sum, (sensitivity + 2.0 * size) * shape(mesh.corners(t)), initial]
         })
         .collect();
-    let strain: Sum = terms.iter().map(|t| t.0).collect();
-    let sensitivity: f64 = terms.iter().map(|t| t.1).sum();
+    let strain: Sum = terms.iter().map(|t| t[0]).collect();
+    let sensitivity: f64 = terms.iter().map(|t| t[1]).sum();
+    let initial: Sum = terms.iter().map(|t| t[2]).collect();
     let support = support_work_of(problem, stress, counted);
     let mut gap = Sum::default();
     for (_, pair) in problem.pairs().enumerate().filter(|(p, _)| counted.pair(*p)) {
         let t = contact_traction(problem, stress, pair);
         gap.add(pair.length * side::integral(&t, &pair.gap_polynomial()));
     }
+    let springs = complementary_of_springs(problem, stress, counted);
     let t = problem.scene.thickness;
     Complementary {
         strain: t * strain.value(),
+        initial: t * initial.value(),
         support_work: t * support.value(),
         gap_work: t * gap.value(),
-        magnitude: t * (strain.magnitude() + support.magnitude() + gap.magnitude()),
-        sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()),
+        springs: springs.value,
+        magnitude: t * (strain.magnitude() + initial.magnitude() + support.magnitude() + gap.magnitude())
+            + springs.value,
+        sensitivity: t * (sensitivity + support.magnitude() + gap.magnitude()) + springs.sensitivity,
     }
 }
 
@@ -144,8 +182,10 @@ fn support_work_of(problem: &Problem, stress: &StressField, counted: Counted<'_>
 /// Potential energy of a displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Potential {
-    /// ½∫ c e(v):e(v).
+    /// ½∫ c (e(v) − ε0):(e(v) − ε0).
     pub strain: f64,
+    /// ½∫ k j² of springs and elastic layers.
+    pub springs: f64,
     /// ∫F·v + ∫P·v.
     pub work: f64,
     /// Sum of the absolute values of all terms.
@@ -155,9 +195,14 @@ pub struct Potential {
 }
 
 impl Potential {
+    /// The energy of strains and springs.
+    pub fn stored(&self) -> f64 {
+        self.strain + self.springs
+    }
+
     /// 𝓛(v).
     pub fn total(&self) -> f64 {
-        self.strain - self.work
+        self.stored() - self.work
     }
 }
 
@@ -184,23 +229,26 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
     let sensitivity: f64 = terms.iter().map(|t| t[1]).sum();
     let force = |body: usize| problem.scene.bodies[body].body_force;
     let work = counted_work(problem, v, force, problem.tractions(), counted);
+    let springs = potential_of_springs(problem, v, counted);
     let t = problem.scene.thickness;
     Potential {
         strain: t * strain.value(),
+        springs: springs.value,
         work: t * work.value(),
-        magnitude: t * (strain.magnitude() + work.magnitude()),
-        sensitivity: t * (sensitivity + work.magnitude()),
+        magnitude: t * (strain.magnitude() + work.magnitude()) + springs.value,
+        sensitivity: t * (sensitivity + work.magnitude()) + springs.sensitivity,
     }
 }
 
-/// ½∫ c e(v):e(v) on triangle `t`, per unit thickness, and what a relative error of one in every number could change.
+/// ½∫ c (e(v) − ε0):(e(v) − ε0) on triangle `t`, per unit thickness, and what a relative error of one in every number could change.
 pub fn strain_on(problem: &Problem, v: &Displacement, t: usize) -> [f64; 2] {
-    strain_of(problem, v, t, t)
+    strain_with(problem.section(), &problem.material(problem.mesh.body[t]), problem.mesh.corners(t), v, t)
 }
 
-/// The same for the displacement that `v` has as its triangle `own`, on triangle `t`.
+/// ½∫ c e(v):e(v), without initial strain, for the displacement that `v` has as its triangle `own`, on triangle `t`.
 pub fn strain_of(problem: &Problem, v: &Displacement, own: usize, t: usize) -> [f64; 2] {
-    strain_with(problem.section(), &problem.material(problem.mesh.body[t]), problem.mesh.corners(t), v, own)
+    let material = problem.material(problem.mesh.body[t]).without_initial();
+    strain_with(problem.section(), &material, problem.mesh.corners(t), v, own)
 }
 
 fn strain_with(section: Section, material: &Material, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
@@ -209,11 +257,11 @@ fn strain_with(section: Section, material: &Material, corners: [[f64; 2]; 3], v:
         return [energy, sensitivity * shape(corners)];
     }
     let area = sub_area(corners);
-    let samples = Samples::of(v.degree(t) - 1, 0);
+    let samples = Samples::of(elastic_degree(v.degree(t), material), 0);
     let (mut strain, mut sensitivity) = (0.0, 0.0);
     let mut strains = Strains::default();
     for sub in 0..3 {
-        strains.on(corners, v, t, sub);
+        strains.elastic(corners, v, t, sub, material);
         for (q, (_, weight)) in samples.points.iter().enumerate() {
             let e = strains.sample(samples, q);
             strain += 0.5 * weight * area * material.strain_product(e, e);
@@ -221,6 +269,32 @@ fn strain_with(section: Section, material: &Material, corners: [[f64; 2]; 3], v:
         }
     }
     [strain, sensitivity * shape(corners)]
+}
+
+/// ½∫ cε0:ε0, thickness included: the energy of bodies that are held as they are.
+pub fn initial_energy(problem: &Problem) -> f64 {
+    let mesh = &problem.mesh;
+    let materials = problem.materials();
+    if materials.iter().all(|material| material.initial().is_none()) {
+        return 0.0;
+    }
+    let of = |t: usize| {
+        let (material, corners) = (&materials[mesh.body[t]], mesh.corners(t));
+        let middles = [0, 1, 2].map(|i| [0, 1].map(|c| 0.5 * (corners[i][c] + corners[(i + 1) % 3][c])));
+        let at = |x: [f64; 2]| material.strain_product(material.initial().at(x), material.initial().at(x));
+        mesh.area(t) / 6.0 * middles.map(at).iter().sum::<f64>()
+    };
+    problem.scene.thickness * (0..mesh.triangles.len()).map(of).sum::<f64>()
+}
+
+/// ∫ σ(v):ε0, thickness included.
+pub fn initial_work(problem: &Problem, v: &Displacement) -> f64 {
+    if problem.scene.bodies.iter().all(|body| body.initial.is_none()) {
+        return 0.0;
+    }
+    let (mesh, materials, stress) = (&problem.mesh, problem.materials(), stress_of(problem, v));
+    let of = |t: usize| initial_on(&stress, t, &materials[mesh.body[t]], mesh.corners(t), mesh.area(t) / 3.0)[0];
+    problem.scene.thickness * (0..mesh.triangles.len()).map(of).collect::<Sum>().value()
 }
 
 /// The work of the loads on `v`, ∫F·v + ∫P·v, per unit thickness.
@@ -233,7 +307,7 @@ pub fn work(problem: &Problem, v: &Displacement) -> Sum {
 pub fn work_of(
     problem: &Problem,
     v: &Displacement,
-    force: impl Fn(usize) -> [f64; 2],
+    force: impl Fn(usize) -> BodyForce,
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
 ) -> Sum {
     counted_work(problem, v, force, tractions, Counted::ALL)
@@ -242,7 +316,7 @@ pub fn work_of(
 fn counted_work(
     problem: &Problem,
     v: &Displacement,
-    force: impl Fn(usize) -> [f64; 2],
+    force: impl Fn(usize) -> BodyForce,
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
     counted: Counted<'_>,
 ) -> Sum {
@@ -250,27 +324,28 @@ fn counted_work(
     let mut work = Sum::default();
     for t in (0..mesh.triangles.len()).filter(|t| counted.triangle(*t)) {
         let force = force(mesh.body[t]);
-        if force != [0.0; 2] {
-            if section.is_revolved() {
-                for sub in 0..3 {
-                    let forces = section.body_forces(mesh.corners(t), sub, v.degree(t), force);
-                    for c in 0..2 {
-                        work.add(v.sub(t, sub).zip(&forces).map(|(u, f)| u[c] * f[c]).sum());
-                    }
-                }
+        if !force.is_none() {
+            if let Some(revolved) = section.revolved() {
+                work.extend(revolved.work_inside(&force, mesh.corners(t), v, t));
                 continue;
             }
-            // Every Bernstein polynomial has the same mean.
-            let share = sub_area(mesh.corners(t)) / triangle::len(v.degree(t)) as f64;
-            // Component by component: what cancels between them is rounded all the same.
-            for (sub, c) in (0..3).flat_map(|sub| [0, 1].map(|c| (sub, c))) {
-                work.add(v.sub(t, sub).map(|u| share * force[c] * u[c]).sum());
-            }
+            work.extend(work_inside(&force, mesh.corners(t), v, t));
         }
     }
     let tractions = tractions.filter(|(e, _)| counted.boundary_edge(mesh, *e));
     tractions.for_each(|(e, ends)| work.extend(work_on_edge(problem, v, e, ends)));
     work
+}
+
+/// The work of a body force on the displacement that `v` has as its triangle `t`, in the terms of a sum.
+pub fn work_inside(force: &BodyForce, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 6] {
+    let forces = [0, 1, 2].map(|sub| force.on(sub_corners(corners, sub)).of_area(sub_area(corners)));
+    // Component by component: what cancels between them is rounded all the same.
+    [0, 1, 2, 3, 4, 5].map(|term| {
+        let (sub, c) = (term / 2, term % 2);
+        let weights = triangle::indices(v.degree(t)).map(|alpha| forces[sub].against(alpha)[c]);
+        v.sub(t, sub).zip(weights).map(|(u, weight)| weight * u[c]).sum()
+    })
 }
 
 /// The work on `v` of a traction with the given values at the ends of edge `e`, per unit thickness, by components.

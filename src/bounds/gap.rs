@@ -9,10 +9,11 @@ use rayon::prelude::*;
 
 use super::counted::Counted;
 use super::jump::openings;
+use super::springs::spring_error;
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::sub_area;
-use crate::element::{Displacement, Samples, Strains, StressField, side};
+use crate::element::{Displacement, Samples, Strains, StressField, elastic_degree, side};
 use crate::problem::{ContactPair, Problem};
 
 /// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.
@@ -22,24 +23,27 @@ pub struct LocalGap {
     pub triangles: Vec<f64>,
     /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, interface by interface.
     pub pairs: Vec<Vec<f64>>,
+    /// ½ ∫ (k j + t)²/k on each pair of springs and elastic layers, one after the other.
+    pub springs: Vec<f64>,
     /// Their sum.
     pub total: f64,
 }
 
 impl LocalGap {
-    /// Of the terms of all triangles and of all contact pairs, one interface after the other.
-    pub fn of(problem: &Problem, triangles: Vec<f64>, pairs: Vec<f64>) -> Self {
-        let total: Sum = triangles.iter().chain(&pairs).copied().collect();
+    /// Of the terms of all triangles, of all contact pairs, one interface after the other, and of all springs.
+    pub fn of(problem: &Problem, triangles: Vec<f64>, pairs: Vec<f64>, springs: Vec<f64>) -> Self {
+        let total: Sum = triangles.iter().chain(&pairs).chain(&springs).copied().collect();
         let mut pairs = pairs.into_iter();
         let pairs = problem.interfaces.iter().map(|of| pairs.by_ref().take(of.pairs.len()).collect()).collect();
-        LocalGap { triangles, pairs, total: total.value() }
+        LocalGap { triangles, pairs, springs, total: total.value() }
     }
 }
 
 /// Integrates the local terms of the gap, thickness included.
 pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> LocalGap {
     let triangles = constitutive_error(problem, stress, v, Counted::ALL);
-    LocalGap::of(problem, triangles, contact_error(problem, stress, v, Counted::ALL))
+    let contact = contact_error(problem, stress, v, Counted::ALL);
+    LocalGap::of(problem, triangles, contact, spring_error(problem, stress, v, Counted::ALL))
 }
 
 /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, thickness included; zero where it is not counted.
@@ -69,15 +73,15 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
             if let Some(revolved) = problem.section().revolved() {
-                let force = problem.scene.bodies[mesh.body[t]].body_force[0];
+                let force = problem.body_force(t);
                 return thickness * revolved.constitutive_error(stress, v, t, corners, material, force);
             }
-            let (of_v, own) = (v.degree(t) - 1, stress.degree(t));
+            let (of_v, own) = (elastic_degree(v.degree(t), material), stress.degree(t));
             let (samples, shapes) = (Samples::of(of_v, own), Samples::of_stress(own, of_v));
             let mut sum = 0.0;
             let mut strains = Strains::default();
             for sub in 0..3 {
-                strains.on(corners, v, t, sub);
+                strains.elastic(corners, v, t, sub, material);
                 for (q, (_, weight)) in samples.points.iter().enumerate() {
                     let e = strains.sample(samples, q);
                     let of_stress = material.strain(stress.sample(t, sub, shapes, q));

@@ -14,8 +14,8 @@
 use rayon::prelude::*;
 
 use super::UpperBound;
-use crate::element::Strains;
 use crate::element::{Displacement, StressField, triangle};
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// m = (λ + c e(v))/2, of the higher degree of the two; `None` where they are on different meshes.
@@ -24,7 +24,8 @@ pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> O
     if stress.len() != v.len() || problem.section().is_revolved() {
         return None;
     }
-    let degree = |t: usize| stress.degree(t).max(v.degree(t) - 1);
+    let own = degrees(problem, v);
+    let degree = |t: usize| stress.degree(t).max(own(t));
     let mut mean = with_stresses(problem, v, degree);
     for t in 0..stress.len() {
         let own = stress.in_degree(t, degree(t));
@@ -33,9 +34,15 @@ pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> O
     Some(mean)
 }
 
-/// The stress of a displacement, of its degree less one.
+/// The degrees of the stresses of a displacement.
+fn degrees<'a>(problem: &'a Problem, v: &'a Displacement) -> impl Fn(usize) -> usize + Sync + 'a {
+    let materials = problem.materials();
+    move |t| elastic_degree(v.degree(t), &materials[problem.mesh.body[t]])
+}
+
+/// The stress of a displacement, of its degree less one, or linear where the initial strain is.
 pub fn stress_of(problem: &Problem, v: &Displacement) -> StressField {
-    with_stresses(problem, v, |t| v.degree(t) - 1)
+    with_stresses(problem, v, degrees(problem, v))
 }
 
 /// The stress of a displacement in the given degrees, which are no lower than its own.
@@ -47,7 +54,7 @@ fn with_stresses(problem: &Problem, v: &Displacement, degree: impl Fn(usize) -> 
         let (corners, material, degree) = (mesh.corners(t), &materials[mesh.body[t]], degree(t));
         let mut strains = Strains::default();
         for (sub, values) in block.chunks_exact_mut(triangle::len(degree)).enumerate() {
-            strains.on(corners, v, t, sub);
+            strains.elastic(corners, v, t, sub, material);
             for (value, node) in values.iter_mut().zip(triangle::indices(degree)) {
                 let l = node.map(|i| if degree == 0 { 1.0 / 3.0 } else { i as f64 / degree as f64 });
                 *value = material.stress(strains.at(l));

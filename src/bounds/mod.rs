@@ -12,6 +12,7 @@ mod on_ranks;
 mod pipe;
 mod ranks;
 mod rounding;
+mod springs;
 mod sum;
 mod terms;
 pub mod upper;
@@ -25,6 +26,7 @@ pub use jump::{jumps, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;
+pub use springs::{OnSprings, spring_jumps, spring_tractions};
 pub use sum::Sum;
 pub use upper::{
     Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation,

@@ -4,6 +4,7 @@ use super::counted::Counted;
 use super::energy::{Complementary, Potential, complementary_of, potential_of, work_of_excess};
 use super::gap::{constitutive_error, contact_error};
 use super::rounding::{ROUNDING_PER_TERM, across_rollers, balance_rounding, largest_by_edge};
+use super::springs::spring_error;
 use super::sum::Sum;
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
@@ -29,15 +30,16 @@ impl LowerTerms {
     }
 
     /// The numbers, as another process takes them.
-    pub fn numbers(&self) -> [f64; 6] {
-        let Complementary { strain, support_work, gap_work, magnitude, sensitivity } = self.complementary;
-        [strain, support_work, gap_work, magnitude, sensitivity, self.rounding]
+    pub fn numbers(&self) -> [f64; 8] {
+        let Complementary { strain, initial, support_work, gap_work, springs, magnitude, sensitivity } =
+            self.complementary;
+        [strain, initial, support_work, gap_work, springs, magnitude, sensitivity, self.rounding]
     }
 
     /// The sum of the terms of all ranks, each given by its numbers.
     pub fn sum<'a>(ranks: impl Iterator<Item = &'a [f64]> + Clone) -> Self {
-        let [strain, support_work, gap_work, magnitude, sensitivity, rounding] = summed(ranks);
-        let complementary = Complementary { strain, support_work, gap_work, magnitude, sensitivity };
+        let [strain, initial, support_work, gap_work, springs, magnitude, sensitivity, rounding] = summed(ranks);
+        let complementary = Complementary { strain, initial, support_work, gap_work, springs, magnitude, sensitivity };
         LowerTerms { complementary, rounding }
     }
 }
@@ -53,6 +55,8 @@ pub struct UpperTerms {
     pub triangles: Vec<f64>,
     /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, one interface after the other; zero where it is not counted.
     pub pairs: Vec<f64>,
+    /// ½ ∫ (k j + t)²/k on each pair of springs, one after the other; zero where it is not counted.
+    pub springs: Vec<f64>,
 }
 
 impl UpperTerms {
@@ -66,19 +70,22 @@ impl UpperTerms {
             widening: rounding + across_rollers(problem, stress, v, counted),
             triangles: constitutive_error(problem, stress, v, counted),
             pairs: contact_error(problem, stress, v, counted),
+            springs: spring_error(problem, stress, v, counted),
         }
     }
 
     /// The numbers of the energy, as another process takes them.
-    pub fn numbers(&self) -> [f64; 5] {
-        let Potential { strain, work, magnitude, sensitivity } = self.potential;
-        [strain, work, magnitude, sensitivity, self.widening]
+    pub fn numbers(&self) -> [f64; 6] {
+        let Potential { strain, springs, work, magnitude, sensitivity } = self.potential;
+        [strain, springs, work, magnitude, sensitivity, self.widening]
     }
 
     /// The sum of the terms of all ranks, each given by the numbers of its energy, and the terms of the gap.
     pub fn sum<'a>(ranks: impl Iterator<Item = &'a [f64]> + Clone, triangles: Vec<f64>, pairs: Vec<f64>) -> Self {
-        let [strain, work, magnitude, sensitivity, widening] = summed(ranks);
-        UpperTerms { potential: Potential { strain, work, magnitude, sensitivity }, widening, triangles, pairs }
+        let [strain, springs, work, magnitude, sensitivity, widening] = summed(ranks);
+        let potential = Potential { strain, springs, work, magnitude, sensitivity };
+        // Ranks share no scene that has springs.
+        UpperTerms { potential, widening, triangles, pairs, springs: Vec::new() }
     }
 }
 

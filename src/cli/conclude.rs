@@ -34,6 +34,8 @@ pub struct Particulars {
     pub failure: Option<String>,
     /// Its numbers beside those of the baseline.
     pub baseline: Vec<BaselineRow>,
+    /// Whether a proof of the bracket is to travel with the report.
+    pub is_to_prove: bool,
 }
 
 impl Session {
@@ -75,6 +77,7 @@ impl Session {
             residual,
             failure,
             baseline,
+            is_to_prove,
         } = particulars;
         let is_claimed = residual.is_some();
         let finer = sharpened.map(|Sharpened { certified, history: meshes, stopped }| {
@@ -106,6 +109,9 @@ impl Session {
             &fields,
         );
         dossier.report.baseline = baseline;
+        if is_to_prove {
+            self.prove(&mut dossier, certified, finer.as_ref(), comparison);
+        }
         of(dossier)
     }
 

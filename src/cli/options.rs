@@ -148,6 +148,14 @@ pub struct RunOptions {
     pub quiet: bool,
 }
 
+/// What travels with the report.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct ProofOptions {
+    /// Leave proof.npz beside the report, from which `hypercircle-check` verifies the bracket in exact arithmetic
+    #[arg(long)]
+    pub proof: bool,
+}
+
 impl RunOptions {
     /// The folder for results about `scene`. It need not exist.
     pub fn folder(&self, scene: &Scene) -> PathBuf {

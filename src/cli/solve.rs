@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
-use super::options::{Limits, RunOptions, SolveOptions};
+use super::options::{Limits, ProofOptions, RunOptions, SolveOptions};
 use super::session::{DualRun, Session};
 use super::{CliError, Exit};
 use crate::compare::{Allowances, Comparison, compare};
@@ -30,6 +30,9 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// What travels with the report.
+    #[command(flatten)]
+    pub proof: ProofOptions,
 }
 
 /// Solves the scene in stresses.
@@ -53,9 +56,15 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let session = Session::open("solve", scene, &args.solve, args.run.quiet, &args.job)?;
+    args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     let Solved { run, comparison, answers } = solved(args, &session, Some(&folder))?;
-    session.conclude(&run, &comparison, Particulars { answers, ..Particulars::default() }, &folder)
+    session.conclude(
+        &run,
+        &comparison,
+        Particulars { answers, is_to_prove: args.proof.proof, ..Particulars::default() },
+        &folder,
+    )
 }
 
 /// A solved scene.

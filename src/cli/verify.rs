@@ -8,7 +8,7 @@ use clap::value_parser;
 use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
-use super::options::{JudgeOptions, Limits, RunOptions, SolveOptions, positive};
+use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions, positive};
 use super::revolved::refuse_models;
 use super::session::Session;
 use super::{CliError, Exit};
@@ -41,6 +41,9 @@ pub struct Args {
     /// Where results go.
     #[command(flatten)]
     pub run: RunOptions,
+    /// What travels with the report.
+    #[command(flatten)]
+    pub proof: ProofOptions,
     /// Degrees of the displacement model, each from 1 to 9, with commas between
     #[arg(
         long, value_name = "P,…", value_delimiter = ',', default_values_t = [1, 2],
@@ -128,6 +131,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     // There are none on quadrilaterals of a body of revolution.
     let revolved = session.scene.kinematics == Kinematics::Axisymmetric;
     let cells = if revolved { WantedCells::Triangles } else { args.primal_cells };
+    args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
     let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
@@ -198,6 +202,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         failure: failure.as_ref().map(ToString::to_string),
         baseline,
         notes: on_cells.into_iter().map(|text| Note { weakens_guarantee: false, text }).collect(),
+        is_to_prove: args.proof.proof,
         ..Particulars::default()
     };
     let exit = session.conclude(&run, &comparison, particulars, &folder)?;

@@ -7,6 +7,7 @@ use super::ceiling::{Extent, MISTAKE, PART};
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::revolved;
 use super::solution::Numbering;
+use crate::bounds::energy::initial_energy;
 use crate::bounds::{
     Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,
 };
@@ -155,7 +156,9 @@ impl Judged {
             _ if problem.section().is_revolved() && candidate.is_solution => revolved::forces(problem, &candidate).1,
             _ => field.potential,
         };
-        let balance = candidate.is_solution.then(|| Balance::new(problem, &candidate, field.potential.strain));
+        let balance = candidate
+            .is_solution
+            .then(|| Balance::new(problem, &candidate, field.potential.stored() + initial_energy(problem)));
         let larger = extent.larger(candidate.largest());
         Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }

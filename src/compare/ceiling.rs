@@ -8,6 +8,7 @@ use super::Check;
 use super::pressure::{Piece, dual_pressure, resultant};
 use super::resultant::forces;
 use crate::bounds::Bracket;
+use crate::bounds::energy::initial_energy;
 use crate::dual::DualSolution;
 use crate::problem::{Problem, Scales};
 
@@ -27,7 +28,7 @@ const OF_DATA: f64 = 1e-9;
 /// What the problem says of the size of its solution, whatever the field: from λ_h and the displacement that belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Strain energy of λ_h.
+    /// Energy of the strains of λ_h, initial ones counted in.
     pub strain: f64,
     /// Largest displacement of the admissible field made from λ_h; infinite where there is none.
     pub displacement: f64,
@@ -35,12 +36,18 @@ pub struct Extent {
 
 impl Extent {
     /// From the two bounds of the stress side.
-    pub fn of(bracket: &Bracket) -> Self {
+    pub fn of(problem: &Problem, bracket: &Bracket) -> Self {
         let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
             let field = &free.displacement;
             (0..field.len()).map(|t| field.largest(t)).fold(0.0, f64::max)
         });
-        Extent { strain: bracket.complementary.strain, displacement }
+        // Strains are those of the stress and the initial ones.
+        let held = initial_energy(problem);
+        let strain = match held > 0.0 {
+            true => (bracket.complementary.stored().max(0.0).sqrt() + held.sqrt()).powi(2),
+            false => bracket.complementary.stored(),
+        };
+        Extent { strain, displacement }
     }
 
     /// `largest` displacement, or the largest that a correct field has where that is less.
@@ -99,8 +106,8 @@ impl Ceilings {
         let part = PART * MISTAKE;
         let of_data = OF_DATA * scales.data.energy;
         Ceilings {
-            extent: Extent::of(bracket),
-            energy: part * bracket.complementary.strain.max(0.0) + of_data,
+            extent: Extent::of(problem, bracket),
+            energy: part * bracket.complementary.stored().max(0.0) + of_data,
             force: part * (forces(problem) + contact.sum::<f64>()) + OF_DATA * scales.data.force,
             of_data: (2.0 * of_data).sqrt(),
         }

@@ -6,9 +6,11 @@
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::bounds::Cell;
 use crate::element::Quadrilateral;
 use crate::element::quadrature::segment_rule;
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 /// Points in each direction of a rule that is as good as exact.
@@ -63,14 +65,17 @@ pub fn forces(
     forces
 }
 
-/// ∫ φ of the nodes.
-pub fn weights(cell: &Quadrilateral) -> Vec<f64> {
-    let mut weights = vec![0.0; cell.nodes()];
+/// ∫ f φ of the nodes, per unit thickness.
+pub fn load(cell: &Quadrilateral, force: &BodyForce) -> Vec<[f64; 2]> {
+    let mut sums = vec![[0.0; 2]; cell.nodes()];
     for (at, weight) in rule(full(cell)) {
         let (_, determinant) = cell.gradients(at);
-        weights.iter_mut().zip(cell.shapes(at)).for_each(|(sum, w)| *sum += weight * determinant * w);
+        let f = force.at(cell.point(at));
+        for (sum, w) in sums.iter_mut().zip(cell.shapes(at)) {
+            (0..2).for_each(|c| sum[c] += weight * determinant * w * f[c]);
+        }
     }
-    weights
+    sums
 }
 
 /// Of every triangle the quadrilateral that it is a part of.
@@ -125,9 +130,15 @@ impl NodalForces {
             for (node, f) in cell.nodes.iter().zip(own) {
                 (0..2).for_each(|c| forces.left[*node][c] += thickness * f[c]);
             }
-            let f = problem.scene.bodies[body].body_force;
-            for (node, weight) in cell.nodes.iter().zip(weights(&cell.field)) {
-                (0..2).for_each(|c| forces.load[*node][c] += thickness * weight * f[c]);
+            if !material.initial().is_none() {
+                for (at, weight) in rule(points) {
+                    let (gradients, _) = cell.field.gradients(at);
+                    let held = material.held_back(cell.field.position(at));
+                    forces.add_initial(thickness * weight, held, &cell.nodes, &gradients);
+                }
+            }
+            for (node, f) in cell.nodes.iter().zip(load(&cell.field, problem.body_force(t))) {
+                (0..2).for_each(|c| forces.load[*node][c] += thickness * f[c]);
             }
             for (at, weight) in rule(points) {
                 let (gradients, determinant) = cell.field.gradients(at);
@@ -142,6 +153,7 @@ impl NodalForces {
                 }
             }
         }
+        forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
         forces.add_tractions(problem, candidate.degree);
         forces.take_loads();
         forces

@@ -1,6 +1,7 @@
 //! Forces on the Bernstein polynomials of a displacement of any degree: [`NodalForces`] by coefficients in place of nodes.
 
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::element::geometry::gradients;
 use crate::element::{PlainDisplacement, plain, triangle};
 use crate::problem::{Condition, Problem};
@@ -78,12 +79,23 @@ impl NodalForces {
                     (stiffest[node], forces.triangle[node]) = (part, t);
                 }
             }
-            let f = problem.scene.bodies[mesh.body[t]].body_force;
-            for node in nodes {
-                let load = &mut forces.load[node];
-                *load = [0, 1].map(|c| load[c] + area / triangle::len(k) as f64 * f[c]);
+            if !material.initial().is_none() {
+                let held: [[f64; 3]; 3] = mesh.corners(t).map(|corner| material.held_back(corner));
+                for term in &terms {
+                    let s = triangle::indices(1).zip(held).fold([0.0; 3], |sum, (corner, s)| {
+                        let part = triangle::product(term.lowered, corner);
+                        [0, 1, 2].map(|c| sum[c] + part * s[c])
+                    });
+                    forces.add_initial(area, s, &[nodes[term.alpha]], &[g[term.side]]);
+                }
+            }
+            let force = problem.force_on(t).of_area(area);
+            for (node, alpha) in nodes.into_iter().zip(triangle::indices(k)) {
+                let (load, f) = (&mut forces.load[node], force.against(alpha));
+                *load = [0, 1].map(|c| load[c] + f[c]);
             }
         }
+        forces.add_springs(problem, k, Functions::Coefficients, |node| field.values()[node]);
         forces.press(problem, k);
         forces.take_loads();
         forces

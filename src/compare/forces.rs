@@ -1,5 +1,6 @@
 //! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
 
+use super::springs::Functions;
 use crate::bounds::{Hold, Holds, Nodes};
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
@@ -11,9 +12,9 @@ const MIDPOINTS: usize = 3;
 /// Per node (vertices, then for degree 2 the midpoint of every edge; of higher degrees per coefficient), thickness included.
 #[derive(Debug, Clone)]
 pub struct NodalForces {
-    /// ∫ σ(u):e(φ) − ∫ F·φ − ∫ P·φ for the two displacements of each node: the force that supports and contact exert.
+    /// ∫ c (e(u) − ε0):e(φ) − ∫ F·φ − ∫ P·φ for the two displacements of each node: the force that supports and contact exert.
     pub left: Vec<[f64; 2]>,
-    /// ∫ F·φ + ∫ P·φ.
+    /// ∫ F·φ + ∫ P·φ + ∫ cε0:e(φ).
     pub load: Vec<[f64; 2]>,
     /// Σ_j |K_ij| |u_j| + |load|: what rounding errors of the values at the nodes are relative to.
     pub size: Vec<f64>,
@@ -27,6 +28,8 @@ impl NodalForces {
     /// Of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
     pub fn new(problem: &Problem, degree: usize, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
         let mut forces = Self::on(problem, degree, vertex, middle, |_| true);
+        let value = |node: usize| *vertex.get(node).unwrap_or_else(|| &middle[node - vertex.len()]);
+        forces.add_springs(problem, degree, Functions::Values, value);
         forces.add_tractions(problem, degree);
         forces.take_loads();
         forces
@@ -70,6 +73,15 @@ impl NodalForces {
         [e, s]
     }
 
+    /// Adds to the loads what cε0 at one point, which counts `weight`, does on nodes whose functions have `gradients` there.
+    pub(super) fn add_initial(&mut self, weight: f64, s: [f64; 3], nodes: &[usize], gradients: &[[f64; 2]]) {
+        for (&node, d) in nodes.iter().zip(gradients) {
+            self.load[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+            self.load[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+            self.size[node] += weight.abs() * d[0].hypot(d[1]) * (s[0].abs() + s[1].abs() + s[2].abs());
+        }
+    }
+
     /// The forces of stresses and body forces on the triangles that are `counted`.
     pub(super) fn on(
         problem: &Problem,
@@ -80,6 +92,10 @@ impl NodalForces {
     ) -> Self {
         let mesh = &problem.mesh;
         let vertices = mesh.points.len();
+        let of_initial = |material: &Material, k: usize, at: usize| {
+            let [_, b, c] = [at, at + 1, at + 2].map(|i| mesh.corners(k)[i % 3]);
+            material.held_back([0.5 * (b[0] + c[0]), 0.5 * (b[1] + c[1])])
+        };
         let count = vertices + if degree == 2 { mesh.edges.len() } else { 0 };
         let mut forces = NodalForces::zeros(count);
         let mut stiffest = vec![0.0; count];
@@ -101,6 +117,9 @@ impl NodalForces {
                 let shape = if degree == 2 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
                 let weight = area / MIDPOINTS as f64;
                 forces.add_stress((material, weight), &nodes, &shape, &u);
+                if !material.initial().is_none() {
+                    forces.add_initial(weight, of_initial(material, k, at), &nodes, &shape);
+                }
                 for (&node, d) in nodes.iter().zip(&shape) {
                     let long = d[0].hypot(d[1]);
                     let part = weight * modulus * long * long;
@@ -110,12 +129,9 @@ impl NodalForces {
                     }
                 }
             }
-            let f = problem.scene.bodies[mesh.body[k]].body_force;
-            // ∫ φ of a quadratic shape function is a third of the area at a midpoint, and zero at a corner.
-            let bearing: &[usize] = if degree == 2 { &quadratic } else { corners };
-            for &node in bearing {
-                forces.load[node][0] += area / 3.0 * f[0];
-                forces.load[node][1] += area / 3.0 * f[1];
+            for (&node, f) in nodes.iter().zip(problem.force_on(k).of_area(area).at_nodes(degree == 2)) {
+                forces.load[node][0] += f[0];
+                forces.load[node][1] += f[1];
             }
         }
         forces

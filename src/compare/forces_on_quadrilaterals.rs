@@ -4,6 +4,7 @@
 //! a solution balances the loads to round-off only in the same one.
 
 use super::forces::NodalForces;
+use super::springs::Functions;
 use crate::bounds::Potential;
 use crate::element::OnQuadrilaterals;
 use crate::element::bilinear::{self, Bilinear};
@@ -22,6 +23,8 @@ impl NodalForces {
         let mut strain = 0.0;
         let materials = problem.materials();
         let rule = segment_rule(2 * points - 1);
+        // Initial strains pull without doing the work of a load.
+        let mut pulls = Vec::new();
         for cell in mesh.quadrilaterals() {
             let body = mesh.body[cell.triangles[0]];
             let material = &materials[body];
@@ -29,13 +32,20 @@ impl NodalForces {
             let map = Bilinear::new(cell.points(mesh));
             let nodes = nodes(mesh, k, &cell);
             let u: Vec<[f64; 2]> = nodes.iter().map(|&n| values[n]).collect();
-            let f = problem.scene.bodies[body].body_force;
+            let force = &problem.scene.bodies[body].body_force;
             let mut parts = vec![0.0; nodes.len()];
             for (at, weight) in rule.iter().flat_map(|(x, v)| rule.iter().map(move |(y, w)| ([*x, *y], v * w))) {
                 let weight = weight * problem.scene.thickness * map.determinant(at);
                 let (shape, gradients) = (bilinear::values(k, at), map.gradients(k, at));
+                let f = force.at(map.at(at));
                 let [e, s] = forces.add_stress((material, weight), &nodes, &gradients, &u);
+                let place = map.at(at);
+                let (held, initial) = (material.held_back(place), material.initial().at(place));
+                let (s, e) = ([0, 1, 2].map(|c| s[c] - held[c]), [0, 1, 2].map(|c| e[c] - initial[c]));
                 strain += 0.5 * weight * (s[0] * e[0] + s[1] * e[1] + 2.0 * s[2] * e[2]);
+                if !material.initial().is_none() {
+                    pulls.push((weight, held, nodes.clone(), gradients.clone()));
+                }
                 for (i, (&node, d)) in nodes.iter().zip(&gradients).enumerate() {
                     let long = d[0].hypot(d[1]);
                     parts[i] += weight * modulus * long * long;
@@ -49,12 +59,14 @@ impl NodalForces {
                 }
             }
         }
+        let springs = forces.add_springs(problem, k, Functions::Values, |node| values[node]);
         forces.add_tractions(problem, k);
         let products = || forces.load.iter().zip(values).map(|(f, u)| f[0] * u[0] + f[1] * u[1]);
         let work = products().sum();
-        let magnitude = strain + products().map(f64::abs).sum::<f64>();
+        let magnitude = strain + springs + products().map(f64::abs).sum::<f64>();
+        pulls.iter().for_each(|(weight, held, nodes, gradients)| forces.add_initial(*weight, *held, nodes, gradients));
         forces.take_loads();
         let sensitivity = forces.size.iter().zip(values).map(|(f, u)| f * u[0].hypot(u[1])).sum();
-        (forces, Potential { strain, work, magnitude, sensitivity })
+        (forces, Potential { strain, springs, work, magnitude, sensitivity })
     }
 }

@@ -23,7 +23,7 @@ use super::stress::primal_means;
 use crate::dual::DualSolution;
 use crate::element::bilinear::Bilinear;
 use crate::element::geometry::sub_corners;
-use crate::element::{Samples, Strains, contraction};
+use crate::element::{Samples, Strains, contraction, elastic_degree};
 use crate::problem::{Condition, Interface, Problem};
 use crate::vector::dot;
 
@@ -173,7 +173,7 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
             let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
-                Condition::Clamped(_) | Condition::Axis => true,
+                Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
                 Condition::Roller { direction, .. } => across(*direction),
                 Condition::Contact { .. } => across(problem.mesh.edge_frame(e).1),
@@ -240,11 +240,11 @@ fn works_on_quadrilaterals(
         for t in cell.triangles {
             let material = &materials[mesh.body[t]];
             let stress = 2.0 * judged.field.local.triangles[t] / problem.scene.thickness;
-            let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
+            let (of_field, own) = (elastic_degree(field.degree(t), material), dual.stress.degree(t));
             let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
             let mut parts = [[0.0; 2]; 4];
             for sub in 0..3 {
-                strains.on(mesh.corners(t), field, t, sub);
+                strains.elastic(mesh.corners(t), field, t, sub, material);
                 let corners = sub_corners(mesh.corners(t), sub);
                 for (q, (l, weight)) in samples.points.iter().enumerate() {
                     let weight = weight * mesh.area(t) / 3.0;

@@ -7,7 +7,7 @@ pub use super::piece::{Piece, variation};
 use super::revolved::stress_at;
 use crate::dual::DualSolution;
 use crate::element::displacement::through;
-use crate::element::{Strains, side};
+use crate::element::{Strains, elastic_degree, side};
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// −t of the dual solution.
@@ -103,12 +103,13 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         let t = mesh.edges[e].triangles[0].unwrap_or(0);
         let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
         let mut strains = Strains::default();
-        strains.on(mesh.corners(t), &judged.field.displacement, t, sub);
+        let material = &materials[mesh.body[t]];
+        strains.elastic(mesh.corners(t), &judged.field.displacement, t, sub, material);
         let n = pair.normal;
         let revolved = problem.section().revolved();
         let pressure = |e: [f64; 3], l: [f64; 3]| {
             let s = match revolved {
-                None => materials[mesh.body[t]].stress(e),
+                None => material.stress(e),
                 Some(revolved) => {
                     let [rr, zz, _, rz] = stress_at(problem, revolved, &judged.field.displacement, t, sub, l);
                     [rr, zz, rz]
@@ -117,7 +118,7 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
         // Of degree k − 1 on the edge, from corner to corner of the subtriangle.
-        let degree = judged.field.displacement.degree(t) - 1;
+        let degree = elastic_degree(judged.field.displacement.degree(t), material);
         let values: Vec<[f64; 2]> = (0..=degree.max(1))
             .map(|j| j as f64 / degree.max(1) as f64)
             .map(|s| [pressure(strains.at([1.0 - s, s, 0.0]), [1.0 - s, s, 0.0]), 0.0])

@@ -196,10 +196,10 @@ pub fn forces(problem: &Problem) -> f64 {
         }
     }
     for t in 0..mesh.triangles.len() {
-        let f = problem.scene.bodies[mesh.body[t]].body_force;
+        let largest = problem.force_on(t).largest();
         let volume =
             if problem.section().is_revolved() { problem.section().volume(mesh.corners(t)) } else { mesh.area(t) };
-        sum += volume * f[0].hypot(f[1]);
+        sum += volume * largest;
     }
     problem.scene.thickness * sum
 }

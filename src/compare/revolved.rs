@@ -46,10 +46,11 @@ pub fn forces(problem: &Problem, candidate: &Candidate) -> (NodalForces, Potenti
         let middles = mesh.triangle_edges[t].map(|e| vertices + e);
         let nodes: Vec<usize> = corners.iter().copied().chain(middles.into_iter().filter(|_| degree == 2)).collect();
         let u: Vec<[f64; 2]> = nodes.iter().map(|&node| candidate.value(node)).collect();
-        let force = problem.scene.bodies[mesh.body[t]].body_force;
+        let ([a, b], [_, axial]) = (section.radial(problem.body_force(t)), section.forces(problem.body_force(t)));
         for (l, weight) in &rule {
             let radius: f64 = (0..3).map(|i| l[i] * radii[i]).sum();
             let weight = weight * thickness * mesh.area(t) * radius;
+            let force = [a + b * radius, axial];
             let shape = shapes(degree, *l, &g);
             let (mut e, mut spread) = ([0.0; 4], 0.0);
             for ((value, d), u0) in shape.iter().zip(&u) {
@@ -107,7 +108,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate) -> (NodalForces, Potenti
         }
     }
     let magnitude = strain + rounded;
-    (forces, Potential { strain, work, magnitude, sensitivity: magnitude })
+    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0 })
 }
 
 /// σ(v) at a point of a subtriangle: (rr, zz, tt, rz).
@@ -152,7 +153,7 @@ pub fn compare_stresses(
     let field = &judged.field.displacement;
     let (mut difference, mut norm, mut mises) = ([0.0; 4], 0.0, 0.0);
     for t in 0..mesh.triangles.len() {
-        let force = problem.scene.bodies[mesh.body[t]].body_force[0];
+        let force = problem.body_force(t);
         for sub in 0..3 {
             for &(bary, weight) in triangle_rule(2 * dual.stress.degree(t).max(field.degree(t))) {
                 let l = revolved.stress_at(&dual.stress, t, sub, mesh.corners(t), force, bary);

@@ -4,8 +4,9 @@ use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use super::revolved::{compare_stresses, von_mises_of_displacement};
 use crate::dual::DualSolution;
-use crate::element::Strains;
+use crate::element::geometry::sub_corners;
 use crate::element::{Samples, StressField, contraction};
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// Von Mises stress of a stress (xx, yy, out of the plane, xy).
@@ -21,8 +22,7 @@ pub fn von_mises_of_means(problem: &Problem, stress: &StressField) -> Vec<f64> {
     match problem.section().revolved() {
         None => von_mises_map(problem, &all.map(|t| stress.mean(t)).collect::<Vec<_>>()),
         Some(revolved) => {
-            let force = |t: usize| problem.scene.bodies[mesh.body[t]].body_force[0];
-            all.map(|t| von_mises_of(revolved.mean(stress, t, mesh.corners(t), force(t)))).collect()
+            all.map(|t| von_mises_of(revolved.mean(stress, t, mesh.corners(t), problem.body_force(t)))).collect()
         }
     }
 }
@@ -44,11 +44,12 @@ pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
         .map(|t| {
             let mut mean = [0.0; 3];
             let field = &judged.field.displacement;
-            let samples = Samples::of(field.degree(t) - 1, 0);
+            let material = &materials[mesh.body[t]];
+            let samples = Samples::of(elastic_degree(field.degree(t), material), 0);
             for sub in 0..3 {
-                strains.on(mesh.corners(t), field, t, sub);
+                strains.elastic(mesh.corners(t), field, t, sub, material);
                 for (q, (_, weight)) in samples.points.iter().enumerate() {
-                    let s = materials[mesh.body[t]].stress(strains.sample(samples, q));
+                    let s = material.stress(strains.sample(samples, q));
                     (0..3).for_each(|c| mean[c] += weight * s[c] / 3.0);
                 }
             }
@@ -60,7 +61,13 @@ pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
 /// Von Mises stress of mean stresses.
 pub fn von_mises_map(problem: &Problem, means: &[[f64; 3]]) -> Vec<f64> {
     let materials = problem.materials();
-    means.iter().enumerate().map(|(t, &s)| materials[problem.mesh.body[t]].von_mises(s)).collect()
+    let of =
+        |(t, &s): (usize, &[f64; 3])| materials[problem.mesh.body[t]].von_mises(s, centroid(problem.mesh.corners(t)));
+    means.iter().enumerate().map(of).collect()
+}
+
+fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
+    [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0)
 }
 
 /// Compares the stresses.
@@ -79,11 +86,12 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
     for t in 0..mesh.triangles.len() {
         let material = &materials[mesh.body[t]];
         let field = &judged.field.displacement;
-        let (of_field, own) = (field.degree(t) - 1, dual.stress.degree(t));
+        let (of_field, own) = (elastic_degree(field.degree(t), material), dual.stress.degree(t));
         let (samples, shapes) = (Samples::of(of_field, own), Samples::of_stress(own, of_field));
         for sub in 0..3 {
-            strains.on(mesh.corners(t), field, t, sub);
-            for (q, (_, weight)) in samples.points.iter().enumerate() {
+            strains.elastic(mesh.corners(t), field, t, sub, material);
+            let place = sub_corners(mesh.corners(t), sub);
+            for (q, (l_at, weight)) in samples.points.iter().enumerate() {
                 let l = dual.stress.sample(t, sub, shapes, q);
                 let s = material.stress(strains.sample(samples, q));
                 let w = weight * mesh.area(t) / 3.0;
@@ -91,7 +99,8 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
                     difference[c] += w * (l[c] - s[c]).powi(2);
                 }
                 norm += w * contraction(l, l);
-                let of = |s| material.von_mises(s);
+                let at = [0, 1].map(|c| (0..3).map(|i| l_at[i] * place[i][c]).sum());
+                let of = |s| material.von_mises(s, at);
                 mises += w * (of(l) - of(s)).powi(2);
             }
         }

@@ -36,7 +36,10 @@ fn trial(space: &Space<'_>, thickness: f64) -> Trial {
     let strain = layer.thickness_strain();
     let made = space.column(layer.forces(&strain));
     let problem = space.problem();
-    let own = space.stiffness(|b| Some(Moduli::of_body(problem, &problem.scene.bodies[b])));
+    let own = space.stiffness_on(
+        |b| Some(Moduli::of_body(problem, &problem.scene.bodies[b])),
+        |node| space.solution.candidate.value(node),
+    );
     let change: Vec<f64> = made.iter().zip(&own).map(|(made, own)| made - own).collect();
     let sentence = "plane stress is made of a layer of solid elements whose thickness strain is continuous between elements, as CalculiX \
                     makes its CPS elements";

@@ -5,6 +5,7 @@ use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
 use crate::compare::cells;
+use crate::load::BodyForce;
 use crate::problem::Condition;
 
 /// Coefficients of components that are smaller than this are none.
@@ -19,7 +20,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         .map(|traction| (traction.on.as_str(), of_traction(space, &traction.on)))
         .filter(|(_, forces)| forces.iter().flatten().any(|f| *f != 0.0))
         .collect();
-    let weights: Vec<usize> = (0..scene.bodies.len()).filter(|b| scene.bodies[*b].body_force != [0.0; 2]).collect();
+    let weights: Vec<usize> = (0..scene.bodies.len()).filter(|b| !scene.bodies[*b].body_force.is_none()).collect();
     let several = tractions.len() + weights.len() > 1;
     let negative = |forces: &[[f64; 2]]| space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
     let thickness = scene.thickness;
@@ -34,7 +35,11 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         vec![Finding::new(name, Some(s), Some(1.0), sentence)]
     };
     if several {
-        let column = negative(&space.solution.forces.load);
+        // What initial strains pull is no load.
+        let materials = space.problem().materials();
+        let held = space.forces_of(|b, x| (!materials[b].initial().is_none()).then(|| materials[b].held_back(x)));
+        let load = space.solution.forces.load.iter().zip(&held);
+        let column = negative(&load.map(|(f, h)| [f[0] - h[0], f[1] - h[1]]).collect::<Vec<_>>());
         terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
     }
     for (on, forces) in &tractions {
@@ -55,18 +60,23 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         terms.push(3, columns, move |x| components(&on, given, &parts, x));
     }
     for (b, body) in scene.bodies.iter().enumerate() {
-        let [fx, fy] = [[1.0, 0.0], [0.0, 1.0]].map(|f| of_body(space, b, f));
-        let given = body.body_force;
+        let [fx, fy] = [[1.0, 0.0], [0.0, 1.0]].map(|f| of_body(space, b, &f.into()));
+        let force = &body.body_force;
         let name = format!("body/{}/body_force", body.name);
         let what = format!("the body force of {}", body.name);
-        if given != [0.0; 2] {
-            let whole: Vec<[f64; 2]> = fx.iter().zip(&fy).map(|(x, y)| [x[0] * given[0], y[1] * given[1]]).collect();
+        if !force.is_none() {
+            let whole = of_body(space, b, force);
             let (name, what) = (name.clone(), what.clone());
             terms.push(1, vec![negative(&whole)], move |x| match several {
                 true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
                 false => all(&name, &what, 1.0 + x[0]),
             });
         }
+        // Of a force that is not constant, one that is missing: what is added is told.
+        if !force.is_constant() {
+            continue;
+        }
+        let given = force.given().value;
         terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
             let [found, wanted] = [[given[0] + x[0], given[1] + x[1]], given];
             let vector = |v: [f64; 2]| format!("({}, {})", number(v[0]), number(v[1]));
@@ -130,23 +140,23 @@ fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
     forces
 }
 
-/// Nodal forces of a constant body force in one body.
-fn of_body(space: &Space<'_>, body: usize, force: [f64; 2]) -> Vec<[f64; 2]> {
+/// Nodal forces of a body force in one body.
+fn of_body(space: &Space<'_>, body: usize, force: &BodyForce) -> Vec<[f64; 2]> {
     let (problem, mesh) = (space.problem(), &space.problem().mesh);
     let mut forces = vec![[0.0; 2]; space.count()];
     for t in (0..mesh.triangles.len()).filter(|t| mesh.body[*t] == body) {
         let Some(cell) = space.counted(t) else { continue };
         if let Some(cell) = cell {
-            for (node, weight) in cell.nodes.iter().zip(cells::weights(&cell.field)) {
-                (0..2).for_each(|c| forces[*node][c] += problem.scene.thickness * weight * force[c]);
+            for (node, f) in cell.nodes.iter().zip(cells::load(&cell.field, force)) {
+                (0..2).for_each(|c| forces[*node][c] += problem.scene.thickness * f[c]);
             }
             continue;
         }
-        let part = problem.scene.thickness * mesh.area(t) / 3.0;
         let nodes = space.nodes(t);
-        // A quadratic shape function has a third of the area at a midpoint and nothing at a corner.
-        for node in &nodes[nodes.len() - 3..] {
-            (0..2).for_each(|c| forces[*node][c] += part * force[c]);
+        let shares =
+            force.on(mesh.corners(t)).of_area(problem.scene.thickness * mesh.area(t)).at_nodes(nodes.len() > 3);
+        for (node, f) in nodes.iter().zip(shares) {
+            (0..2).for_each(|c| forces[*node][c] += f[c]);
         }
     }
     forces

@@ -96,13 +96,11 @@ fn body_forces(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let mut forces = vec![[0.0; 2]; space.count()];
     for t in 0..mesh.triangles.len() {
-        let force = problem.scene.bodies[mesh.body[t]].body_force;
-        let whole = problem.scene.thickness * mesh.area(t);
-        let nodes = space.nodes(t);
-        for (k, node) in nodes.iter().enumerate() {
-            let consistent = if nodes.len() == 3 || k >= 3 { 1.0 / 3.0 } else { 0.0 };
+        let force = problem.force_on(t).of_area(problem.scene.thickness * mesh.area(t));
+        let (whole, nodes) = (force.resultant(), space.nodes(t));
+        for (k, (node, consistent)) in nodes.iter().zip(force.at_nodes(nodes.len() > 3)).enumerate() {
             let given = shares.triangle[usize::from(k >= 3)];
-            (0..2).for_each(|c| forces[*node][c] += whole * (consistent - given) * force[c]);
+            (0..2).for_each(|c| forces[*node][c] += consistent[c] - given * whole[c]);
         }
     }
     forces

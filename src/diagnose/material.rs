@@ -4,6 +4,7 @@ use super::fit::Terms;
 use super::space::{Moduli, Space};
 use super::words::{factor, near, number};
 use super::{Finding, Trial};
+use crate::element::Material;
 use crate::scene::{Body, Kinematics};
 
 /// Mistakes without a number: the other plane state, constants exchanged between bodies.
@@ -32,13 +33,13 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         };
         trials.push(with(&turned, negative));
     }
-    trials.push(with(
-        &|b| match bodies[b].elasticity.is_plane_stress_only() {
-            true => own[b],
-            false => Moduli::of_law(other, &bodies[b].elasticity),
-        },
-        Finding::new("kinematics", None, None, sentence),
-    ));
+    let in_other_state = super::anisotropic::change(space, |b| {
+        let Body { elasticity, initial, .. } = &bodies[b];
+        let possible = !elasticity.is_plane_stress_only();
+        possible.then(|| Material::new(other, elasticity).with_initial(other, elasticity, initial))
+    });
+    let findings = vec![Finding::new("kinematics", None, None, sentence)];
+    trials.push(Trial { rank: 0, left: space.left_with(&in_other_state), findings });
     let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     for (i, j) in pairs.take(MOST_PAIRS) {
         let swapped = |b: usize| {

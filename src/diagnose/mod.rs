@@ -7,8 +7,10 @@
 //! (`physical`) and has far fewer unknowns than the residual has numbers. What contact and
 //! supports do shows in forces and displacements there and is read from them.
 
+mod anisotropic;
 mod contact;
 mod fit;
+mod initial;
 mod integration;
 mod layer;
 mod loads;
@@ -153,6 +155,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         let space = Space::new(solution);
         let mut trials = values::trials(&space);
         trials.extend(material::trials(&space));
+        trials.extend(anisotropic::trials(&space));
         trials.extend(layer::trials(&space));
         trials.extend(moved::trial(&space));
         trials.extend(lumped::trials(&space));
@@ -161,6 +164,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         trials.extend(contact::trials(&space));
         let mut terms = Terms::new(&space);
         material::terms(&space, &mut terms);
+        initial::terms(&space, &mut terms);
         loads::terms(&space, &mut terms);
         trials.extend(terms.alone());
         diagnosis.tried = trials.len();

@@ -38,7 +38,8 @@ impl Finding {
 
     /// Whether it says that a body is softer or stiffer.
     fn is_of_stiffness(&self) -> bool {
-        self.name.starts_with("stiffness/") || ["/young", "/poisson"].iter().any(|end| self.name.ends_with(end))
+        self.name.starts_with("stiffness/")
+            || ["/young", "/poisson", "/stiffness"].iter().any(|end| self.name.ends_with(end))
     }
 
     /// Whether it takes a load away.

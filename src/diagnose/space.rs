@@ -198,9 +198,52 @@ impl<'a> Space<'a> {
         }
     }
 
-    /// The column of what stresses with the constants `moduli`, body by body, ask for.
+    /// The column of what stresses with the constants `moduli`, body by body, ask for: those of the strains without the initial ones.
     pub fn stiffness(&self, moduli: impl Fn(usize) -> Option<Moduli>) -> Vec<f64> {
-        self.stiffness_on(moduli, |node| self.solution.candidate.value(node))
+        let mut column = self.stiffness_on(&moduli, |node| self.solution.candidate.value(node));
+        let problem = self.problem();
+        if problem.scene.bodies.iter().any(|body| !body.initial.is_none()) {
+            let materials = problem.materials();
+            let held = self.forces_of(|body, x| Some(moduli(body)?.stress(materials[body].initial().at(x))));
+            column.iter_mut().zip(self.column(held)).for_each(|(c, f)| *c -= f);
+        }
+        column
+    }
+
+    /// Nodal forces ∫ s:e(φ) of a stress that is affine in each body.
+    pub fn forces_of(&self, stress: impl Fn(usize, [f64; 2]) -> Option<[f64; 3]>) -> Vec<[f64; 2]> {
+        let problem = self.problem();
+        let mut forces = vec![[0.0; 2]; self.count()];
+        let mut add = |node: usize, weight: f64, d: [f64; 2], s: [f64; 3]| {
+            forces[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+            forces[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+        };
+        for (t, body) in problem.mesh.body.iter().enumerate() {
+            let corners = problem.mesh.corners(t);
+            if stress(*body, corners[0]).is_none() {
+                continue;
+            }
+            let Some(cell) = self.counted(t) else { continue };
+            if let Some(cell) = cell {
+                for (at, weight) in cells::rule(self.solution.points.unwrap_or(cells::full(&cell.field))) {
+                    let (gradients, _) = cell.field.gradients(at);
+                    let s = stress(*body, cell.field.position(at)).unwrap_or_default();
+                    let weight = problem.scene.thickness * weight;
+                    cell.nodes.iter().zip(gradients).for_each(|(node, d)| add(*node, weight, d, s));
+                }
+                continue;
+            }
+            let weight = problem.scene.thickness * problem.mesh.area(t) / 3.0;
+            let g = gradients(corners);
+            let nodes = self.nodes(t);
+            for at in 0..3 {
+                let shape = if nodes.len() == 6 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
+                let (p, q) = (corners[(at + 1) % 3], corners[(at + 2) % 3]);
+                let s = stress(*body, [0, 1].map(|c| 0.5 * (p[c] + q[c]))).unwrap_or_default();
+                nodes.iter().zip(shape).for_each(|(node, d)| add(*node, weight, d, s));
+            }
+        }
+        forces
     }
 
     /// The same for other displacements.

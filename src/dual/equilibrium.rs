@@ -6,7 +6,7 @@ use super::contact_moments::columns;
 use super::resultants::work_within;
 use super::system::applied;
 use crate::element::{SideValues, StressField};
-use crate::problem::{Condition, ContactPair, Problem, Scales};
+use crate::problem::{BedPair, Condition, ContactPair, Problem, Scales};
 use crate::vector::long::largest;
 use crate::vector::norm;
 
@@ -128,6 +128,10 @@ impl Measured<'_> {
                 };
                 own.iter().map(across).collect()
             }
+            Condition::Elastic { bed, pair, side } => {
+                let bed = &self.problem.beds[*bed];
+                self.on_springs(&bed.pairs[*pair], bed.stiffness, *side, own)
+            }
             Condition::Clamped(_) | Condition::Contact { .. } => Vec::new(),
         };
         let worst = if matches!(condition, Condition::Traction(_)) { &mut found.applied } else { &mut found.jump };
@@ -135,6 +139,22 @@ impl Measured<'_> {
             *worst = worst.max(self.relative.of(norm(*left), e));
             found.work += norm(*left) * norm(*moment);
         }
+    }
+
+    /// What is left on a side of a layer, both of whose sides carry the same, and of a traction along which there are no springs.
+    fn on_springs(&self, pair: &BedPair, stiffness: [f64; 2], side: usize, own: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        if let (1, degree) = (side, own.len() - 1) {
+            let first = self.traction(pair.edge, 0, degree).into_iter().rev();
+            return own.iter().zip(first).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect();
+        }
+        let slack = || pair.axes.iter().zip(stiffness).filter(|(_, k)| *k == 0.0).map(|(axis, _)| axis);
+        let left = |t: &[f64; 2]| {
+            slack().fold([0.0; 2], |sum, [x, y]| {
+                let along = t[0] * x + t[1] * y;
+                [sum[0] + along * x, sum[1] + along * y]
+            })
+        };
+        own.iter().map(left).collect()
     }
 
     /// What is left of t n̂ on both sides of a contact pair, and what of t pulls.
@@ -191,9 +211,18 @@ fn largest_resultant(problem: &Problem, stress: &StressField, moments: &SideValu
     }
     for t in 0..mesh.triangles.len() {
         let body = mesh.body[t];
-        let (f, area) = (problem.scene.bodies[body].body_force, problem.section().volume(mesh.corners(t)));
-        (0..2).for_each(|c| force[body][c] += f[c] * area);
-        gross[body] += norm(f) * area;
+        if problem.section().is_revolved() {
+            // A radial force has no resultant.
+            let [_, axial] = problem.section().forces(problem.body_force(t));
+            let volume = problem.section().volume(mesh.corners(t));
+            force[body][1] += axial * volume;
+            gross[body] += problem.force_on(t).largest() * volume;
+            continue;
+        }
+        let f = problem.force_on(t).of_area(mesh.area(t));
+        let whole = f.resultant();
+        (0..2).for_each(|c| force[body][c] += whole[c]);
+        gross[body] += f.largest() * mesh.area(t);
     }
     if problem.section().is_revolved() {
         // A radial force has no resultant.

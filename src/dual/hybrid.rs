@@ -118,13 +118,14 @@ pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion])
     pivots.into_iter().map(|pivot| pivot.unknown).collect()
 }
 
-/// Mode parameters S = Tᵀm of every triangle. `given` counts the moments of u0 in; without them the result is the
+/// Mode parameters S = Tᵀm of every triangle, then of all springs. `given` counts the moments of u0 and initial strains in; without them the result is the
 /// answer to a correction of the unknowns alone.
 pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) -> Vec<f64> {
     let mesh = &problem.mesh;
     let unknowns = &system.unknowns;
     let moments = if given { unknowns.moments(x) } else { unknowns.moments_of_change(x) };
-    let mut out = vec![0.0; system.modes.parameters()];
+    let mut out = vec![0.0; system.parameters()];
+    system.springs.parameters_from(x, &mut out[system.modes.parameters()..]);
     let parts = system.modes.split_parameters(&mut out);
     parts.into_par_iter().enumerate().with_min_len(256).for_each(|(t, s)| {
         let sides = Sides::new(mesh, &system.unknowns, t, system.modes.degree(t));
@@ -144,6 +145,9 @@ pub fn parameters(problem: &Problem, system: &System, x: &[f64], given: bool) ->
         sides.lower(own, lowered);
         modes.parameters_from_moments(lowered, s);
     });
+    if given {
+        out.iter_mut().zip(system.initial.iter()).for_each(|(s, initial)| *s += initial);
+    }
     out
 }
 
@@ -178,6 +182,7 @@ pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {
         sides.raise(lower, values);
     });
     let mut r = system.external.clone();
+    system.springs.subtract_forces(&s[system.modes.parameters()..], &mut r);
     for (t, values) in tractions.iter().enumerate() {
         let sides = sides(t);
         if let Some(first) = sides.free(&system.unknowns) {

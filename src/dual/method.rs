@@ -61,6 +61,18 @@ pub trait DualMethod: Sync {
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError>;
 }
 
+/// Refuses springs and elastic layers to a method that has no words for them.
+///
+/// # Errors
+/// [`DualError::NotExpressible`].
+pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    let Some(bed) = problem.beds.first() else { return Ok(()) };
+    let what =
+        if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
+    let remedy = "use --method condensed or active-set, without --engine";
+    Err(DualError::NotExpressible { method, what, remedy })
+}
+
 /// What a method hands back before it is measured.
 #[derive(Debug, Clone)]
 pub struct Found {

@@ -4,15 +4,18 @@
 //! nothing else, so every one of them is tested against the others.
 
 mod active_set;
+mod beds;
 mod clearing;
 mod condensed;
 mod contact_moments;
+mod degrees;
 mod dissection;
 mod ends;
 pub mod equilibrium;
 mod factor;
 mod footprint;
 mod hybrid;
+mod initial;
 mod interior;
 mod loaded;
 mod long_contact;
@@ -39,6 +42,7 @@ use std::time::Instant;
 
 pub use active_set::ActiveSet;
 pub use condensed::Condensed;
+pub use degrees::{carrying, spread};
 pub use equilibrium::Equilibrium;
 pub use footprint::Size;
 pub use hybrid::Motion;
@@ -124,7 +128,8 @@ pub fn solve(
     options: &Options,
 ) -> Result<DualSolution, DualError> {
     let start = Instant::now();
-    let found = method.solve(problem, motions, options)?;
+    let options = Options { elements: carrying(problem, &options.elements)?, ..options.clone() };
+    let found = method.solve(problem, motions, &options)?;
     let measure = Instant::now();
     let equilibrium = Equilibrium::measure(problem, &found.stress, &found.moments);
     let contact_traction = contact_traction(problem, &found.stress);

@@ -42,7 +42,9 @@ impl ModeTable {
         let mesh = &problem.mesh;
         let section = problem.section();
         let place = |t: usize| section.place(mesh.corners(t));
-        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), place(t));
+        // A force that is not the same everywhere differs on triangles that are congruent.
+        let own = |t: usize| (!problem.body_force(t).is_constant()).then_some(t);
+        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), own(t), place(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;
         let classes: Vec<Class> = first
@@ -59,9 +61,8 @@ impl ModeTable {
         of_classes.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
             let t = class.triangle;
             let body = mesh.body[t];
-            let force = problem.scene.bodies[body].body_force;
             let out = class.layout.split(out);
-            section.compute(elements.of(t), mesh.corners(t), &materials[body], force, out);
+            section.compute(elements.of(t), mesh.corners(t), &materials[body], problem.body_force(t), out);
         });
         let first_parameter = starts(class.iter().map(|&c| classes[c as usize].layout.parameters));
         ModeTable { elements, class, classes, data, first_parameter, materials }
@@ -115,7 +116,7 @@ impl ModeTable {
         field.blocks_mut().into_par_iter().enumerate().with_min_len(256).for_each(|(t, block)| {
             // What was kept belongs to the triangle that it was computed on.
             let corners = mesh.corners(self.classes[self.class[t] as usize].triangle);
-            let force = problem.scene.bodies[mesh.body[t]].body_force;
+            let force = problem.body_force(t);
             let (modes, s) = (self.of(t), &s[self.parameters_of(t)]);
             problem.section().stresses(self.elements.of(t), corners, force, &modes, s, block);
         });

@@ -124,6 +124,11 @@ impl Pattern {
         }
     }
 
+    /// Adds to entry (i, j), i ≥ j.
+    pub fn add(&self, i: usize, j: usize, value: f64, values: &mut [f64]) {
+        values[self.position(i, j)] += value;
+    }
+
     /// Where entry (i, j), i ≥ j, is stored.
     fn position(&self, i: usize, j: usize) -> usize {
         let (bi, bj) = (self.block_of[i], self.block_of[j]);

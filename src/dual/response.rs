@@ -15,6 +15,7 @@ use super::rigid::unsupported;
 use super::system::{Structured, System, jump_moments, load_of_tractions};
 use super::{DualError, Options};
 use crate::element::{SideValues, StressField, side};
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 /// K and its factor, ready for further loads.
@@ -61,7 +62,7 @@ impl Factorised {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
     /// Body force of each body.
-    pub force: Vec<[f64; 2]>,
+    pub force: Vec<BodyForce>,
     /// Tractions at the two ends of boundary edges, in the order of their vertices, whatever condition holds there.
     pub tractions: Vec<(usize, [[f64; 2]; 2])>,
     /// Initial strains χ (xx, yy, xy), constant on the triangles that have one: the stress wanted is σ̂ + cχ with σ̂ in
@@ -113,7 +114,7 @@ impl Responses<'_> {
             (Cow::Owned(other), modes)
         };
         let external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
-        let mut system = System { modes, rhs: Vec::new(), external, ..system.clone() };
+        let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
         let start = system.strained(&problem, &load.strains);
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
@@ -127,7 +128,7 @@ impl Responses<'_> {
 impl System {
     /// Mode parameters −∫ N_k : χ of the given constant strains: minus those of the moments of χx on the boundary.
     fn strained(&self, problem: &Problem, strains: &[(usize, [f64; 3])]) -> Vec<f64> {
-        let mut out = vec![0.0; self.modes.parameters()];
+        let mut out = vec![0.0; self.parameters()];
         for (t, [xx, yy, xy]) in strains {
             let corners = problem.mesh.corners(*t);
             let at = |i: usize| {

@@ -57,16 +57,23 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
     for (e, condition) in problem.conditions.iter().enumerate() {
         let Some(t) = mesh.edges[e].triangles[0] else { continue };
         let piece = pieces.of_triangle[t];
+        let mut hold = |e: usize, n: [f64; 2]| {
+            for v in mesh.edges[e].vertices {
+                let row = Vector3::from_fn(|i, _| {
+                    let u = at(pieces, piece, &Vector3::ith(i, 1.0), mesh.points[v]);
+                    u[0] * n[0] + u[1] * n[1]
+                });
+                moved[piece] += row * row.transpose();
+            }
+        };
         match condition {
             Condition::Clamped(_) => clamped[piece] = true,
-            Condition::Roller { direction: n, .. } => {
-                for v in mesh.edges[e].vertices {
-                    let row = Vector3::from_fn(|i, _| {
-                        let u = at(pieces, piece, &Vector3::ith(i, 1.0), mesh.points[v]);
-                        u[0] * n[0] + u[1] * n[1]
-                    });
-                    moved[piece] += row * row.transpose();
-                }
+            Condition::Roller { direction, .. } => hold(e, *direction),
+            Condition::Elastic { bed, pair, .. } => {
+                let bed = &problem.beds[*bed];
+                let grounded = bed.pairs[*pair].opposite.is_none();
+                let along = bed.pairs[*pair].axes.into_iter().zip(bed.stiffness).filter(|(_, k)| grounded && *k > 0.0);
+                along.for_each(|(axis, _)| hold(e, axis));
             }
             _ => {}
         }

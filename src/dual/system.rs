@@ -12,8 +12,10 @@ use std::time::Instant;
 use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef};
 use rayon::prelude::*;
 
+use super::beds::Springs;
 use super::factor::SymbolicFactor;
 use super::hybrid::structure;
+use super::initial::initial_parameters;
 use super::modes::ModeTable;
 use super::pattern::Pattern;
 use super::rows::Sides;
@@ -30,6 +32,8 @@ pub struct System {
     pub unknowns: Arc<Unknowns>,
     /// Element matrices.
     pub modes: Arc<ModeTable>,
+    /// Springs and elastic layers.
+    pub springs: Arc<Springs>,
     /// Lower triangle of K.
     pub matrix: Arc<SparseColMat<usize, f64>>,
     /// f, given moments included.
@@ -38,6 +42,8 @@ pub struct System {
     pub external: Vec<f64>,
     /// Upper bound ∫ g B_k of each jump.
     pub jump_bound: Vec<f64>,
+    /// −∫ τ_k:ε0 of each mode; empty where no body has an initial strain.
+    pub initial: Arc<[f64]>,
 }
 
 /// A system with the structure of its factor.
@@ -75,15 +81,24 @@ impl System {
         let modes = ModeTable::new(problem, options.elements.clone());
         let unknowns = Unknowns::new(problem, modes.elements());
         let pattern = Pattern::new(problem, &unknowns);
-        let entries = || entries(problem, &unknowns, &modes, &pattern);
-        let ((values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
+        let initial: Arc<[f64]> = initial_parameters(problem, &modes).into();
+        let entries = || entries(problem, &unknowns, &modes, &initial, &pattern);
+        let springs = Springs::new(problem, &unknowns);
+        let ((mut values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
+        springs.assemble(&pattern, &mut values);
         let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
         let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
-        let (unknowns, modes) = (Arc::new(unknowns), Arc::new(modes));
-        (System { unknowns, modes, matrix, rhs, external, jump_bound }, done)
+        let (unknowns, modes, springs) = (Arc::new(unknowns), Arc::new(modes), Arc::new(springs));
+        (System { unknowns, modes, springs, matrix, rhs, external, jump_bound, initial }, done)
     }
+
+    /// Number of parameters of triangles and springs.
+    pub fn parameters(&self) -> usize {
+        self.modes.parameters() + self.springs.parameters()
+    }
+
     /// The size of the terms of K x: the largest entry of the diagonal times that of x, all of it or a part.
     pub fn size_of_terms(&self, x: &[f64]) -> f64 {
         let columns = self.matrix.symbolic().col_ptr();
@@ -98,7 +113,13 @@ impl System {
 }
 
 /// The entries of K in its pattern, and the part of f that is not from tractions.
-fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &Pattern) -> (Vec<f64>, Vec<f64>) {
+fn entries(
+    problem: &Problem,
+    unknowns: &Unknowns,
+    modes: &ModeTable,
+    initial: &[f64],
+    pattern: &Pattern,
+) -> (Vec<f64>, Vec<f64>) {
     let mesh = &problem.mesh;
     let mut values = vec![0.0; pattern.symbolic.row_idx().len()];
     let mut rhs = vec![0.0; unknowns.count];
@@ -113,7 +134,7 @@ fn entries(problem: &Problem, unknowns: &Unknowns, modes: &ModeTable, pattern: &
         let room = chunk.iter().map(|sides| sides.len() * (sides.len() + 1)).max().unwrap_or(0);
         memory.resize(chunk.len() * room, 0.0);
         let locals = memory.par_chunks_exact_mut(room).zip(&chunk).zip(start..start + chunk.len());
-        locals.with_min_len(64).for_each(|((out, sides), t)| local(unknowns, modes, sides, t, out));
+        locals.with_min_len(64).for_each(|((out, sides), t)| local(unknowns, modes, initial, sides, t, out));
         for ((local, sides), t) in memory.chunks_exact(room).zip(&chunk).zip(start..) {
             let (load, rest) = local.split_at(sides.len());
             let stiffness = &rest[..sides.len() * sides.len()];
@@ -227,8 +248,8 @@ pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<
     y
 }
 
-/// Minus the load of the particular field and of given moments, then T Tᵀ row by row, in the components of the numbering.
-fn local(unknowns: &Unknowns, modes: &ModeTable, sides: &Sides, t: usize, out: &mut [f64]) {
+/// Minus the load of the particular field, of given moments and of initial strains, then T Tᵀ row by row, in the components of the numbering.
+fn local(unknowns: &Unknowns, modes: &ModeTable, initial: &[f64], sides: &Sides, t: usize, out: &mut [f64]) {
     let element = modes.of(t);
     let m = sides.len();
     let (load, rest) = out.split_at_mut(m);
@@ -244,6 +265,11 @@ fn local(unknowns: &Unknowns, modes: &ModeTable, sides: &Sides, t: usize, out: &
             sides.raise(mode, out);
         }
         tractions = &raised;
+    }
+    if !initial.is_empty() {
+        for (mode, s) in tractions.chunks_exact(m).zip(&initial[modes.parameters_of(t)]) {
+            load.iter_mut().zip(mode).for_each(|(l, t)| *l -= s * t);
+        }
     }
     if sides.free(unknowns).is_none() {
         turned.extend_from_slice(tractions);

@@ -6,6 +6,7 @@
 //! first side along the direction of contact are replaced by the jumps j_k = ∫(v' − v'')·n̂ B_k ds (see
 //! [`super::contact_moments`]), and all jumps are numbered last.
 
+use super::beds::BedEdge;
 use super::contact_moments::ContactEdge;
 use crate::element::{Elements, SideValues, side};
 use crate::problem::{Condition, ContactPair, Problem};
@@ -37,6 +38,8 @@ pub enum EdgeMoments {
     },
     /// Γ_K.
     Contact(Box<ContactEdge>),
+    /// On springs, or a side of an elastic layer: on the first side the jumps are the unknowns.
+    Elastic(BedEdge),
 }
 
 /// The part of a moment along an axis, in terms of unknowns: (m · direction) = fixed + Σ coefficient · x.
@@ -125,7 +128,9 @@ impl Unknowns {
         for (e, condition) in problem.conditions.iter().enumerate() {
             let coefficients = usize::from(degree[e]) + 1;
             match *condition {
-                Condition::Interior | Condition::Traction(_) => first_block[e] = push(2 * coefficients),
+                Condition::Interior | Condition::Traction(_) | Condition::Elastic { .. } => {
+                    first_block[e] = push(2 * coefficients);
+                }
                 Condition::Roller { .. } => first_block[e] = push(coefficients),
                 Condition::Clamped(_) | Condition::Axis => {}
                 Condition::Contact { interface, pair, side } => {
@@ -156,6 +161,12 @@ impl Unknowns {
                 Condition::Axis => EdgeMoments::Given(vec![[0.0; 2]; usize::from(degree[e]) + 1]),
                 Condition::Clamped(ends) => {
                     EdgeMoments::Given(side::linear_moments(ends, problem.mesh.edge_frame(e).0, degree[e].into()))
+                }
+                Condition::Elastic { bed, pair, side } => {
+                    let pair = &problem.beds[bed].pairs[pair];
+                    let other = if side == 0 { pair.opposite } else { Some(pair.edge) };
+                    let first = |e: usize| blocks[first_block[e]].start;
+                    EdgeMoments::Elastic(BedEdge::new(pair, side, degree[e].into(), first(e), other.map(first)))
                 }
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
@@ -193,6 +204,7 @@ impl Unknowns {
                 [Component::given([*x, *y], *given), Component::unknown([-y, *x], first + k)]
             }
             EdgeMoments::Contact(edge) => edge.components(k),
+            EdgeMoments::Elastic(edge) => edge.components(k),
         }
     }
 
@@ -211,6 +223,10 @@ impl Unknowns {
         match &self.edges[e] {
             EdgeMoments::Given(_) => ([0; 3], 0),
             EdgeMoments::Free(first) | EdgeMoments::Across { first, .. } => ([block(*first), 0, 0], 1),
+            EdgeMoments::Elastic(edge) => match edge.second() {
+                Some(second) => ([block(edge.first()), block(second), 0], 2),
+                None => ([block(edge.first()), 0, 0], 1),
+            },
             EdgeMoments::Contact(edge) => match (edge.side, edge.second) {
                 (0, Some(other)) => ([block(edge.across), block(edge.jump), block(other)], 3),
                 (1, Some(own)) => ([block(edge.across), block(own), 0], 2),
@@ -231,7 +247,7 @@ impl Unknowns {
                     own.iter_mut().zip(values).for_each(|(m, x)| *m = [x[0], x[1]]);
                 }
                 EdgeMoments::Given(given) => own.copy_from_slice(given),
-                EdgeMoments::Across { .. } | EdgeMoments::Contact(_) => {
+                EdgeMoments::Across { .. } | EdgeMoments::Contact(_) | EdgeMoments::Elastic(_) => {
                     for (k, m) in own.iter_mut().enumerate() {
                         for component in self.components(e, k) {
                             let value =
@@ -273,8 +289,10 @@ impl Unknowns {
 
     /// Gives the unknowns `x` what moment `k` of edge `e` contributes to them.
     pub fn project_moment(&self, e: usize, k: usize, m: [f64; 2], x: &mut [f64]) {
-        if let EdgeMoments::Contact(edge) = &self.edges[e] {
-            return edge.project(k, m, x);
+        match &self.edges[e] {
+            EdgeMoments::Contact(edge) => return edge.project(k, m, x),
+            EdgeMoments::Elastic(edge) => return edge.project(k, m, x),
+            _ => {}
         }
         for component in self.components(e, k) {
             if let [(dof, _)] = component.terms() {
@@ -305,6 +323,10 @@ pub fn contact_coefficients(problem: &Problem, elements: &Elements) -> Vec<usize
 pub fn edge_degrees(problem: &Problem, elements: &Elements) -> Vec<u8> {
     let largest = |edge: &crate::mesh::Edge| edge.triangles.iter().flatten().map(|&t| elements.degree(t)).max();
     let mut degree: Vec<u8> = problem.mesh.edges.iter().map(|e| largest(e).unwrap_or(1) as u8).collect();
+    for (pair, _) in problem.bed_pairs() {
+        let both = pair.sides().map(|(_, e)| degree[e]).max().unwrap_or(1);
+        pair.sides().for_each(|(_, e)| degree[e] = both);
+    }
     for pair in problem.pairs() {
         let both = pair.edges.iter().flatten().map(|&e| degree[e]).max().unwrap_or(1);
         pair.edges.iter().flatten().for_each(|&e| degree[e] = both);

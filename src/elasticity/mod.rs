@@ -8,12 +8,14 @@
 //! a body that is nearly incompressible has a small first row, and no difference of large numbers in place of it.
 
 mod check;
+mod initial;
 mod matrix;
 mod numbers;
 mod reduce;
 mod twofold;
 
 pub use check::Flaw;
+pub use initial::{Initial, InitialStrain};
 pub use numbers::NUMBERS;
 pub use reduce::{Plane, Revolution};
 
@@ -149,6 +151,13 @@ impl Elasticity {
     /// cos 2θ and sin 2θ of the angle from x to axis 1, exact where it is a multiple of 45°.
     pub fn double_angle(&self) -> [f64; 2] {
         double_angle(self.angle())
+    }
+
+    /// A stress (xx, yy, xy) in the axes of the material: 11, 22, 12.
+    pub fn in_own_axes(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 3] {
+        let ([c, s], mean, half) = (self.double_angle(), 0.5 * (xx + yy), 0.5 * (xx - yy));
+        let turned = c * half + s * xy;
+        [mean + turned, mean - turned, c * xy - s * half]
     }
 
     /// Compliances of the strains (11, 22, 33, 12) in the axes of the material. Of a matrix for plane stress alone, what concerns axis 3

@@ -18,6 +18,8 @@ pub struct Plane {
     pub transverse: [f64; 3],
     /// σ_33 for a unit of initial strain ε0_33 is minus this; nothing in plane stress.
     pub transverse_stiffness: f64,
+    /// ε_33 for a unit of m, d, s, without σ_33.
+    pub cross: [f64; 3],
 }
 
 /// Hooke's law of a body of revolution, in axes r and z.
@@ -62,6 +64,7 @@ impl Elasticity {
             factor: values(&factor),
             inverse: values(&inverse),
             transverse: transverse.map(Twofold::value),
+            cross: [0, 1, 2].map(|j| a[3][j].value()),
             transverse_stiffness: if strain { (one / a[3][3]).value() } else { 0.0 },
         })
     }

@@ -38,12 +38,22 @@ impl Elements {
         }
     }
 
-    /// The same with at least these degrees.
-    pub fn at_least(&self, least: &[u8]) -> Elements {
-        if (0..least.len()).all(|t| self.degree(t) >= least[t].into()) {
-            return self.clone();
+    /// Those of `count` triangles with blocks of the degrees `least` where their own is lower; `None` where an element that is no block
+    /// would have to be another.
+    pub fn at_least(&self, count: usize, least: impl Fn(usize) -> usize) -> Option<Elements> {
+        if (0..count).all(|t| self.degree(t) >= least(t)) {
+            return Some(self.clone());
         }
-        Elements::Blocks(least.iter().enumerate().map(|(t, p)| (*p).max(self.degree(t) as u8)).collect())
+        if let Elements::Uniform(element) = self
+            && element.name() != block(element.degree()).name()
+        {
+            return None;
+        }
+        let degrees: Vec<u8> = (0..count).map(|t| self.degree(t).max(least(t)) as u8).collect();
+        Some(match degrees.iter().all(|degree| *degree == degrees[0]) {
+            true => Elements::Uniform(block(degrees[0].into())),
+            false => Elements::Blocks(degrees.into()),
+        })
     }
 
     /// The largest degree of the triangles.

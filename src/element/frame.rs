@@ -1,6 +1,7 @@
 //! The coordinates in which the stresses of an element are written.
 
 use super::{Material, Roots};
+use crate::load::Affine;
 
 /// Local coordinates: origin in the centroid, first axis along the longest side, lengths in units of √area.
 ///
@@ -43,6 +44,19 @@ impl Frame {
     pub fn vector_to_local(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [c, s] = self.axis;
         [c * x + s * y, c * y - s * x]
+    }
+
+    /// A force per volume in it, times its unit of length, from what it is about the centroid.
+    pub fn force_to_local(&self, Affine { value, gradient }: Affine) -> Affine {
+        let value = self.vector_to_local(value).map(|f| f * self.scale);
+        let [c, s] = self.axis;
+        // The columns of the gradient along the axes of the frame, in its components.
+        let column = |d: [f64; 2]| {
+            let slope = gradient.map(|row| row[0] * d[0] + row[1] * d[1]);
+            self.vector_to_local(slope).map(|f| f * self.scale * self.scale)
+        };
+        let [x, y] = [column([c, s]), column([-s, c])];
+        Affine { value, gradient: [[x[0], y[0]], [x[1], y[1]]] }
     }
 
     /// A vector of it in global components.

@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::quadrature::segment_rule;
 use super::{Block, EquilibriumElement, Material, Modes, StressField};
+use crate::load::BodyForce;
 use crate::mesh::Triangulation;
 
 /// End values of the linear function that is nearest to `traction` in L² on the side from `a` to `b`.
@@ -58,9 +59,9 @@ pub fn interpolant(mesh: &Triangulation, stress: impl Fn(usize, [f64; 2]) -> [f6
             tractions.extend(side_projection(a, b, traction).into_iter().flatten());
         }
         // N(K) and its tractions know nothing of the material.
-        let modes = Block.modes(corners, &Material::ANY, [0.0; 2]);
+        let modes = Block.modes(corners, &Material::ANY, &BodyForce::NONE);
         if let Some((s, _)) = parameters_from_tractions(&modes, &tractions) {
-            Block.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
+            Block.stresses(corners, &BodyForce::NONE, &modes, &s, 0.0, field.block_mut(t));
         }
     }
     field

@@ -12,7 +12,7 @@ use self::isotropic::Isotropic;
 use self::plane::General;
 pub use self::stiffness::Stiffness;
 use super::revolved;
-use crate::elasticity::Elasticity;
+use crate::elasticity::{Elasticity, Initial, InitialStrain};
 use crate::scene::Kinematics;
 
 /// The material of a body in plane strain or plane stress.
@@ -23,6 +23,7 @@ pub struct Material {
     law: Law,
     /// That of a body of revolution, where it is one.
     revolved: Option<revolved::Law>,
+    initial: InitialStrain,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +80,7 @@ impl Material {
                 None => Law::Isotropic(Isotropic::new(kinematics, f64::NAN, 0.0)),
             },
         };
-        Material { law, revolved }
+        Material { law, revolved, initial: InitialStrain::NONE }
     }
 
     /// That of Young's modulus `young` and Poisson's ratio `poisson` in (−1, ½).
@@ -88,11 +89,34 @@ impl Material {
     }
 
     /// Any material at all, for what knows nothing of it.
-    pub const ANY: Self = Material { law: Law::Isotropic(Isotropic::ANY), revolved: None };
+    pub const ANY: Self =
+        Material { law: Law::Isotropic(Isotropic::ANY), revolved: None, initial: InitialStrain::NONE };
 
     /// The law with the hoop of a body of revolution; one whose numbers are none where the material has no such law.
     pub fn revolved(&self) -> revolved::Law {
         self.revolved.unwrap_or(revolved::Law::NONE)
+    }
+
+    /// The same with what the body has before it is loaded.
+    #[must_use]
+    pub fn with_initial(self, kinematics: Kinematics, elasticity: &Elasticity, initial: &Initial) -> Self {
+        Material { initial: elasticity.initial_strain(kinematics == Kinematics::PlaneStrain, initial), ..self }
+    }
+
+    /// The same without initial strain.
+    #[must_use]
+    pub fn without_initial(self) -> Self {
+        Material { initial: InitialStrain::NONE, ..self }
+    }
+
+    /// cε0 at a point: minus the stress of a body that is held.
+    pub fn held_back(&self, point: [f64; 2]) -> [f64; 3] {
+        self.stress(self.initial.at(point))
+    }
+
+    /// ε0: the strain of a body without stress. It has no part in [`Self::stress`], [`Self::strain`] and the products.
+    pub fn initial(&self) -> &InitialStrain {
+        &self.initial
     }
 
     /// a λ:μ for two stresses.
@@ -208,17 +232,18 @@ impl Material {
         }
     }
 
-    /// σ_33 that goes with a stress.
-    pub fn out_of_plane(&self, l: [f64; 3]) -> f64 {
-        match &self.law {
+    /// σ_33 that goes with a stress at a point.
+    pub fn out_of_plane(&self, l: [f64; 3], point: [f64; 2]) -> f64 {
+        let own = match &self.law {
             Law::Isotropic(own) => own.transverse * (l[0] + l[1]),
             Law::General(own) => own.out_of_plane(l),
-        }
+        };
+        if self.initial == InitialStrain::NONE { own } else { own + self.initial.transverse_at(point) }
     }
 
-    /// Von Mises stress of an in-plane stress.
-    pub fn von_mises(&self, s: [f64; 3]) -> f64 {
-        let out = self.out_of_plane(s);
+    /// Von Mises stress of an in-plane stress at a point.
+    pub fn von_mises(&self, s: [f64; 3], point: [f64; 2]) -> f64 {
+        let out = self.out_of_plane(s, point);
         let (a, b, c) = (s[0] - s[1], s[1] - out, out - s[0]);
         (0.5 * (a * a + b * b + c * c) + 3.0 * s[2] * s[2]).sqrt()
     }

@@ -3,7 +3,7 @@
 //! An equilibrium element is a space N(K) of stress fields on a triangle with div τ = 0, in which the traction on the
 //! boundary of the triangle is a polynomial of degree p on each side. The dual problem needs to know three things of
 //! it, all contained in [`Modes`]: a basis of N(K), the tractions of each basis field on the sides, and a particular
-//! field λ̄ that balances a constant body force. The basis is orthonormal in complementary energy, so that
+//! field λ̄ that balances the body force. (A constant force asks for degree 1, an affine one for degree 2.) The basis is orthonormal in complementary energy, so that
 //!
 //! ½∫ a λ:λ = ½|S|² + ½∫ a λ̄:λ̄ for λ = Σ S_k τ_k + λ̄, and the element's stiffness is K = T Tᵀ,
 //!
@@ -49,11 +49,12 @@ pub use samples::Samples;
 pub use section::{Revolved, Section};
 pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;
-pub use strain::Strains;
+pub use strain::{Strains, elastic_degree};
 
 use std::borrow::Cow;
 
 use self::split::Split;
+use crate::load::BodyForce;
 
 /// The largest degree of [`block`].
 pub const MAX_DEGREE: usize = 8;
@@ -86,10 +87,11 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 ///
 /// ```
 /// use hypercircle::element::{Material, block};
+/// use hypercircle::load::BodyForce;
 /// use hypercircle::scene::Kinematics;
 ///
 /// let (element, corners) = (block(2), [[0.0, 0.0], [2.0, 0.0], [0.5, 1.0]]);
-/// let modes = element.modes(corners, &Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3), [0.0; 2]);
+/// let modes = element.modes(corners, &Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3), &BodyForce::NONE);
 /// assert_eq!((modes.parameters(), element.tractions()), (6 * 3 - 3, 6 * 3));
 /// for traction in modes.tractions() {
 ///     let force_x: f64 = (0..3)
@@ -121,8 +123,9 @@ pub trait EquilibriumElement: Sync {
     /// How many numbers of each triangle [`Self::stresses`] needs besides its corners.
     fn kept(&self) -> usize;
 
-    /// Computes tractions, particular field and what is kept on the counter-clockwise triangle with the given corners.
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>);
+    /// Computes tractions, particular field and what is kept on the counter-clockwise triangle with the given corners. The degree is
+    /// no lower than [`BodyForce::stress_degree`]; of any other force an element balances the value at the centroid.
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce, out: ModesMut<'_>);
 
     /// Nodal stresses `particular` · λ̄ + Σ S_k τ_k, nodes as in [`StressField::block`], on the triangle that `modes` were
     /// computed for.
@@ -131,7 +134,7 @@ pub trait EquilibriumElement: Sync {
     fn stresses(
         &self,
         corners: [[f64; 2]; 3],
-        body_force: [f64; 2],
+        force: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         particular: f64,
@@ -144,10 +147,10 @@ pub trait EquilibriumElement: Sync {
     }
 
     /// [`Self::compute`] into memory of its own.
-    fn modes(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2]) -> Modes<'static> {
+    fn modes(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce) -> Modes<'static> {
         let layout = self.layout();
         let mut data = vec![0.0; layout.len()];
-        self.compute(corners, material, body_force, layout.split(&mut data));
+        self.compute(corners, material, force, layout.split(&mut data));
         Modes { layout, data: Cow::Owned(data) }
     }
 
@@ -158,7 +161,7 @@ pub trait EquilibriumElement: Sync {
             let mut unit = vec![0.0; n];
             unit[k] = 1.0;
             let mut out = vec![[0.0; 3]; 3 * lattice_len(self.degree())];
-            self.stresses(corners, [0.0; 2], modes, &unit, 0.0, &mut out);
+            self.stresses(corners, &BodyForce::NONE, modes, &unit, 0.0, &mut out);
             out
         };
         (0..n).map(of).collect()

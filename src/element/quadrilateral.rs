@@ -98,12 +98,27 @@ impl Quadrilateral {
         h[0].hypot(h[1]) <= PARALLEL * a[0].hypot(a[1]).min(b[0].hypot(b[1]))
     }
 
+    /// Where a point of the square lies in the plane.
+    pub fn point(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        let [a, b, h] = self.frame();
+        let [p, q, r, s] = self.corners;
+        let middle = |c: usize| p[c] + 0.25 * ((q[c] - p[c]) + (r[c] - p[c]) + (s[c] - p[c]));
+        [0, 1].map(|c| middle(c) + a[c] * xi + b[c] * eta + h[c] * xi * eta)
+    }
+
     /// The value at a point of the square.
     pub fn value(&self, at: [f64; 2]) -> [f64; 2] {
         let weights = shapes(at);
         let base = self.values[0];
         let sum = |c: usize| self.values.iter().zip(&weights).map(|(u, w)| w * (u[c] - base[c])).sum::<f64>();
         [base[0] + sum(0), base[1] + sum(1)]
+    }
+
+    /// The point of the plane that a point of the square is mapped to.
+    pub fn position(&self, [xi, eta]: [f64; 2]) -> [f64; 2] {
+        let [a, b, h] = self.frame();
+        let base = self.corners[0];
+        [0, 1].map(|c| base[c] + a[c] * (1.0 + xi) + b[c] * (1.0 + eta) + h[c] * (xi * eta - 1.0))
     }
 
     /// The point of the square that is mapped to `x`, in or at the edge of the quadrilateral.

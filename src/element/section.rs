@@ -13,6 +13,7 @@ use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
     lattice_len, triangle,
 };
+use crate::load::BodyForce;
 
 /// A slice, or a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,13 +96,14 @@ impl Section {
         element: &dyn EquilibriumElement,
         corners: Corners,
         material: &Material,
-        force: [f64; 2],
+        force: &BodyForce,
         out: ModesMut<'_>,
     ) {
         match self {
             Section::Slice => element.compute(corners, material, force, out),
             Section::Revolved { axis } => {
-                Ring::new(element.degree(), axis, corners).compute(&material.revolved(), force, out);
+                let (radial, [_, axial]) = (self.radial(force), self.forces(force));
+                Ring::new(element.degree(), axis, corners).compute(&material.revolved(), radial, axial, out);
             }
         }
     }
@@ -111,7 +113,7 @@ impl Section {
         self,
         element: &dyn EquilibriumElement,
         corners: Corners,
-        force: [f64; 2],
+        force: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         out: &mut [[f64; 3]],
@@ -132,22 +134,22 @@ impl Section {
         }
     }
 
-    /// The forces ∫ f B_α w of a constant body force on the coefficients of a subtriangle in degree `k`, and to which coefficient each belongs.
-    pub fn body_forces(self, corners: Corners, sub: usize, k: usize, force: [f64; 2]) -> Vec<[f64; 2]> {
-        let area = sub_area(corners);
-        match self {
-            Section::Slice => {
-                // Every Bernstein polynomial has the same mean.
-                let share = area / triangle::len(k) as f64;
-                vec![force.map(|f| share * f); triangle::len(k)]
-            }
-            Section::Revolved { .. } => {
-                let radii = sub_corners(corners, sub).map(|p| self.weight(p));
-                let unit = |i: usize| [0, 1, 2].map(|j| usize::from(i == j));
-                let weight = |alpha| (0..3).map(|i| radii[i] * triangle::product(alpha, unit(i))).sum::<f64>();
-                triangle::indices(k).map(|alpha| force.map(|f| area * weight(alpha) * f)).collect()
-            }
-        }
+    /// F_r on the axis, and F_z, of a force that beside an axis is (a + b r, c).
+    pub fn forces(self, force: &BodyForce) -> [f64; 2] {
+        [self.radial(force)[0], force.given().value[1]]
+    }
+
+    /// a and b of F_r = a + b r: what is given, and the centrifugal force of a rotation about the axis.
+    pub fn radial(self, force: &BodyForce) -> [f64; 2] {
+        let Section::Revolved { axis } = self else { return [0.0; 2] };
+        let (given, turning) = (force.given(), force.rotation().map_or(0.0, |rotation| rotation.stiffness()));
+        [given.value[0] + given.gradient[0][0] * axis, given.gradient[0][0] + turning]
+    }
+
+    /// Whether a body force is one that a body of revolution can have: F_r depends on r alone, and F_z on nothing.
+    pub fn carries(self, force: &BodyForce) -> bool {
+        let [[_, across], along] = force.given().gradient;
+        !self.is_revolved() || (across == 0.0 && along == [0.0; 2])
     }
 }
 
@@ -168,22 +170,57 @@ impl Section {
 }
 
 impl Revolved {
+    fn radial(self, force: &BodyForce) -> [f64; 2] {
+        Section::Revolved { axis: self.axis }.radial(force)
+    }
+
+    /// The forces ∫ f B_α r of a body force on the coefficients of a subtriangle in degree `k`.
+    pub fn body_forces(self, corners: Corners, sub: usize, k: usize, force: &BodyForce) -> Vec<[f64; 2]> {
+        let (area, radii) = (sub_area(corners), self.radii(corners, sub));
+        let ([a, b], [_, axial]) = (self.radial(force), Section::Revolved { axis: self.axis }.forces(force));
+        let mut out = vec![[0.0; 2]; triangle::len(k)];
+        for &(l, weight) in triangle_rule(k + 2) {
+            let radius = (0..3).map(|i| l[i] * radii[i]).sum::<f64>();
+            let f = [a + b * radius, axial].map(|f| area * weight * radius * f);
+            for (out, value) in out.iter_mut().zip(triangle::basis(k, l)) {
+                (0..2).for_each(|c| out[c] += value * f[c]);
+            }
+        }
+        out
+    }
+
+    /// The work of a body force on what `v` has as its triangle `t`, in the terms of a sum.
+    pub fn work_inside(self, force: &BodyForce, corners: Corners, v: &Displacement, t: usize) -> [f64; 6] {
+        let forces = [0, 1, 2].map(|sub| self.body_forces(corners, sub, v.degree(t), force));
+        [0, 1, 2, 3, 4, 5].map(|term| {
+            let (sub, c) = (term / 2, term % 2);
+            v.sub(t, sub).zip(&forces[sub]).map(|(u, f)| u[c] * f[c]).sum()
+        })
+    }
+
     fn radii(self, corners: Corners, sub: usize) -> [f64; 3] {
         sub_corners(corners, sub).map(|p| p[0] - self.axis)
     }
 
-    fn weighted(stress: &StressField, t: usize, sub: usize, corners: Corners, force: f64) -> Weighted {
+    fn weighted(stress: &StressField, t: usize, sub: usize, corners: Corners, force: [f64; 2]) -> Weighted {
         let (degree, n) = (stress.degree(t), lattice_len(stress.degree(t)));
         Weighted::new(degree, &stress.block(t)[n * sub..][..n], &sub_gradients(corners, sub), force)
     }
 
     /// ∫ aλ:λ r on triangle `t` from above, and what a relative error of one in every number could change of its half. `force` is F_r.
-    pub fn square(self, stress: &StressField, t: usize, corners: Corners, material: &Material, force: f64) -> [f64; 2] {
+    pub fn square(
+        self,
+        stress: &StressField,
+        t: usize,
+        corners: Corners,
+        material: &Material,
+        force: &BodyForce,
+    ) -> [f64; 2] {
         let (law, degree) = (material.revolved(), stress.degree(t));
         let (mut sum, mut sensitivity) = (0.0, 0.0);
         for sub in 0..3 {
-            let weighted = Self::weighted(stress, t, sub, corners, force);
-            for point in rule(self.radii(corners, sub), 2 * degree.max(2), NEAR) {
+            let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
+            for point in rule(self.radii(corners, sub), 2 * degree.max(3), NEAR) {
                 let (l, spread) = weighted.stress(&point);
                 let weight = point.weight * sub_area(corners) * point.radius;
                 let plane = [l[0], l[1], 0.0, l[3]];
@@ -203,7 +240,7 @@ impl Revolved {
         for sub in 0..3 {
             strains.on(corners, v, own, sub);
             for point in rule(self.radii(corners, sub), 2 * k, NEAR) {
-                let radial = Self::radial(v, own, sub, point.bary);
+                let radial = Self::radial_of(v, own, sub, point.bary);
                 let e = tensor(strains.at(point.bary), radial / point.radius);
                 let weight = point.weight * sub_area(corners) * point.radius;
                 energy += 0.5 * weight * (law.strain_product(e, e) + point.excess * hoop * e[2] * e[2]);
@@ -222,16 +259,16 @@ impl Revolved {
         t: usize,
         corners: Corners,
         material: &Material,
-        force: f64,
+        force: &BodyForce,
     ) -> f64 {
         let law = material.revolved();
         let mut sum = 0.0;
         let mut strains = Strains::default();
         for sub in 0..3 {
-            let weighted = Self::weighted(stress, t, sub, corners, force);
+            let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
             strains.on(corners, v, t, sub);
-            for point in rule(self.radii(corners, sub), 2 * v.degree(t).max(stress.degree(t)), NEAR) {
-                let e = tensor(strains.at(point.bary), Self::radial(v, t, sub, point.bary) / point.radius);
+            for point in rule(self.radii(corners, sub), 2 * v.degree(t).max(stress.degree(t)).max(3), NEAR) {
+                let e = tensor(strains.at(point.bary), Self::radial_of(v, t, sub, point.bary) / point.radius);
                 let of_stress = law.strain(weighted.stress(&point).0);
                 let d = [0, 1, 2, 3].map(|c| e[c] - of_stress[c]);
                 sum += 0.5 * point.weight * sub_area(corners) * point.radius * law.strain_product(d, d);
@@ -241,7 +278,7 @@ impl Revolved {
     }
 
     /// v_r at a point of a subtriangle.
-    fn radial(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
+    fn radial_of(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
         v.sub(t, sub).zip(triangle::basis(v.degree(t), bary)).map(|(u, b)| u[0] * b).sum()
     }
 
@@ -257,10 +294,10 @@ impl Revolved {
         t: usize,
         sub: usize,
         corners: Corners,
-        force: f64,
+        force: &BodyForce,
         bary: [f64; 3],
     ) -> Tensor {
-        let weighted = Self::weighted(stress, t, sub, corners, force);
+        let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
         let (point, _) = self.off_axis(corners, sub, bary);
         weighted.stress(&point).0
     }
@@ -270,7 +307,7 @@ impl Revolved {
         let mut strains = Strains::default();
         strains.on(corners, v, t, sub);
         let (point, _) = self.off_axis(corners, sub, bary);
-        tensor(strains.at(point.bary), Self::radial(v, t, sub, point.bary) / point.radius)
+        tensor(strains.at(point.bary), Self::radial_of(v, t, sub, point.bary) / point.radius)
     }
 
     /// The point itself, or one that is moved a little towards the middle of the subtriangle where it lies on the axis.
@@ -291,10 +328,10 @@ impl Revolved {
         t: usize,
         corners: Corners,
         material: &Material,
-        force: f64,
+        force: &BodyForce,
     ) -> impl Fn(usize, [f64; 3]) -> [f64; 3] {
         let law = material.revolved();
-        let weighted = [0, 1, 2].map(|sub| Self::weighted(stress, t, sub, corners, force));
+        let weighted = [0, 1, 2].map(|sub| Self::weighted(stress, t, sub, corners, self.radial(force)));
         move |sub, bary| {
             let (point, _) = self.off_axis(corners, sub, bary);
             let [rr, zz, _, rz] = law.strain(weighted[sub].stress(&point).0);
@@ -353,13 +390,13 @@ impl Revolved {
     }
 
     /// Mean of λ over a triangle, weighted with r; (rr, zz, tt, rz).
-    pub fn mean(self, stress: &StressField, t: usize, corners: Corners, force: f64) -> Tensor {
+    pub fn mean(self, stress: &StressField, t: usize, corners: Corners, force: &BodyForce) -> Tensor {
         let mut sum = [0.0; 4];
         let mut total = 0.0;
         for sub in 0..3 {
-            let weighted = Self::weighted(stress, t, sub, corners, force);
+            let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
             let radii = self.radii(corners, sub);
-            for &(bary, weight) in triangle_rule(stress.degree(t) + 2) {
+            for &(bary, weight) in triangle_rule(stress.degree(t) + 3) {
                 let radius = (0..3).map(|i| bary[i] * radii[i]).sum::<f64>();
                 let point = super::revolved::Point { bary, weight, radius, excess: 0.0 };
                 let l = weighted.stress(&point).0;

@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use super::geometry::from_centroid;
 use super::quadrature::triangle_rule;
 use super::{EquilibriumElement, Material, Modes, ModesMut, StressField, lattice, lattice_len};
+use crate::load::{BodyForce, balancing};
 
 /// Corners of a triangle, counter-clockwise.
 pub type Corners = [[f64; 2]; 3];
@@ -58,7 +59,7 @@ impl Spanned {
     ) -> Result<Self, String> {
         let mut element = Spanned { name, degree, parameters: 0, spans, balances, fault: Mutex::new(None) };
         let material = Material::isotropic(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
-        let (modes, _) = element.basis(USUAL, &material, [0.0; 2])?;
+        let (modes, _) = element.basis(USUAL, &material, &BodyForce::NONE)?;
         element.parameters = modes.values.ncols();
         match element.parameters {
             0 => {
@@ -74,11 +75,12 @@ impl Spanned {
     }
 
     /// Modes, and λ̄ as fields of one column.
-    fn basis(&self, corners: Corners, material: &Material, force: [f64; 2]) -> Result<(Fields, Fields), String> {
+    fn basis(&self, corners: Corners, material: &Material, force: &BodyForce) -> Result<(Fields, Fields), String> {
         let given = (self.spans)(corners)?;
         let particular = match &self.balances {
-            Some(balances) => balances(corners, force)?,
-            None => linear(corners, self.degree, force),
+            Some(balances) if force.is_constant() => balances(corners, force.on(corners).mean())?,
+            Some(_) => return Err("it balances constant body forces, and this one is affine".to_string()),
+            None => particular(corners, self.degree, force),
         };
         let expected = 3 * lattice_len(self.degree);
         for (k, field) in given.iter().chain([&particular]).enumerate() {
@@ -181,14 +183,15 @@ fn rank(r: &DMatrix<f64>) -> usize {
     (0..r.nrows().min(r.ncols())).take_while(|&k| of(k) > ZERO * of(0)).count()
 }
 
-/// −(F_x x, F_y y, 0) about the centroid.
-fn linear(corners: Corners, degree: usize, force: [f64; 2]) -> Nodal {
-    let corners = from_centroid(corners);
+/// −(F_x x, F_y y, 0) about the centroid for a constant force; [`balancing`] for any other.
+fn particular(corners: Corners, degree: usize, body_force: &BodyForce) -> Nodal {
+    let affine = body_force.about_centroid(corners);
+    let (force, corners) = (affine.value, from_centroid(corners));
     let of_sub = |sub: usize| {
         let ends = [corners[(sub + 1) % 3], corners[(sub + 2) % 3]];
         lattice(degree).map(move |l| {
             let [x, y] = [0, 1].map(|c| l[0] * ends[0][c] + l[1] * ends[1][c]);
-            [-force[0] * x, -force[1] * y, 0.0]
+            if affine.is_constant() { [-force[0] * x, -force[1] * y, 0.0] } else { balancing(&affine, [x, y]) }
         })
     };
     (0..3).flat_map(of_sub).collect()
@@ -213,8 +216,8 @@ impl EquilibriumElement for Spanned {
     }
 
     /// Zeros, and a [`Spanned::fault`], where there are no modes to be had.
-    fn compute(&self, corners: Corners, material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
-        let found = self.basis(corners, material, body_force).and_then(|(modes, particular)| {
+    fn compute(&self, corners: Corners, material: &Material, force: &BodyForce, out: ModesMut<'_>) {
+        let found = self.basis(corners, material, force).and_then(|(modes, particular)| {
             match modes.values.ncols() == self.parameters {
                 true => Ok((modes, particular)),
                 false => Err(format!("{} fields have tractions, elsewhere {}", modes.values.ncols(), self.parameters)),
@@ -238,7 +241,7 @@ impl EquilibriumElement for Spanned {
         last.copy_from_slice(particular.values.as_slice());
     }
 
-    fn stresses(&self, _: Corners, _: [f64; 2], modes: &Modes<'_>, s: &[f64], particular: f64, out: &mut [[f64; 3]]) {
+    fn stresses(&self, _: Corners, _: &BodyForce, modes: &Modes<'_>, s: &[f64], particular: f64, out: &mut [[f64; 3]]) {
         let values = out.as_flattened_mut();
         let factors = s.iter().chain([&particular]);
         values.fill(0.0);
@@ -257,7 +260,7 @@ mod tests {
     fn mixed(degree: usize) -> Spanned {
         let material = Material::isotropic(crate::scene::Kinematics::PlaneStress, 3.0, 0.1);
         let spans = move |corners| {
-            let modes = block(degree).modes(corners, &material, [0.0; 2]);
+            let modes = block(degree).modes(corners, &material, &BodyForce::NONE);
             let fields = block(degree).mode_stresses(corners, &modes);
             let mix = |k: usize| {
                 let add = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|c| 2.0 * a[c] - 0.3 * b[c]);
@@ -272,10 +275,11 @@ mod tests {
     #[test]
     fn stiffness_and_loads_are_those_of_the_block() {
         let corners = [[0.3, 0.1], [1.9, -0.2], [0.8, 1.1]];
-        let (material, force) = (Material::isotropic(crate::scene::Kinematics::PlaneStrain, 2.0, 0.4), [0.4, -0.7]);
+        let (material, force) =
+            (Material::isotropic(crate::scene::Kinematics::PlaneStrain, 2.0, 0.4), BodyForce::constant([0.4, -0.7]));
         let (own, plain) = (mixed(1), block(1));
         assert_eq!(own.parameters(), plain.parameters());
-        let [a, b] = [&own as &dyn EquilibriumElement, plain].map(|e| e.modes(corners, &material, force));
+        let [a, b] = [&own as &dyn EquilibriumElement, plain].map(|e| e.modes(corners, &material, &force));
         let stiffness = |modes: &Modes<'_>, i: usize, j: usize| modes.tractions().map(|t| t[i] * t[j]).sum::<f64>();
         for i in 0..plain.tractions() {
             for j in 0..plain.tractions() {
@@ -304,7 +308,7 @@ mod tests {
         };
         let element = Spanned::new("some", 1, Box::new(sometimes), None).expect("an element");
         let material = Material::isotropic(crate::scene::Kinematics::PlaneStrain, 1.0, 0.3);
-        let modes = element.modes([[2.0, 0.0], [3.0, 0.0], [2.0, 1.0]], &material, [0.0; 2]);
+        let modes = element.modes([[2.0, 0.0], [3.0, 0.0], [2.0, 1.0]], &material, &BodyForce::NONE);
         assert!(modes.traction().iter().all(|x| *x == 0.0));
         assert!(element.fault().is_some_and(|text| text.contains("too far right")) && element.fault().is_none());
     }

@@ -1,7 +1,7 @@
 //! Strains of a displacement that is polynomial on each subtriangle.
 
-use super::geometry::sub_gradients;
-use super::{Displacement, Samples, triangle, weighed};
+use super::geometry::{sub_corners, sub_gradients};
+use super::{Displacement, Material, Samples, triangle, weighed};
 
 /// Strains (xx, yy, xy) on one subtriangle, by their Bernstein coefficients: of degree k − 1 for a displacement of degree k.
 #[derive(Debug, Clone, Default)]
@@ -41,6 +41,41 @@ impl Strains {
         self
     }
 
+    /// Elastic strains e(v) − ε0 of `v` in a material, of the degree [`elastic_degree`].
+    pub fn elastic(
+        &mut self,
+        corners: [[f64; 2]; 3],
+        v: &Displacement,
+        t: usize,
+        sub: usize,
+        material: &Material,
+    ) -> &Self {
+        self.on(corners, v, t, sub);
+        let initial = material.initial();
+        if initial.is_none() {
+            return self;
+        }
+        let degree = elastic_degree(v.degree(t), material);
+        if degree > self.degree {
+            // A constant strain, as a linear one.
+            let (e, spread) = (self.coefficients[0], self.spreads[0]);
+            self.coefficients.resize(3, e);
+            self.spreads.resize(3, spread);
+            self.degree = 1;
+        }
+        let q = sub_corners(corners, sub);
+        for ((alpha, e), spread) in triangle::indices(degree).zip(&mut self.coefficients).zip(&mut self.spreads) {
+            // The coefficients of a linear function are its values at equal steps.
+            let l = alpha.map(|i| if degree == 0 { 1.0 / 3.0 } else { i as f64 / degree as f64 });
+            let own = initial.at([0, 1].map(|c| (0..3).map(|i| l[i] * q[i][c]).sum()));
+            for c in 0..3 {
+                e[c] -= own[c];
+                *spread += own[c].abs();
+            }
+        }
+        self
+    }
+
     /// The strain at the point of the subtriangle with barycentric coordinates `l`.
     pub fn at(&self, l: [f64; 3]) -> [f64; 3] {
         match self.degree {
@@ -71,10 +106,14 @@ impl Strains {
     }
 }
 
+/// The degree of the elastic strain of a displacement of degree `k`: an affine initial strain makes a constant one linear.
+pub fn elastic_degree(k: usize, material: &Material) -> usize {
+    if material.initial().is_constant() { k - 1 } else { (k - 1).max(1) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::geometry::sub_corners;
     use crate::mesh::{Edge, Triangulation};
 
     const CORNERS: [[f64; 2]; 3] = [[0.2, -0.1], [1.7, 0.4], [0.5, 1.3]];

@@ -15,7 +15,7 @@ use crate::scene::{Joint, Scene};
 pub(super) fn bond(mesh: Triangulation, scene: &Scene) -> Result<(Triangulation, Vec<usize>), MeshError> {
     let mut sets = DisjointSets::new(mesh.points.len());
     let mut closed = Vec::new();
-    for bond in &scene.bonds {
+    for bond in scene.bonds.iter().filter(|bond| bond.stiffness.is_none()) {
         for [e, f] in opposite(&mesh, scene, bond.joint())? {
             let ([a, b], [c, d]) = (mesh.edges[e].vertices, mesh.edges[f].vertices);
             sets.join(a, d);
@@ -55,7 +55,10 @@ pub(super) fn bond(mesh: Triangulation, scene: &Scene) -> Result<(Triangulation,
 }
 
 /// The edges of the first side, each with that of the second that it coincides with.
-fn opposite(mesh: &Triangulation, scene: &Scene, joint: Joint) -> Result<Vec<[usize; 2]>, MeshError> {
+///
+/// # Errors
+/// [`MeshError::Contact`] with an edge of one side that has none of the other opposite.
+pub(crate) fn opposite(mesh: &Triangulation, scene: &Scene, joint: Joint) -> Result<Vec<[usize; 2]>, MeshError> {
     let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
     let [first, second] = joint.sides;
     let mut facing: HashMap<_, usize> = mesh.boundary(second).into_iter().map(|e| (ends(e).map(key), e)).collect();

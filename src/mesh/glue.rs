@@ -33,7 +33,7 @@ pub(super) struct Record {
     pub parent: Vec<usize>,
 }
 
-/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit, and those of every bond one.
+/// Makes the two sides of every contact of `scene` match vertex for vertex, bit for bit, and those of every rigid bond one.
 ///
 /// # Errors
 /// [`MeshError::Contact`] with the place where two sides do not lie on one polyline or where only one goes on.

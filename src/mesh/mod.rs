@@ -7,7 +7,7 @@
 mod abaqus;
 pub(crate) mod along;
 pub mod bisect;
-mod bonded;
+pub(crate) mod bonded;
 mod boxes;
 mod cells;
 mod content;

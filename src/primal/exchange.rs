@@ -10,6 +10,7 @@ use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
 use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
 use crate::element::quadrature::even_rule;
+use crate::load::{Affine, BodyForce};
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, ContactPair, Pin, Problem};
 
@@ -44,6 +45,8 @@ struct ProblemFile<'a> {
     roller: Vec<RollerEntry>,
     tractions: Vec<TractionEntry>,
     contacts: Vec<ContactEntry<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<SpringEntry>,
     pins: Vec<PinEntry>,
 }
 
@@ -73,7 +76,24 @@ struct BodyEntry<'a> {
     name: &'a str,
     #[serde(flatten)]
     material: MaterialEntry,
-    body_force: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_strain: Option<[[f64; 3]; 3]>,
+    body_force: Force,
+}
+
+/// The same everywhere, or value + gradient · x.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Force {
+    Constant([f64; 2]),
+    Affine { value: [f64; 2], gradient: [[f64; 2]; 2] },
+}
+
+impl From<&BodyForce> for Force {
+    fn from(force: &BodyForce) -> Self {
+        let Affine { value, gradient } = force.as_affine();
+        if force.is_constant() { Force::Constant(value) } else { Force::Affine { value, gradient } }
+    }
 }
 
 /// An isotropic body by its constants, any other by its stiffness in the plane.
@@ -124,6 +144,14 @@ impl MaterialEntry {
     }
 }
 
+/// ε_xx, ε_yy and ε_xy of a body without stress, each by its value at the origin and its derivatives along x and y.
+fn initial_strain(problem: &Problem, body: usize) -> Option<[[f64; 3]; 3]> {
+    let material = problem.material(body);
+    let strain = material.initial();
+    let row = |c: usize| [strain.value[c], strain.gradient[c][0], strain.gradient[c][1]];
+    (!strain.is_none()).then(|| [0, 1, 2].map(row))
+}
+
 #[derive(Serialize)]
 struct QuadrilateralEntry {
     corners: [usize; 4],
@@ -155,6 +183,15 @@ struct RollerEntry {
 struct TractionEntry {
     edge: usize,
     values: [[f64; 2]; 2],
+}
+
+/// An edge on springs, or on a side of an elastic layer.
+#[derive(Serialize)]
+struct SpringEntry {
+    edge: usize,
+    opposite: Option<usize>,
+    axes: [[f64; 2]; 2],
+    stiffness: [f64; 2],
 }
 
 #[derive(Serialize)]
@@ -199,7 +236,10 @@ impl<'a> ProblemFile<'a> {
                     tractions.push(TractionEntry { edge, values })
                 }
                 Condition::Axis => roller.push(RollerEntry { edge, normal: [-1.0, 0.0], displacement: 0.0 }),
-                Condition::Traction(_) | Condition::Interior | Condition::Contact { .. } => {}
+                Condition::Traction(_)
+                | Condition::Interior
+                | Condition::Contact { .. }
+                | Condition::Elastic { .. } => {}
             }
         }
         ProblemFile {
@@ -215,7 +255,8 @@ impl<'a> ProblemFile<'a> {
                 .map(|(i, body)| BodyEntry {
                     name: &body.name,
                     material: MaterialEntry::new(problem, i),
-                    body_force: body.body_force,
+                    initial_strain: initial_strain(problem, i),
+                    body_force: Force::from(&body.body_force),
                 })
                 .collect(),
             points: &mesh.points,
@@ -248,6 +289,15 @@ impl<'a> ProblemFile<'a> {
                             gap_below: gap_below(pair),
                         })
                         .collect(),
+                })
+                .collect(),
+            springs: problem
+                .bed_pairs()
+                .map(|(pair, stiffness)| SpringEntry {
+                    edge: pair.edge,
+                    opposite: pair.opposite,
+                    axes: pair.axes,
+                    stiffness,
                 })
                 .collect(),
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),

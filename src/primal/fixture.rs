@@ -52,6 +52,7 @@ pub(crate) fn pressed_square() -> Problem {
             Condition::Traction([[2.0, 0.0]; 2]),
         ],
         interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair] }],
+        beds: Vec::new(),
         notes: Vec::new(),
         refinement: crate::problem::Refinement::default(),
         uncut: None,

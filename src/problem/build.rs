@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
@@ -117,8 +117,10 @@ impl Problem {
                         displacement: *displacement,
                     },
                     Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
-                    // Contact edges are overwritten when they are paired.
-                    Some(Role::Contact) | None => Condition::Traction([[0.0; 2]; 2]),
+                    // Edges of contacts and springs are overwritten when they are paired.
+                    Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
+                        Condition::Traction([[0.0; 2]; 2])
+                    }
                 }
             })
             .collect();
@@ -151,13 +153,19 @@ impl Problem {
             }
             interfaces.push(matched);
         }
+        let beds = beds(&scene, &mesh)?;
+        for (bed, of) in beds.iter().enumerate() {
+            for (pair, edges) in of.pairs.iter().enumerate() {
+                edges.sides().for_each(|(side, e)| conditions[e] = Condition::Elastic { bed, pair, side });
+            }
+        }
         for remark in remarks {
             if !notes.contains(&remark) {
                 notes.push(remark);
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, notes, refinement, uncut: None })
+        Ok(Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None })
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -265,6 +273,7 @@ fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), 
         let remedy = "points of an axisymmetric scene are (r, z) with r ≥ 0";
         return Err(MeshError::cells(scene, what, remedy).into());
     }
+    only_what_turns(scene, section)?;
     let roles = roles(scene);
     for edge in mesh.edges.iter().filter(|edge| edge.vertices.iter().all(|v| section.on_axis(mesh.points[*v]))) {
         let Some((name, role)) = edge.name.and_then(|n| Some((&mesh.names[n], roles.get(mesh.names[n].as_str())?)))
@@ -282,12 +291,43 @@ fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), 
     Ok(())
 }
 
+/// Refuses bodies and springs that bodies of revolution do not have here.
+fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> {
+    let refused = |what: String, remedy: &str| Err(MeshError::cells(scene, what, remedy).into());
+    for body in &scene.bodies {
+        if !body.initial.is_none() {
+            let what = format!("body '{}' of revolution has an initial strain, stress or temperature", body.name);
+            return refused(what, "leave `expansion`, `temperature` and `initial_stress` out of axisymmetric scenes");
+        }
+        if !section.carries(&body.body_force) {
+            let what =
+                format!("the body force of '{}' of revolution varies along z, or its axial part varies", body.name);
+            return refused(what, "give F_r as value + gradient · r, and a constant F_z");
+        }
+    }
+    let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
+    if springs || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
+        let what = "a body of revolution has springs or an elastic layer".to_string();
+        return refused(what, "leave `stiffness` out of axisymmetric scenes");
+    }
+    Ok(())
+}
+
 /// What the plane figure of a scene stands for.
 pub(super) fn section(scene: &Scene) -> Section {
     match scene.kinematics {
         Kinematics::Axisymmetric => Section::Revolved { axis: 0.0 - scene.origin[0] },
         Kinematics::PlaneStrain | Kinematics::PlaneStress => Section::Slice,
     }
+}
+
+/// The springs of all supports, then the layers of all bonds.
+fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
+    let mut all: Vec<Bed> = scene.supports.iter().filter_map(|support| Bed::of_support(support, mesh)).collect();
+    for bond in &scene.bonds {
+        all.extend(Bed::of_bond(bond, scene, mesh)?);
+    }
+    Ok(all)
 }
 
 /// The role of every boundary that the scene mentions.

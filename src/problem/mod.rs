@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod bed;
 mod bow;
 mod build;
 mod contact;
@@ -12,6 +13,8 @@ mod scales;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bed::facing_vertices;
+pub use bed::{Bed, BedPair};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -20,6 +23,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 use std::sync::Arc;
 
 use crate::element::{Material, Section};
+use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
 use crate::scene::Scene;
@@ -35,6 +39,8 @@ pub struct Problem {
     pub conditions: Vec<Condition>,
     /// Contacts, in scene order.
     pub interfaces: Vec<Interface>,
+    /// Springs, in the order of the supports, then elastic layers in that of the bonds.
+    pub beds: Vec<Bed>,
     /// What the reader of the report has to know about how the mesh and the data were represented.
     pub notes: Vec<Note>,
     /// What refinement makes of curves.
@@ -51,7 +57,37 @@ impl Problem {
 
     /// Material of one body of the scene.
     pub fn material(&self, body: usize) -> Material {
-        Material::new(self.scene.kinematics, &self.scene.bodies[body].elasticity)
+        let (kinematics, body) = (self.scene.kinematics, &self.scene.bodies[body]);
+        let material = Material::new(kinematics, &body.elasticity);
+        if body.initial.is_none() {
+            return material;
+        }
+        material.with_initial(kinematics, &body.elasticity, &body.initial)
+    }
+
+    /// The body force on triangle `t`.
+    pub fn body_force(&self, t: usize) -> &BodyForce {
+        &self.scene.bodies[self.mesh.body[t]].body_force
+    }
+
+    /// What the body force does on triangle `t`.
+    pub fn force_on(&self, t: usize) -> OnTriangle {
+        self.body_force(t).on(self.mesh.corners(t))
+    }
+
+    /// The least degree of stresses on triangle `t` that balance its loads.
+    pub fn least_degree(&self, t: usize) -> usize {
+        if !self.section().is_revolved() {
+            return self.body_force(t).stress_degree();
+        }
+        // Beside the axis loads count times the distance from it: an axial weight, or a traction that is not the same along its edge.
+        let [_, axial] = self.section().forces(self.body_force(t));
+        let of_edge = |e: &usize| match self.conditions[*e] {
+            Condition::Traction(ends) => self.weighted(*e, ends).len() - 1,
+            _ => 1,
+        };
+        let of_edges = self.mesh.triangle_edges[t].iter().map(of_edge).max().unwrap_or(1);
+        of_edges.max(if axial == 0.0 { 1 } else { 2 })
     }
 
     /// What the plane figure stands for.
@@ -70,22 +106,6 @@ impl Problem {
         (a && b) || (a && k == 0) || (b && k == degree)
     }
 
-    /// The lowest degree of the stresses on each triangle that can balance the loads: two beside the axis where a weight or a traction, times
-    /// the distance from the axis, has more than one.
-    pub fn least_degrees(&self) -> Vec<u8> {
-        let mut least: Vec<u8> = vec![1; self.mesh.triangles.len()];
-        if self.section().is_revolved() {
-            for (least, &body) in least.iter_mut().zip(&self.mesh.body) {
-                *least = if self.scene.bodies[body].body_force[1] == 0.0 { 1 } else { 2 };
-            }
-            for (e, ends) in self.tractions() {
-                let degree = self.weighted(e, ends).len() - 1;
-                self.mesh.edges[e].triangles.iter().flatten().for_each(|&t| least[t] = least[t].max(degree as u8));
-            }
-        }
-        least
-    }
-
     /// Largest weight of the ends of edge `e`.
     pub fn largest_weight(&self, e: usize) -> f64 {
         self.mesh.edges[e].vertices.iter().fold(0.0, |m, v| self.section().weight(self.mesh.points[*v]).max(m))
@@ -94,6 +114,11 @@ impl Problem {
     /// The pairs of all contacts, one interface after the other.
     pub fn pairs(&self) -> impl Iterator<Item = &ContactPair> + Clone {
         self.interfaces.iter().flat_map(|interface| &interface.pairs)
+    }
+
+    /// The pairs of all beds with their stiffness, one bed after the other.
+    pub fn bed_pairs(&self) -> impl Iterator<Item = (&BedPair, [f64; 2])> + Clone {
+        self.beds.iter().flat_map(|bed| bed.pairs.iter().map(|pair| (pair, bed.stiffness)))
     }
 
     /// The edges of Γ_τ, each with P at its two ends.
@@ -141,6 +166,15 @@ pub enum Condition {
         /// Index into [`Problem::interfaces`].
         interface: usize,
         /// Index into [`Interface::pairs`].
+        pair: usize,
+        /// 0 for the first side, 1 for the second.
+        side: usize,
+    },
+    /// Side 0 or 1 of `beds[bed].pairs[pair]`: the traction is that of springs.
+    Elastic {
+        /// Index into [`Problem::beds`].
+        bed: usize,
+        /// Index into [`Bed::pairs`].
         pair: usize,
         /// 0 for the first side, 1 for the second.
         side: usize,

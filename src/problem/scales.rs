@@ -7,7 +7,7 @@
 //! stresses that they do cause may be smaller or none, but are computed from displacements of that size, and carry
 //! their rounding errors.
 
-use super::{Condition, Problem};
+use super::{BedPair, Condition, Problem};
 use crate::element::Material;
 use crate::vector::norm;
 
@@ -49,18 +49,20 @@ impl Scales {
         let scene = &problem.scene;
         let bodies = Extents::of_bodies(problem);
         let loads = Loads::new(problem, &bodies);
+        let materials = problem.materials();
         let imposed = match imposed(problem) {
             0.0 if loads.force == 0.0 => widest_gap(problem),
             imposed => imposed,
         };
-        let materials = problem.materials();
+        let imposed = imposed + initial(problem, &materials, &bodies);
         let modulus: Vec<f64> = materials.iter().map(Material::uniaxial).collect();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let used = || materials.iter().zip(&bodies).filter(|(_, extent)| extent.any());
         let stiffest = largest(&mut used().map(|(material, _)| material.young()[1]));
         let softest = used().map(|(material, _)| material.young()[0]).fold(f64::INFINITY, f64::min);
         let hardest = largest(&mut modulus.iter().copied());
-        let displacement = imposed + loads.force / (scene.thickness * softest);
+        let displacement =
+            imposed + loads.force / (scene.thickness * softest) + loads.force / scene.thickness * give(problem);
         let energy = |stiffness: f64| loads.force * displacement + scene.thickness * stiffness * imposed * imposed;
         let strained = largest(&mut used().map(|(material, extent)| material.young()[1] * imposed / extent.diameter()));
         let resolved = largest(&mut (0..problem.mesh.triangles.len()).map(|t| per_length(problem, &modulus, t)));
@@ -173,10 +175,10 @@ impl Loads {
         }
         for (body, extent) in problem.scene.bodies.iter().zip(bodies).filter(|(_, extent)| extent.any()) {
             let [width, height] = extent.sides();
-            traction = traction.max(norm(body.body_force) * width.min(height));
+            traction = traction.max(body.body_force.largest_in([extent.low, extent.high]) * width.min(height));
         }
-        for (t, &body) in problem.mesh.body.iter().enumerate() {
-            force += problem.mesh.area(t) * norm(problem.scene.bodies[body].body_force);
+        for t in 0..problem.mesh.triangles.len() {
+            force += problem.mesh.area(t) * problem.force_on(t).largest();
         }
         Loads { traction, force: problem.scene.thickness * force }
     }
@@ -200,6 +202,46 @@ fn imposed(problem: &Problem) -> f64 {
         pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
     });
     prescribed + crossed.sum::<f64>()
+}
+
+/// By how much a unit force, per unit thickness, moves a piece that nothing but springs holds in some motion, at most: the
+/// softest of their stiffnesses, all edges taken together.
+fn give(problem: &Problem) -> f64 {
+    let mesh = &problem.mesh;
+    let (piece, count) = mesh.pieces();
+    let mut held = vec![false; count];
+    for (edge, condition) in mesh.edges.iter().zip(&problem.conditions) {
+        if let (Condition::Clamped(_), Some(t)) = (condition, edge.triangles[0]) {
+            held[piece[t]] = true;
+        }
+    }
+    let mut most = 0.0_f64;
+    for bed in &problem.beds {
+        let own = |pair: &BedPair| mesh.edges[pair.edge].triangles[0].is_none_or(|t| held[piece[t]]);
+        if bed.pairs.iter().all(own) {
+            continue;
+        }
+        let length: f64 = bed.pairs.iter().map(|pair| pair.length).sum();
+        let softest = bed.stiffness.into_iter().filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min);
+        most = most.max(1.0 / (softest * length));
+    }
+    most
+}
+
+/// How far initial strains move the bodies that have one.
+fn initial(problem: &Problem, materials: &[Material], bodies: &[Extents]) -> f64 {
+    let of = |(material, extent): (&Material, &Extents)| {
+        let strain = material.initial();
+        if strain.is_none() || !extent.any() {
+            return 0.0;
+        }
+        let [low, high] = [extent.low, extent.high];
+        let corners = [low, high, [low[0], high[1]], [high[0], low[1]]];
+        let size = |p: [f64; 2]| strain.at(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        corners.map(size).into_iter().fold(0.0, f64::max) * extent.diameter()
+    };
+    debug_assert_eq!(materials.len(), problem.scene.bodies.len());
+    materials.iter().zip(bodies).map(of).fold(0.0, f64::max)
 }
 
 fn widest_gap(problem: &Problem) -> f64 {
@@ -236,7 +278,7 @@ mod tests {
         let mut scene =
             load(squares(0.0), "a_left", Load::Affine(Affine { value: [3.0, 4.0], gradient: [[0.0; 2]; 2] }));
         scene.draft.thickness = 0.5;
-        scene.draft.bodies[1].body_force = [0.0, -2.0];
+        scene.draft.bodies[1].body_force = [0.0, -2.0].into();
         scene.draft.bodies[1].elasticity = Elasticity::Isotropic { young: 10.0, poisson: 0.3 };
         let found = scales(scene);
         assert!((found.traction, found.imposed) == (5.0, 0.0) && (found.data.force - 3.5).abs() < 1e-14);

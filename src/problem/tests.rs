@@ -57,6 +57,7 @@ fn conditions_follow_the_names() {
             Condition::Clamped(u) => assert_eq!((middle[0], u), (2.0, [[0.0; 2]; 2])),
             Condition::Roller { .. } => assert!(middle[1] == 0.0 && middle[0] < 1.0),
             Condition::Contact { .. } => assert_eq!(middle[0], 1.0),
+            Condition::Elastic { .. } => panic!("no springs here"),
             Condition::Traction(p) if middle[0] == 0.0 => {
                 for (v, p) in edge.vertices.iter().zip(p) {
                     assert_eq!(p, [4.0 - 7.0 * mesh.points[*v][1], 0.5 * mesh.points[*v][0]]);

@@ -39,7 +39,7 @@ pub fn element<'py>(
         return Err(fault("young must be above zero, poisson in (-1, 1/2), and body_force finite"));
     }
     let material = Material::isotropic(kinematics_named(kinematics)?, young, poisson);
-    let modes = Block.modes(corners, &material, body_force);
+    let modes = Block.modes(corners, &material, &body_force.into());
     let count = modes.parameters();
     let fields = Block.mode_stresses(corners, &modes);
     let value = |node: usize, c: usize| (0..count).map(|k| fields[k][node][c]).collect::<Vec<f64>>();
@@ -47,7 +47,7 @@ pub fn element<'py>(
     let row = |i: usize| modes.tractions().map(|mode| mode[i]).collect::<Vec<f64>>();
     let traction: Vec<Vec<f64>> = (0..Block.tractions()).map(row).collect();
     let mut particular = vec![[0.0; 3]; 9];
-    Block.stresses(corners, body_force, &modes, &vec![0.0; count], 1.0, &mut particular);
+    Block.stresses(corners, &body_force.into(), &modes, &vec![0.0; count], 1.0, &mut particular);
     let out = PyDict::new(py);
     out.set_item("traction", traction)?;
     out.set_item("stress", stress)?;

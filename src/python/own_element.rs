@@ -86,7 +86,14 @@ fn fields(array: &Py<PyAny>) -> Result<Vec<Nodal>, String> {
 pub fn balanced(element: &'static Spanned, problem: &Problem) -> Result<(), String> {
     let (mesh, materials) = (&problem.mesh, problem.materials());
     for (t, &body) in mesh.body.iter().enumerate() {
-        let force = problem.scene.bodies[body].body_force;
+        if !problem.body_force(t).is_constant() {
+            let body = &problem.scene.bodies[body].name;
+            return Err(format!(
+                "the body force of {body} is not constant, and {} is told of constant ones alone: solve with degree = 2",
+                element.name()
+            ));
+        }
+        let force = problem.force_on(t).mean();
         let fields = Fields::of(element, mesh.corners(t), &materials[body], force);
         if let Some(reason) = element.fault() {
             return Err(reason);

@@ -45,7 +45,7 @@ pub fn list<'py, T>(
 }
 
 /// A body: `name`, `body_force` and the constants of its material: `young` and `poisson`, or `orthotropic` with `young`, `poisson`,
-/// `shear` and `angle`, or a matrix, `stiffness` or `compliance`, and `angle`.
+/// `shear` and `angle`, or a matrix, `stiffness` or `compliance`, and `angle`. A `body_force` that is not constant has `value` and `gradient`.
 pub fn body_entry<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
     let entry = PyDict::new(py);
     entry.set_item("name", &body.name)?;
@@ -70,7 +70,15 @@ pub fn body_entry<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDi
             entry.set_item("angle", angle)?;
         }
     }
-    entry.set_item("body_force", body.body_force)?;
+    let force = body.body_force.as_affine();
+    if force.is_constant() {
+        entry.set_item("body_force", force.value)?;
+    } else {
+        let field = PyDict::new(py);
+        field.set_item("value", force.value)?;
+        field.set_item("gradient", force.gradient)?;
+        entry.set_item("body_force", field)?;
+    }
     Ok(entry)
 }
 
@@ -96,6 +104,7 @@ fn condition_entry<'py>(py: Python<'py>, condition: &Condition) -> PyResult<Boun
             "roller"
         }
         Condition::Contact { .. } => "contact",
+        Condition::Elastic { .. } => "elastic",
     };
     entry.set_item("kind", kind)?;
     Ok(entry)

@@ -3,6 +3,7 @@
 use super::interval::Known;
 use super::pass::{Fields, Integrals, Pass, pass};
 use super::search::Search;
+use super::springs::adjoint_of;
 use crate::bounds::{NodalValues, ROUNDING_PER_TERM, Sum, excess_work, jumps, openings, support_work, work};
 use crate::dual::Response;
 use crate::element::{Displacement, side};
@@ -41,8 +42,10 @@ impl End {
 impl Search<'_, '_> {
     /// The bound of a pair; z is `lifted` times a factor.
     pub fn measured(&self, response: &Response, lifted: (&Displacement, f64), sign: f64) -> End {
-        let Known { problem, middle, .. } = self.known;
-        let fields = Fields { middle, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1 };
+        let Known { problem, middle, springs, .. } = self.known;
+        let adjoint = adjoint_of(problem, self.functional, &response.stress);
+        let springs = (springs, &adjoint);
+        let fields = Fields { middle, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1, springs };
         let pass = pass(problem, self.functional, fields);
         let Bound { bound, centre, distance, ratio, beyond } = self.bounded(response, Some(lifted), &pass, sign);
         End { bound, centre, first_order: None, distance, ratio, beyond, pass, nodes: NodalValues::none() }
@@ -65,6 +68,9 @@ impl Search<'_, '_> {
         let mut sum = Sum::default();
         sum.add(self.functional.constant);
         sum.add(integrals.work);
+        let [initial, size_of_initial] = pass.initial;
+        sum.add(initial);
+        rounding += ROUNDING_PER_TERM * size_of_initial;
         if let Some((z, factor)) = lifted {
             let work = work(problem, z);
             sum.add(factor * work.value());

@@ -13,8 +13,9 @@ use super::region::{Cut, cut, twice_area};
 use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
+use crate::load::BodyForce;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};
-use crate::scene::{Extent, Holder, Quantity, Region, Target};
+use crate::scene::{Extent, Holder, Quantity, Region, SupportKind, Target};
 
 /// What a quantity is, for the words of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,7 +145,7 @@ impl Functional {
     /// Whether nothing but the normal traction of contacts, and what is known, enters.
     pub fn is_of_contact_alone(&self) -> bool {
         let load = &self.load;
-        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(|f| *f == [0.0; 2])
+        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(BodyForce::is_none)
     }
 
     fn empty(problem: &Problem, kind: Kind) -> Self {
@@ -152,7 +153,7 @@ impl Functional {
         Functional {
             kind,
             load: Load {
-                force: vec![[0.0; 2]; problem.scene.bodies.len()],
+                force: vec![BodyForce::NONE; problem.scene.bodies.len()],
                 tractions: Vec::new(),
                 strains: Vec::new(),
                 weights: vec![Vec::new(); pairs],
@@ -214,7 +215,7 @@ fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional,
 fn on_body(problem: &Problem, body: usize, d: [f64; 2]) -> Result<Functional, NotBounded> {
     let area = area(problem, body)?;
     let mut functional = Functional::empty(problem, Kind::Displacement);
-    functional.load.force[body] = d.map(|d| d / area);
+    functional.load.force[body] = d.map(|d| d / area).into();
     Ok(functional)
 }
 
@@ -293,6 +294,32 @@ fn moment_of(problem: &Problem, pair: &ContactPair, about: [f64; 2]) -> Vec<f64>
     vec![cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]
 }
 
+/// Adds ∫ T·j(w) over all springs, whose traction T is −k j(u), for a motion w by edge and vertex, linear between.
+fn pull_springs(problem: &Problem, functional: &mut Functional, motion: impl Fn(usize, usize) -> [f64; 2]) {
+    let mesh = &problem.mesh;
+    for (pair, stiffness) in problem.bed_pairs() {
+        let [a, b] = mesh.edges[pair.edge].vertices;
+        let facing = |v: usize, end: usize| {
+            let other = pair.opposite.map_or([0.0; 2], |e| motion(e, mesh.edges[e].vertices[1 - end]));
+            let own = motion(pair.edge, v);
+            [own[0] - other[0], own[1] - other[1]]
+        };
+        let pulled = [facing(a, 0), facing(b, 1)].map(|jump| {
+            let mut force = [0.0; 2];
+            for (axis, k) in pair.axes.iter().zip(stiffness) {
+                let along = -k * (jump[0] * axis[0] + jump[1] * axis[1]);
+                (0..2).for_each(|c| force[c] += along * axis[c]);
+            }
+            force
+        });
+        if pulled != [[0.0; 2]; 2] {
+            functional.load.tractions.push((pair.edge, pulled));
+            let [first, last] = pulled.map(|force| force.map(|f| -f));
+            functional.load.tractions.extend(pair.opposite.map(|e| (e, [last, first])));
+        }
+    }
+}
+
 /// The force or moment of a support, by the motion w that does unit work on it.
 fn on_support(
     problem: &Problem,
@@ -305,6 +332,12 @@ fn on_support(
     let own: BTreeSet<usize> = mesh.boundary(name).into_iter().collect();
     if own.is_empty() {
         return Err(NotBounded::Empty { name: name.clone() });
+    }
+    if let SupportKind::Spring { .. } = problem.scene.supports[support].kind {
+        let moved = |e: usize, v: usize| if own.contains(&e) { motion(mesh.points[v]) } else { [0.0; 2] };
+        let mut functional = Functional::empty(problem, kind);
+        pull_springs(problem, &mut functional, moved);
+        return Ok(functional);
     }
     let prescribed = |e: usize, v: usize| {
         if own.contains(&e) { motion(mesh.points[v]).map(|w| -w) } else { [0.0; 2] }
@@ -319,6 +352,7 @@ fn on_support(
     }
     let moved = Displacement::from_p1(mesh, &vertex);
     let mut functional = Functional::empty(problem, kind);
+    pull_springs(problem, &mut functional, |_, v| vertex[v]);
     functional.constant = work(problem, &moved).value();
     let young: Vec<f64> = problem.materials().iter().map(|material| material.young()[1]).collect();
     for (t, triangle) in mesh.triangles.iter().enumerate() {

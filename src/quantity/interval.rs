@@ -13,9 +13,10 @@ use super::end::End;
 use super::functional::Functional;
 use super::pass::{strained, uncancelled};
 use super::search::Search;
+use super::springs::{middle_of, square_of, uncancelled_of};
 use super::value::displaced;
 use crate::bounds::energy::square;
-use crate::bounds::{Bracket, Nearest, UpperBound, excess_work, mid_field, openings_within};
+use crate::bounds::{Bracket, Nearest, OnSprings, UpperBound, excess_work, mid_field, openings_within};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
 use crate::element::{StressField, side};
 use crate::problem::{ContactPair, Problem, Scales};
@@ -125,6 +126,8 @@ pub struct Known<'a> {
     /// m, and ‖m‖_a.
     pub(super) middle: StressField,
     pub(super) size: f64,
+    /// m on springs.
+    pub(super) springs: OnSprings,
     /// The square of the norm that m would have if nothing cancelled in it.
     pub(super) uncancelled: f64,
     /// Coefficients of t(λ) one after the other, zero where nothing presses.
@@ -157,6 +160,7 @@ impl<'a> Known<'a> {
             found.unwrap_or_else(|| vec![0.0; count.max(1)]).into_iter().map(|o| o.max(0.0)).collect()
         };
         let middle = mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?;
+        let springs = middle_of(problem, &dual.stress, &upper.displacement);
         Ok(Known {
             problem,
             dual,
@@ -165,8 +169,10 @@ impl<'a> Known<'a> {
             responses: factorised.responses(problem, &dual.moments, LONGEST_DENSE, options),
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
-            size: square(problem, &middle).sqrt(),
-            uncancelled: uncancelled(problem, &dual.stress, &upper.displacement),
+            size: (square(problem, &middle) + square_of(problem, &springs)).sqrt(),
+            springs,
+            uncancelled: uncancelled(problem, &dual.stress, &upper.displacement)
+                + uncancelled_of(problem, &dual.stress, &upper.displacement),
             middle,
             pressure: pressing(dual),
         })

@@ -10,6 +10,7 @@ mod lift;
 mod pass;
 mod region;
 mod search;
+mod springs;
 mod tried;
 mod value;
 

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 
 use super::functional::Functional;
 use super::region::{Cut, Piece};
-use crate::bounds::Sum;
-use crate::bounds::energy::{shape, square_on};
+use super::springs;
+use crate::bounds::energy::{initial_on, shape, square_on};
+use crate::bounds::{OnSprings, Sum};
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
@@ -22,6 +23,8 @@ pub struct Fields<'a> {
     /// z over `factor`.
     pub lifted: &'a Displacement,
     pub factor: f64,
+    /// m and σ_z on springs.
+    pub springs: (&'a OnSprings, &'a OnSprings),
 }
 
 /// The integrals, per unit thickness.
@@ -35,6 +38,8 @@ pub struct Pass {
     pub alone: Integrals,
     /// ‖σ̂‖²_a.
     pub balanced: f64,
+    /// ∫ σ̂:ε0, and what rounding of it is relative to.
+    pub initial: [f64; 2],
 }
 
 /// What an adjoint pair has over all triangles.
@@ -46,6 +51,14 @@ pub struct Integrals {
     pub work: f64,
     /// The square of the norm that σ_z − σ(z) would have if nothing cancelled in it.
     pub uncancelled: f64,
+}
+
+impl Integrals {
+    fn add(&mut self, other: &Integrals) {
+        self.square += other.square;
+        self.work += other.work;
+        self.uncancelled += other.uncancelled;
+    }
 }
 
 /// Computes them.
@@ -69,19 +82,31 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
         .collect();
     let sum = |i: usize| terms.iter().map(|t| t[i]).collect::<Sum>().value();
     let integrals = |first: usize| Integrals { square: sum(first), work: sum(first + 1), uncancelled: sum(first + 2) };
-    Pass {
+    let mut pass = Pass {
         squares: terms.iter().map(|t| t[PAIR]).collect(),
         pair: integrals(PAIR),
         alone: integrals(ALONE),
         balanced: sum(BALANCED),
+        initial: [INITIAL, INITIAL + 1].map(sum),
+    };
+    let on_springs = springs::terms(problem, fields.springs, (fields.lifted, fields.factor));
+    for ((pair, _), own) in problem.bed_pairs().zip(on_springs) {
+        if let Some(t) = mesh.edges[pair.edge].triangles[0] {
+            pass.squares[t] += own.pair.square;
+        }
+        pass.pair.add(&own.pair);
+        pass.alone.add(&own.alone);
+        pass.balanced += own.balanced;
     }
+    pass
 }
 
-/// Where the sums of a triangle stand: three of the pair, three without z, and one of each other kind.
+/// Where the sums of a triangle stand: three of the pair, three without z, one of the stress in balance, two of initial strains.
 const PAIR: usize = 0;
 const ALONE: usize = 3;
 const BALANCED: usize = 6;
-const TERMS: usize = 7;
+const INITIAL: usize = 7;
+const TERMS: usize = 9;
 
 /// χ on a triangle.
 #[derive(Clone, Copy)]
@@ -93,7 +118,7 @@ enum Strain<'a> {
 
 /// The sums of one triangle.
 fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>, fields: Fields<'_>) -> [f64; TERMS] {
-    let Fields { middle, adjoint, lifted, factor } = fields;
+    let Fields { middle, adjoint, lifted, factor, .. } = fields;
     let corners = problem.mesh.corners(t);
     let area = sub_area(corners);
     let initial = match strain {
@@ -125,6 +150,7 @@ fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>
             out[BALANCED] += by * material.product(balanced, balanced);
         }
     }
+    out[INITIAL..].copy_from_slice(&initial_on(adjoint, t, material, corners, area));
     if let Strain::Part(chi, cut) = strain {
         for piece in &cut.pieces {
             of_z.on(corners, lifted, t, piece.sub);
@@ -154,7 +180,7 @@ pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displ
         let (corners, material) = (mesh.corners(t), &materials[mesh.body[t]]);
         let (area, modulus) = (sub_area(corners), largest_modulus(material));
         let mut of_v = Strains::default();
-        let spread = |sub: usize| of_v.on(corners, displacement, t, sub).largest_spread().powi(2);
+        let spread = |sub: usize| of_v.elastic(corners, displacement, t, sub, material).largest_spread().powi(2);
         let strains = area * modulus * (0..3).map(spread).sum::<f64>();
         shape(corners) * (strains + square_on(stress, t, material, area))
     };

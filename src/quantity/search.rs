@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use super::end::End;
 use super::functional::Functional;
 use super::interval::{Known, in_degree};
+use super::springs::{adjoint_of, combined, square_of};
 use super::tried::Tried;
 use crate::bounds::energy::square;
-use crate::bounds::{NoUpperBound, NodalValues, Pull, Until};
+use crate::bounds::{NoUpperBound, NodalValues, OnSprings, Pull, Until};
 use crate::dual::{Loaded, Response};
 use crate::element::StressField;
 
@@ -72,10 +73,13 @@ impl Search<'_, '_> {
         let Known { problem, nearest, .. } = self.known;
         let sigma = self.stress(&neutral.stress);
         let nodes = nearest.start(&sigma, &neutral.moments);
-        let balanced = square(problem, &neutral.stress);
-        let square = if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) };
+        let springs = adjoint_of(problem, self.functional, &neutral.stress);
+        let of_springs = square_of(problem, &springs);
+        let balanced = square(problem, &neutral.stress) + of_springs;
+        let square =
+            if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) + of_springs };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
-        let pull = Pull { scene: 0.0, stress: Some(&sigma) };
+        let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: Some(&springs) };
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
         let distance = if rest > CANCELLED * square {
             rest.sqrt()
@@ -151,7 +155,8 @@ impl Search<'_, '_> {
             return false;
         }
         let sigma = self.stress(&begun.response.stress);
-        let filled = nearest.filled(&begun.nodes, Pull { scene: 0.0, stress: Some(&sigma) });
+        let filled =
+            nearest.filled(&begun.nodes, Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: None });
         let pair = self.measured(&begun.response, (&filled, 1.0), 1.0);
         pair.pass.balanced <= NO_STRESS * natural
             && pair.pass.pair.square <= NO_STRAIN * natural
@@ -196,7 +201,11 @@ impl Search<'_, '_> {
                 open.iter().zip(weights).map(|(o, w)| ratio * o - sign * w).collect()
             })
             .collect();
-        let pull = Pull { scene: 2.0 * weight, stress: Some(&stress) };
+        let adjoint = adjoint_of(known.problem, self.functional, &response.stress);
+        let less =
+            |(q, m): (&[Vec<f64>; 2], &[Vec<f64>; 2])| [0, 1].map(|c| combined(sign, &q[c], -2.0 * weight, &m[c]));
+        let springs: OnSprings = adjoint.iter().zip(&known.springs).map(less).collect();
+        let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(

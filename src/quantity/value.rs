@@ -2,11 +2,12 @@
 
 use super::functional::Functional;
 use super::pass::strained;
+use super::springs::product_of;
 use crate::bounds::{Sum, work, work_of};
 use crate::element::Displacement;
-use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
+use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 
 /// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
@@ -22,16 +23,17 @@ pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) ->
     let (mut strains, mut on) = (Strains::default(), None);
     let at = |t: usize, sub: usize, l: [f64; 3]| {
         if on.replace((t, sub)) != Some((t, sub)) {
-            strains.on(problem.mesh.corners(t), v, t, sub);
+            strains.elastic(problem.mesh.corners(t), v, t, sub, &materials[problem.mesh.body[t]]);
         }
         materials[problem.mesh.body[t]].stress(strains.at(l))
     };
+    let degree = |t: usize| elastic_degree(v.degree(t), &materials[problem.mesh.body[t]]);
     let mut sum = functional.constant + displaced(problem, functional, v);
-    sum += strained(problem, functional, |t| v.degree(t) - 1, at);
+    sum += strained(problem, functional, degree, at);
     if functional.load.weights.iter().any(|w| !w.is_empty()) {
         // ∫ φ t = −∫ t j(w̃) = F(w̃) − ∫ σ(v) : e(w̃).
         let lift = functional.lift.as_ref()?;
-        sum += work(problem, lift).value() - product(problem, v, lift);
+        sum += work(problem, lift).value() - product(problem, v, lift) - product_of(problem, v, lift);
     }
     Some(functional.scale * sum)
 }
@@ -47,9 +49,11 @@ fn product(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 {
         }
         let corners = problem.mesh.corners(t);
         for sub in 0..3 {
-            of_v.on(corners, v, t, sub);
+            of_v.elastic(corners, v, t, sub, &materials[problem.mesh.body[t]]);
             of_w.on(corners, w, t, sub);
-            for (l, weight) in triangle_rule(v.degree(t) + w.degree(t) - 2) {
+            for (l, weight) in
+                triangle_rule(elastic_degree(v.degree(t), &materials[problem.mesh.body[t]]) + w.degree(t) - 1)
+            {
                 let product = materials[problem.mesh.body[t]].strain_product(of_v.at(*l), of_w.at(*l));
                 sum.add(weight * sub_area(corners) * product);
             }

@@ -273,6 +273,8 @@ pub struct Dossier<'a> {
     pub maps: Vec<Map>,
     /// A rigid motion to show, for a scene without equilibrium: displacement per vertex.
     pub motion: Option<Vec<[f64; 2]>>,
+    /// The bytes of `proof.npz`, where a proof travels with the report.
+    pub proof: Option<Vec<u8>>,
 }
 
 /// A scalar per triangle.

@@ -104,6 +104,7 @@ impl Sample {
             ],
             motion: infeasible
                 .then(|| mesh.points.iter().map(|p| if p[0] < 1.0 { [-0.3, 0.05] } else { [0.0; 2] }).collect()),
+            proof: None,
         }
     }
 }
@@ -167,6 +168,7 @@ fn two_blocks(n: usize) -> Problem {
         mesh,
         conditions,
         interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
+        beds: Vec::new(),
         notes,
         refinement: crate::problem::Refinement::default(),
         uncut: None,

@@ -9,6 +9,7 @@ mod sheet;
 use super::Dossier;
 use super::lattice::Lattice;
 use crate::compare::von_mises_of;
+use crate::element::geometry::sub_corners;
 use crate::problem::Problem;
 pub(super) use sheet::shortened;
 use sheet::{Precision, Sheet};
@@ -19,6 +20,8 @@ const FOR_LOOKING_FROM: usize = 10_000;
 const STEP: f64 = 1.0 / 2048.0;
 /// The components of a symmetric tensor in the order of VTK.
 const TENSOR: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+/// Components of a stress in the axes of the material, the third of them out of the plane.
+const MATERIAL_AXES: [&str; 6] = ["11", "22", "33", "12", "23", "13"];
 /// Those of a vector.
 const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 
@@ -101,15 +104,16 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
     let problem = dossier.problem;
     let mesh = &problem.mesh;
     let dual = dossier.dual.map(|dual| &dual.stress).filter(|stress| stress.len() == mesh.triangles.len());
-    let tensor = |t: usize, s: [f64; 3]| [s[0], s[1], out_of_plane(problem, t, s), s[2], 0.0, 0.0];
+    let place = |t: usize, sub: usize, l: [f64; 3]| {
+        let corners = sub_corners(mesh.corners(t), sub);
+        [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum())
+    };
+    let tensor = |t, sub, l, s: [f64; 3]| [s[0], s[1], out_of_plane(problem, t, s, place(t, sub, l)), s[2], 0.0, 0.0];
     let section = problem.section().revolved();
     out.open("PointData", &dual.map(|_| ("Tensors", "dual_stress")).into_iter().collect::<Vec<_>>())?;
     let steps = steps(dossier, lattice);
     if let (Some(dual), Some(revolved)) = (dual, section) {
-        let of = |t: usize, sub, l| {
-            let force = problem.scene.bodies[mesh.body[t]].body_force[0];
-            revolved.stress_at(dual, t, sub, mesh.corners(t), force, l)
-        };
+        let of = |t: usize, sub, l| revolved.stress_at(dual, t, sub, mesh.corners(t), problem.body_force(t), l);
         let tensor = |t, sub, l| {
             let [rr, zz, tt, rz] = of(t, sub, l);
             [rr, zz, tt, rz, 0.0, 0.0]
@@ -124,31 +128,58 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
     }
     if let (Some(dual), None) = (dual, section) {
         let stress = |t, sub, l| dual.at(t, sub, l);
-        out.stresses("dual_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress(t, sub, l))), &steps)?;
+        out.stresses(
+            "dual_stress",
+            &TENSOR,
+            &lattice.values(|t, sub, l| tensor(t, sub, l, stress(t, sub, l))),
+            &steps,
+        )?;
         out.stresses(
             "von_mises",
             &[],
-            &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l))]),
+            &lattice.values(|t, sub, l| [von_mises(problem, t, stress(t, sub, l), place(t, sub, l))]),
             &steps,
         )?;
         out.stresses(
             "mean_stress",
             &[],
-            &lattice.values(|t, sub, l| [mean_stress(problem, t, stress(t, sub, l))]),
+            &lattice.values(|t, sub, l| [mean_stress(problem, t, stress(t, sub, l), place(t, sub, l))]),
             &steps,
         )?;
     }
+    if let Some(dual) = dual
+        && problem.scene.bodies.iter().any(|body| body.elasticity.isotropic().is_none())
+    {
+        let turned = |t: usize, s: [f64; 3]| match problem.mesh.body.get(t) {
+            Some(&body) => problem.scene.bodies[body].elasticity.in_own_axes(s),
+            None => s,
+        };
+        let own = lattice.values(|t, sub, l| {
+            let s = dual.at(t, sub, l);
+            let [first, second, shear] = turned(t, s);
+            [first, second, out_of_plane(problem, t, s, place(t, sub, l)), shear, 0.0, 0.0]
+        });
+        out.stresses("dual_stress_in_material_axes", &MATERIAL_AXES, &own, &steps)?;
+    }
     if let Some(mid) = dossier.mid.filter(|mid| mid.len() == mesh.triangles.len()) {
-        out.stresses("mid_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, mid.at(t, sub, l))), &steps)?;
+        out.stresses("mid_stress", &TENSOR, &lattice.values(|t, sub, l| tensor(t, sub, l, mid.at(t, sub, l))), &steps)?;
     }
     let mut names = Vec::new();
     for (name, stress) in dossier.stresses.iter().filter(|(_, stress)| stress.len() == mesh.triangles.len()) {
         let key = unique_key("stress", name, &mut names);
-        out.stresses(&key, &TENSOR, &lattice.values(|t, sub, l| tensor(t, stress.at(t, sub, l))), &steps)?;
+        out.stresses(&key, &TENSOR, &lattice.values(|t, sub, l| tensor(t, sub, l, stress.at(t, sub, l))), &steps)?;
         if let Some(dual) = dual {
             let apart = lattice.values(|t, sub, l| {
                 let (own, other) = (dual.at(t, sub, l), stress.at(t, sub, l));
-                tensor(t, [0, 1, 2].map(|c| own[c] - other[c]))
+                let apart = [0, 1, 2].map(|c| own[c] - other[c]);
+                // What initial strains leave of σ_33 is the same in both.
+                let [of_own, of_other] = [own, other].map(|s| out_of_plane(problem, t, s, place(t, sub, l)));
+                let zz = if problem.scene.bodies.iter().all(|body| body.initial.is_none()) {
+                    out_of_plane(problem, t, apart, [0.0; 2])
+                } else {
+                    of_own - of_other
+                };
+                [apart[0], apart[1], zz, apart[2], 0.0, 0.0]
             });
             out.stresses(&unique_key("stress_difference", name, &mut names), &TENSOR, &apart, &steps)?;
         }
@@ -230,18 +261,18 @@ fn on_triangle(sub: usize, l: [f64; 3]) -> [f64; 3] {
 }
 
 /// σ_33, nothing in plane stress.
-fn out_of_plane(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).out_of_plane(s))
+fn out_of_plane(problem: &Problem, t: usize, s: [f64; 3], at: [f64; 2]) -> f64 {
+    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).out_of_plane(s, at))
 }
 
 /// Von Mises stress of (xx, yy, xy) in triangle `t`.
-pub(crate) fn von_mises(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).von_mises(s))
+pub(crate) fn von_mises(problem: &Problem, t: usize, s: [f64; 3], at: [f64; 2]) -> f64 {
+    problem.mesh.body.get(t).map_or(0.0, |&body| problem.material(body).von_mises(s, at))
 }
 
 /// tr σ / 3.
-fn mean_stress(problem: &Problem, t: usize, s: [f64; 3]) -> f64 {
-    (s[0] + s[1] + out_of_plane(problem, t, s)) / 3.0
+fn mean_stress(problem: &Problem, t: usize, s: [f64; 3], at: [f64; 2]) -> f64 {
+    (s[0] + s[1] + out_of_plane(problem, t, s, at)) / 3.0
 }
 
 /// `kind` and the name in letters that every program reads, made unique.

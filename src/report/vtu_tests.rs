@@ -194,10 +194,10 @@ fn stresses_for_looking_at_are_right_to_a_part_of_the_largest() {
 fn von_mises_of_known_states() {
     let mut sample = Sample::new(1, Verdict::Agree);
     // Plane strain, ν = 0.3, uniaxial 1: σ_33 = 0.3, ½(1² + 0.3² + 0.7²) = 0.79.
-    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0]) - 0.79_f64.sqrt()).abs() < 1e-15);
+    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0], [0.0; 2]) - 0.79_f64.sqrt()).abs() < 1e-15);
     sample.problem.scene.draft.kinematics = crate::scene::Kinematics::PlaneStress;
-    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0]) - 1.0).abs() < 1e-15);
-    assert!((von_mises(&sample.problem, 0, [0.0, 0.0, 1.0]) - 3.0_f64.sqrt()).abs() < 1e-15);
+    assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0], [0.0; 2]) - 1.0).abs() < 1e-15);
+    assert!((von_mises(&sample.problem, 0, [0.0, 0.0, 1.0], [0.0; 2]) - 3.0_f64.sqrt()).abs() < 1e-15);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::csv::{TABLES, tables};
 use super::{Dossier, folder, html, json, junit, markdown, vtu};
+use crate::proof;
 
 /// Why a report was not written.
 #[derive(Debug, thiserror::Error)]
@@ -66,7 +67,7 @@ pub enum ReportError {
 pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 
 /// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be, and
-/// `checks.csv`, `contacts.csv` and `quantities.csv` where they have rows; those of an earlier run go where they have none.
+/// `checks.csv`, `contacts.csv` and `quantities.csv` where they have rows, and `proof.npz` where there is one; those of an earlier run go where they have none.
 ///
 /// All are rendered before the first is written, and they take the place of an earlier run's at once (see
 /// [`folder`]): a reader sees neither half a file nor the files of two runs.
@@ -75,10 +76,10 @@ pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summar
 /// [`ReportError`]; an earlier report is then still there.
 pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
     let headers = TABLES.map(|table| table.header());
-    let passing: Vec<folder::Passing> = TABLES
-        .iter()
-        .zip(&headers)
+    let tables = TABLES.iter().zip(&headers);
+    let passing: Vec<folder::Passing> = tables
         .map(|(table, header)| folder::Passing { name: table.name, begins: header.as_bytes() })
+        .chain([folder::Passing { name: proof::NAME, begins: proof::BEGINS }])
         .collect();
     folder::replace(dir, &render(dossier)?, &passing)
 }
@@ -95,6 +96,7 @@ pub(super) fn render(dossier: &Dossier) -> Result<Vec<(&'static str, Vec<u8>)>, 
         ("fields.vtu", vtu::vtu(dossier).map_err(|e| fail("fields.vtu", e.to_string()))?),
     ];
     files.extend(tables(report).into_iter().map(|(name, text)| (name, text.into_bytes())));
+    files.extend(dossier.proof.iter().map(|bytes| (proof::NAME, bytes.clone())));
     Ok(files)
 }
 

@@ -4,6 +4,7 @@ use super::conditions::Taken;
 use super::error::{Fault, SceneError};
 use super::raw::{At, RawBond, Table};
 use super::source::counted;
+use super::springs::layer;
 use super::{ContactSides, Scene};
 
 /// Two boundaries that are glued to each other. Their vertices need not be the same.
@@ -11,6 +12,9 @@ use super::{ContactSides, Scene};
 pub struct Bond {
     /// The boundaries, which coincide as polylines.
     pub sides: [String; 2],
+    /// Force per area and relative displacement, normal and tangential and both positive, of an elastic layer between them; `None`
+    /// where they move as one.
+    pub stiffness: Option<[f64; 2]>,
 }
 
 impl Bond {
@@ -67,7 +71,8 @@ impl Bond {
 pub(super) fn bond(raw: &At<Table<RawBond>>, table: &str, taken: &mut Taken) -> Result<Bond, SceneError> {
     let Table(bond) = &raw.value;
     let remedy = "name the two boundaries that are glued to each other";
-    Ok(Bond { sides: taken.between(&bond.between, table, remedy)? })
+    let stiffness = bond.stiffness.as_ref().map(|k| layer(k, table, taken.source)).transpose()?;
+    Ok(Bond { sides: taken.between(&bond.between, table, remedy)?, stiffness })
 }
 
 impl Taken<'_> {

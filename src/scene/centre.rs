@@ -5,7 +5,7 @@
 //! computed: the differences from a point in the middle are exact, and nothing that the coordinates carry is lost. Messages
 //! and results show the coordinates of the file.
 
-use super::{Affine, Load, MeshSource, Note, Scene, SupportKind};
+use super::{Load, MeshSource, Note, Scene, SupportKind};
 
 /// Largest distance from the point (0, 0), in sizes of the scene, at which coordinates stay as they are.
 const NEAR: f64 = 16.0;
@@ -16,7 +16,7 @@ impl Scene {
     /// The same scene with coordinates counted from a point in the middle of `points`, in each direction in which they lie
     /// far from zero, and that point. `points` themselves are to be moved by it.
     ///
-    /// P(x) = value + gradient · x of a traction, and the same of a clamped boundary, becomes the same function of the new coordinates; regions and points of
+    /// P(x) = value + gradient · x of a traction, and the same of a body force and a clamped boundary, becomes the same function of the new coordinates; regions and points of
     /// quantities move along.
     pub(crate) fn about_middle<'a>(mut self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
         let [x, y] = [0, 1].map(|c| range(points.clone().map(|p| p[c])));
@@ -39,12 +39,16 @@ impl Scene {
         }
         for traction in &mut self.draft.tractions {
             if let Load::Affine(load) = &mut traction.load {
-                move_origin(load, middle);
+                load.shift(middle);
             }
+        }
+        for body in &mut self.draft.bodies {
+            body.initial = body.initial.about(middle);
+            body.body_force.shift(middle);
         }
         for support in &mut self.draft.supports {
             if let SupportKind::Clamped { displacement } = &mut support.kind {
-                move_origin(displacement, middle);
+                displacement.shift(middle);
             }
         }
         self.draft.contacts.iter_mut().flat_map(|c| &mut c.obstacle).for_each(|obstacle| obstacle.shift(middle));
@@ -73,27 +77,8 @@ impl Scene {
     }
 }
 
-/// The same function of coordinates counted from `middle`.
-fn move_origin(Affine { value, gradient }: &mut Affine, middle: [f64; 2]) {
-    *value = [0, 1].map(|i| value_at(value[i], gradient[i], middle));
-}
-
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-}
-
-/// value + gradient · point, as if the sum were rounded once: its terms may cancel.
-fn value_at(value: f64, gradient: [f64; 2], point: [f64; 2]) -> f64 {
-    let products = [gradient[0] * point[0], gradient[1] * point[1]];
-    let lost = [0, 1].map(|k| gradient[k].mul_add(point[k], -products[k]));
-    let (mut sum, mut rest) = (value, 0.0);
-    for term in products {
-        let next = sum + term;
-        let part = next - sum;
-        rest += (sum - (next - part)) + (term - part);
-        sum = next;
-    }
-    sum + (rest + (lost[0] + lost[1]))
 }
 
 #[cfg(test)]
@@ -101,6 +86,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::load::Affine;
 
     fn square(corner: [f64; 2], value: f64) -> Scene {
         let [x, y] = corner;

@@ -11,6 +11,7 @@ use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
 use super::source::{Source, counted};
+use super::springs::{no_stiffness, spring};
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
 };
@@ -93,6 +94,7 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
     let word = support.kind.value.as_str();
     let kind = match word {
         "clamped" => {
+            no_stiffness(support, table, source)?;
             if let Some(d) = &support.direction {
                 let remedy = "delete `direction`, or write type = \"roller\", which holds one component";
                 let (table, other) = (table.to_owned(), "type = \"clamped\", which holds both components");
@@ -102,14 +104,16 @@ fn support(raw: &At<Table<RawSupport>>, table: &str, taken: &mut Taken) -> Resul
             SupportKind::Clamped { displacement: displacement.unwrap_or_default() }
         }
         "roller" => {
+            no_stiffness(support, table, source)?;
             let remedy = "write the direction of the component that is held, like [1.0, 0.0]";
             let direction =
                 support.direction.as_ref().map(|d| source.unit(d, (table, "direction"), remedy)).transpose()?;
             let displacement = support.displacement.as_ref().map(|u| roller(u, table, source)).transpose()?;
             SupportKind::Roller { direction, displacement: displacement.unwrap_or_default() }
         }
+        "spring" => SupportKind::Spring { stiffness: spring(raw, table, source)? },
         other => {
-            let known = ["clamped", "roller"].map(String::from).to_vec();
+            let known = ["clamped", "roller", "spring"].map(String::from).to_vec();
             let fault = Fault::UnknownWord { key: "type", table: table.to_owned(), found: other.to_owned(), known };
             return Err(source.error(support.kind.span(), fault));
         }
@@ -124,19 +128,24 @@ fn clamped(u: &At<RawDisplacement>, table: &str, source: &Source) -> Result<Affi
             let vector = At { value: vector.clone(), start: u.start, end: u.end };
             source.vector(&vector, (table, "displacement")).map(Affine::constant)
         }
-        RawDisplacement::Affine(RawAffine { value, gradient }) => {
-            let value = value.as_ref().map(|value| source.vector(value, (table, "displacement.value"))).transpose()?;
-            Ok(Affine {
-                value: value.unwrap_or_default(),
-                gradient: matrix(gradient, (table, "displacement.gradient"), source)?,
-            })
-        }
+        RawDisplacement::Affine(field) => affine(field, (table, "displacement"), source),
         RawDisplacement::Component(_) => {
             let (key, table, found) = ("displacement".to_owned(), table.to_owned(), "one number".to_owned());
             let remedy = "write both components [ux, uy], or type = \"roller\", which holds one";
             Err(source.error(u.span(), Fault::Count { key, table, found, expected: "2 numbers".to_owned(), remedy }))
         }
     }
+}
+
+/// A field value + gradient · x, written as `key` of `table`.
+pub(super) fn affine(
+    RawAffine { value, gradient }: &RawAffine,
+    (table, key): (&str, &str),
+    source: &Source,
+) -> Result<Affine, SceneError> {
+    let value = value.as_ref().map(|value| source.vector(value, (table, &format!("{key}.value")))).transpose()?;
+    let gradient = matrix(gradient, (table, &format!("{key}.gradient")), source)?;
+    Ok(Affine { value: value.unwrap_or_default(), gradient })
 }
 
 /// The component that rollers prescribe.

@@ -15,7 +15,8 @@ use super::{
     Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
     SupportKind, Target, Touching, Traction,
 };
-use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 
 /// The parts of a scene, checked or not; [`Scene::new`] makes a scene of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,11 +108,12 @@ impl Draft {
             let tables: Vec<String> = polygons.iter().map(polygon).collect();
             writeln!(text, "geometry.polygons = [{}]", tables.join(", "))?;
         }
-        for (i, Body { name, elasticity, body_force }) in self.bodies.iter().enumerate() {
+        for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, material, force) = (quoted(name), material(elasticity), list(body_force));
-            writeln!(text, "bodies.{name} = {{ {material}, body_force = {force}{cells} }}")?;
+            let (name, material, force) =
+                (quoted(name), material(elasticity) + &initial_keys(initial), force(body_force));
+            writeln!(text, "bodies.{name} = {{ {material}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
@@ -247,6 +249,20 @@ fn number(number: f64) -> String {
     Value::from(number).to_string()
 }
 
+/// The keys of initial strains and stresses, each behind a comma.
+fn initial_keys(initial: &Initial) -> String {
+    let Initial { expansion, temperature, gradient, stress } = initial;
+    let mut text = String::new();
+    if *expansion != [0.0; 3] || *temperature != 0.0 || *gradient != [0.0; 2] {
+        let (expansion, value, gradient) = (list(expansion), number(*temperature), list(gradient));
+        text += &format!(", expansion = {expansion}, temperature = {{ value = {value}, gradient = {gradient} }}");
+    }
+    if *stress != [0.0; 4] {
+        text += &format!(", initial_stress = {}", list(stress));
+    }
+    text
+}
+
 /// The keys of a material.
 pub(crate) fn material(elasticity: &Elasticity) -> String {
     match elasticity {
@@ -298,6 +314,7 @@ fn support(Support { on, kind }: &Support) -> String {
             let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
             format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
         }
+        SupportKind::Spring { stiffness } => format!("on = {on}, type = \"spring\", stiffness = {}", list(stiffness)),
     }
 }
 
@@ -305,6 +322,17 @@ fn affine(Affine { value, gradient }: &Affine) -> String {
     match *gradient == [[0.0; 2]; 2] {
         true => list(value),
         false => format!("{{ value = {}, gradient = {} }}", list(value), rows(gradient)),
+    }
+}
+
+fn force(force: &BodyForce) -> String {
+    let given = affine(&force.given());
+    match force.rotation() {
+        None => format!("body_force = {given}"),
+        Some(Rotation { density, omega, about }) => {
+            let (density, omega, about) = (number(density), number(omega), list(&about));
+            format!("body_force = {given}, rotation = {{ density = {density}, omega = {omega}, about = {about} }}")
+        }
     }
 }
 
@@ -347,8 +375,9 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 
-fn bond(Bond { sides: [a, b] }: &Bond) -> String {
-    format!("between = [{}, {}]", quoted(a), quoted(b))
+fn bond(Bond { sides: [a, b], stiffness }: &Bond) -> String {
+    let stiffness = stiffness.map(|k| format!(", stiffness = {}", list(&k))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {

@@ -2,9 +2,9 @@
 
 use super::Kinematics;
 use super::error::{Fault, SceneError};
-use super::raw::{At, Pair, RawBody, RawOrthotropic, Table};
+use super::raw::{At, Pair, RawBody, RawExpansion, RawOrthotropic, RawTemperature, Table};
 use super::source::Source;
-use crate::elasticity::{Anisotropic, Elasticity, Matrix, MatrixKind, Orthotropic};
+use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, MatrixKind, Orthotropic};
 
 /// Numbers of an orthotropic table.
 const THREE: &str = "write three numbers, for axes 1, 2 and 3, which is out of the plane";
@@ -106,6 +106,70 @@ fn isotropic(
     Ok(Elasticity::Isotropic { young, poisson })
 }
 
+/// What the body whose table is `label` has without load.
+pub(super) fn initial(
+    raw: &RawBody,
+    label: &str,
+    law: &Elasticity,
+    kinematics: Kinematics,
+    source: &Source,
+) -> Result<Initial, SceneError> {
+    let mut initial = Initial::default();
+    let list = |values: Vec<f64>, start: usize, end: usize| At { value: values, start, end };
+    if let Some(At { value, start, end }) = &raw.expansion {
+        initial.expansion = match value {
+            RawExpansion::Isotropic(alpha) => {
+                source.vector(&list(vec![*alpha; 3], *start, *end), (label, "expansion"))?
+            }
+            RawExpansion::Axes(along) => three(&list(along.clone(), *start, *end), label, "expansion", source)?,
+        };
+    }
+    if let Some(At { value, start, end }) = &raw.temperature {
+        let (at, gradient) = match value {
+            RawTemperature::Constant(value) => (*value, vec![0.0; 2]),
+            RawTemperature::Affine(affine) => (affine.value, affine.gradient.clone()),
+        };
+        let any = ("a temperature is a number", "write degrees above the temperature without stress");
+        initial.temperature =
+            source.number(&At { value: at, start: *start, end: *end }, (label, "temperature"), |_| true, any)?;
+        initial.gradient = source.vector(&list(gradient, *start, *end), (label, "temperature.gradient"))?;
+        if raw.expansion.is_none() {
+            let remedy = "add expansion = 1.2e-5, the strain for a degree, or delete `temperature`".to_owned();
+            let fault = Fault::MissingKey { key: "expansion".into(), table: label.to_owned(), remedy };
+            return Err(source.error(*start..*end, fault));
+        }
+    }
+    if let Some(stress) = &raw.initial_stress {
+        let mut padded = At { value: stress.value.clone(), start: stress.start, end: stress.end };
+        if padded.value.len() == 3 {
+            padded.value.push(0.0);
+        }
+        if padded.value.len() != 4 {
+            let found = super::counted(stress.value.len(), "number");
+            let (key, table) = ("initial_stress".to_owned(), label.to_owned());
+            let remedy = "write xx, yy, xy, and where it is needed the stress out of the plane";
+            let fault = Fault::Count { key, table, found, expected: "3 or 4".into(), remedy };
+            return Err(source.error(stress.span(), fault));
+        }
+        initial.stress = source.vector(&padded, (label, "initial_stress"))?;
+        if initial.stress[3] != 0.0 && law.is_plane_stress_only() {
+            let found = source.written(stress.span());
+            let rule = "a matrix of three rows does not say what a stress out of the plane does";
+            let remedy = "write three numbers, or a matrix of six rows";
+            let (key, table) = ("initial_stress".to_owned(), label.to_owned());
+            return Err(source.error(stress.span(), Fault::Number { key, table, found, rule, remedy }));
+        }
+    }
+    let strain = law.initial_strain(kinematics == Kinematics::PlaneStrain, &initial);
+    let numbers = strain.value.iter().chain(strain.gradient.as_flattened());
+    if numbers.copied().any(|e| !e.is_finite()) {
+        let (rule, remedy) = ("the initial strain overflows", "choose units in which the numbers are ordinary ones");
+        let (key, table, found) = ("expansion".to_owned(), label.to_owned(), "too large".to_owned());
+        return Err(source.error(0..0, Fault::Number { key, table, found, rule, remedy }));
+    }
+    Ok(initial)
+}
+
 /// Why a Poisson's ratio outside (−1, ½) is none.
 fn poisson_words(nu: f64) -> (&'static str, &'static str) {
     if nu == 0.5 {
@@ -123,19 +187,21 @@ fn poisson_words(nu: f64) -> (&'static str, &'static str) {
     }
 }
 
+/// Three finite numbers.
+fn three(list: &Pair, label: &str, key: &str, source: &Source) -> Result<[f64; 3], SceneError> {
+    if list.value.len() != 3 {
+        let found = super::counted(list.value.len(), "number");
+        let (key, table) = (key.to_owned(), label.to_owned());
+        let fault = Fault::Count { key, table, found, expected: "3".into(), remedy: THREE };
+        return Err(source.error(list.span(), fault));
+    }
+    source.vector(list, (label, key))
+}
+
 fn orthotropic(law: &At<Table<RawOrthotropic>>, label: &str, source: &Source) -> Result<Elasticity, SceneError> {
     let Table(raw) = &law.value;
-    let three = |list: &Pair, key: &str| -> Result<[f64; 3], SceneError> {
-        if list.value.len() != 3 {
-            let found = super::counted(list.value.len(), "number");
-            let (key, table) = (format!("orthotropic.{key}"), label.to_owned());
-            let fault = Fault::Count { key, table, found, expected: "3".into(), remedy: THREE };
-            return Err(source.error(list.span(), fault));
-        }
-        source.vector(list, (label, &format!("orthotropic.{key}")))
-    };
-    let young = three(&raw.young, "young")?;
-    let poisson = three(&raw.poisson, "poisson")?;
+    let young = three(&raw.young, label, "orthotropic.young", source)?;
+    let poisson = three(&raw.poisson, label, "orthotropic.poisson", source)?;
     let any = ("a modulus is a number", "write a positive number, in units of stress");
     let shear = source.number(&raw.shear, (label, "orthotropic.shear"), |_| true, any)?;
     for modulus in young.into_iter().chain([shear]).filter(|modulus| *modulus > 0.0) {

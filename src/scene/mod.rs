@@ -5,6 +5,7 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
+mod body_force;
 mod bonds;
 mod centre;
 mod circle;
@@ -24,13 +25,16 @@ mod raw;
 mod read;
 mod selection;
 mod source;
+mod springs;
 pub(crate) mod text;
 mod validate;
 
 use std::path::PathBuf;
 
-use crate::elasticity::Elasticity;
+use crate::elasticity::{Elasticity, Initial};
 
+pub use crate::load::Affine;
+use crate::load::BodyForce;
 pub use bonds::Bond;
 pub(crate) use bonds::Joint;
 pub use circle::Circle;
@@ -141,14 +145,21 @@ pub struct Body {
     pub name: String,
     /// What it is made of.
     pub elasticity: Elasticity,
-    /// Constant body force F (force per volume).
-    pub body_force: [f64; 2],
+    /// What strains and stresses it has without load.
+    pub initial: Initial,
+    /// Body force F (force per volume).
+    pub body_force: BodyForce,
 }
 
 impl Body {
     /// A body with Young's modulus E > 0 and Poisson's ratio ν in (−1, ½), without body force.
     pub fn isotropic(name: impl Into<String>, young: f64, poisson: f64) -> Self {
-        Body { name: name.into(), elasticity: Elasticity::Isotropic { young, poisson }, body_force: [0.0; 2] }
+        Body {
+            name: name.into(),
+            elasticity: Elasticity::Isotropic { young, poisson },
+            initial: Initial::default(),
+            body_force: BodyForce::NONE,
+        }
     }
 }
 
@@ -176,6 +187,11 @@ pub enum SupportKind {
         /// The prescribed component.
         displacement: f64,
     },
+    /// Springs to the ground: traction −k u.
+    Spring {
+        /// Force per area and displacement, normal and tangential: neither below zero, one of them above.
+        stiffness: [f64; 2],
+    },
 }
 
 impl SupportKind {
@@ -184,27 +200,6 @@ impl SupportKind {
         SupportKind::Clamped { displacement: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] } };
     /// Rollers along the boundary.
     pub const ROLLER: Self = SupportKind::Roller { direction: None, displacement: 0.0 };
-}
-
-/// A vector field: value + gradient · x (gradient\[i\]\[j\] = ∂_j of component i).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Affine {
-    /// Its value at the origin.
-    pub value: [f64; 2],
-    /// Its gradient.
-    pub gradient: [[f64; 2]; 2],
-}
-
-impl Affine {
-    /// The same everywhere.
-    pub fn constant(value: [f64; 2]) -> Self {
-        Affine { value, gradient: [[0.0; 2]; 2] }
-    }
-
-    /// Its value at `point`.
-    pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|i| self.value[i] + self.gradient[i][0] * point[0] + self.gradient[i][1] * point[1])
-    }
 }
 
 /// A loaded boundary.

@@ -156,6 +156,9 @@ fn what_to_add(key: &str) -> &'static str {
         "edges" => "add one name for each edge, edges = [\"NAME\", ...]; \"\" leaves an edge free",
         "on" => "add on = \"NAME\", the boundary that is meant",
         "name" => "add name = \"NAME\", what the report is to call the quantity",
+        "density" => "add the mass per volume, for instance density = 7850.0",
+        "omega" => "add the angular velocity in radians per time, for instance omega = 300.0",
+        "gradient" => "add the two rows gradient = [[a, b], [c, d]], or write the constant [x, y] alone",
         "type" => "add type = \"clamped\" or \"roller\"",
         _ => "add it",
     }

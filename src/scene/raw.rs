@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 use toml::Spanned;
 
+use super::body_force::{RawForce, RawRotation};
 use super::quantity::RawQuantity;
 
 /// A value and where it stands in the file.
@@ -227,14 +228,51 @@ pub(super) struct RawBody {
     pub compliance: Option<At<Vec<Pair>>>,
     /// Degrees from x to axis 1 of the matrix, anticlockwise.
     pub angle: Option<At<f64>>,
-    /// Constant force per volume, none where it is missing.
-    #[schemars(with = "Option<[f64; 2]>")]
-    pub body_force: Option<Pair>,
+    /// Thermal expansion, or three along the axes of the body.
+    pub expansion: Option<At<RawExpansion>>,
+    /// Temperature above the one without stress: a number, or affine in x.
+    pub temperature: Option<At<RawTemperature>>,
+    /// Initial stress xx, yy, xy, and a fourth that is out of the plane.
+    #[schemars(with = "Option<Vec<f64>>", extend("minItems" = 3, "maxItems" = 4))]
+    pub initial_stress: Option<Pair>,
+    /// Force per volume, none where it is missing: the same everywhere, or value + gradient · x.
+    pub body_force: Option<At<RawForce>>,
+    /// The centrifugal force of a body that turns, beside any other.
+    pub rotation: Option<At<Table<RawRotation>>>,
     /// Its cells are those of this physical group of the mesh file, or of this elementary entity where there is no such group.
     pub tag: Option<At<i32>>,
     /// Its cells are those of this set of the mesh file.
     #[schemars(length(min = 1))]
     pub set: Option<At<String>>,
+}
+
+/// The same in all directions, or along the axes of the body.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or three numbers, one for each axis of the body")]
+pub(super) enum RawExpansion {
+    Isotropic(f64),
+    Axes(Vec<f64>),
+}
+
+/// The same everywhere, or value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or a table { value = 80.0, gradient = [gx, gy] }")]
+pub(super) enum RawTemperature {
+    Constant(f64),
+    Affine(RawAffineTemperature),
+}
+
+/// value + gradient · x.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Temperature")]
+pub(super) struct RawAffineTemperature {
+    /// At the origin of coordinates.
+    #[serde(default)]
+    pub value: f64,
+    /// Along x and y.
+    #[schemars(with = "[f64; 2]")]
+    pub gradient: Vec<f64>,
 }
 
 /// Engineering constants. Axis 3 is out of the plane.
@@ -313,14 +351,54 @@ pub(super) struct RawSupport {
     #[schemars(length(min = 1))]
     pub on: At<String>,
     /// `clamped`: u = displacement. `roller`: one component of u is prescribed, mostly the normal one at zero, and there is no traction across it.
+    /// `spring`: traction against the displacement, as strong as `stiffness` says.
     #[serde(rename = "type")]
-    #[schemars(extend("enum" = ["clamped", "roller"]))]
+    #[schemars(extend("enum" = ["clamped", "roller", "spring"]))]
     pub kind: At<String>,
     /// What is prescribed, zero where it is missing: the displacement of a clamped boundary, the component that a roller holds.
     pub displacement: Option<At<RawDisplacement>>,
     /// The component that a roller holds, without traction across it; the outward normal where it is missing.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,
+    /// Force per area and displacement of springs: normal, with the tangential direction free, or both, [normal, tangential].
+    pub stiffness: Option<At<RawStiffness>>,
+}
+
+/// A number, the normal stiffness of springs, or both components, [normal, tangential].
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Stiffness")]
+pub(super) enum RawStiffness {
+    /// Along the normal; the tangential direction is free.
+    Normal(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    /// Along the normal and along the boundary.
+    Both(#[schemars(with = "[f64; 2]")] Vec<f64>),
+}
+
+impl<'de> Deserialize<'de> for RawStiffness {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrBoth;
+        impl<'de> Visitor<'de> for NumberOrBoth {
+            type Value = RawStiffness;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number, the normal stiffness, or [normal, tangential]")
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawStiffness, E> {
+                Ok(RawStiffness::Normal(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawStiffness, E> {
+                Ok(RawStiffness::Normal(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<RawStiffness, A::Error> {
+                let mut both = Vec::new();
+                while let Some(entry) = entries.next_element()? {
+                    both.push(entry);
+                }
+                Ok(RawStiffness::Both(both))
+            }
+        }
+        deserializer.deserialize_any(NumberOrBoth)
+    }
 }
 
 /// A number on rollers; on clamped boundaries a vector, or value + gradient · x.
@@ -431,6 +509,9 @@ pub(super) struct RawBond {
     /// Two boundaries that coincide as polylines.
     #[schemars(with = "[String; 2]")]
     pub between: At<Vec<At<String>>>,
+    /// An elastic layer in place of a rigid bond: force per area and relative displacement, [normal, tangential].
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub stiffness: Option<Pair>,
 }
 
 /// A rigid obstacle: a straight line or a circle.

@@ -116,8 +116,8 @@ impl Source<'_> {
 
 /// Largest number in a scene: the square of a load, over a modulus, times an area and a thickness of such sizes is still
 /// a number.
-const LARGEST: f64 = 1e30;
-const OVERFLOWS: (&str, &str) =
+pub(super) const LARGEST: f64 = 1e30;
+pub(super) const OVERFLOWS: (&str, &str) =
     ("energies of numbers beyond 1e30 overflow", "choose units in which the numbers are ordinary ones");
 const UNDERFLOWS: (&str, &str) =
     ("energies overflow where this is below 1e-30", "choose units in which the numbers are ordinary ones");

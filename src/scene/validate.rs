@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use super::body_force::body_force;
 use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
-use super::material::elasticity;
+use super::material::{elasticity, initial};
 use super::quantity::quantities;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
@@ -91,12 +92,10 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
         let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
-        let body_force = match &raw.body_force {
-            None => [0.0; 2],
-            Some(force) => source.vector(force, (&label, "body_force"))?,
-        };
+        let body_force = body_force(raw, &label, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
-        Ok(Body { name, elasticity, body_force })
+        let initial = initial(raw, &label, &elasticity, kinematics, source)?;
+        Ok(Body { name, elasticity, initial, body_force })
     };
     let bodies = bodies.into_iter().enumerate().map(body).collect::<Result<_, SceneError>>()?;
     Ok((bodies, cells))

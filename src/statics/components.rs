@@ -1,5 +1,6 @@
 //! Connected pieces of the mesh and their rigid motions.
 
+use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
 
 /// One rigid motion of every piece of the mesh.
@@ -26,7 +27,8 @@ impl RigidMotion {
     }
 }
 
-/// The connected pieces of the mesh. Triangles that share an edge belong together: bonded bodies are one piece, and a
+/// The connected pieces of the mesh. Triangles that share an edge belong together, and those on both sides of an elastic layer,
+/// which resists every motion of one against the other: bonded bodies are one piece, and a
 /// body may have several. Triangles that share nothing but a vertex are hinged at a point, which holds no stress, and
 /// count as separate.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +49,21 @@ pub struct Components {
     pub one_of_several: Vec<bool>,
 }
 
+/// The piece of every triangle, and how many there are.
+fn joined(problem: &Problem) -> (Vec<usize>, usize) {
+    let mesh = &problem.mesh;
+    let (of_triangle, count) = mesh.pieces();
+    let mut sets = DisjointSets::new(count);
+    for (pair, _) in problem.bed_pairs() {
+        let mut sides = pair.sides().filter_map(|(_, e)| mesh.edges[e].triangles[0]).map(|t| of_triangle[t]);
+        if let (Some(first), Some(second)) = (sides.next(), sides.next()) {
+            sets.join(first, second);
+        }
+    }
+    let (label, count) = sets.labels();
+    (of_triangle.into_iter().map(|piece| label[piece]).collect(), count)
+}
+
 impl Components {
     /// Number of pieces.
     pub fn count(&self) -> usize {
@@ -56,7 +73,7 @@ impl Components {
     /// Finds the pieces of the mesh of `problem`.
     pub fn new(problem: &Problem) -> Self {
         let mesh = &problem.mesh;
-        let (of_triangle, count) = mesh.pieces();
+        let (of_triangle, count) = joined(problem);
 
         let mut of_vertex = vec![usize::MAX; mesh.points.len()];
         let mut in_piece: Vec<Vec<usize>> = vec![Vec::new(); count];

@@ -2,10 +2,10 @@
 
 use super::components::{Components, RigidMotion};
 use crate::problem::{Condition, Problem};
-use crate::vector::cross;
+use crate::vector::{cross, norm};
 
 /// Resultants of body forces and tractions on each piece of the mesh, times the thickness. Exact but for round-off:
-/// body forces are constant, tractions are linear along an edge, and the sums are compensated.
+/// body forces are affine, tractions are linear along an edge, and the sums are compensated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadResultants {
     /// Resultant force.
@@ -28,21 +28,24 @@ impl LoadResultants {
         };
         for (t, &c) in components.of_triangle.iter().enumerate() {
             let body = problem.scene.bodies.get(mesh.body[t]);
-            let f = body.map_or([0.0; 2], |body| body.body_force);
-            if f == [0.0; 2] {
+            let Some(f) = body.map(|body| body.body_force.on(mesh.corners(t))).filter(|f| !f.is_none()) else {
                 continue;
-            }
+            };
             let arms = mesh.corners(t).map(|x| arm(x, components.centre[c]));
             let [p, q, r] = arms;
             let area = 0.5 * cross([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
             let centroid = [(p[0] + q[0] + r[0]) / 3.0, (p[1] + q[1] + r[1]) / 3.0];
             if section.is_revolved() {
                 let weight = section.volume(mesh.corners(t));
-                add(c, [0.0, weight * f[1]], 0.0, weight * f[0].hypot(f[1]));
+                let [_, axial] = section.forces(problem.body_force(t));
+                add(c, [0.0, weight * axial], 0.0, weight * f.largest());
                 continue;
             }
-            let force = [area * f[0], area * f[1]];
-            add(c, force, cross(centroid, force), force[0].hypot(force[1]));
+            let f = f.of_area(area);
+            let force = f.resultant();
+            // A force that turns its sign on a triangle is not small for that.
+            let size = if f.moment() == 0.0 { norm(force) } else { area * f.largest() };
+            add(c, force, cross(centroid, force) + f.moment(), size);
         }
         for (e, condition) in problem.conditions.iter().enumerate() {
             let (Condition::Traction([p, q]), Some(t)) = (condition, mesh.edges[e].triangles[0]) else { continue };

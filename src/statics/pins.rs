@@ -133,7 +133,7 @@ pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &[DVector<f64>])
     let places = problem.conditions.iter().enumerate().flat_map(|(e, condition)| {
         let kind = match condition {
             Condition::Interior | Condition::Traction(_) => Some(Kind::Free),
-            Condition::Clamped(_) | Condition::Axis => None,
+            Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => None,
             Condition::Roller { .. } | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
         };
         let component = mesh.edges[e].triangles[0].map(|t| group.components.of_triangle[t]);

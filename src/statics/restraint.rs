@@ -276,7 +276,7 @@ impl Group<'_> {
         (turns && !touching.is_empty()).then_some(touching)
     }
 
-    /// The rows that vanish on rollers: no rotation, and no displacement along each normal there is; at both ends of an edge that
+    /// The rows that vanish on rollers, and on springs that do not give: no rotation, and no displacement along each normal there is; at both ends of an edge that
     /// is held along another direction, none along that.
     pub fn rollers(&self, problem: &Problem) -> Vec<Part> {
         let mesh = &problem.mesh;
@@ -286,16 +286,14 @@ impl Group<'_> {
             // A body of revolution moves along its axis alone.
             oblique.extend((0..self.members.len()).flat_map(|m| [(m, Vector3::x()), (m, Vector3::z())]));
         }
-        for (e, condition) in problem.conditions.iter().enumerate() {
-            let (Condition::Roller { direction, .. }, Some(t)) = (condition, mesh.edges[e].triangles[0]) else {
-                continue;
-            };
+        for (e, direction) in held_directions(problem) {
+            let Some(t) = mesh.edges[e].triangles[0] else { continue };
             let c = self.components.of_triangle[t];
             let Some(m) = self.member(c) else { continue };
             let (length, n) = mesh.edge_frame(e);
             if (direction[0] * n[1] - direction[1] * n[0]).abs() > STRAIGHT {
                 let ends = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-                oblique.extend(ends.iter().filter_map(|p| self.displacement(c, *p, *direction)));
+                oblique.extend(ends.iter().filter_map(|p| self.displacement(c, *p, direction)));
                 continue;
             }
             // Weighted by length, equal directions add up to the normal of the line from end to end.
@@ -322,6 +320,20 @@ impl Group<'_> {
         };
         directions.into_iter().enumerate().flat_map(rows).chain(oblique).collect()
     }
+}
+
+/// The directions in which rollers hold edges, and springs to the ground.
+pub(super) fn held_directions(problem: &Problem) -> impl Iterator<Item = (usize, [f64; 2])> + '_ {
+    let rollers = problem.conditions.iter().enumerate().filter_map(|(e, condition)| match condition {
+        Condition::Roller { direction, .. } => Some((e, *direction)),
+        _ => None,
+    });
+    let grounded = problem.bed_pairs().filter(|(pair, _)| pair.opposite.is_none());
+    let springs = grounded.flat_map(|(pair, stiffness)| {
+        let along = pair.axes.into_iter().zip(stiffness).filter(|(_, k)| *k > 0.0);
+        along.map(move |(axis, _)| (pair.edge, axis))
+    });
+    rollers.chain(springs)
 }
 
 /// What `part` of a row takes from a vector of all unknowns.

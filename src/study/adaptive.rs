@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use super::admission::Admission;
 use super::answers::answers;
-use super::certified::{Certified, StudyError};
+use super::certified::{Certified, StudyError, carrying_loads};
 use super::dossier::in_numbers;
 use super::forecast::Forecast;
 use super::indicators::Indicators;
@@ -132,6 +132,8 @@ pub fn adapt(
     mut on_step: impl FnMut(&HistoryRow),
 ) -> Result<Adapted, StudyError> {
     let start = Instant::now();
+    let (problem, options) = carrying_loads(problem, options)?;
+    let options = &options;
     let admission = Admission::new(method, options.budget);
     let refinement = RefinementEdges::longest(&problem.mesh);
     let mut stage = Stage::new(problem, refinement, options.elements.clone());

@@ -131,7 +131,7 @@ const UNMOVED: f64 = 1e-9;
 fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool {
     let largest = motion.iter().fold(0.0_f64, |m, u| m.max(u[0].hypot(u[1])));
     let load = &functional.load;
-    let is_displacement = !load.tractions.is_empty() || load.force.iter().any(|f| *f != [0.0; 2]);
+    let is_displacement = !load.tractions.is_empty() || load.force.iter().any(|f| !f.is_none());
     is_displacement
         && displaced(problem, functional, &Displacement::from_p1(&problem.mesh, motion)).abs() > UNMOVED * largest
 }

@@ -6,7 +6,7 @@ use super::admission::Admission;
 use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, on_ranks, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
-use crate::problem::{Problem, ProblemError};
+use crate::problem::{Note, Problem, ProblemError};
 use crate::statics::{self, Solvability, Statics, StaticsError};
 
 /// A problem with its dual solution and bracket.
@@ -67,15 +67,37 @@ pub enum StudyError {
 /// # Errors
 /// [`StudyError`].
 pub fn certify(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let options = &carrying(&problem, options);
-    admit(&problem, method, options)?;
+    let (problem, options) = carrying_loads(problem, options)?;
+    admit(&problem, method, &options)?;
     let statics = Balanced::new(&problem, &options.elements, None)?;
-    solve_balanced(problem, statics, method, options, None)
+    solve_balanced(problem, statics, method, &options, None)
 }
 
-/// The options with degrees that can balance the loads.
-pub(super) fn carrying(problem: &Problem, options: &Options) -> Options {
-    Options { elements: options.elements.at_least(&problem.least_degrees()), ..options.clone() }
+/// The options with the degrees that the loads of `problem` ask for, and the problem with a note where these are not the given ones.
+///
+/// # Errors
+/// [`DualError::NotExpressible`].
+pub(super) fn carrying_loads(mut problem: Problem, options: &Options) -> Result<(Problem, Options), DualError> {
+    let elements = dual::carrying(&problem, &options.elements)?;
+    let mesh = &problem.mesh;
+    let short = |b: usize| {
+        let mut own = (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == b);
+        own.any(|t| options.elements.degree(t) < problem.least_degree(t))
+    };
+    let bodies = (0..problem.scene.bodies.len()).filter(|&b| short(b));
+    let names: Vec<&str> = bodies.map(|b| problem.scene.bodies[b].name.as_str()).collect();
+    if !names.is_empty() {
+        let why = match problem.section().is_revolved() {
+            true => "The loads on {}, times the distance from the axis, are no linear functions",
+            false => "The body force of {} is not the same everywhere",
+        };
+        let text = format!(
+            "{}: stresses that balance it exactly have degree 2 at least, and have it there.",
+            why.replace("{}", &names.join(", "))
+        );
+        problem.notes.push(Note { weakens_guarantee: false, text });
+    }
+    Ok((problem, Options { elements, ..options.clone() }))
 }
 
 /// Refuses a solve for which there is no memory.

@@ -35,8 +35,8 @@ pub fn claim(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain)?;
-    let solution = solution.within(Extent::of(bracket)).with_weak_contact(weak);
+    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored())?;
+    let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
     let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
@@ -57,7 +57,7 @@ fn weak_notes(solution: &Solution<'_>, energies: impl Fn() -> Energies) -> Vec<N
 /// holds neither way.
 pub fn weak_contact(problem: &Problem, judged: &Judged) -> Option<Vec<Note>> {
     let solution =
-        Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?.with_weak_contact(true);
+        Solution::new(problem, &judged.candidate, judged.field.potential.stored()).ok()?.with_weak_contact(true);
     let contacts = (0..problem.interfaces.len()).all(|i| solution.is_met(i) || solution.holds_weakly(i).is_some());
     (judged.violation.support <= ADMISSIBLE && contacts).then(|| weak_notes(&solution, || energies(problem, judged)))
 }
@@ -75,7 +75,7 @@ pub fn claim_before_contact(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(before, own, judged.field.potential.strain)?.within(Extent::of(bracket));
+    let solution = Solution::new(before, own, judged.field.potential.stored())?.within(Extent::of(before, bracket));
     let solution = Nonmatching::new(solution.with_weak_contact(weak), problem);
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
@@ -89,10 +89,11 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     if is_explained(&own) {
         return own;
     }
-    let strain = judged.field.potential.strain;
+    let strain = judged.field.potential.stored();
     let others = cells::rules(&judged.candidate).into_iter().filter(|points| *points != solution.points);
     let by = |points| {
-        let other = Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(bracket));
+        let other =
+            Solution::by_rule(problem, &judged.candidate, strain, points).ok()?.within(Extent::of(problem, bracket));
         diagnose(&other, energies).map(Some).filter(is_explained)
     };
     others.into_iter().find_map(by).unwrap_or(own)
@@ -128,8 +129,8 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) 
         failed && judged.candidate.is_solution && judged.candidate.higher.is_none()
     };
     let explained = |judged: &Judged| {
-        let solution = Solution::new(problem, &judged.candidate, judged.field.potential.strain).ok()?;
-        let solution = solution.within(Extent::of(bracket));
+        let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored()).ok()?;
+        let solution = solution.within(Extent::of(problem, bracket));
         diagnose(&solution, energies(problem, judged))
     };
     comparison.judged.iter().filter(wrong).filter_map(explained).collect()
@@ -147,6 +148,6 @@ fn energies(problem: &Problem, judged: &Judged) -> Energies {
     Energies {
         own: own.total(),
         admissible: lifted.map(|field| potential(problem, &field).total()),
-        reported: reported.map(|(whole, strain)| [whole / own.total(), strain / own.strain]),
+        reported: reported.map(|(whole, strain)| [whole / own.total(), strain / own.stored()]),
     }
 }

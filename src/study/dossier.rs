@@ -81,6 +81,7 @@ pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
         stresses: fields.stresses.iter().map(|(name, stress)| (name.clone(), stress)).collect(),
         maps: fields.maps.clone(),
         motion: None,
+        proof: None,
     }
 }
 
@@ -247,5 +248,6 @@ pub fn infeasible<'a>(
         stresses: Vec::new(),
         maps: Vec::new(),
         motion: Some(motion),
+        proof: None,
     }
 }

@@ -17,7 +17,7 @@ pub struct Indicators {
 
 impl Indicators {
     /// The terms of `upper` on its mesh: the constitutive-relation error of each triangle, and half of the
-    /// complementarity term of each contact pair for the triangle on either side.
+    /// complementarity term of each contact pair, or of a pair of an elastic layer, for the triangle on either side.
     pub fn new(problem: &Problem, upper: &UpperBound) -> Self {
         let mut terms: Vec<f64> = upper.local.triangles.iter().map(|v| v.max(0.0)).collect();
         for (interface, values) in problem.interfaces.iter().zip(&upper.local.pairs) {
@@ -28,6 +28,10 @@ impl Indicators {
                     terms[t] += value.max(0.0) / sides.len() as f64;
                 }
             }
+        }
+        for ((pair, _), value) in problem.bed_pairs().zip(&upper.local.springs) {
+            let sides: Vec<usize> = pair.sides().filter_map(|(_, e)| problem.mesh.edges[e].triangles[0]).collect();
+            sides.iter().for_each(|&t| terms[t] += value.max(0.0) / sides.len() as f64);
         }
         Indicators { terms }
     }

@@ -9,7 +9,7 @@ use super::indicators::Indicators;
 use super::stage::{Solved, Stage};
 use super::stop::Stop;
 use super::trend::{EXPECTED, inherited, raised};
-use crate::dual::Size;
+use crate::dual::{Size, carrying};
 use crate::element::{Elements, block};
 use crate::problem::Problem;
 use crate::report::number::vector;
@@ -153,7 +153,9 @@ impl<'a> Rounds<'a> {
     /// Degrees are chosen, and these stresses are linear blocks: the same mesh with those that choosing begins with, where they may be
     /// solved.
     fn with_first_degree(&self, stage: &Stage) -> Option<Stage> {
-        let linear = matches!(stage.elements, Elements::Uniform(element) if element.name() == block(1).name());
+        // But for what the loads ask for.
+        let least = carrying(&stage.problem, &Elements::Uniform(block(1))).ok()?;
+        let linear = (0..stage.problem.mesh.triangles.len()).all(|t| stage.elements.of(t).name() == least.of(t).name());
         if self.goal.adapt != Adapt::Hp || !linear {
             return None;
         }

@@ -1,6 +1,6 @@
 //! One mesh of an adaptive run: refined, made able to express the contact pressure, solved.
 
-use super::certified::{Balanced, Certified, StudyError, admit, carrying, solve_balanced};
+use super::certified::{Balanced, Certified, StudyError, admit, carrying_loads, solve_balanced};
 use super::curves::divide_evenly_what_slides;
 use super::trend::Way;
 use super::warm_start::{carried, closed_coefficients};
@@ -15,7 +15,8 @@ use crate::problem::{Note, Problem, Refinement};
 /// # Errors
 /// [`StudyError`].
 pub fn certify_divided(problem: Problem, method: &dyn DualMethod, options: &Options) -> Result<Certified, StudyError> {
-    let options = &carrying(&problem, options);
+    let (problem, options) = carrying_loads(problem, options)?;
+    let options = &options;
     admit(&problem, method, options)?;
     let balanced = Balanced::new(&problem, &options.elements, None)?;
     if !balanced.statics.is_beyond_mesh() {
@@ -70,7 +71,6 @@ impl Stage {
     /// The first mesh.
     pub fn new(problem: Problem, refinement: RefinementEdges, elements: Elements) -> Self {
         let count = problem.mesh.triangles.len();
-        let elements = elements.at_least(&problem.least_degrees());
         Stage { parent: (0..count).collect(), problem, refinement, elements, ways: vec![Way::Bisect; count] }
     }
 

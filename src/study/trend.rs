@@ -5,10 +5,9 @@
 //! degree more leaves nearly all. So a triangle goes on with what served it: after a step that brought what a smooth
 //! solution promises the degree is raised next, after one that did not the triangle is bisected (Melenk & Wohlmuth 2001).
 
-use std::collections::HashMap;
-
 use super::forecast::Forecast;
 use super::indicators::Indicators;
+use crate::dual::spread;
 use crate::element::{Elements, MAX_DEGREE};
 use crate::mesh::Triangulation;
 
@@ -93,19 +92,6 @@ pub fn inherited(
 pub fn raised(mesh: &Triangulation, facing: &[[usize; 2]], elements: &Elements, marked: &[usize]) -> Elements {
     let mut degree: Vec<u8> = (0..mesh.triangles.len()).map(|t| elements.degree(t) as u8).collect();
     marked.iter().for_each(|&t| degree[t] = (degree[t] + 1).min(MAX_DEGREE as u8));
-    let opposite: HashMap<usize, usize> = facing.iter().flat_map(|&[a, b]| [(a, b), (b, a)]).collect();
-    let mut waiting: Vec<usize> = marked.to_vec();
-    while let Some(t) = waiting.pop() {
-        for e in mesh.triangle_edges[t] {
-            let across = opposite.get(&e).and_then(|&o| mesh.edges[o].triangles[0]).map(|other| (other, degree[t]));
-            let beside = mesh.edges[e].triangles.iter().flatten().map(|&other| (other, degree[t] - 1));
-            for (other, least) in beside.chain(across).collect::<Vec<_>>() {
-                if degree[other] < least {
-                    degree[other] = least;
-                    waiting.push(other);
-                }
-            }
-        }
-    }
+    spread(mesh, facing, &mut degree, marked.to_vec());
     Elements::Blocks(degree.into())
 }

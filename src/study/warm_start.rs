@@ -57,11 +57,12 @@ pub fn guess_refined(given: &Problem, levels: usize, fine: &Problem, options: &O
     let size = |level: u32| given.mesh.triangles.len().saturating_mul(4_usize.saturating_pow(level));
     let level = (0..levels as u32).rev().find(|&level| size(level) <= QUICKLY_SOLVED)?;
     let coarse = given.refine_uniform(level as usize).ok()?;
-    let statics = balance(&coarse, &options.elements, None).ok()?;
-    let options = Options { keep_factor: false, ..options.clone() };
+    let elements = dual::carrying(&coarse, &options.elements).ok()?;
+    let statics = balance(&coarse, &elements, None).ok()?;
+    let options = Options { keep_factor: false, elements, ..options.clone() };
     let motions = statics.held_at_vertices(&coarse);
     let found = options.on_threads(|| dual::solve(&Condensed::default(), &coarse, &motions, &options)).ok()?;
-    let counts = contact_coefficients(fine, &options.elements);
+    let counts = contact_coefficients(fine, &dual::carrying(fine, &options.elements).ok()?);
     Some(closed_coefficients(&coarse, &found.closed, fine, &counts))
 }
 

@@ -188,7 +188,7 @@ fn solutions_of_other_data_are_out_of_balance_by_the_size_of_the_change() {
                 scene: problem.scene.changed(changed).expect("a valid scene"),
                 ..problem.clone()
             };
-            let heavier = with(&|draft| draft.bodies[0].body_force = [0.0, change]);
+            let heavier = with(&|draft| draft.bodies[0].body_force = [0.0, change].into());
             let stiffer =
                 with(&|draft| draft.bodies[0].elasticity = draft.bodies[0].elasticity.stiffened(1.0 + change));
             let thicker = with(&|draft| draft.thickness *= 1.0 + change);

@@ -23,7 +23,7 @@ fn square() -> Draft {
     let along = Component::along([0.8, -0.6]);
     Draft {
         title: "A \u{201c}square\u{201d}\\ \u{1}".into(),
-        bodies: vec![Body { body_force: [0.0, -1e-300], ..Body::isotropic("block \"a\"", 0.1 + 0.2, -0.25) }],
+        bodies: vec![Body { body_force: [0.0, -1e-300].into(), ..Body::isotropic("block \"a\"", 0.1 + 0.2, -0.25) }],
         supports: vec![Support {
             on: "wall".into(),
             kind: SupportKind::Clamped { displacement: Affine::constant([1.0 / 3.0, 0.0]) },
@@ -33,7 +33,7 @@ fn square() -> Draft {
             load: Load::Affine(Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] }),
         }],
         contacts: vec![Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))],
-        bonds: vec![Bond { sides: ["left".into(), "right".into()] }],
+        bonds: vec![Bond { sides: ["left".into(), "right".into()], stiffness: Some([2.5, 0.1]) }],
         quantities: vec![
             quantity("side", side),
             quantity("all", Target::Displacement { of: Extent::Body(0), direction: [0.0, 1.0] }),

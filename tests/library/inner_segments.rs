@@ -2,6 +2,7 @@
 
 use hypercircle::element::subtriangle::{Moments, flexibility, side_map};
 use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::{DMatrix, DVector};
 
@@ -58,7 +59,7 @@ fn orthonormal_modes_keep_what_inner_segments_lose() {
     let isochoric = moments(corners, |[x, y]| [x, -y]);
     for nu in [0.3, 0.4999, 0.499999] {
         let material = Material::isotropic(Kinematics::PlaneStrain, 1.0, nu);
-        let modes = Block.modes(corners, &material, [0.0; 2]);
+        let modes = Block.modes(corners, &material, &BodyForce::NONE);
         let t = DMatrix::from_column_slice(12, 9, modes.traction());
         let other = by_inner_segments(corners, &material);
         let apart = (&t * t.transpose() - &other).amax() / other.amax();

@@ -5,6 +5,7 @@ mod adaptive;
 mod anisotropic;
 #[path = "../support/arcs.rs"]
 mod arcs;
+mod body_forces;
 mod bonds;
 mod circular_gap;
 mod comparison;
@@ -26,6 +27,7 @@ mod equilibrium;
 mod fuzzed;
 mod gap_breaks;
 mod gap_curves;
+mod initial_strain;
 mod inner_segments;
 mod intervals;
 mod invariance;
@@ -60,6 +62,7 @@ mod rings;
 mod rounding;
 mod scene_schema;
 mod setup;
+mod springs;
 mod squares;
 #[path = "../support/mod.rs"]
 mod support;

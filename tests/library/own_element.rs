@@ -15,7 +15,7 @@ fn problems() -> Vec<Problem> {
     let bent = |[x, y]: [f64; 2]| [x, y + 0.1 * (3.0 * x).sin() * y * (1.0 - y)];
     let heavy = || {
         let mut problem = blocks([(1.0, 0.3), (3.0, 0.1)], [3, 4], tilting).map(bent).build();
-        let weight = |draft: &mut Draft| draft.bodies[0].body_force = [0.2, -0.4];
+        let weight = |draft: &mut Draft| draft.bodies[0].body_force = [0.2, -0.4].into();
         problem.scene = problem.scene.changed(weight).expect("a valid scene");
         problem
     };

@@ -3,6 +3,7 @@
 use hypercircle::dual::paper::BlockMatrices;
 use hypercircle::element::subtriangle::{Matrix, Moments, flexibility, shift, side_map, stress_map};
 use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -33,7 +34,7 @@ proptest! {
     fn q1_spans_the_block_element(corners in triangle(0.05)) {
         let material = Material::isotropic(Kinematics::PlaneStress, 3.0, 0.2);
         let block = BlockMatrices::new(corners, &material);
-        let modes = Block.modes(corners, &material, [0.0; 2]);
+        let modes = Block.modes(corners, &material, &BodyForce::NONE);
         let q1 = block.q1();
         // Nodal stresses of both bases, 27 × 9.
         let mut own = DMatrix::<f64>::zeros(27, 9);

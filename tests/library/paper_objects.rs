@@ -220,7 +220,7 @@ fn auxiliary_field_balances_everything() {
     for t in 0..problem.mesh.triangles.len() {
         let corners = problem.mesh.corners(t);
         let centre = [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0);
-        let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
+        let force = problem.force_on(t).mean();
         for sub in 0..3 {
             let q = [corners[(sub + 1) % 3], corners[(sub + 2) % 3], centre];
             let mut flux = [0.0; 2];
@@ -253,7 +253,7 @@ fn auxiliary_field_balances_everything() {
                 Condition::Traction(p) => assert!(largest([own[end][0] - p[end][0], own[end][1] - p[end][1]]) < 1e-11),
                 Condition::Roller { .. } => assert!(tt.abs() < 1e-11),
                 Condition::Contact { .. } => assert!((tn - g).abs() < 1e-11 && tt.abs() < 1e-11),
-                Condition::Clamped(_) | Condition::Axis => {}
+                Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => {}
             }
             match condition {
                 Condition::Contact { .. } if left => (0..2).for_each(|c| on_contact[c] += 0.5 * length * own[end][c]),

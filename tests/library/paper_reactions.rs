@@ -17,7 +17,10 @@ use proptest::prelude::*;
 type Parts = ([f64; 2], [[f64; 2]; 2]);
 
 fn scene(supports: Vec<Support>, loads: &[(&str, Parts)], forces: [[f64; 2]; 2]) -> Scene {
-    let body = |name: &str, young, poisson, body_force| Body { body_force, ..Body::isotropic(name, young, poisson) };
+    let body = |name: &str, young, poisson, force: [f64; 2]| Body {
+        body_force: force.into(),
+        ..Body::isotropic(name, young, poisson)
+    };
     let draft = Draft {
         bodies: vec![body("left", 1.0, 0.3, forces[0]), body("right", 5.0, 0.1, forces[1])],
         supports,

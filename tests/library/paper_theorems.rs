@@ -8,6 +8,7 @@ use crate::support::theory::quadrature::{area, gauss, sub_corners};
 use hypercircle::element::{
     Block, EquilibriumElement, Material, interpolant, parameters_from_tractions, side_projection,
 };
+use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::{DMatrix, DVector, SVector};
 use proptest::prelude::*;
@@ -81,10 +82,10 @@ fn balanced(p: Triangle, raw: [f64; 12]) -> [f64; 12] {
 }
 
 fn block_field(p: Triangle, t: &[f64; 12]) -> (Vec<[f64; 3]>, f64) {
-    let modes = Block.modes(p, &Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3), [0.0; 2]);
+    let modes = Block.modes(p, &Material::isotropic(Kinematics::PlaneStrain, 1.0, 0.3), &BodyForce::NONE);
     let (s, left) = parameters_from_tractions(&modes, t).expect("a triangle");
     let mut out = vec![[0.0; 3]; 9];
-    Block.stresses(p, [0.0; 2], &modes, &s, 0.0, &mut out);
+    Block.stresses(p, &BodyForce::NONE, &modes, &s, 0.0, &mut out);
     (out, left)
 }
 

@@ -292,7 +292,7 @@ fn the_certificate_of_a_field_on_a_distorted_mesh_is_its_error() {
             &certified.problem,
             &certified.dual,
             candidate,
-            hypercircle::compare::Extent::of(&certified.bracket),
+            hypercircle::compare::Extent::of(&certified.problem, &certified.bracket),
         )
         .expect("admissible");
         let mut error = if lifted { 2.0 * 0.02 } else { 0.0 };

@@ -27,6 +27,7 @@ mod own_mesh;
 #[path = "../support/pages.rs"]
 mod pages;
 mod printed;
+mod proof;
 mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]

@@ -88,7 +88,7 @@ pub struct Case {
 impl Case {
     pub fn new(element: &'static dyn EquilibriumElement, setting: Setting) -> Self {
         let material = setting.material.compliance();
-        let modes = element.modes(setting.corners, &material, setting.force);
+        let modes = element.modes(setting.corners, &material, &setting.force.into());
         Case { setting, element, modes, fields: Fields::of(element, setting.corners, &material, setting.force) }
     }
 

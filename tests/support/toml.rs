@@ -9,7 +9,7 @@ pub struct Toml {
     size: Option<f64>,
     mesh: Option<String>,
     polygons: String,
-    bodies: Vec<(String, [f64; 2], (f64, f64))>,
+    bodies: Vec<(String, String, (f64, f64))>,
     /// Keys of bodies in place of `young` and `poisson`, or beside them.
     matter: Vec<(String, String)>,
     conditions: String,
@@ -44,7 +44,7 @@ impl Toml {
         write!(self.polygons, "[[geometry.polygons]]\nbody = \"{body}\"\npoints = {points:?}\nedges = {edges:?}\n")
             .expect("a string takes any text");
         if !self.bodies.iter().any(|b| b.0 == body) {
-            self.bodies.push((body.to_string(), [0.0; 2], (1.0, 0.3)));
+            self.bodies.push((body.to_string(), "body_force = [0.0, 0.0]".to_string(), (1.0, 0.3)));
         }
         self
     }
@@ -58,8 +58,13 @@ impl Toml {
     }
 
     /// The body force of a body.
-    pub fn force(mut self, body: &str, force: [f64; 2]) -> Self {
-        self.bodies.iter_mut().filter(|b| b.0 == body).for_each(|b| b.1 = force);
+    pub fn force(self, body: &str, force: [f64; 2]) -> Self {
+        self.loaded(body, &format!("body_force = {force:?}"))
+    }
+
+    /// The keys of a body that load it, as written in the file.
+    pub fn loaded(mut self, body: &str, keys: &str) -> Self {
+        self.bodies.iter_mut().filter(|b| b.0 == body).for_each(|b| b.1 = keys.to_string());
         self
     }
 
@@ -114,10 +119,10 @@ impl Toml {
             Some(file) => format!("[model]\n{model}\n[mesh]\nfile = \"{file}\"\n"),
             None => format!("[model]\n{model}\n[geometry]\n{size}{}", self.polygons),
         };
-        for (name, [fx, fy], (young, poisson)) in &self.bodies {
+        for (name, load, (young, poisson)) in &self.bodies {
             let isotropic = format!("young = {young:?}\npoisson = {poisson:?}");
             let keys = self.matter.iter().rfind(|(of, _)| of == name).map_or(&isotropic, |(_, keys)| keys);
-            write!(text, "[bodies.{name}]\n{keys}\nbody_force = [{fx:?}, {fy:?}]\n").expect("a string takes any text");
+            write!(text, "[bodies.{name}]\n{keys}\n{load}\n").expect("a string takes any text");
         }
         text.push_str(&self.conditions);
         text

@@ -16,12 +16,13 @@ use rayon::prelude::*;
 
 use super::bracket::UpperBound;
 use super::counted::Counted;
-use super::energy::strain_on;
+use super::energy::{strain_of, strain_on, work_inside};
 use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
-use crate::element::geometry::sub_area;
-use crate::element::{Displacement, Quadrilateral, triangle};
+use crate::element::quadrature::segment_rule;
+use crate::element::{Displacement, Material, Quadrilateral, contraction};
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 pub use enclosure::{Enclosed, strain_energy, strain_energy_by};
@@ -61,26 +62,29 @@ impl Correction {
         let body = cell.triangles.first().map_or(0, |t| mesh.body[*t]);
         let data = &problem.scene.bodies[body];
         let thickness = problem.scene.thickness;
-        let own = strain_energy(&cell.field, &problem.material(body));
+        let material = problem.material(body);
+        let own = strain_energy(&cell.field, &material);
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
-        let force = data.body_force;
+        let [initial, size] = if material.initial().is_none() { [0.0; 2] } else { of_initial(&cell.field, &material) };
+        let homogeneous = match material.initial().is_none() {
+            true => of_triangles,
+            false => cell.triangles.iter().map(|t| strain_of(problem, polynomial, *t, *t)[0]).sum(),
+        };
+        let force = &data.body_force;
         let mut work = 0.0;
-        if force != [0.0; 2] {
-            let mean = integral(&cell.field);
-            work += force[0] * mean[0] + force[1] * mean[1];
+        if !force.is_none() {
+            work += work_on(force, &cell.field);
             for &t in &cell.triangles {
-                let share = sub_area(mesh.corners(t)) / triangle::len(polynomial.degree(t)) as f64;
-                let parts = (0..3).flat_map(|sub| polynomial.sub(t, sub));
-                work -= parts.map(|u| share * (force[0] * u[0] + force[1] * u[1])).sum::<f64>();
+                work -= work_inside(force, mesh.corners(t), polynomial, t).iter().sum::<f64>();
             }
         }
         Correction {
-            strain: thickness * (own.value - of_triangles),
+            strain: thickness * (own.value + initial - of_triangles),
             work: thickness * work,
             error: thickness * own.error,
-            sensitivity: thickness * own.sensitivity,
+            sensitivity: thickness * (own.sensitivity + size),
             own: thickness * own.value,
-            polynomial: thickness * of_triangles,
+            polynomial: thickness * homogeneous,
         }
     }
 
@@ -89,16 +93,34 @@ impl Correction {
     }
 }
 
-/// ∫ v over a quadrilateral: a polynomial of degree 3 along ξ and η.
-fn integral(cell: &Quadrilateral) -> [f64; 2] {
-    let rule = crate::element::quadrature::segment_rule(4);
-    let [d0, d1, d2] = cell.determinant();
+/// ½∫ cε0:ε0 − ∫ cε0:e(v) over a quadrilateral, and the same with the sizes of all terms: polynomials of degree 4 at most along ξ and η.
+fn of_initial(cell: &Quadrilateral, material: &Material) -> [f64; 2] {
+    let rule = segment_rule(7);
     let mut sum = [0.0; 2];
     for (s, v) in rule {
         for (t, w) in rule {
             let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
-            let (u, weight) = (cell.value(at), 4.0 * v * w * (d0 + d1 * at[0] + d2 * at[1]));
-            sum = [sum[0] + weight * u[0], sum[1] + weight * u[1]];
+            let (of_v, place) = (cell.at(at), cell.position(at));
+            let (held, initial) = (material.held_back(place), material.initial().at(place));
+            let own = 0.5 * of_v.determinant * contraction(held, initial);
+            let size = held.iter().map(|s| s.abs()).sum::<f64>() * of_v.spread;
+            sum[0] += 4.0 * v * w * (own - contraction(held, of_v.strain));
+            sum[1] += 4.0 * v * w * (own.abs() + size);
+        }
+    }
+    sum
+}
+
+/// ∫ f · v over a quadrilateral: a polynomial of degree 4 along ξ and η.
+fn work_on(force: &BodyForce, cell: &Quadrilateral) -> f64 {
+    let rule = crate::element::quadrature::segment_rule(4);
+    let [d0, d1, d2] = cell.determinant();
+    let mut sum = 0.0;
+    for (s, v) in rule {
+        for (t, w) in rule {
+            let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
+            let (u, f) = (cell.value(at), force.at(cell.point(at)));
+            sum += 4.0 * v * w * (d0 + d1 * at[0] + d2 * at[1]) * (f[0] * u[0] + f[1] * u[1]);
         }
     }
     sum

@@ -13,21 +13,27 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::element::displacement::MOST;
-use crate::element::geometry::{from_centroid, gradients};
+use crate::element::geometry::{from_centroid, gradients, sub_corners};
 use crate::element::quadrature::{segment_rule, triangle_rule};
 use crate::element::{Material, Samples, SideValues, StressField, triangle, weighed};
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
 ///
-/// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place.
-pub fn vertex_values(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Vec<[f64; 2]> {
+/// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place; the strain is aλ_h, with the initial
+/// strains of the scene or without.
+pub fn vertex_values(
+    problem: &Problem,
+    stress: &StressField,
+    moments: &SideValues<[f64; 2]>,
+    initial: bool,
+) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let local: Vec<[[f64; 2]; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
-        .map(|t| corner_values(problem, stress, moments, &materials[mesh.body[t]], t))
+        .map(|t| corner_values(problem, stress, moments, (&materials[mesh.body[t]], initial), t))
         .collect();
     let degree = |t: usize| stress.degree(t);
     let mut highest = vec![0; mesh.points.len()];
@@ -51,7 +57,7 @@ fn corner_values(
     problem: &Problem,
     stress: &StressField,
     moments: &SideValues<[f64; 2]>,
-    material: &Material,
+    (material, with_initial): (&Material, bool),
     t: usize,
 ) -> [[f64; 2]; 3] {
     let mesh = &problem.mesh;
@@ -59,11 +65,20 @@ fn corner_values(
     let p = from_centroid(corners);
     let reference = Reference::of(stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
+    let initial = material.initial();
+    let in_plane = |sub: usize, q: usize, l: [f64; 3]| {
+        let own = material.strain(stress.sample(t, sub, shapes, q));
+        if initial.is_none() || !with_initial {
+            return own;
+        }
+        let corners = sub_corners(corners, sub);
+        let added = initial.at([0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum()));
+        [0, 1, 2].map(|c| own[c] + added[c])
+    };
     let strain = match problem.section().revolved() {
-        None => reference.strain(|sub, q, _| material.strain(stress.sample(t, sub, shapes, q))),
+        None => reference.strain(in_plane),
         Some(revolved) => {
-            let force = problem.scene.bodies[mesh.body[t]].body_force[0];
-            let of = revolved.plane_strain_of(stress, t, corners, material, force);
+            let of = revolved.plane_strain_of(stress, t, corners, material, problem.body_force(t));
             reference.strain(|sub, _, l| of(sub, l))
         }
     };

@@ -1,10 +1,10 @@
 //! Which vertices move together in a step of the relaxation, and the triangles around them.
 //!
-//! A vertex and the ones it faces across Γ_K share a contact pressure and belong together. So do the vertices that a flat
+//! A vertex and the ones it faces across Γ_K or an elastic layer share a traction and belong together. So do the vertices that a flat
 //! triangle ties to each other: moved alone, each would strain it by its whole displacement over its small height.
 
 use super::sets::Sets;
-use crate::problem::Problem;
+use crate::problem::{Problem, facing_vertices};
 
 /// Triangles whose height is below this part of their longest side are flat.
 const FLAT: f64 = 0.15;
@@ -35,6 +35,9 @@ pub fn groups(problem: &Problem, degree: usize) -> Vec<Group> {
         for (v, w) in pair.second.iter().flat_map(|second| pair.first.iter().zip(second)) {
             sets.unite(*v, *w, usize::MAX);
         }
+    }
+    for [v, w] in facing_vertices(mesh, &problem.beds) {
+        sets.unite(v, w, usize::MAX);
     }
     let most = (MOST_VERTICES_BY_DEGREE / degree).min(MOST_VERTICES);
     for Tie { ends: [v, w], by_sliver, .. } in tied(problem) {

@@ -8,6 +8,7 @@
 //! ([`interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
 //! keeps the bound uniform as ν → ½.
 
+mod beds;
 mod cholesky;
 mod contact;
 mod edges;
@@ -126,8 +127,9 @@ fn relaxed(
     let mesh = &problem.mesh;
     let Groundwork { nodes, holds, rows, made } = ground;
     let mut field = NodalValues::zeros(nodes.clone());
-    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments));
+    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
     share.refresh(&mut field.values);
+    beds::draw(problem, stress, &mut field);
     let vertex = field.vertices_mut();
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);

@@ -1,5 +1,6 @@
 //! The energy of a continuous displacement as a function of its nodes, with what holds them.
 
+use super::beds::{BedEnergy, energies, reload};
 use super::energies::{TriangleEnergies, TriangleEnergy};
 use super::groups::Group;
 use super::holds::{Hold, Holds};
@@ -20,6 +21,10 @@ pub struct Model {
     pub rows: Vec<Row>,
     /// Which of them have a part at each vertex or on the edges of its contact pairs.
     pub rows_at: Vec<Vec<usize>>,
+    /// The energy of springs and elastic layers.
+    pub beds: Vec<BedEnergy>,
+    /// Which of them have a part at each vertex.
+    pub beds_at: Vec<Vec<usize>>,
     /// The nodes on the boundaries of the triangles, one after the other, and where each triangle begins.
     of_triangles: (Vec<usize>, Vec<usize>),
     /// The ends of the edge of each node beyond the vertices.
@@ -54,11 +59,15 @@ impl Model {
             start.push(of_triangles.len());
         }
         let rows_at = rows_at(problem, groups);
+        let mut beds = energies(problem, nodes);
+        reload(&mut beds, pull.springs);
         Model {
             energies: TriangleEnergies::new(problem, nodes, pull, like),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
             rows_at,
+            beds,
+            beds_at: beds_at(problem),
             of_triangles: (of_triangles, start),
             ends: (0..nodes.edges())
                 .flat_map(|e| std::iter::repeat_n(mesh.edges[e].vertices, nodes.inside(e).len()))
@@ -71,6 +80,7 @@ impl Model {
     /// The same with another load and other bounds on the jumps.
     pub fn with(&mut self, problem: &Problem, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
         self.energies.reload(problem, nodes, pull);
+        reload(&mut self.beds, pull.springs);
         self.rows = groups.iter().flatten().cloned().collect();
     }
 
@@ -87,7 +97,8 @@ impl Model {
             self.about_corner(t, values, &mut u);
             element.energy(&u, self.nodes(t).iter().flat_map(|&node| values[node]), &mut room)
         };
-        share.total(self.energies.iter().filter(|(t, _)| share.has_triangle(*t)).map(of).sum())
+        let springs: f64 = self.beds.iter().map(|bed| bed.energy(values)).sum();
+        springs + share.total(self.energies.iter().filter(|(t, _)| share.has_triangle(*t)).map(of).sum())
     }
 
     /// 𝓛 of zero values per unit thickness, as [`Self::energy`] leaves it out.
@@ -152,6 +163,19 @@ impl Directions {
             _ => step,
         }
     }
+}
+
+/// The springs at each vertex, by the number of their pair.
+fn beds_at(problem: &Problem) -> Vec<Vec<usize>> {
+    let mut at = vec![Vec::new(); problem.mesh.points.len()];
+    for (number, (pair, _)) in problem.bed_pairs().enumerate() {
+        for v in pair.sides().flat_map(|(_, e)| problem.mesh.edges[e].vertices) {
+            if at[v].last() != Some(&number) {
+                at[v].push(number);
+            }
+        }
+    }
+    at
 }
 
 /// The rows of contact at each vertex: all of each pair that ends there.

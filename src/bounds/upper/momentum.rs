@@ -50,6 +50,15 @@ impl Momentum {
                 stiffness[(i, j)] += element.form(&steps[i], &steps[j]);
             }
         }
+        for bed in &model.beds {
+            for (i, moves) in [&sweep, &self.step].into_iter().enumerate() {
+                force[i] += bed.work(moves) - bed.form(values, moves);
+            }
+            for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+                let moves = [&sweep, &self.step];
+                stiffness[(i, j)] += bed.form(moves[i], moves[j]);
+            }
+        }
         let mut sums = [force[0], force[1], stiffness[(0, 0)], stiffness[(0, 1)], stiffness[(1, 1)]];
         share.sum(&mut sums);
         let [f, g, a, b, c] = sums;

@@ -48,7 +48,7 @@ impl<'a> Nearest<'a> {
     /// [`Self::to`] begins with.
     pub fn start(&self, stress: &StressField, moments: &SideValues<[f64; 2]>) -> NodalValues {
         let mut field = NodalValues::zeros(self.nodes.clone());
-        field.vertices_mut().copy_from_slice(&fit::vertex_values(self.problem, stress, moments));
+        field.vertices_mut().copy_from_slice(&fit::vertex_values(self.problem, stress, moments, false));
         for (value, hold) in field.vertices_mut().iter_mut().zip(&self.holds.vertices) {
             *value = hold.impose(*value);
         }

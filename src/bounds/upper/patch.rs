@@ -51,6 +51,8 @@ pub struct Patch {
     unknowns: Vec<(usize, [f64; 2])>,
     /// Rows of contact with an unknown in them.
     rows: Vec<usize>,
+    /// Springs with an unknown in them.
+    beds: Vec<usize>,
     /// Lower triangle of the stiffness, column by column.
     matrix: Vec<f64>,
     /// Residual forces.
@@ -118,6 +120,7 @@ impl Patch {
             self.local[node] = usize::MAX;
         }
         self.rows.clear();
+        self.beds.clear();
         if group.triangles.iter().any(|&t| model.energies.of(t).is_none()) {
             return;
         }
@@ -132,7 +135,10 @@ impl Patch {
         }
         for &v in &group.vertices {
             self.rows.extend(&model.rows_at[v]);
+            self.beds.extend(&model.beds_at[v]);
         }
+        self.beds.sort_unstable();
+        self.beds.dedup();
         self.rows.sort_unstable();
         self.rows.dedup();
     }
@@ -160,6 +166,14 @@ impl Patch {
                 }
             }
         }
+        for &bed in &self.beds {
+            let forces = model.beds[bed].forces(values);
+            for (node, sign, at) in model.beds[bed].nodes() {
+                for (i, p) in Self::terms(&self.local, model, node) {
+                    self.load[i] += sign * (p[0] * forces[at][0] + p[1] * forces[at][1]);
+                }
+            }
+        }
     }
 
     /// Assembles the stiffness and factorises it; `false` where the patch can move as a whole.
@@ -184,6 +198,17 @@ impl Patch {
                         let row = [0, 1].map(|d| p[0] * first[2 * b + d] + p[1] * second[2 * b + d]);
                         for (j, q) in Self::terms(&self.local, model, other).filter(|(j, _)| *j >= i) {
                             self.matrix[start + j - i] += row[0] * q[0] + row[1] * q[1];
+                        }
+                    }
+                }
+            }
+        }
+        for bed in self.beds.iter().map(|bed| &model.beds[*bed]) {
+            for (node, sign, at) in bed.nodes() {
+                for (i, p) in Self::terms(&self.local, model, node) {
+                    for (other, with, to) in bed.nodes() {
+                        for (j, q) in Self::terms(&self.local, model, other).filter(|(j, _)| *j >= i) {
+                            self.matrix[column(n, i) + j - i] += sign * with * bed.entry((at, p), (to, q));
                         }
                     }
                 }

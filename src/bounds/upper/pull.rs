@@ -1,7 +1,9 @@
 //! What pulls at a displacement.
 
 use super::split::{self, load};
+use crate::bounds::springs::OnSprings;
 use crate::element::StressField;
+use crate::element::geometry::sub_corners;
 use crate::problem::{Condition, Problem};
 
 /// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
@@ -9,19 +11,30 @@ use crate::problem::{Condition, Problem};
 pub struct Pull<'a> {
     /// Body forces and tractions of the scene, times this.
     pub scene: f64,
+    /// Whether the initial strains of the scene pull too: forces ∫ cε0 : e(v).
+    pub initial: bool,
     /// Forces ∫ σ : e(v) of a stress on every triangle.
     pub stress: Option<&'a StressField>,
+    /// Work ∫ f j(v) of forces on the jumps of springs.
+    pub springs: Option<&'a OnSprings>,
 }
 
 impl Pull<'_> {
     /// The scene alone: the energy is 𝓛.
-    pub const SCENE: Pull<'static> = Pull { scene: 1.0, stress: None };
+    pub const SCENE: Pull<'static> = Pull { scene: 1.0, initial: true, stress: None, springs: None };
 
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
         let corners = problem.mesh.corners(t);
-        let force = problem.scene.bodies[problem.mesh.body[t]].body_force;
-        let mut forces = load(problem.section(), k, corners, force.map(|f| self.scene * f));
+        let mut forces = load(problem.section(), k, corners, &problem.body_force(t).times(self.scene));
+        let body = problem.mesh.body[t];
+        if self.initial && !problem.scene.bodies[body].initial.is_none() {
+            let material = problem.material(body);
+            let mut held = StressField::zeros(1, 1);
+            let places = (0..3).flat_map(|sub| sub_corners(corners, sub));
+            held.block_mut(0).iter_mut().zip(places).for_each(|(s, x)| *s = material.stress(material.initial().at(x)));
+            split::pull(k, corners, &held, 0, &mut forces);
+        }
         if let Some(stress) = self.stress {
             split::pull(k, corners, stress, t, &mut forces);
         }

@@ -12,8 +12,9 @@ use std::sync::OnceLock;
 
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
-use crate::element::geometry::{sub_area, sub_gradients};
+use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
 use crate::element::{Material, Samples, Section, StressField, triangle};
+use crate::load::BodyForce;
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.
 #[derive(Debug, Clone)]
@@ -87,10 +88,19 @@ impl Split {
 }
 
 /// The forces of a body force on every coefficient of degree `k`, x and y of each.
-pub fn load(section: Section, k: usize, corners: [[f64; 2]; 3], force: [f64; 2]) -> Vec<f64> {
+pub fn load(section: Section, k: usize, corners: [[f64; 2]; 3], force: &BodyForce) -> Vec<f64> {
     let mut out = vec![0.0; 2 * split_len(k)];
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
-        for (node, [x, y]) in nodes.iter().zip(section.body_forces(corners, sub, k, force)) {
+        if let Some(revolved) = section.revolved() {
+            for (node, [x, y]) in nodes.iter().zip(revolved.body_forces(corners, sub, k, force)) {
+                out[2 * node] += x;
+                out[2 * node + 1] += y;
+            }
+            continue;
+        }
+        let force = force.on(sub_corners(corners, sub)).of_area(sub_area(corners));
+        for (node, alpha) in nodes.iter().zip(triangle::indices(k)) {
+            let [x, y] = force.against(alpha);
             out[2 * node] += x;
             out[2 * node + 1] += y;
         }
@@ -206,7 +216,7 @@ mod tests {
     #[test]
     fn the_load_is_the_work_of_the_body_force() {
         for k in 1..=MOST {
-            let forces = load(Section::Slice, k, CORNERS, [2.0, -3.0]);
+            let forces = load(Section::Slice, k, CORNERS, &BodyForce::constant([2.0, -3.0]));
             // A unit translation does the work of the whole force.
             let work = |c: usize| forces.iter().skip(c).step_by(2).sum::<f64>();
             let area = 3.0 * sub_area(CORNERS);

@@ -141,7 +141,9 @@ impl<'a> Solution<'a> {
         let nodes = Nodes::new(problem.mesh.points.len(), inside);
         let sites = Sites::new(problem, candidate.degree, &holds);
         let forces = NodalForces::by_rule(problem, candidate, points);
-        let strain = if points.is_some() { 0.5 * forces.energy(candidate) } else { strain };
+        // ½a(u, u), whatever strains the bodies have without load.
+        let initial = problem.scene.bodies.iter().any(|body| !body.initial.is_none());
+        let strain = if points.is_some() || initial { 0.5 * forces.energy(candidate) } else { strain };
         let mut rest = forces.unsupported(&holds, &nodes);
         let unsupported = rest.clone();
         let pressing = sites.pressing(&rest);

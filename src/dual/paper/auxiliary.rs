@@ -46,7 +46,7 @@ impl Auxiliary {
     pub fn new(problem: &Problem, constraints: &Constraints, dependences: &[Dependence]) -> Result<Self, DualError> {
         let mesh = &problem.mesh;
         let bodies = problem.scene.bodies.len();
-        let forces: Vec<[f64; 2]> = problem.scene.bodies.iter().map(|b| b.body_force).collect();
+        let forces: Vec<[f64; 2]> = problem.scene.bodies.iter().map(|b| b.body_force.given().value).collect();
         let mut origins = vec![[0.0; 2]; bodies];
         for t in (0..mesh.triangles.len()).rev() {
             origins[mesh.body[t]] = mesh.points[mesh.triangles[t][0]];

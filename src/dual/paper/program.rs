@@ -6,6 +6,7 @@ use super::constraints::Constraints;
 use super::dependence::{Dependence, dependences};
 use super::rows::SparseRows;
 use crate::dual::DualError;
+use crate::element::contraction;
 use crate::element::subtriangle::Matrix;
 use crate::element::{StressField, quadrature::triangle_rule};
 use crate::problem::{Problem, Scales};
@@ -82,7 +83,7 @@ impl Program {
         Ok(program)
     }
 
-    /// b: ∫ a τ:λ̄ − ∫_{Γu} T(τ)·u0 − ∫_{ΓK} T_n(τ) g.
+    /// b: ∫ a τ:λ̄ + ∫ τ:ε0 − ∫_{Γu} T(τ)·u0 − ∫_{ΓK} T_n(τ) g.
     fn linear_term(&self, problem: &Problem, external: &[Matrix<12, 9>]) -> Vec<f64> {
         let mesh = &problem.mesh;
         let materials = problem.materials();
@@ -108,6 +109,7 @@ impl Program {
                 }
             }
         }
+        self.add_initial(problem, &mut b);
         for (e, condition) in problem.conditions.iter().enumerate() {
             let (Some(ends), Some(t)) = (condition.prescribed(), mesh.edges[e].triangles[0]) else { continue };
             let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
@@ -124,6 +126,31 @@ impl Program {
         let gap: Vec<f64> = self.gap_moments.iter().map(|m| -m).collect();
         self.constraints.e.add_transposed(&gap, &mut b);
         b
+    }
+
+    /// Adds ∫ τ:ε0.
+    fn add_initial(&self, problem: &Problem, b: &mut [f64]) {
+        let mesh = &problem.mesh;
+        let materials = problem.materials();
+        for (t, block) in self.blocks.iter().enumerate() {
+            let initial = materials[mesh.body[t]].initial();
+            if initial.is_none() {
+                continue;
+            }
+            let corners = mesh.corners(t);
+            let factor = block.scale * block.scale / 3.0;
+            for sub in 0..3 {
+                let q = [corners[(sub + 1) % 3], corners[(sub + 2) % 3], block.centre];
+                for (bary, weight) in triangle_rule(2) {
+                    let x = [0, 1].map(|c| bary[0] * q[0][c] + bary[1] * q[1][c] + bary[2] * q[2][c]);
+                    let (modes, strain) = (block.stress_modes(sub, x), initial.at(x));
+                    for k in 0..9 {
+                        let own = [modes[(0, k)], modes[(1, k)], modes[(2, k)]];
+                        b[9 * t + k] += factor * weight * contraction(own, strain);
+                    }
+                }
+            }
+        }
     }
 
     /// N, the number of parameters.

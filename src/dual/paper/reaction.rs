@@ -106,10 +106,8 @@ pub fn applied(problem: &Problem, body: usize) -> [f64; 2] {
     let mesh = &problem.mesh;
     let mut v = [0.0; 2];
     for t in (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == body) {
-        let area = mesh.area(t);
-        for (c, total) in v.iter_mut().enumerate() {
-            *total += problem.scene.bodies[body].body_force[c] * area;
-        }
+        let force = problem.force_on(t).of_area(mesh.area(t)).resultant();
+        v = [v[0] + force[0], v[1] + force[1]];
     }
     for (e, condition) in problem.conditions.iter().enumerate() {
         let Condition::Traction(p) = condition else { continue };

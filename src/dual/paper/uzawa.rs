@@ -10,7 +10,7 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
-use crate::dual::method::plane_only;
+use crate::dual::method::{plane_only, without_springs};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
@@ -120,6 +120,13 @@ impl DualMethod for Uzawa {
 /// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
 fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Result<(), DualError> {
     plane_only(problem, method)?;
+    if let Some(body) = problem.scene.bodies.iter().find(|body| !body.body_force.is_constant()) {
+        return Err(DualError::NotExpressible {
+            method,
+            what: format!("the body force of {}, which is not constant", body.name),
+            remedy: "use another method, whose stresses have degree 2 there",
+        });
+    }
     let degree = options.elements.largest_degree();
     if degree != 1 {
         return Err(DualError::NotExpressible {
@@ -128,6 +135,7 @@ fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Re
             remedy: "use another method, or --degree 1",
         });
     }
+    without_springs(problem, method)?;
     let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
     let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
     Err(DualError::NotExpressible {

@@ -6,6 +6,7 @@
 
 use std::io::{self, Write};
 
+use crate::dual::initial::initial_parameters;
 use crate::dual::modes::ModeTable;
 use crate::dual::rows::Sides;
 use crate::dual::unknowns::Unknowns;
@@ -40,7 +41,9 @@ impl Blocks {
             written += numbers.len() as i64;
             super::exchange::write_numbers(out, numbers).map(|()| start)
         };
+        let initial = initial_parameters(problem, modes);
         for t in 0..problem.mesh.triangles.len() {
+            let first_given = all.given.len();
             let sides = Sides::new(&problem.mesh, unknowns, t, modes.degree(t));
             let own = modes.of(t);
             if let (true, Some(first)) = (sides.are_even(), sides.free(unknowns)) {
@@ -52,6 +55,7 @@ impl Blocks {
                     None => *kept.insert(write(own.traction())?),
                 };
                 all.matrix.push(start);
+                all.add_initial(first_given, &initial, modes, t);
                 continue;
             }
             let mut raised = vec![0.0; sides.len() * (own.parameters() + 1)];
@@ -61,8 +65,17 @@ impl Blocks {
             }
             let matrix = all.push_turned(unknowns, &sides, &raised);
             all.matrix.push(write(&matrix)?);
+            all.add_initial(first_given, &initial, modes, t);
         }
         Ok(all)
+    }
+
+    /// Counts initial strains among what is given.
+    fn add_initial(&mut self, first: usize, initial: &[f64], modes: &ModeTable, t: usize) {
+        if !initial.is_empty() {
+            let own = &initial[modes.parameters_of(t)];
+            self.given[first..].iter_mut().zip(own).for_each(|(given, initial)| *given += initial);
+        }
     }
 
     /// A triangle whose sides are all free, with unknowns from `first` on: its coefficients are conjugate to them.

@@ -12,6 +12,7 @@ mod particular;
 use self::basis::BlockBasis;
 use self::particular::Particular;
 use super::{EquilibriumElement, Material, Modes, ModesMut};
+use crate::load::BodyForce;
 
 /// The element of the paper: p = 1, nine parameters.
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,7 +43,7 @@ impl EquilibriumElement for Block {
         UPPER + N
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce, out: ModesMut<'_>) {
         let basis = BlockBasis::new(corners);
         let scale = basis.frame.scale;
         let inverse = match basis.flexibility(material) {
@@ -64,10 +65,11 @@ impl EquilibriumElement for Block {
         out.kept[UPPER..].fill(0.0);
         out.particular_traction.fill(0.0);
         *out.particular_energy = 0.0;
-        if body_force == [0.0; 2] {
+        let force = force.on(corners).mean();
+        if force == [0.0; 2] {
             return;
         }
-        let particular = Particular { corners, force: body_force };
+        let particular = Particular { corners, force };
         let overlaps = particular.overlaps(&basis, &inverse, material);
         out.kept[UPPER..].copy_from_slice(&overlaps);
         out.particular_traction.copy_from_slice(&particular.traction());
@@ -81,14 +83,14 @@ impl EquilibriumElement for Block {
     fn stresses(
         &self,
         corners: [[f64; 2]; 3],
-        body_force: [f64; 2],
+        force: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         particular: f64,
         out: &mut [[f64; 3]],
     ) {
         let field = BlockBasis::new(corners).field(&coefficients(modes.kept(), s, particular));
-        let balance = Particular { corners, force: body_force.map(|f| particular * f) };
+        let balance = Particular { corners, force: force.on(corners).mean().map(|f| particular * f) };
         out.copy_from_slice(&sum(field, balance.stress()));
     }
 }

@@ -58,13 +58,15 @@ impl Ring {
     }
 
     /// Computes tractions, particular field and nodal values of Σ.
-    pub fn compute(&self, law: &Law, force: [f64; 2], out: ModesMut<'_>) {
+    ///
+    /// The body force is (a + b r, `axial`), `radial` being a and b.
+    pub fn compute(&self, law: &Law, radial: [f64; 2], axial: f64, out: ModesMut<'_>) {
         let raw = Raw::new(self);
         let tractions = self.tractions(&raw);
         let fields = Fields::new(self, &raw, &tractions);
-        let loaded = force != [0.0; 2];
-        let balancing = self.balancing(force[1]);
-        let triangle = self.triangle(law, &raw, &fields.columns, loaded.then_some((&balancing[..], force[0])));
+        let loaded = radial != [0.0; 2] || axial != 0.0;
+        let balancing = self.balancing(axial);
+        let triangle = self.triangle(law, &raw, &fields.columns, loaded.then_some((&balancing[..], radial)));
         let (count, free) = (fields.columns.ncols(), fields.free);
         let unit = law.unit().sqrt();
         // Modes are what is left of uniform pressure and of the fields with traction by those before.
@@ -180,7 +182,7 @@ impl Ring {
         law: &Law,
         raw: &Raw,
         columns: &DMatrix<f64>,
-        given: Option<(&[[f64; 3]], f64)>,
+        given: Option<(&[[f64; 3]], [f64; 2])>,
     ) -> DMatrix<f64> {
         let p = self.degree;
         let (n, own, count) = (lattice_len(p), raw.fields, columns.ncols());
@@ -204,7 +206,7 @@ impl Ring {
             let hoop = DMatrix::from_fn(hoop_rows.len(), width, |i, j| {
                 hoop_rows[i].iter().map(|(at, [gr, gz])| gr * rr[(*at, j)] + gz * rz[(*at, j)]).sum::<f64>()
             });
-            let points = rule(self.sub_radii(sub), 2 * p.max(2), ROUGH);
+            let points = rule(self.sub_radii(sub), 2 * p.max(3), ROUGH);
             let area = self.unit * self.unit / 3.0;
             let mut rows = DMatrix::zeros(4 * points.len(), width);
             for (q, point) in points.iter().enumerate() {
@@ -216,7 +218,7 @@ impl Ring {
                 };
                 for j in 0..width {
                     let r = point.radius;
-                    let of_force = given.filter(|_| j == own).map_or(0.0, |(_, force)| r * force);
+                    let of_force = given.filter(|_| j == own).map_or(0.0, |(_, [a, b])| r * (a + b * r));
                     let tensor = [
                         sum(&basis, &rr, j) / r,
                         sum(&basis, &zz, j) / r,

@@ -19,7 +19,7 @@ fn law(nu: f64) -> Law {
 fn modes(ring: &Ring, nu: f64, force: [f64; 2]) -> Modes<'static> {
     let layout = ring.layout();
     let mut data = vec![0.0; layout.len()];
-    ring.compute(&law(nu), force, layout.split(&mut data));
+    ring.compute(&law(nu), [force[0], 0.0], force[1], layout.split(&mut data));
     Modes::owned(layout, data)
 }
 
@@ -29,7 +29,7 @@ fn energy(ring: &Ring, nu: f64, a: (&[[f64; 3]], f64), b: (&[[f64; 3]], f64)) ->
     let mut sum = 0.0;
     for sub in 0..3 {
         let g = gradients(ring.sub_corners(sub));
-        let [a, b] = [a, b].map(|(v, f)| Weighted::new(ring.degree, &v[n * sub..][..n], &g, f));
+        let [a, b] = [a, b].map(|(v, f)| Weighted::new(ring.degree, &v[n * sub..][..n], &g, [f, 0.0]));
         for point in rule(ring.sub_radii(sub), 2 * ring.degree + 4, NEAR) {
             let weight = point.weight * point.radius * ring.unit.powi(2) / 3.0;
             sum += weight * law.product(a.stress(&point).0, b.stress(&point).0);

@@ -22,13 +22,14 @@ pub struct Weighted {
     /// Those of ∂_r Σ_rr + ∂_z Σ_rz, of one degree less, and the sums of the absolute values of all products that make them.
     hoop: Vec<f64>,
     spread: Vec<f64>,
-    /// F_r.
-    force: f64,
+    /// F_r on the axis, and its slope.
+    force: [f64; 2],
 }
 
 impl Weighted {
-    /// From the values at the lattice nodes of a subtriangle, the gradients of its barycentric coordinates, and F_r.
-    pub fn new(degree: usize, nodal: &[[f64; 3]], g: &[[f64; 2]; 3], force: f64) -> Self {
+    /// From the values at the lattice nodes of a subtriangle, the gradients of its barycentric coordinates, and a and b of
+    /// F_r = a + b r.
+    pub fn new(degree: usize, nodal: &[[f64; 3]], g: &[[f64; 2]; 3], force: [f64; 2]) -> Self {
         let n = lattice_len(degree);
         let matrix = to_bernstein(degree);
         let row = |i: usize| {
@@ -65,7 +66,8 @@ impl Weighted {
     /// λ at a point of the subtriangle, and the size of what its hoop stress is a sum of.
     pub fn stress(&self, at: &Point) -> (Tensor, f64) {
         let [rr, zz, rz] = self.sigma(at.bary).map(|s| s / at.radius);
-        let (mut hoop, mut spread) = (at.radius * self.force, (at.radius * self.force).abs());
+        let force = at.radius * (self.force[0] + self.force[1] * at.radius);
+        let (mut hoop, mut spread) = (force, force.abs());
         for ((b, h), s) in triangle::basis(self.degree - 1, at.bary).zip(&self.hoop).zip(&self.spread) {
             hoop += b * h;
             spread += b * s;

@@ -23,7 +23,7 @@ impl Factor {
         let (modes, p) = (reference.modes, triangle.degree);
         let across = 1 + reference.free.len() + reference.off_base.len();
         let balancing = across + Across::len(p);
-        let loaded = triangle.force != [0.0; 2];
+        let loaded = triangle.is_loaded();
         let mut r = Mat::<f64>::zeros(9 * modes, balancing + usize::from(loaded));
         for sub in 0..3 {
             // No deviator: nothing of it may drown κ.

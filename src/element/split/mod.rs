@@ -36,6 +36,7 @@ use self::reference::{Field, Reference};
 use self::shape::Shape;
 use super::{EquilibriumElement, MAX_DEGREE, Material, Modes, ModesMut};
 use crate::lanes::wide;
+use crate::load::{Affine, BodyForce, balancing};
 
 /// The block of degree p.
 #[derive(Debug, Clone, Copy)]
@@ -54,9 +55,9 @@ impl Split {
         3 * self.degree * (self.degree - 1) / 2
     }
 
-    fn triangle(&self, corners: [[f64; 2]; 3], body_force: [f64; 2]) -> Triangle {
+    fn triangle(&self, corners: [[f64; 2]; 3], force: &BodyForce) -> Triangle {
         let shape = Shape::new(corners);
-        let force = shape.frame.vector_to_local(body_force).map(|f| f * shape.frame.scale);
+        let force = shape.frame.force_to_local(force.about_centroid(corners));
         Triangle { degree: self.degree, reference: Reference::of(self.degree), shape, force }
     }
 }
@@ -90,8 +91,8 @@ impl EquilibriumElement for Split {
         n * (n + 1) / 2 + n * free + n + free
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, body_force: [f64; 2], out: ModesMut<'_>) {
-        let triangle = self.triangle(corners, body_force);
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce, out: ModesMut<'_>) {
+        let triangle = self.triangle(corners, force);
         let (n, free) = (self.parameters(), self.free());
         let factor = Factor::new(&triangle, material);
         // ∫ a τ:τ is the square of a column times area/(3E).
@@ -117,7 +118,7 @@ impl EquilibriumElement for Split {
         particular.fill(0.0);
         out.particular_traction.fill(0.0);
         *out.particular_energy = 0.0;
-        if body_force == [0.0; 2] {
+        if !triangle.is_loaded() {
             return;
         }
         column.copy_from_slice(&factor.overlaps()[..n + free]);
@@ -134,7 +135,7 @@ impl EquilibriumElement for Split {
     fn stresses(
         &self,
         corners: [[f64; 2]; 3],
-        body_force: [f64; 2],
+        force: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         particular: f64,
@@ -147,7 +148,7 @@ impl EquilibriumElement for Split {
             own.iter_mut().zip(&kept.upper[k * (k + 1) / 2..][..=k]).for_each(|(o, c)| *o += s * c);
             own[n..].iter_mut().zip(&kept.free[k * free..][..free]).for_each(|(o, c)| *o += s * c);
         }
-        self.triangle(corners, body_force.map(|f| particular * f)).stresses(&own[..n], &own[n..], out);
+        self.triangle(corners, &force.times(particular)).stresses(&own[..n], &own[n..], out);
     }
 }
 
@@ -184,13 +185,22 @@ struct Triangle {
     reference: &'static Reference,
     shape: Shape,
     /// Body force in the frame, times its unit of length.
-    force: [f64; 2],
+    force: Affine,
 }
 
 impl Triangle {
+    /// Whether there is a body force.
+    fn is_loaded(&self) -> bool {
+        self.force != Affine::default()
+    }
+
     /// A stress (xx, yy, xy) in the frame that balances the body force: none along the longest side.
-    fn balancing(&self, [_, y]: [f64; 2]) -> [f64; 3] {
-        [0.0, -self.force[1] * y, -self.force[0] * y]
+    fn balancing(&self, point: [f64; 2]) -> [f64; 3] {
+        if self.force.is_constant() {
+            let ([fx, fy], [_, y]) = (self.force.value, point);
+            return [0.0, -fy * y, -fx * y];
+        }
+        balancing(&self.force, point)
     }
 
     /// Traction coefficients of the fields with traction, field by field, in global components.
@@ -235,12 +245,23 @@ impl Triangle {
         for side in 0..3 {
             let place = 2 * (p + 1) * ((frame.base + side) % 3);
             let [nx, ny] = self.unit_normal(side);
-            for k in 0..=p {
-                // Linear: its coefficients are its values at equal steps.
-                let s = k as f64 / p as f64;
+            let traction = |s: f64| {
                 let [_, yy, xy] = self.balancing(self.shape.point(side, [1.0 - s, s, 0.0]));
-                let t = frame.vector_to_global([xy * ny, xy * nx + yy * ny]);
-                out[place + 2 * k..][..2].copy_from_slice(&t);
+                frame.vector_to_global([xy * ny, xy * nx + yy * ny])
+            };
+            if self.force.is_constant() {
+                // Linear: its coefficients are its values at equal steps.
+                for k in 0..=p {
+                    out[place + 2 * k..][..2].copy_from_slice(&traction(k as f64 / p as f64));
+                }
+                continue;
+            }
+            let weights = self.reference.from_side_points.chunks_exact(p + 1);
+            for (&s, weights) in self.reference.side_points.iter().zip(weights) {
+                let t = traction(s);
+                for (k, w) in weights.iter().enumerate() {
+                    (0..2).for_each(|c| out[place + 2 * k + c] += w * t[c]);
+                }
             }
         }
         out
@@ -295,10 +316,9 @@ mod tests {
         for corners in [[[0.0, 0.0], [1.0, 0.1], [0.3, 0.8]], [[7.0, 3.0], [9.0, 3.5], [7.5, 8.0]], flat] {
             for nu in [0.0, 0.3, 0.499_999_9] {
                 let material = Material::isotropic(Kinematics::PlaneStrain, 3.0, nu);
-                let (first, second) = (
-                    Block.modes(corners, &material, [2.0, -1.0]),
-                    Split::new(1).modes(corners, &material, [2.0, -1.0]),
-                );
+                let force = BodyForce::constant([2.0, -1.0]);
+                let (first, second) =
+                    (Block.modes(corners, &material, &force), Split::new(1).modes(corners, &material, &force));
                 let stiffness = |modes: &Modes<'_>| {
                     let t = DMatrix::from_column_slice(12, 9, modes.traction());
                     &t * t.transpose()
@@ -308,8 +328,8 @@ mod tests {
                 let apart = first.particular_energy() - second.particular_energy();
                 assert!(apart.abs() < 1e-11 * first.particular_energy());
                 let mut fields = [[[0.0; 3]; 9]; 2];
-                Block.stresses(corners, [2.0, -1.0], &first, &[0.0; 9], 1.0, &mut fields[0]);
-                Split::new(1).stresses(corners, [2.0, -1.0], &second, &[0.0; 9], 1.0, &mut fields[1]);
+                Block.stresses(corners, &force, &first, &[0.0; 9], 1.0, &mut fields[0]);
+                Split::new(1).stresses(corners, &force, &second, &[0.0; 9], 1.0, &mut fields[1]);
                 let [first, second] = fields.map(|field| DMatrix::from_column_slice(27, 1, field.as_flattened()));
                 assert!((&first - &second).amax() < 1e-10 * first.amax());
             }

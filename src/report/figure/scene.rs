@@ -190,7 +190,7 @@ fn labels(svg: &mut Svg, problem: &Problem, view: &View) {
         }
         let at = view.at(sum.map(|s| s / area));
         svg.text(&format!(r#"{} font-weight="600""#, look::INK), at, Anchor::Middle, &body.name);
-        let force = body.body_force;
+        let force = body.body_force.at(sum.map(|s| s / area));
         if force[0].hypot(force[1]) > 0.0 {
             let d = force[0].hypot(force[1]);
             symbols::arrow(svg, look::LOAD, [at[0], at[1] + 10.0], [28.0 * force[0] / d, -28.0 * force[1] / d], true);

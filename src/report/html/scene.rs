@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use crate::load::{BodyForce, Rotation};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
@@ -30,7 +31,7 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
                     bdi { (clean(&body.name)) } ": " (elasticity(&body.elasticity))
-                    @if body.body_force != [0.0; 2] { ", body force " (vector(body.body_force, 5)) }
+                    (force(&body.body_force))
                 } } } }
                 dt { "Loads" } dd { (loads(scene)) }
                 dt { "Supports" } dd { (supports(scene)) }
@@ -71,7 +72,7 @@ fn elasticity(law: &Elasticity) -> String {
 }
 
 fn loads(scene: &Scene) -> Markup {
-    let forces = scene.bodies.iter().any(|body| body.body_force != [0.0; 2]);
+    let forces = scene.bodies.iter().any(|body| !body.body_force.is_none());
     html! {
         @if scene.tractions.is_empty() { (if forces { "body forces alone" } else { "none" }) } @else {
             ul { @for traction in &scene.tractions { li {
@@ -81,6 +82,15 @@ fn loads(scene: &Scene) -> Markup {
                     Load::Affine(load) => (affine(load)),
                 }
             } } }
+        }
+    }
+}
+
+fn force(force: &BodyForce) -> Markup {
+    html! {
+        @if force.given() != Affine::default() { ", body force " (affine(force.given())) }
+        @if let Some(Rotation { density, omega, about }) = force.rotation() {
+            ", turning about " (vector(about, 5)) " with ω = " (significant(omega, 5)) ", ϱ = " (significant(density, 5))
         }
     }
 }
@@ -100,6 +110,10 @@ fn supports(scene: &Scene) -> Markup {
                 @match support.kind {
                     SupportKind::Clamped { displacement } if displacement == Affine::default() => "clamped",
                     SupportKind::Clamped { displacement } => { "clamped, moved by " (affine(displacement)) }
+                    SupportKind::Spring { stiffness: [normal, tangential] } => {
+                        "springs of stiffness " (significant(normal, 5)) " along the normal, "
+                        @if tangential == 0.0 { "none along the boundary" } @else { (significant(tangential, 5)) " along the boundary" }
+                    }
                     SupportKind::Roller { direction, displacement } => {
                         "roller"
                         @if let Some(d) = direction { " that holds along " (vector(d, 5)) }
@@ -131,7 +145,14 @@ fn contacts(problem: &Problem) -> Markup {
 
 fn bonds(scene: &Scene) -> Markup {
     html! {
-        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": glued" } } }
+        ul { @for bond in &scene.bonds { li { bdi { code { (clean(&bond.name())) } } ": "
+            @match bond.stiffness {
+                None => "glued",
+                Some([normal, tangential]) => {
+                    "an elastic layer of stiffness " (significant(normal, 5)) " along the normal, " (significant(tangential, 5)) " along the sides"
+                }
+            }
+        } } }
     }
 }
 

@@ -108,13 +108,12 @@ impl Context<'_> {
             // A mesh file may have any boundary; those of conditions it has to have.
             None => body.is_none() || self.named.conditions.have(&name),
         };
-        if self.named.conditions.bonds.iter().any(|bond| bond.sides.contains(&name)) {
-            let remedy =
-                "take the mean over a body, over a boundary that is no side of a bond, or of a stress beside it";
+        if self.named.conditions.bonds.iter().any(|bond| bond.stiffness.is_none() && bond.sides.contains(&name)) {
+            let remedy = "take the mean over a body, over a boundary that is no side of one, or of a stress beside it";
             return self.misplaced(
                 "displacement",
                 of.span(),
-                "a side of a bond, which is inside the bonded body",
+                "a side of a rigid bond, which is inside the bonded body",
                 remedy,
             );
         }

@@ -68,7 +68,7 @@ fn waves(height: f64) -> Result<Problem, String> {
 fn hair(closing: f64) -> Result<Problem, String> {
     let lines = steps(0.0, 1.0, 4);
     let mut model = Sketch::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
-    model.scene.bodies[0].body_force = [1.0, 0.0];
+    model.scene.bodies[0].body_force = [1.0, 0.0].into();
     let sides = ContactSides::Rigid("bar_right".into());
     model.scene.contacts.push(Contact::new(sides, Gap::Constant(0.5 - closing)));
     model.problem()

@@ -52,7 +52,7 @@ fn bore(couple: f64, normals: Normals) -> Result<Problem, String> {
     ring(&mut model, "disc", [0.5, 1.0], ["hub", "rim"]);
     ring(&mut model, "plate", [1.0, 2.0], ["bore", "wall"]);
     let area = 0.375 * FACETS as f64 * (TAU / FACETS as f64).sin();
-    model.scene.bodies[0].body_force = [0.0, -WEIGHT / area];
+    model.scene.bodies[0].body_force = [0.0, -WEIGHT / area].into();
     let turning = Load::Affine(Affine { value: [0.0; 2], gradient: [[0.0, -couple], [couple, 0.0]] });
     model.scene.tractions.push(Traction { on: "hub".into(), load: turning });
     let mut model = model.clamp("wall").contact("rim", "bore", Gap::Table(vec![[0.0, 0.0]]));

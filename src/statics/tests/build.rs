@@ -75,7 +75,7 @@ impl Build {
 
     pub fn gravity(&mut self, name: &str, force: Point) -> &mut Self {
         let body = self.body(name);
-        self.bodies[body].body_force = force;
+        self.bodies[body].body_force = force.into();
         self
     }
 
@@ -223,7 +223,16 @@ impl Build {
         let source = MeshSource::File("test.msh".into());
         let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };
         let scene = Scene::unchecked(draft);
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
+        Problem {
+            scene,
+            mesh,
+            conditions,
+            interfaces,
+            beds: Vec::new(),
+            notes: Vec::new(),
+            refinement: Default::default(),
+            uncut: None,
+        }
     }
 }
 
@@ -246,7 +255,7 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
         *p = [length * x + shift[0], length * y + shift[1]];
     }
     for body in &mut problem.scene.draft.bodies {
-        body.body_force = turn(body.body_force).map(|f| f * force / length);
+        body.body_force = turn(body.body_force.given().value).map(|f| f * force / length).into();
     }
     for condition in &mut problem.conditions {
         match condition {

@@ -13,7 +13,7 @@ pub fn work_of_vertices(problem: &Problem, u: &[[f64; 2]]) -> f64 {
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let [p, q, r] = mesh.corners(t);
         let area = 0.5 * ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
-        let force = problem.scene.bodies[mesh.body[t]].body_force;
+        let force = problem.force_on(t).mean();
         work += triangle.iter().map(|v| area / 3.0 * dot(force, u[*v])).sum::<f64>();
     }
     for (e, condition) in problem.conditions.iter().enumerate() {

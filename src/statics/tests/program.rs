@@ -68,7 +68,8 @@ proptest! {
         let mut problem = (cases()[which].scene)(excess);
         if disturb {
             for (body, force) in problem.scene.draft.bodies.iter_mut().zip(forces) {
-                body.body_force = [body.body_force[0] + force[0], body.body_force[1] + force[1]];
+                let own = body.body_force.given().value;
+                body.body_force = [own[0] + force[0], own[1] + force[1]].into();
             }
         }
         let problem = transformed(problem, angle, 1.0, 1.0, [0.3, -0.2]);

@@ -87,10 +87,10 @@ pub struct Fields {
 impl Fields {
     /// The fields of an equilibrium element.
     pub fn of(element: &dyn EquilibriumElement, corners: [[f64; 2]; 3], material: &Material, force: [f64; 2]) -> Self {
-        let (degree, modes) = (element.degree(), element.modes(corners, material, force));
+        let (degree, modes) = (element.degree(), element.modes(corners, material, &force.into()));
         let nodal = |values| Nodal { degree, values };
         let mut values = vec![[0.0; 3]; 3 * lattice_len(degree)];
-        element.stresses(corners, force, &modes, &vec![0.0; element.parameters()], 1.0, &mut values);
+        element.stresses(corners, &force.into(), &modes, &vec![0.0; element.parameters()], 1.0, &mut values);
         let particular = Particular {
             field: nodal(values),
             tractions: modes.particular_traction().to_vec(),

@@ -62,7 +62,7 @@ pub fn scaled(problem: &Problem, length: f64, force: f64, young: f64) -> Problem
     let change = |draft: &mut Draft| {
         for body in &mut draft.bodies {
             body.elasticity = body.elasticity.stiffened(young);
-            body.body_force.iter_mut().for_each(|f| *f *= force / length);
+            body.body_force = body.body_force.times(force / length);
         }
     };
     p.scene = p.scene.changed(change).expect("a valid scene");

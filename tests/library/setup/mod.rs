@@ -65,7 +65,7 @@ impl Setup {
         body_force: [f64; 2],
     ) -> Self {
         let body = self.bodies.len();
-        self.bodies.push(Body { body_force, ..Body::isotropic(name, young, poisson) });
+        self.bodies.push(Body { body_force: body_force.into(), ..Body::isotropic(name, young, poisson) });
         let first = self.points.len();
         let [nx, ny] = cells;
         let lerp = |c: usize, i: usize, n: usize| lower[c] + (upper[c] - lower[c]) * i as f64 / n as f64;
@@ -230,7 +230,16 @@ impl Setup {
             names: Vec::new(),
             cells: Default::default(),
         };
-        Problem { scene, mesh, conditions, interfaces, notes: Vec::new(), refinement: Default::default(), uncut: None }
+        Problem {
+            scene,
+            mesh,
+            conditions,
+            interfaces,
+            beds: Vec::new(),
+            notes: Vec::new(),
+            refinement: Default::default(),
+            uncut: None,
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Equilibrium elements that are broken on purpose.
 
 use hypercircle::element::{Block, EquilibriumElement, Material, Modes, ModesMut};
+use hypercircle::load::BodyForce;
 use hypercircle::workbench::stress::SolverElement;
 use hypercircle::workbench::{Options, Report};
 
@@ -41,7 +42,7 @@ impl EquilibriumElement for Broken {
         Block.kept()
     }
 
-    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: [f64; 2], out: ModesMut<'_>) {
+    fn compute(&self, corners: [[f64; 2]; 3], material: &Material, force: &BodyForce, out: ModesMut<'_>) {
         let material = if self.0 == Defect::WrongMaterial { &Material::ANY } else { material };
         let ModesMut { traction, particular_traction, kept, particular_energy } = out;
         let own = ModesMut { traction: &mut *traction, particular_traction, kept, particular_energy };
@@ -56,7 +57,7 @@ impl EquilibriumElement for Broken {
     fn stresses(
         &self,
         corners: [[f64; 2]; 3],
-        force: [f64; 2],
+        force: &BodyForce,
         modes: &Modes<'_>,
         s: &[f64],
         particular: f64,

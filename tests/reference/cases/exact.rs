@@ -71,6 +71,36 @@ fn silo() {
 }
 
 #[test]
+fn compacted() {
+    let report = sound("compacted");
+    // The load above is a + b d + c d² at the depth d below the top of each layer: ½ ∫ σ_yy² / M.
+    let modulus = |young: f64, nu: f64| young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let square = |[a, b, c]: [f64; 3], d: f64| {
+        let parts = [a * a, a * b, (b * b + 2.0 * a * c) / 3.0, b * c / 2.0, c * c / 5.0];
+        parts.iter().rev().fold(0.0, |sum, part| d * (sum + part))
+    };
+    let upper = square([0.0, 2.0, 0.25], 1.0) / modulus(30.0, 0.4);
+    let lower = square([2.25, 2.5, 0.125], 2.0) / modulus(100.0, 0.25);
+    let energy = -0.5 * 2.0 * (upper + lower);
+    let widening = report.number("/energy/widening");
+    assert!(report.number("/energy/lower") <= energy && energy <= report.number("/energy/upper"));
+    close(report.number("/energy/lower") + widening, energy, 1e-12);
+    close(report.number("/energy/free_upper"), energy, 1e-11);
+    assert_eq!(report.number("/dual/degree_min"), 2.0);
+    if with_reference() {
+        // The displacement is cubic: P2 comes from above.
+        let found = report.number("/primal/1/energy");
+        assert!(found > energy);
+        close(found, energy, 1e-5);
+    }
+    carries(&report, 0, [0.0, 4.5]);
+    carries(&report, 1, [0.0, 15.5]);
+    pressed(&report, 0, |_| 2.25);
+    pressed(&report, 1, |_| 7.75);
+    assert!(report.notes().contains("is not the same everywhere"), "{}", report.notes());
+}
+
+#[test]
 fn gap() {
     let report = sound("gap");
     // Two springs in series, E/L = 2 and 1/0.91 per unit of height, share what is left of the motion.

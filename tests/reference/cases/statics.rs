@@ -21,6 +21,19 @@ fn two_blocks() {
 }
 
 #[test]
+fn dam() {
+    let report = sound("dam");
+    let expected = [-50.0, 96.0, 50.0 * 10.0 / 3.0 - 96.0 * 16.0 / 3.0];
+    for (quantity, expected) in expected.into_iter().enumerate() {
+        close(report.number(&format!("/quantities/{quantity}/value")), expected, 1e-11);
+        assert_eq!(report.0["quantities"][quantity]["exact_by_statics"], true);
+        for model in 0..if with_reference() { 2 } else { 0 } {
+            close(report.number(&format!("/quantities/{quantity}/primal/{model}/value")), expected, 1e-9);
+        }
+    }
+}
+
+#[test]
 fn inclined() {
     let report = sound("inclined");
     // Frictionless: the force is normal to a slope of 1 in 2, and its vertical part carries the load.

@@ -8,6 +8,7 @@
 //! and the minimum is taken where three of the twelve terms vanish: all 220 choices are tried.
 
 use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 use serde::{Deserialize, Serialize};
@@ -44,7 +45,7 @@ pub fn equilibrium(p: [[f64; 2]; 3]) -> SMatrix<f64, 3, 12> {
 
 /// The 27 × 12 matrix that turns an equilibrated load into the stresses at the corners of the subtriangles.
 pub fn stress_of_load(p: [[f64; 2]; 3]) -> DMatrix<f64> {
-    let modes = Block.modes(p, &Material::isotropic(Kinematics::PlaneStress, 1.0, 0.0), [0.0; 2]);
+    let modes = Block.modes(p, &Material::isotropic(Kinematics::PlaneStress, 1.0, 0.0), &BodyForce::NONE);
     let traction = DMatrix::from_column_slice(12, 9, modes.traction());
     let fields = Block.mode_stresses(p, &modes);
     let stress = DMatrix::from_fn(27, 9, |i, k| fields[k][i / 3][i % 3]);

@@ -5,6 +5,7 @@ use hypercircle::dual::{self, Condensed, Options};
 use hypercircle::element::{
     Elements, Material, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
 };
+use hypercircle::load::BodyForce;
 use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Kinematics;
@@ -120,9 +121,9 @@ fn projected(mesh: &Triangulation, degree: usize, stress: Stress) -> StressField
             let [x, y] = moments.map(|m| side::from_moments(&m));
             tractions.extend(x.into_iter().zip(y).flat_map(|(x, y)| [x, y]));
         }
-        let modes = element.modes(corners, &material, [0.0; 2]);
+        let modes = element.modes(corners, &material, &BodyForce::NONE);
         let (s, _) = parameters_from_tractions(&modes, &tractions).expect("no triangle is degenerate");
-        element.stresses(corners, [0.0; 2], &modes, &s, 0.0, field.block_mut(t));
+        element.stresses(corners, &BodyForce::NONE, &modes, &s, 0.0, field.block_mut(t));
     }
     field
 }

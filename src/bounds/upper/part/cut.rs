@@ -71,6 +71,7 @@ impl Cut {
             },
             conditions: self.edges.iter().map(|e| problem.conditions[*e]).collect(),
             interfaces: problem.interfaces.iter().map(of).collect(),
+            beds: Vec::new(),
             notes: Vec::new(),
             refinement: problem.refinement,
             uncut: None,

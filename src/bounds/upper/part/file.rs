@@ -8,8 +8,9 @@ use super::traffic::Traffic;
 use super::{Found, Part};
 use crate::bounds::upper::groups::Group;
 use crate::bounds::upper::holds::{Hold, Holds};
-use crate::elasticity::{Elasticity, NUMBERS};
+use crate::elasticity::{Elasticity, Initial, NUMBERS};
 use crate::element::{SideValues, StressField};
+use crate::load::{Affine, BodyForce, Rotation};
 use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
@@ -53,6 +54,8 @@ impl Part {
             mesh: read_mesh(&mut from)?,
             conditions: read_conditions(&mut from)?,
             interfaces: read_contacts(&mut from)?,
+            // Parts are made of scenes without springs.
+            beds: Vec::new(),
             notes: Vec::new(),
             refinement: Refinement::default(),
             uncut: None,
@@ -145,7 +148,13 @@ fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     out.indices([kinematics])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.elasticity.to_numbers()))?;
-    out.numbers(scene.bodies.iter().flat_map(|body| body.body_force))
+    out.numbers(scene.bodies.iter().flat_map(|body| body.initial.to_numbers()))?;
+    out.numbers(scene.bodies.iter().flat_map(|body| {
+        let Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] } = body.body_force.given();
+        let rotation = body.body_force.rotation().unwrap_or(Rotation { density: 0.0, omega: 0.0, about: [0.0; 2] });
+        let Rotation { density, omega, about: [x, y] } = rotation;
+        [fx, fy, xx, xy, yx, yy, density, omega, x, y]
+    }))
 }
 
 fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
@@ -156,12 +165,20 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
     };
     let [thickness, x, y] = one(from.vectors()?)?;
     let laws: Vec<[f64; NUMBERS]> = from.vectors()?;
-    let forces: Vec<[f64; 2]> = from.vectors()?;
-    let body = |(law, body_force): (&[f64; NUMBERS], [f64; 2])| {
+    let initial: Vec<[f64; 10]> = from.vectors()?;
+    let forces: Vec<[f64; 10]> = from.vectors()?;
+    let body = |((law, initial), [fx, fy, xx, xy, yx, yy, density, omega, x, y]): (
+        (&[f64; NUMBERS], &[f64; 10]),
+        [f64; 10],
+    )| {
+        let given = BodyForce::affine(Affine { value: [fx, fy], gradient: [[xx, xy], [yx, yy]] });
+        let turning = density * omega != 0.0;
+        let rotation = Rotation { density, omega, about: [x, y] };
+        let body_force = if turning { given.with_rotation(rotation) } else { given };
         let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
-        Ok(Body { name: String::new(), elasticity, body_force })
+        Ok(Body { name: String::new(), elasticity, initial: Initial::from_numbers(initial), body_force })
     };
-    let bodies = laws.iter().zip(forces).map(body).collect::<io::Result<_>>()?;
+    let bodies = laws.iter().zip(&initial).zip(forces).map(body).collect::<io::Result<_>>()?;
     let none = MeshSource::Geometry { size: None, polygons: Vec::new() };
     Ok(Scene { draft: Draft { thickness, origin: [x, y], bodies, ..Draft::new("", kinematics, none) } })
 }
@@ -193,11 +210,12 @@ fn read_mesh(from: &mut Reader<impl Read>) -> io::Result<Triangulation> {
 fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> io::Result<()> {
     let told = |condition: &Condition| match *condition {
         Condition::Interior => ([0; 4], [0.0; 4]),
-        Condition::Axis => ([5, 0, 0, 0], [0.0; 4]),
+        Condition::Axis => ([9, 0, 0, 0], [0.0; 4]),
         Condition::Traction([a, b]) => ([1, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
         Condition::Contact { interface, pair, side } => ([4, interface, pair, side], [0.0; 4]),
+        Condition::Elastic { bed, pair, side } => ([5, bed, pair, side], [0.0; 4]),
     };
     out.indices(conditions.iter().flat_map(|condition| told(condition).0))?;
     out.numbers(conditions.iter().flat_map(|condition| told(condition).1))
@@ -207,11 +225,12 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
     let (kinds, numbers) = (from.tuples()?, from.vectors()?);
     let of = |([kind, interface, pair, side], [a, b, c, d]): ([usize; 4], [f64; 4])| match kind {
         0 => Ok(Condition::Interior),
-        5 => Ok(Condition::Axis),
+        9 => Ok(Condition::Axis),
         1 => Ok(Condition::Traction([[a, b], [c, d]])),
         2 => Ok(Condition::Clamped([[a, b], [c, d]])),
         3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
         4 => Ok(Condition::Contact { interface, pair, side }),
+        5 => Ok(Condition::Elastic { bed: interface, pair, side }),
         _ => Err(io::ErrorKind::InvalidData.into()),
     };
     kinds.into_iter().zip(numbers).map(of).collect()

@@ -1,0 +1,195 @@
+"""Polynomials on the reference triangle (0, 0), (1, 0), (0, 1), split at its centroid, in exact rational numbers.
+
+Stresses transform by s = B s^ B^T / J (B: the edges from the first corner, J = det B): then div s^ = 0, symmetry and equal tractions across a
+segment hold exactly where they hold for s, and scaled tractions (length times traction) by tau = B tau^. One matrix per degree
+therefore serves every triangle. Subtriangle i has the corners i + 1, i + 2 and the centroid; a polynomial on it is written in xi, eta,
+which are 1, 0 at the first of them and 0, 1 at the second.
+"""
+
+from fractions import Fraction as Q
+from functools import cache
+from math import comb, factorial, prod
+
+import numpy as np
+from flint import fmpq, fmpq_mat
+
+from .ball import EPS, Ball, constants
+
+CORNERS = [(Q(0), Q(0)), (Q(1), Q(0)), (Q(0), Q(1))]
+CENTRE = (Q(1, 3), Q(1, 3))
+
+
+def monomials(p):
+    return [(d - j, j) for d in range(p + 1) for j in range(d + 1)]
+
+
+def legendre(k, s):
+    return sum((-1) ** (k + j) * comb(k, j) * comb(k + j, j) * s**j for j in range(k + 1))
+
+
+@cache
+def to_legendre(p):
+    """Row k: what the Bernstein coefficients of degree p give to the Legendre coefficient k, (2 k + 1) int L_k B_i."""
+    moment = lambda i, j: Q(comb(p, i) * factorial(i + j) * factorial(p - i), factorial(p + j + 1))  # int B_i s^j
+    power = lambda k, j: (-1) ** (k + j) * comb(k, j) * comb(k + j, j)
+    return [[(2 * k + 1) * sum(power(k, j) * moment(i, j) for j in range(k + 1)) for i in range(p + 1)] for k in range(p + 1)]
+
+
+@cache
+def elevation(low, high):
+    """Bernstein coefficients of degree `high` from those of degree `low`."""
+    d = high - low
+    return [[Q(comb(low, i) * comb(d, j - i), comb(high, j)) if 0 <= j - i <= d else Q(0) for i in range(low + 1)] for j in range(high + 1)]
+
+
+@cache
+def product(p, i, q, j):
+    """int_0^1 of the product of two Bernstein polynomials."""
+    return Q(comb(p, i) * comb(q, j), comb(p + q, i + j) * (p + q + 1))
+
+
+@cache
+def orthogonal(p):
+    """(T, d): f = sum_j m_j mono_j = sum_k (T m)_k phi_k with orthogonal phi_k on the unit triangle, d_k = int phi_k^2."""
+    mono, n = monomials(p), (p + 1) * (p + 2) // 2
+    gram = [[Q(factorial(a + c) * factorial(b + d), factorial(a + b + c + d + 2)) for c, d in mono] for a, b in mono]
+    low, d = [[Q(int(i == j)) for j in range(n)] for i in range(n)], [Q(0)] * n
+    for j in range(n):
+        d[j] = gram[j][j] - sum(low[j][k] ** 2 * d[k] for k in range(j))
+        for i in range(j + 1, n):
+            low[i][j] = (gram[i][j] - sum(low[i][k] * low[j][k] * d[k] for k in range(j))) / d[j]
+    return [list(column) for column in zip(*low)], d
+
+
+def _equations(p):
+    """Rows (unknowns, data) of: div s^ + f^ = 0, equal tractions inside, tractions tau^ (Legendre coefficients) on the three sides. Polynomials
+    agree where they agree at enough points."""
+    mono, rows = monomials(p), []
+    value = lambda x, y: [x**i * y**j for i, j in mono]
+    by_xi = lambda x, y: [i * x ** max(i - 1, 0) * y**j for i, j in mono]
+    by_eta = lambda x, y: [j * x**i * y ** max(j - 1, 0) for i, j in mono]
+
+    def row(parts, data):
+        out = [Q(0)] * (9 * len(mono))
+        for sub, comp, weight, values in parts:
+            begin = (3 * sub + comp) * len(mono)
+            out[begin : begin + len(mono)] = [o + weight * v for o, v in zip(out[begin:], values)]
+        rows.append((out, data))
+
+    def traction(sub, c, a, b, at, sign=1):  # component c of s^ times the normal of the segment from a to b
+        return [(sub, (0, 2)[c], sign * (b[1] - a[1]), value(*at)), (sub, (2, 1)[c], sign * (a[0] - b[0]), value(*at))]
+
+    for i in range(3):
+        a, b = CORNERS[(i + 1) % 3], CORNERS[(i + 2) % 3]
+        (ux, uy), (vx, vy) = ([x - c for x, c in zip(corner, CENTRE)] for corner in (a, b))
+        det = ux * vy - uy * vx
+        for c in range(2):
+            for x, y in [(Q(j, p), Q(k, p)) for j, k in monomials(p - 1)]:
+                slopes = by_xi(x, y), by_eta(x, y)
+                dx = [(vy * s - uy * t) / det for s, t in zip(*slopes)]
+                dy = [(ux * t - vx * s) / det for s, t in zip(*slopes)]
+                row([(i, (0, 2)[c], 1, dx), (i, (2, 1)[c], 1, dy)], {6 * (p + 1) + c: Q(-1)})
+            for s in [Q(j, p) for j in range(p + 1)]:
+                inner = traction((i + 2) % 3, c, CENTRE, CORNERS[i], (s, 0)) + traction((i + 1) % 3, c, CENTRE, CORNERS[i], (0, s), -1)
+                row(inner, {})
+                row(traction(i, c, a, b, (1 - s, s)), {(i * (p + 1) + k) * 2 + c: legendre(k, s) for k in range(p + 1)})
+    return rows
+
+
+def _balances(p):
+    """Resultant and moment about (0, 0) of tau^ and f^: zero in equilibrium."""
+    rows = [[Q(0)] * (6 * (p + 1) + 2) for _ in range(3)]
+    for i in range(3):
+        (a, b), (c, d) = CORNERS[(i + 1) % 3], CORNERS[(i + 2) % 3]
+        at = i * (p + 1) * 2
+        rows[0][at] = rows[1][at + 1] = Q(1)
+        rows[2][at : at + 4] = [-(b + d) / 2, (a + c) / 2, (b - d) / 6, (c - a) / 6]
+    rows[0][-2] = rows[1][-1] = Q(1, 2)
+    rows[2][-2:] = [-CENTRE[1] / 2, CENTRE[0] / 2]
+    return rows
+
+
+def rational(rows):
+    return fmpq_mat(len(rows), len(rows[0]), [fmpq(*x.as_integer_ratio()) for row in rows for x in row])
+
+
+def _floats(matrix):
+    return np.array([[int(x.p) / int(x.q) for x in row] for row in matrix.table()])
+
+
+def _enclosed(matrix):
+    mid = _floats(matrix)
+    return Ball(mid, abs(mid) * EPS + 1e-300)
+
+
+@cache
+def stresses(p):
+    """(R, Z, d): the orthogonal coefficients of s^ are R (tau^, f^) + Z c for whatever c; rows by subtriangle, component (xx, yy, xy) and phi_k.
+
+    R is right for data in equilibrium. Which of the fields with the same tractions it gives, and the basis Z of those without, are chosen in
+    floating point and then taken exactly.
+    """
+    rows, data = _equations(p), 6 * (p + 1) + 2
+    unknowns, balance = len(rows[0][0]), rational(_balances(p))
+    gram = balance * balance.transpose()
+    project = rational([[Q(int(i == j)) for i in range(data)] for j in range(data)]) - balance.transpose() * gram.inv() * balance
+    right = (rational([[w.get(j, Q(0)) for j in range(data)] for _, w in rows]) * project).table()
+    left = rational([row for row, _ in rows]).table()
+    reduced, rank = fmpq_mat(len(rows), unknowns + data, [x for a, b in zip(left, right) for x in a + b]).rref()
+    table = reduced.table()[:rank]
+    pivots = [next(j for j, x in enumerate(row) if x != 0) for row in table]
+    assert pivots[-1] < unknowns, "tractions in equilibrium have a field"
+    free = sorted(set(range(unknowns)) - set(pivots))
+    # One column for each datum, then one for each free coefficient.
+    fields = {pivot: row[unknowns:] + [-row[j] for j in free] for row, pivot in zip(table, pivots)}
+    fields |= {j: [fmpq(int(k == data + i)) for k in range(data + len(free))] for i, j in enumerate(free)}
+    transform, d = orthogonal(p)
+    n, change = len(d), rational(transform)
+    block = lambda b: change * fmpq_mat(n, data + len(free), [x for j in range(b * n, b * n + n) for x in fields[j]])
+    columns = list(zip(*(row for b in range(9) for row in block(b).table())))
+    matrix = lambda these: fmpq_mat(len(these), unknowns, [x for column in these for x in column]).transpose()
+    special = matrix(columns[:data])
+    if not free:
+        return _enclosed(special), None, d
+    weight = np.sqrt(np.array([float(x) * (1, 1, 2)[c] for _ in range(3) for c in range(3) for x in d]))[:, None]
+    basis = matrix(columns[data:])
+    for _ in range(2):
+        basis = basis * rational(np.linalg.inv(np.linalg.qr(_floats(basis) * weight)[1]).tolist())
+    least = -(_floats(basis) * weight).T @ (_floats(special) * weight)
+    return _enclosed(special + basis * rational(least.tolist())), _enclosed(basis), d
+
+
+@cache
+def derivatives(k):
+    """(X, Y, d): orthogonal coefficients of degree k - 1 of the derivatives by xi and eta of a polynomial of Bernstein coefficients of degree k."""
+    transform, d = orthogonal(k - 1)
+    place, columns = {m: j for j, m in enumerate(monomials(k - 1))}, ([], [])
+    for a, b, c in bernstein_indices(k):
+        slopes = [[Q(0)] * len(place) for _ in range(2)]
+        for i, j in monomials(c):  # (1 - xi - eta)^c
+            w = Q((-1) ** (i + j) * factorial(k), prod(map(factorial, (a, b, i, j, c - i - j))))
+            for slope, power, down in ((slopes[0], a + i, (a + i - 1, b + j)), (slopes[1], b + j, (a + i, b + j - 1))):
+                if power:
+                    slope[place[down]] += w * power
+        for column, slope in zip(columns, slopes):
+            column.append([sum(t * x for t, x in zip(row, slope)) for row in transform])
+    return *(constants(list(zip(*column))) for column in columns), d
+
+
+def bernstein_indices(k):
+    return [(k - rest, rest - l, l) for rest in range(k + 1) for l in range(rest + 1)]
+
+
+@cache
+def split_nodes(k):
+    """The place of every Bernstein coefficient of each subtriangle among those of the split triangle: see docs/proof.md."""
+    centre, subs = 3 * k, []
+    for sub in range(3):
+        first, second = (sub + 1) % 3, (sub + 2) % 3
+        inside = iter(range(centre + 1 + 3 * (k - 1) + sub * (k - 1) * (k - 2) // 2, 10**6))
+        known = {(k, 0, 0): first, (0, k, 0): second, (0, 0, k): centre}
+        known |= {(k - j, j, 0): 2 + sub * (k - 1) + j for j in range(1, k)}
+        known |= {(k - j, 0, j): centre + first * (k - 1) + j for j in range(1, k)}
+        known |= {(0, k - j, j): centre + second * (k - 1) + j for j in range(1, k)}
+        subs.append([known[m] if m in known else next(inside) for m in bernstein_indices(k)])
+    return subs

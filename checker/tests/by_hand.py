@@ -1,0 +1,140 @@
+"""Proofs written by hand: fields whose energies are known without a computer."""
+
+import hashlib
+import io
+import json
+import zipfile
+
+import numpy as np
+
+BLOCKS = """
+model = {{ kinematics = "plane-stress", thickness = {thickness} }}
+bodies.left = {{ young = 1.0, poisson = 0.0{force} }}
+bodies.right = {{ young = {young}, poisson = 0.0 }}
+supports = [{{ on = "wall", type = "clamped" }}]
+tractions = [{{ on = "pressed", pressure = 1.0 }}]
+contacts = [{{ between = ["face", "seat"], gap = {gap} }}]
+
+[[geometry.polygons]]
+body = "left"
+points = [[0, 0], [1, 0], [1, 1], [0, 1]]
+edges = ["", "face", "", "pressed"]
+
+[[geometry.polygons]]
+body = "right"
+points = [[1, 0], [2, 0], [2, 1], [1, 1]]
+edges = ["", "wall", "", "seat"]
+"""
+
+
+def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
+    """Two unit blocks, pressed against each other by a unit pressure: stress xx = -1 everywhere. With E = 1 the energy is
+    -(1 + gap) times the thickness: half of the work of the pressure on the shortening 2, less its work on the way to the seat."""
+    text = BLOCKS.format(gap=gap, young=young, thickness=thickness, force="").encode()
+    points, triangles, bodies = [], [], []
+    for body, x0 in enumerate((0, 1)):
+        base = len(points)
+        points += [(x0 + i / n, j / n) for j in range(n + 1) for i in range(n + 1)]
+        for j in range(n):
+            for i in range(n):
+                a = base + j * (n + 1) + i
+                triangles += [(a, a + 1, a + n + 2), (a, a + n + 2, a + n + 1)]
+                bodies += [body, body]
+    points = np.array(points, float)
+    names = ["face", "pressed", "seat", "wall"]
+    edges, owners = {}, {}
+    for t, corners in enumerate(triangles):
+        for i in range(3):
+            a, b = corners[(i + 1) % 3], corners[(i + 2) % 3]
+            if (b, a) in edges:
+                owners[b, a].append(t)
+            else:
+                edges[a, b] = len(edges)
+                owners[a, b] = [t]
+    rows = []
+    for (a, b), own in owners.items():
+        (x, _), (u, _) = points[[a, b]]
+        left = bodies[own[0]] == 0
+        at = {0: "pressed", 2: "wall", 1: "face" if left else "seat"}
+        rows.append((a, b, names.index(at[x]) if len(own) == 1 and x == u and x in at else -1))
+    face = sorted((e for e, r in enumerate(rows) if r[2] == 0), key=lambda e: points[rows[e][0], 1])
+    seat = sorted((e for e, r in enumerate(rows) if r[2] == 2), key=lambda e: points[rows[e][1], 1])
+    pairs, data = [], []
+    for e, f in zip(face, seat):
+        pairs.append((0, e, f, rows[e][0], rows[e][1], rows[f][1], rows[f][0]))
+        data.append([1, 0, 1, 0, 1 / n, points[rows[e][0], 1], points[rows[e][1], 1], gap, gap] + [0] * 11)
+    lengths = [np.hypot(*(points[b] - points[a])) for a, b, _ in rows]
+    normals = [(points[b] - points[a])[::-1] * [1, -1] / l for (a, b, _), l in zip(rows, lengths)]
+    stress = np.array([[-1.0, 0], [0, 0]])
+    if v is None:
+        v = lambda x, body: np.array([(2 - x[0] if body else 1 / young + 1 - x[0] + gap) if not body else (2 - x[0]) / young, 0.0])
+    whose = np.zeros(len(points), int)
+    for t, corners in enumerate(triangles):
+        whose[list(corners)] = bodies[t]
+    u = np.array([v(x, body) for x, body in zip(points, whose)])
+    inside = []
+    for corners in triangles:
+        p = u[list(corners)]
+        centre = p.mean(0)
+        inside += [centre, *((p[i] + centre) / 2 for i in range(3))]
+    mesh = {
+        "points": points,
+        "triangles": np.array(triangles, np.int32),
+        "bodies": np.array(bodies, np.int32),
+        "edges": np.array(rows, np.int32),
+        "names": np.frombuffer("\n".join(names).encode(), np.uint8),
+        "pairs": np.array(pairs, np.int32).reshape(-1, 7),
+        "pair_data": np.array(data, float).reshape(-1, 20),
+    }
+    energy = -thickness * (0.5 + 0.5 / young + gap)
+    manifest = {
+        "format": 1,
+        "program": "by hand",
+        "scene": "blocks",
+        "scene_sha256": hashlib.sha256(text).hexdigest(),
+        "origin": [0.0, 0.0],
+        "bodies": ["left", "right"],
+        "contacts": ["face|seat"],
+        "claim": {"lower": energy - 1e-12, "upper": energy + 1e-12, "upper_from": "by hand"},
+        "notes": [],
+        "mesh_files": [],
+    }
+    count = degree + 1
+    arrays = {"manifest": manifest, "scene": np.frombuffer(text, np.uint8)}
+    arrays |= {f"stress_{k}": x for k, x in mesh.items()}
+    arrays["stress_degrees"] = np.full(len(triangles), degree, np.uint8)
+    arrays["traction_counts"] = np.full(len(rows), count, np.uint8)
+    arrays["tractions"] = np.repeat([stress @ n for n in normals], count, 0)
+    arrays["pressure_counts"] = np.full(n, count, np.uint8)
+    arrays["pressures"] = np.full(n * count, -1.0)
+    arrays |= {f"displacement_{k}": x.copy() for k, x in mesh.items()}
+    arrays["displacement_degrees"] = np.full(len(triangles), 2, np.uint8)
+    arrays["u_vertices"] = u
+    arrays["u_edge_counts"] = np.ones(len(rows), np.uint8)
+    arrays["u_edges"] = np.array([(u[a] + u[b]) / 2 for a, b, _ in rows])
+    arrays["u_inside"] = np.array(inside)
+    return arrays
+
+
+def write(arrays, path, digest=True):
+    """The proof file of arrays; `manifest` is a dictionary."""
+    sums, files = hashlib.sha256(), []
+    for name, array in arrays.items():
+        if name == "manifest":
+            array = np.frombuffer(json.dumps(array).encode(), np.uint8)
+        content = io.BytesIO()
+        np.save(content, array)
+        files.append((name, content.getvalue()))
+        sums.update(name.encode() + content.getvalue())
+    content = io.BytesIO()
+    np.save(content, np.frombuffer(sums.digest() if digest else bytes(32), np.uint8))
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in [*files, ("digest", content.getvalue())]:
+            archive.writestr(f"{name}.npy", content)
+
+
+def with_scene(arrays, change):
+    """The same proof for the scene whose text `change` makes of its own."""
+    text = change(bytes(arrays["scene"]).decode())
+    arrays["scene"] = np.frombuffer(text.encode(), np.uint8)
+    arrays["manifest"]["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()

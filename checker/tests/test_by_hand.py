@@ -1,0 +1,177 @@
+"""Patch tests: both bounds are the exact energy, which is known by hand; and whatever is changed is refused for what it is."""
+
+import json
+
+import numpy as np
+import pytest
+from by_hand import blocks, with_scene, write
+from hypercircle_check import Refused
+from hypercircle_check.main import check, main
+
+
+@pytest.mark.parametrize("n, gap, young, thickness, degree", [(1, 0.0, 1.0, 1.0, 1), (2, 0.25, 1.0, 0.5, 1), (3, 0.1, 4.0, 1.0, 2), (2, -0.5, 1.0, 3.0, 3)])
+def test_patch(tmp_path, n, gap, young, thickness, degree):
+    write(blocks(n, gap, young, thickness, degree), tmp_path / "proof.npz")
+    proof = check(tmp_path)
+    energy = -thickness * (0.5 + 0.5 / young + gap)
+    assert float(proof.lower) == pytest.approx(energy, abs=1e-12)
+    assert float(proof.upper) == pytest.approx(energy, abs=1e-12)
+    assert proof.lower <= energy + 1e-16 and proof.upper >= energy - 1e-16
+    assert main([str(tmp_path)]) == 0
+
+
+def test_admissible_but_worse_fields_prove_less(tmp_path):
+    arrays = blocks()
+    arrays["manifest"]["claim"]["upper"] += 1.0
+    arrays["u_vertices"][:9, 0] -= 0.125  # the left block stands back from the seat
+    arrays["u_edges"][[e for e, row in enumerate(arrays["displacement_edges"]) if row[0] < 9], 0] -= 0.125
+    arrays["u_inside"][:32, 0] -= 0.125
+    write(arrays, tmp_path / "proof.npz")
+    proof = check(tmp_path)
+    assert float(proof.upper) == pytest.approx(-1.25 + 0.125)
+    assert float(proof.lower) == pytest.approx(-1.25)
+
+
+def traction(a):
+    inner = next(e for e in range(len(a["stress_edges"])) if a["stress_edges"][e, 2] < 0 and abs(a["tractions"][2 * e]).max() > 0)
+    a["tractions"][2 * inner] += 1e-3
+
+
+def vertex(a):
+    a["stress_points"][4] += [1e-3, 0]
+
+
+def pull(a):
+    a["pressures"][0] *= -1
+
+
+def triangle(a):
+    for name in ("stress_triangles", "stress_bodies", "stress_degrees"):
+        a[name] = a[name][:-1]
+
+
+def claim(a):
+    a["manifest"]["claim"]["lower"] *= 0.99
+
+
+def upper_claim(a):
+    a["manifest"]["claim"]["upper"] -= 1e-6
+
+
+def penetrates(a):
+    a["u_vertices"][5] += [1e-3, 0]
+
+
+def support(a):
+    wall = next(row[0] for row in a["displacement_edges"] if row[2] == 3)
+    a["u_vertices"][wall] += [0, 1e-3]
+
+
+def material(a):
+    with_scene(a, lambda text: text.replace("young = 1.0", "young = 1.01"))
+
+
+def load(a):
+    with_scene(a, lambda text: text.replace("pressure = 1.0", "pressure = 1.01"))
+
+
+def name(a):
+    for of in ("stress", "displacement"):
+        a[f"{of}_edges"][a[f"{of}_edges"][:, 2] == 3, 2] = -1
+
+
+def one_name(a):
+    edges = a["displacement_edges"]
+    edges[np.flatnonzero(edges[:, 2] == 3)[0], 2] = -1
+
+
+def pair(a):
+    a["displacement_pairs"], a["displacement_pair_data"] = a["displacement_pairs"][:-1], a["displacement_pair_data"][:-1]
+
+
+def gap(a):
+    a["displacement_pair_data"][0, 7] += 0.1
+
+
+def direction(a):
+    a["stress_pair_data"][0, :4] = [-1, 0, -1, 0]
+
+
+def scene(a):
+    a["scene"] = np.frombuffer(bytes(a["scene"]).replace(b"1.0", b"2.0"), np.uint8)
+
+
+def key(a):
+    with_scene(a, lambda text: text.replace("poisson = 0.0 }", "poisson = 0.0, plasticity = 1 }"))
+
+
+def turned(a):
+    a["stress_triangles"][0] = a["stress_triangles"][0][::-1]
+
+
+def nothing(a):
+    a["tractions"][0] = np.nan
+
+
+def missing(a):
+    del a["u_inside"]
+
+
+CHANGES = [
+    (traction, "not in equilibrium: edge"),
+    (vertex, "not in equilibrium|area"),
+    (pull, "contact traction of pair 0 pulls"),
+    (triangle, "no triangle on its left|area of its polygons"),
+    (claim, "lower bound .* is claimed, and only"),
+    (upper_claim, "upper bound .* is claimed, and only"),
+    (penetrates, "penetrates a contact"),
+    (support, "misses a support"),
+    (material, "is claimed, and only"),
+    (load, "out of balance|not in equilibrium"),
+    (name, "no edge of the stress mesh is part of 'wall'"),
+    (one_name, "lies on no side of its polygon without a name"),
+    (pair, "no pair holds it"),
+    (gap, "gap of contact .* is not that of the scene"),
+    (direction, "does not point out of its first side"),
+    (scene, "not the one that its hash names"),
+    (key, "does not know the key `plasticity`"),
+    (turned, "turned over|no edge|same side"),
+    (nothing, "no number"),
+    (missing, "lacks 'u_inside'"),
+]
+
+
+@pytest.mark.parametrize("change, why", CHANGES, ids=[change.__name__ for change, _ in CHANGES])
+def test_changes_are_refused_for_what_they_are(tmp_path, capsys, change, why):
+    arrays = blocks()
+    change(arrays)
+    write(arrays, tmp_path / "proof.npz")
+    with pytest.raises(Refused, match=why):
+        check(tmp_path)
+    assert main([str(tmp_path)]) == 1
+    assert capsys.readouterr().out.startswith("not proved: ")
+
+
+def test_any_change_of_the_file_is_refused(tmp_path):
+    write(blocks(), tmp_path / "proof.npz", digest=False)
+    with pytest.raises(Refused, match="digest"):
+        check(tmp_path)
+    (tmp_path / "proof.npz").write_bytes(b"nonsense")
+    with pytest.raises(Refused, match="cannot be read"):
+        check(tmp_path)
+    assert main([str(tmp_path / "nowhere")]) == 1
+
+
+def test_report_and_scene_must_be_those_of_the_proof(tmp_path):
+    arrays = blocks()
+    write(arrays, tmp_path / "proof.npz")
+    claim = arrays["manifest"]["claim"]
+    (tmp_path / "report.json").write_text(json.dumps({"energy": claim}))
+    (tmp_path / "scene.toml").write_bytes(bytes(arrays["scene"]))
+    assert main([str(tmp_path), "--scene", str(tmp_path / "scene.toml")]) == 0
+    (tmp_path / "scene.toml").write_bytes(bytes(arrays["scene"]) + b"\n")
+    with pytest.raises(Refused, match="is not the scene of the proof"):
+        check(tmp_path, tmp_path / "scene.toml")
+    (tmp_path / "report.json").write_text(json.dumps({"energy": {**claim, "upper": claim["upper"] - 1e-3}}))
+    with pytest.raises(Refused, match="report.json has the upper bound"):
+        check(tmp_path)

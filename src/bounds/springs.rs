@@ -1,0 +1,107 @@
+//! What springs and elastic layers have of the energies and of the gap between them.
+//!
+//! With the traction t = T(λ)·d on the first side and the jump j = (v' − v'')·d along each direction d of stiffness k, their potential
+//! energy is ½ ∫ k j², their complementary energy ∫ t²/2k, and their part of the gap ½ ∫ (k j + t)²/k, which is never negative.
+
+use super::counted::Counted;
+use super::jump::side_coefficients;
+use super::sum::Sum;
+use crate::element::{Displacement, StressField, side};
+use crate::problem::{BedPair, Problem};
+use crate::vector::dot;
+
+/// An energy of springs, thickness included.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SpringEnergy {
+    /// The energy.
+    pub value: f64,
+    /// What a relative error of one in every number that enters could change.
+    pub sensitivity: f64,
+}
+
+/// Σ ∫ t²/2k.
+pub fn complementary_of_springs(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> SpringEnergy {
+    let of = |pair: &BedPair, stiffness: [f64; 2]| {
+        let forces = spring_tractions(problem, stress, pair);
+        let along = forces.iter().zip(stiffness).filter(|(_, k)| *k > 0.0);
+        along.map(|(t, k)| pair.length * side::integral(t, t) / (2.0 * k)).map(|e| [e, 2.0 * e]).collect()
+    };
+    summed(problem, counted, of)
+}
+
+/// Σ ½ ∫ k j².
+pub fn potential_of_springs(problem: &Problem, v: &Displacement, counted: Counted<'_>) -> SpringEnergy {
+    let of = |pair: &BedPair, stiffness: [f64; 2]| {
+        let (jump, size) = spring_jumps(problem, v, pair);
+        let along = jump.iter().zip(size).zip(stiffness).filter(|(_, k)| *k > 0.0);
+        along
+            .map(|((j, size), k)| {
+                let least: Vec<f64> = j.iter().map(|j| j.abs()).collect();
+                let moved = pair.length * k * size * side::integral(&least, &[1.0]);
+                [0.5 * pair.length * k * side::integral(j, j), moved]
+            })
+            .collect()
+    };
+    summed(problem, counted, of)
+}
+
+/// ½ ∫ (k j + t)²/k of every pair, one bed after the other, thickness included; zero where it is not counted.
+pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, counted: Counted<'_>) -> Vec<f64> {
+    let of = |(pair, stiffness): (&BedPair, [f64; 2])| {
+        if !counted.boundary_edge(&problem.mesh, pair.edge) {
+            return 0.0;
+        }
+        let (forces, (jump, _)) = (spring_tractions(problem, stress, pair), spring_jumps(problem, v, pair));
+        let along = forces.iter().zip(&jump).zip(stiffness).filter(|(_, k)| *k > 0.0);
+        let term = |((t, j), k): ((&Vec<f64>, &Vec<f64>), f64)| {
+            let degree = t.len().max(j.len()) - 1;
+            let [t, j] = [side::elevate(t, degree), side::elevate(j, degree)];
+            let off: Vec<f64> = t.iter().zip(&j).map(|(t, j)| k * j + t).collect();
+            pair.length * side::integral(&off, &off) / (2.0 * k)
+        };
+        problem.scene.thickness * along.map(term).sum::<f64>()
+    };
+    problem.bed_pairs().map(of).collect()
+}
+
+fn summed(problem: &Problem, counted: Counted<'_>, of: impl Fn(&BedPair, [f64; 2]) -> Vec<[f64; 2]>) -> SpringEnergy {
+    let (mut value, mut sensitivity) = (Sum::default(), 0.0);
+    for (pair, stiffness) in problem.bed_pairs().filter(|(pair, _)| counted.boundary_edge(&problem.mesh, pair.edge)) {
+        for [energy, moved] in of(pair, stiffness) {
+            value.add(energy);
+            sensitivity += moved;
+        }
+    }
+    let t = problem.scene.thickness;
+    SpringEnergy { value: t * value.value(), sensitivity: t * (sensitivity + value.magnitude()) }
+}
+
+/// On every pair of springs, one bed after the other, coefficients along its two axes.
+pub type OnSprings = Vec<[Vec<f64>; 2]>;
+
+/// The coefficients of the traction on the first side along both axes, from its first vertex to its second.
+pub fn spring_tractions(problem: &Problem, stress: &StressField, pair: &BedPair) -> [Vec<f64>; 2] {
+    let degree = problem.mesh.edges[pair.edge].triangles[0].map_or(1, |t| stress.degree(t));
+    let own = stress.edge_traction(&problem.mesh, pair.edge, 0, degree);
+    pair.axes.map(|axis| own.iter().map(|t| dot(*t, axis)).collect())
+}
+
+/// The coefficients of the jump along both axes, and the size of the displacements that it is the difference of.
+pub fn spring_jumps(problem: &Problem, v: &Displacement, pair: &BedPair) -> ([Vec<f64>; 2], [f64; 2]) {
+    let own = side_coefficients(problem, v, pair.edge);
+    let other: Vec<[f64; 2]> = match pair.opposite {
+        Some(e) => side_coefficients(problem, v, e).into_iter().rev().collect(),
+        None => vec![[0.0; 2]],
+    };
+    let degree = own.len().max(other.len()) - 1;
+    let along =
+        |u: &[[f64; 2]], axis: [f64; 2]| side::elevate(&u.iter().map(|u| dot(*u, axis)).collect::<Vec<_>>(), degree);
+    let largest = |u: &[f64]| u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+    let both = pair.axes.map(|axis| {
+        let (a, b) = (along(&own, axis), along(&other, axis));
+        let size = largest(&a) + largest(&b);
+        (a.iter().zip(&b).map(|(a, b)| a - b).collect::<Vec<f64>>(), size)
+    });
+    let sizes = [both[0].1, both[1].1];
+    (both.map(|(jump, _)| jump), sizes)
+}

@@ -1,0 +1,69 @@
+//! The stiffness of springs and elastic layers.
+
+use super::error::{Fault, SceneError};
+use super::raw::{At, Pair, RawStiffness, RawSupport, Table};
+use super::source::Source;
+
+const NEGATIVE: (&str, &str) =
+    ("a spring stores no energy where its stiffness is negative", "write a stiffness of zero or more");
+const NONE: (&str, &str) = (
+    "springs without stiffness hold nothing",
+    "write a positive stiffness, or leave the boundary without a condition, which makes it free",
+);
+const SLACK: (&str, &str) = (
+    "an elastic layer resists in both directions",
+    "write two positive numbers [normal, tangential]; for sides that slide freely write a [[contacts]]",
+);
+
+/// The stiffness of a support that is a spring, normal and tangential.
+pub(super) fn spring(raw: &At<Table<RawSupport>>, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
+    let Table(support) = &raw.value;
+    let remedy = "delete it: springs act along the normal and along the boundary, against all of the displacement";
+    let other = "type = \"spring\"";
+    let misplaced = |key| Fault::Misplaced { key, table: table.to_owned(), other, remedy };
+    if let Some(displacement) = &support.displacement {
+        return Err(source.error(displacement.span(), misplaced("displacement")));
+    }
+    if let Some(direction) = &support.direction {
+        return Err(source.error(direction.span(), misplaced("direction")));
+    }
+    let Some(stiffness) = &support.stiffness else {
+        let remedy = "add stiffness = 1.0e3, force per area and displacement along the normal, or [normal, tangential]";
+        let fault = Fault::MissingKey { key: "stiffness".into(), table: table.to_owned(), remedy: remedy.to_owned() };
+        return Err(source.error(raw.span(), fault));
+    };
+    let at = |value: f64| At { value, start: stiffness.start, end: stiffness.end };
+    let place = (table, "stiffness");
+    let both = match &stiffness.value {
+        RawStiffness::Normal(normal) => [source.positive(&at(*normal), place, NONE)?, 0.0],
+        RawStiffness::Both(both) => {
+            let list = At { value: both.clone(), start: stiffness.start, end: stiffness.end };
+            source.vector(&list, place)?
+        }
+    };
+    for k in both {
+        source.number(&at(k), place, |k| k >= 0.0, NEGATIVE)?;
+        if k > 0.0 {
+            source.positive(&at(k), place, NONE)?;
+        }
+    }
+    source.number(&at(both[0].max(both[1])), place, |k| k > 0.0, NONE)?;
+    Ok(both)
+}
+
+/// The stiffness of an elastic layer, normal and tangential.
+pub(super) fn layer(stiffness: &Pair, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
+    let both = source.vector(stiffness, (table, "stiffness"))?;
+    for value in both {
+        source.positive(&At { value, start: stiffness.start, end: stiffness.end }, (table, "stiffness"), SLACK)?;
+    }
+    Ok(both)
+}
+
+/// Refuses a stiffness beside a support that is rigid.
+pub(super) fn no_stiffness(support: &RawSupport, table: &str, source: &Source) -> Result<(), SceneError> {
+    let Some(stiffness) = &support.stiffness else { return Ok(()) };
+    let remedy = "delete `stiffness`, or write type = \"spring\"";
+    let (table, other) = (table.to_owned(), "a rigid support");
+    Err(source.error(stiffness.span(), Fault::Misplaced { key: "stiffness", table, other, remedy }))
+}
