@@ -75,7 +75,7 @@ def main() -> None:
         return
     meshes()
     write("pin", pin_table())
-    for scene, beyond in (("hertz_rigid", []), ("hertz_elastic", ["[30, 9]"])):
+    for scene, beyond in (("hertz_rigid", []), ("hertz_elastic", ["[30, 9]"]), ("hertz_orthotropic", ["[30, 9]"])):
         write(scene, gap_table(beyond))
 
 

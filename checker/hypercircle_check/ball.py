@@ -11,6 +11,8 @@ import numpy as np
 
 EPS = 2.0**-52
 TINY = 1e-290  # more than anything that underflows
+LONG = np.longdouble if 1e-25 < np.finfo(np.longdouble).eps < EPS else float  # wider, where there is such a type
+LONG_EPS = float(np.finfo(LONG).eps)
 BITS = 320  # binary places of fixed-point numbers
 ONE = 1 << BITS
 
@@ -77,10 +79,10 @@ class Ball:
         """matrix @ self along an axis; the matrix is a Ball of constants."""
         n = matrix.mid.shape[1]
         x, r = (np.moveaxis(v, axis, 0).reshape(n, -1) for v in (self.mid, self.rad))
-        mid, size = matrix.mid @ x, abs(matrix.mid) @ abs(x)
+        mid, size = (matrix.mid.astype(LONG) @ x.astype(LONG)).astype(float), abs(matrix.mid) @ abs(x)
         rad = abs(matrix.mid) @ r + matrix.rad @ (abs(x) + r)
-        # A sum of n products, in whatever order, is off by at most n EPS times the sum of their sizes.
-        rad = (rad + (n + 2) * EPS * size) * (1 + (4 * n + 16) * EPS) + n * TINY * (abs(x) + r).any(0)
+        # A sum of n products, in whatever order, is off by at most n times the precision times the sum of their sizes.
+        rad = (rad + (n + 2) * LONG_EPS * size + EPS * abs(mid)) * (1 + (4 * n + 16) * EPS) + n * TINY * (abs(x) + r).any(0)
         shape = [matrix.mid.shape[0]] + list(np.moveaxis(self.mid, axis, 0).shape[1:])
         return Ball(*(np.moveaxis(v.reshape(shape), 0, axis) for v in (mid, rad)))
 

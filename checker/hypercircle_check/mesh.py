@@ -53,6 +53,8 @@ class Mesh:
             raise Refused(f"no edge of {self.what} is part of '{name}', on which the scene has a condition")
         self._rollers()
         self._pairs(get("pairs").tolist(), get("pair_data").tolist(), manifest["contacts"])
+        kind = lambda condition, right: condition.kind if condition else "inside" if right >= 0 else "free"
+        self.kinds = np.array([kind(*of) for of in zip(self.conditions, self.owners[:, 1])])
         if scene.polygons:
             self._against_polygons()
 
@@ -86,26 +88,23 @@ class Mesh:
         (x, y), (u, v) = self.exact(a), self.exact(b)
         return [v - y, x - u]
 
-    def kind(self, e):
-        return self.conditions[e].kind if self.conditions[e] else "inside" if self.owners[e, 1] >= 0 else "free"
-
     def by_body(self, of):
         """The fractions of(body) as Balls, a number for each triangle."""
         mid = np.array([[float(x) for x in of(name)] for name in self.body_names])[self.bodies]
         return [Ball(x, abs(x) * 2.0**-51) for x in mid.T]
 
     def _rollers(self):
-        """Direction of every roller edge: as given, or the sum of the normals of all edges of its boundary that are parallel to it."""
-        self.directions, groups = {}, {}
+        """Direction of every roller edge: as given, or the sum of the normals of all such edges that are parallel to it."""
+        self.directions, groups = {}, []
         for e, condition in enumerate(self.conditions):
             if condition and condition.kind == "roller":
                 n = self.directions[e] = condition.direction or self.normal(*self.edges[e])
                 unit = np.array([float(x) for x in n]) / np.hypot(*map(float, n))
                 rounding = 2.0**-48 * np.abs(self.points[self.edges[e]]).max() / np.hypot(*map(float, n))
-                own = groups.setdefault(self.names[e], [])
-                group = next((g for g in own if np.abs(unit - g[0]).max() < PARALLEL + rounding), None)
-                own.append((unit, [e])) if group is None else group[1].append(e)
-        for _, group in (g for own in groups.values() for g in own):
+                near = (group for group in groups if np.abs(unit - group[0]).max() < PARALLEL + rounding)
+                group = None if condition.direction else next(near, None)
+                groups.append((unit, [e])) if group is None else group[1].append(e)
+        for _, group in groups:
             if not self.conditions[group[0]].direction:
                 n = [sum(self.directions[e][k] for e in group) for k in range(2)]
                 self.directions.update(dict.fromkeys(group, n))

@@ -96,29 +96,16 @@ def _equations(p):
     return rows
 
 
-def _balances(p):
-    """Resultant and moment about (0, 0) of tau^ and f^: zero in equilibrium."""
-    rows = [[Q(0)] * (6 * (p + 1) + 2) for _ in range(3)]
-    for i in range(3):
-        (a, b), (c, d) = CORNERS[(i + 1) % 3], CORNERS[(i + 2) % 3]
-        at = i * (p + 1) * 2
-        rows[0][at] = rows[1][at + 1] = Q(1)
-        rows[2][at : at + 4] = [-(b + d) / 2, (a + c) / 2, (b - d) / 6, (c - a) / 6]
-    rows[0][-2] = rows[1][-1] = Q(1, 2)
-    rows[2][-2:] = [-CENTRE[1] / 2, CENTRE[0] / 2]
-    return rows
-
-
 def rational(rows):
     return fmpq_mat(len(rows), len(rows[0]), [fmpq(*x.as_integer_ratio()) for row in rows for x in row])
 
 
-def _floats(matrix):
+def floats(matrix):
     return np.array([[int(x.p) / int(x.q) for x in row] for row in matrix.table()])
 
 
 def _enclosed(matrix):
-    mid = _floats(matrix)
+    mid = floats(matrix)
     return Ball(mid, abs(mid) * EPS + 1e-300)
 
 
@@ -130,15 +117,12 @@ def stresses(p):
     floating point and then taken exactly.
     """
     rows, data = _equations(p), 6 * (p + 1) + 2
-    unknowns, balance = len(rows[0][0]), rational(_balances(p))
-    gram = balance * balance.transpose()
-    project = rational([[Q(int(i == j)) for i in range(data)] for j in range(data)]) - balance.transpose() * gram.inv() * balance
-    right = (rational([[w.get(j, Q(0)) for j in range(data)] for _, w in rows]) * project).table()
-    left = rational([row for row, _ in rows]).table()
-    reduced, rank = fmpq_mat(len(rows), unknowns + data, [x for a, b in zip(left, right) for x in a + b]).rref()
-    table = reduced.table()[:rank]
-    pivots = [next(j for j, x in enumerate(row) if x != 0) for row in table]
-    assert pivots[-1] < unknowns, "tractions in equilibrium have a field"
+    unknowns = len(rows[0][0])
+    reduced, rank = rational([row + [w.get(j, Q(0)) for j in range(data)] for row, w in rows]).rref()
+    pivots = [(next(j for j, x in enumerate(row) if x != 0), row) for row in reduced.table()[:rank]]
+    # Rows without unknowns are what data in equilibrium fulfil: two forces and a moment.
+    assert sum(pivot >= unknowns for pivot, _ in pivots) == 3, "tractions in equilibrium have a field"
+    table, pivots = zip(*((row, pivot) for pivot, row in pivots if pivot < unknowns))
     free = sorted(set(range(unknowns)) - set(pivots))
     # One column for each datum, then one for each free coefficient.
     fields = {pivot: row[unknowns:] + [-row[j] for j in free] for row, pivot in zip(table, pivots)}
@@ -154,8 +138,8 @@ def stresses(p):
     weight = np.sqrt(np.array([float(x) * (1, 1, 2)[c] for _ in range(3) for c in range(3) for x in d]))[:, None]
     basis = matrix(columns[data:])
     for _ in range(2):
-        basis = basis * rational(np.linalg.inv(np.linalg.qr(_floats(basis) * weight)[1]).tolist())
-    least = -(_floats(basis) * weight).T @ (_floats(special) * weight)
+        basis = basis * rational(np.linalg.inv(np.linalg.qr(floats(basis) * weight)[1]).tolist())
+    least = -(floats(basis) * weight).T @ (floats(special) * weight)
     return _enclosed(special + basis * rational(least.tolist())), _enclosed(basis), d
 
 

@@ -28,6 +28,8 @@ def known(place, table):
 
 
 def vector(values):
+    if not isinstance(values, (list, tuple)):
+        raise Refused(f"this checker knows constant vectors, not {values!r}")
     return [Q(x) for x in values]
 
 

@@ -18,55 +18,60 @@ SWEEPS = 200
 GRAIN = 1 << 220  # changes along contacts are multiples of its inverse
 
 
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def elevated(values, degree):
+    low = len(values) - 1
+    return values if low == degree else [sum(w * x for w, x in zip(row, values)) for row in reference.elevation(low, degree)]
+
+
 class Displacement:
     def __init__(self, mesh, data):
-        self.mesh, self.degrees = mesh, data["displacement_degrees"].astype(int)
-        self.counts, self.edges = data["u_edge_counts"].astype(int), data["u_edges"]
-        self.vertices, self.inside = data["u_vertices"], data["u_inside"]
+        self.mesh, self.degrees, self.counts = mesh, data["displacement_degrees"].astype(int), data["u_edge_counts"].astype(int)
+        self.candidates, self.inside = {"v": data["u_vertices"], "e": data["u_edges"]}, data["u_inside"]
         self.start = np.concatenate([[0], np.cumsum(self.counts)])
-        sizes = (3 * self.degrees**2 + 3 * self.degrees + 2) // 2 - 3 * self.degrees
-        self.inside_start = np.concatenate([[0], np.cumsum(sizes)])
-        fits = self.vertices.shape == mesh.points.shape and len(self.degrees) == len(mesh.triangles) and len(self.counts) == len(mesh.edges)
-        if not fits or self.start[-1] != len(self.edges) or self.inside_start[-1] != len(self.inside) or self.degrees.min() < 1:
+        self.inside_start = np.concatenate([[0], np.cumsum((3 * self.degrees**2 - 3 * self.degrees + 2) // 2)])
+        fits = [len(x) for x in (self.degrees, self.counts, *self.candidates.values(), self.inside)]
+        if fits != [len(mesh.triangles), len(mesh.edges), len(mesh.points), self.start[-1], self.inside_start[-1]] or self.degrees.min() < 1:
             raise Refused("the displacement of the proof is incomplete")
         if (self.counts[mesh.sides].max(1) > self.degrees - 1).any():
             raise Refused("an edge of the displacement has a higher degree than a triangle beside it")
-        if not all(np.isfinite(x).all() for x in (self.edges, self.vertices, self.inside)):
+        values = (*self.candidates.values(), self.inside)
+        if not all(np.isfinite(x).all() for x in values):
             raise Refused("a coefficient of the displacement is no number")
-        self.scale = float(max(np.abs(x).max(initial=0.0) for x in (self.vertices, self.edges, self.inside)))
-        self.exact, self.free, self.changed = {}, {}, Q(0)
+        self.scale = float(max(np.abs(x).max(initial=0.0) for x in values))
+        self.exact, self.free = {}, {}
         self._supports()
         self._contacts()
-        self.largest_change = float(self.changed)
 
     # Nodes: ("v", vertex) and ("e", index of the coefficient).
 
     def nodes(self, e, first):
         """The nodes along an edge from the vertex `first`."""
         a, b = self.mesh.edges[e].tolist()
-        inner = [("e", i) for i in range(self.start[e], self.start[e + 1])]
-        return [("v", a), *inner, ("v", b)] if a == first else [("v", b), *inner[::-1], ("v", a)]
+        nodes = [("v", a), *(("e", i) for i in range(self.start[e], self.start[e + 1])), ("v", b)]
+        return nodes if a == first else nodes[::-1]
 
     def value(self, node):
         if node not in self.exact:
-            self.exact[node] = [Q(x) for x in (self.vertices if node[0] == "v" else self.edges)[node[1]].tolist()]
+            self.exact[node] = [Q(x) for x in self.candidates[node[0]][node[1]].tolist()]
         return self.exact[node]
 
     def _change(self, node, to, why):
         by = max(abs(x - y) for x, y in zip(to, self.value(node)))
         if by > ROUNDING * max(self.scale, float(max(abs(x) for x in to))):
             raise Refused(f"the displacement {why}: a coefficient at {self._place(node)} would have to change by {float(by):.3e}")
-        self.changed = max(self.changed, by)
         self.exact[node] = to
 
     def _place(self, node):
-        e = None if node[0] == "v" else int(np.searchsorted(self.start, node[1], "right") - 1)
-        return f"vertex {node[1]}" if e is None else f"edge {e}"
+        return f"vertex {node[1]}" if node[0] == "v" else f"edge {np.searchsorted(self.start, node[1], 'right') - 1}"
 
     def _supports(self):
         mesh, held = self.mesh, {}
         for e, condition in enumerate(mesh.conditions):
-            if not condition or condition.kind not in ("clamped", "roller"):
+            if mesh.kinds[e] not in ("clamped", "roller"):
                 continue
             nodes = self.nodes(e, mesh.edges[e, 0])
             for j, node in enumerate(nodes):
@@ -75,173 +80,133 @@ class Displacement:
                     u = [x + (y - x) * Q(j, len(nodes) - 1) for x, y in zip(a, b)]
                     lines = [([Q(1), Q(0)], u[0]), ([Q(0), Q(1)], u[1])]
                 else:
-                    n = mesh.directions[e]
-                    low, high = root(n[0] ** 2 + n[1] ** 2)
+                    low, high = root(dot(mesh.directions[e], mesh.directions[e]))
                     if low != high and condition.data:
                         mesh.premises.append("a displacement prescribed along a sloped direction is taken to 96 decimal places")
-                    lines = [(n, condition.data * low)]
-                for line in lines:
-                    self._hold(held.setdefault(node, []), line, node)
+                    lines = [(mesh.directions[e], condition.data * low)]
+                held.setdefault(node, []).extend(lines)
         for node, lines in held.items():
-            u = self.value(node)
-            if len(lines) == 1:
-                (n, w), = lines
-                off = (n[0] * u[0] + n[1] * u[1] - w) / (n[0] ** 2 + n[1] ** 2)
-                self._change(node, [x - off * y for x, y in zip(u, n)], "misses a support")
-                self.free[node] = [-n[1], n[0]]
+            # Lines n.u = w; a second one that is not parallel to the first fixes the node.
+            (n, w), u = lines[0], self.value(node)
+            other = next(((m, v) for m, v in lines if n[0] * m[1] != n[1] * m[0]), None)
+            if other is None:
+                off, self.free[node] = (dot(n, u) - w) / dot(n, n), [-n[1], n[0]]
+                to = [x - off * y for x, y in zip(u, n)]
             else:
-                (m, v), (n, w) = lines
-                det = m[0] * n[1] - m[1] * n[0]
-                self._change(node, [(v * n[1] - w * m[1]) / det, (m[0] * w - n[0] * v) / det], "misses a support")
-                self.free[node] = None
-
-    def _hold(self, lines, line, node):
-        n, w = line
-        for m, v in lines:
-            if m[0] * n[1] == m[1] * n[0]:
-                k = 0 if m[0] else 1
-                if abs(v * n[k] - w * m[k]) > Q(1, 1 << 200) * abs(m[k]):
-                    raise Refused(f"two supports that meet at {self._place(node)} prescribe different displacements")
-                return
-        if len(lines) == 2:
-            (m, v), (l, u) = lines
-            det = m[0] * l[1] - m[1] * l[0]
-            x = [(v * l[1] - u * m[1]) / det, (m[0] * u - l[0] * v) / det]
-            off = n[0] * x[0] + n[1] * x[1] - w
-            if off:
+                (m, v), self.free[node] = other, None
+                det = n[0] * m[1] - n[1] * m[0]
+                to = [(w * m[1] - v * n[1]) / det, (n[0] * v - m[0] * w) / det]
+            # Of parallel lines, lengths of which are taken to so many places, and of others exactly.
+            off = max(abs(dot(m, to) - v) for m, v in lines)
+            if off > max(abs(v) for _, v in lines) / GRAIN:
                 raise Refused(f"the supports that meet at {self._place(node)} prescribe displacements that differ by {float(off):.3e}")
-            return
-        lines.append(line)
-
-    # Contacts.
+            self._change(node, to, "misses a support")
 
     def _contacts(self):
         """Moves coefficients until no contact is penetrated."""
         pairs = []
         for pair in self.mesh.pairs:
-            sides = [self.nodes(e, ends[0]) if e >= 0 else None for e, ends in zip(pair.edges, (pair.first, pair.second))]
-            degree = max(len(s) - 1 for s in sides if s)
-            bound = reference_elevate(self._gap_times_length(pair), max(degree + pair.turns(), len(pair.gap) - 1))
-            pairs.append((pair, sides, degree, bound))
+            sides = [self.nodes(e, ends[0]) if e >= 0 else [] for e, ends in zip(pair.edges, (pair.first, pair.second))]
+            degree = max(map(len, sides)) - 1
+            gap = [min(g * length for length in pair.length) for g in pair.gap]
+            pairs.append((pair, sides, degree, elevated(gap, max(degree + pair.turns(), len(gap) - 1))))
         for _ in range(SWEEPS):
-            moved = False
-            for pair, sides, degree, bound in pairs:
-                moved = self._separate(pair, sides, degree, bound) or moved
-            if not moved:
+            if not any([self._separate(*pair) for pair in pairs]):
                 return
         raise Refused("a contact is penetrated, and no small change of the displacement opens it")
 
-    @staticmethod
-    def _gap_times_length(pair):
-        return [min(g * length for length in pair.length) for g in pair.gap]
-
-    def _jump(self, pair, sides, degree):
-        """Bernstein coefficients of (v' - v'').n times the length of the pair."""
-        total = [[Q(0)] * 2 for _ in range(degree + 1)]
+    def _separate(self, pair, sides, degree, most):
+        """Pushes what penetrates apart; whether anything did."""
+        jump = [[Q(0)] * 2] * (degree + 1)
         for side, sign in zip(sides, (1, -1)):
             if side:
-                u = [self.value(node) for node in side]
-                raised = u if len(u) == degree + 1 else [[sum(w * x[c] for w, x in zip(row, u)) for c in range(2)] for row in reference.elevation(len(u) - 1, degree)]
-                total = [[t + sign * x for t, x in zip(one, two)] for one, two in zip(total, raised)]
-        dot = lambda a, b: a[0] * b[0] + a[1] * b[1]
-        m, n = pair.ends
-        if not pair.turns():
-            return [dot(x, m) for x in total]
-        k = degree + 1
-        return [((k - j) * (dot(total[j], m) if j < k else 0) + j * (dot(total[j - 1], n) if j else 0)) / Q(k) for j in range(k + 1)]
-
-    def _separate(self, pair, sides, degree, bound):
-        jump = reference_elevate(self._jump(pair, sides, degree), len(bound) - 1)
-        moved = False
-        for j, (x, most) in enumerate(zip(jump, bound)):
-            if x <= most:
-                continue
-            at, moved = Q(j, len(bound) - 1), True
-            n = [a + (b - a) * at for a, b in zip(*pair.ends)]
-            done = False
+                raised = zip(*(elevated([self.value(node)[c] for node in side], degree) for c in range(2)))
+                jump = [[j + sign * x for j, x in zip(one, two)] for one, two in zip(jump, raised)]
+        (m, n), k = pair.ends, degree + 1
+        if pair.turns():
+            along = [((k - j) * (dot(jump[j], m) if j < k else 0) + j * (dot(jump[j - 1], n) if j else 0)) / Q(k) for j in range(k + 1)]
+        else:
+            along = [dot(x, m) for x in jump]
+        deep = [(j, x - y) for j, (x, y) in enumerate(zip(elevated(along, len(most) - 1), most)) if x > y]
+        for j, by in deep:
+            towards = [a + (b - a) * Q(j, len(most) - 1) for a, b in zip(m, n)]
+            # Of a side of this degree one coefficient, else all that may take part; the second side where the first cannot move.
             for side, sign in zip(sides, (-1, 1)):
-                # Of sides of one degree one coefficient, else all that may take part.
-                if not side or done:
-                    continue
-                same = len(side) == len(bound)
-                for node in [side[j]] if same else side:
-                    done = self._push(node, n, sign * (x - most)) or done
-            if not done:
-                raise Refused(f"the supports force a penetration of {float(x - most):.3e} at {self._place((sides[0] or sides[1])[min(j, degree)])}")
-        return moved
+                own = [side[j]] if len(side) == len(most) else side
+                if any([self._push(node, towards, sign * by) for node in own]):
+                    break
+            else:
+                raise Refused(f"the supports force a penetration of {float(by):.3e} at {self._place((sides[0] + sides[1])[min(j, degree)])}")
+        return bool(deep)
 
     def _push(self, node, n, by):
         """Moves a coefficient by about `by` along n, within what its support leaves free."""
-        direction = self.free.get(node, n)
-        if direction is None:
-            return False
-        along = direction[0] * n[0] + direction[1] * n[1]
-        size = direction[0] ** 2 + direction[1] ** 2
-        if along**2 * 10**8 < size * (n[0] ** 2 + n[1] ** 2):
+        d = self.free.get(node, n)
+        if d is None or dot(d, n) ** 2 * 10**8 < dot(d, d) * dot(n, n):
             return False
         # Rounded away from zero: a multiple of the direction, so that the support holds on.
-        step = by / along
-        step = Q(-((-abs(step) * GRAIN).__floor__()) + 1, GRAIN) * (1 if step > 0 else -1)
-        self._change(node, [x + step * d for x, d in zip(self.value(node), direction)], "penetrates a contact")
+        step = by / dot(d, n)
+        step = Q((abs(step) * GRAIN).__ceil__() + 1, GRAIN) * (1 if step > 0 else -1)
+        self._change(node, [x + step * y for x, y in zip(self.value(node), d)], "penetrates a contact")
         return True
 
     # Energy.
 
     def bound(self, extra):
         """A number that the energy of the displacement is not above, thickness included; loads may change by the force `extra`."""
-        mesh = self.mesh
-        vertices, edges = (Ball(values).writable() for values in (self.vertices, self.edges))
-        for (kind, i), value in self.exact.items():
-            (vertices if kind == "v" else edges).put(i, of_fractions(value))
-        total = Q(0)
+        mesh, total = self.mesh, 2 * Q(extra) * Q(self.scale)
+        values = {kind: Ball(x).writable() for kind, x in self.candidates.items()}
+        for kind in values:
+            changed = [i for of, i in self.exact if of == kind]
+            if changed:
+                values[kind].put(changed, of_fractions([x for i in changed for x in self.exact[kind, i]], (len(changed), 2)))
         stiffness = mesh.by_body(mesh.scene.stiffness)
-        for k in np.unique(self.degrees):
-            for which in np.array_split(np.flatnonzero(self.degrees == k), max(1, (self.degrees == k).sum() * k * k // 20000)):
-                nodes = self._gather(which, int(k), vertices, edges)
-                total += Q(float(self._energies(which, int(k), nodes, [m[which] for m in stiffness]).sum()[1]))
-        for e, condition in enumerate(mesh.conditions):
-            if condition and condition.kind == "load":
-                total -= Q(float(self._work(e, condition, vertices, edges).sum()[0]))
-        return (total + 2 * Q(extra) * Q(self.scale)) * mesh.scene.thickness
+        for k in np.unique(self.degrees).tolist():
+            along, all_ = self._along(k, values), np.flatnonzero(self.degrees == k)
+            for which in np.array_split(all_, max(1, len(all_) * k * k // 20000)):
+                total += Q(float(self._energies(which, k, self._gather(which, k, along), [m[which] for m in stiffness]).sum()[1]))
+        for e in np.flatnonzero(mesh.kinds == "load").tolist():
+            nodes = self.nodes(e, mesh.edges[e, 0])
+            k = len(nodes) - 1
+            for j, (kind, i) in enumerate(nodes):
+                # int B_j = 1 / (k + 1), int (2 s - 1) B_j = (2 j - k) / ((k + 1) (k + 2))
+                weights = [a / (k + 1) + b * Q(2 * j - k, (k + 1) * (k + 2)) for a, b in zip(*load(mesh, e))]
+                total -= Q(float((of_fractions(weights) * values[kind][i]).sum()[0])) if any(weights) else 0
+        return total * mesh.scene.thickness
 
-    def _gather(self, which, k, vertices, edges):
-        """Coefficients of triangles of degree k, those of the boundary first: an array (nodes, 2, triangles)."""
-        mesh, count = self.mesh, len(which)
-        out = Ball(np.zeros(((3 * k * k + 3 * k + 2) // 2, 2, count))).writable()
-        turn = lambda ball: Ball(np.moveaxis(ball.mid, 0, -1), np.moveaxis(ball.rad, 0, -1))
-        corners = mesh.triangles[which]
-        for i in range(3):
-            out.put(i, turn(vertices[corners[:, i]]))
-            e = mesh.sides[which, i]
-            for n in np.unique(self.counts[e]):
-                own = np.flatnonzero(self.counts[e] == n)
-                if k == 1:
-                    continue
-                place = self.start[e[own]][:, None] + np.arange(n)
-                inner = edges[np.where(mesh.signs[which[own], i, None] > 0, place, place[:, ::-1])] if n else None
-                ends = [vertices[corners[own, j % 3]] for j in (i + 1, i + 2)]
-                along = stack([ends[0], *(inner[:, j] for j in range(n)), ends[1]])  # (n + 2, triangles, 2)
-                if n + 1 < k:
-                    # About the first value: what all have in common costs no digits.
-                    raised = stack([b - along[0] for b in (along[j] for j in range(n + 2))]).times(constants(reference.elevation(n + 1, k)))
-                    along = stack([raised[j] + along[0] for j in range(k + 1)])
-                for j in range(1, k):
-                    out.put((3 + i * (k - 1) + j - 1, slice(None), own), along[j])  # advanced indices come first
-        inside = self.inside[self.inside_start[which][:, None] + np.arange(out.mid.shape[0] - 3 * k)]
-        out.put(slice(3 * k, None), Ball(np.moveaxis(inside, 0, -1)))
+    def _along(self, k, values):
+        """The coefficients of all edges of degree k or less, raised to k: an array (edges, k + 1, 2)."""
+        out = Ball(np.zeros((len(self.counts), k + 1, 2))).writable()
+        for n in range(k):
+            which = np.flatnonzero(self.counts == n)
+            ends = [values["v"][self.mesh.edges[which, i]] for i in range(2)]
+            own = stack([ends[0], *(values["e"][self.start[which] + j] for j in range(n)), ends[1]], 1)
+            if n + 1 < k:
+                # About the first value: what all have in common costs no digits.
+                base = own[:, :1]
+                own = (own - base).times(constants(reference.elevation(n + 1, k)), 1) + base
+            out.put(which, own)
         return out
+
+    def _gather(self, which, k, along):
+        """Coefficients of triangles of degree k, those of the boundary first: an array (nodes, 2, triangles)."""
+        mesh, parts = self.mesh, []
+        rows = lambda i, j: along[mesh.sides[which, i], np.where(mesh.signs[which, i] > 0, j, k - j)]
+        parts += [rows((i + 1) % 3, k) for i in range(3)]  # corner i ends the side opposite corner i + 1
+        parts += [rows(i, j) for i in range(3) for j in range(1, k)]
+        inside = self.inside[self.inside_start[which][:, None] + np.arange((3 * k * k - 3 * k + 2) // 2)]
+        parts += [Ball(x) for x in np.moveaxis(inside, 1, 0)]
+        return Ball(*(np.stack([getattr(part, name).T for part in parts]) for name in ("mid", "rad")))
 
     def _energies(self, which, k, nodes, stiffness):
         mesh = self.mesh
         by_xi, by_eta, norms = reference.derivatives(k)
         weight, det = constants([norms]), mesh.jacobian[which]
         (a, b), (c, d) = [[m[which] for m in row] for row in mesh.map]
-        third = constants([[Q(1, 3)]])[0, 0]
         # Vectors from the centroid to the corners, times 3; the edges are (a, c) from corner 0 to 1 and (b, d) from 0 to 2.
         arms = [(-(a + b), -(c + d)), (a + a - b, c + c - d), (b + b - a, d + d - c)]
-        base = nodes[0]
+        base, strain, moved = nodes[0], [], []
         local = nodes - base
-        strain, load_ = None, None
         for sub in range(3):
             own = local[reference.split_nodes(k)[sub]]
             xi, eta = own.times(by_xi), own.times(by_eta)
@@ -250,37 +215,11 @@ class Displacement:
             ux, uy = xi[:, 0] * qy - eta[:, 0] * py, eta[:, 0] * px - xi[:, 0] * qx
             vx, vy = xi[:, 1] * qy - eta[:, 1] * py, eta[:, 1] * px - xi[:, 1] * qx
             density = (ux + vy).square() * stiffness[0] + (ux - vy).square() * stiffness[1] + (uy + vx).square() * stiffness[2] * 0.25
-            own = density.times(weight)[0]
-            strain = own if strain is None else strain + own
+            strain.append(density.times(weight)[0])
+            moved.append(own.times(constants([[Q(1, own.mid.shape[0])] * own.mid.shape[0]]))[0])
         # 1/2 (J / 3) sum / (J / 3)^2 / 9
-        energy = strain * det.inverse() * constants([[Q(1, 6)]])[0, 0]
-        for comp in range(2):
-            f = np.array([float(mesh.scene.bodies[n][2][comp]) for n in mesh.body_names])[mesh.bodies[which]]
-            if not f.any():
-                continue
-            count = (k + 1) * (k + 2) // 2
-            for sub in range(3):
-                mean = local[reference.split_nodes(k)[sub]][:, comp].times(constants([[Q(1, count)] * count]))[0]
-                load_ = mean if load_ is None else load_ + mean
-            energy = energy - (load_ * third + base[comp]) * det * Ball(f, abs(f) * EPS) * 0.5
-            load_ = None
+        energy = (strain[0] + strain[1] + strain[2]) * det.inverse() * constants([[Q(1, 6)]])[0, 0]
+        mean = (moved[0] + moved[1] + moved[2]) * constants([[Q(1, 3)]])[0, 0] + base
+        for c, f in enumerate(mesh.by_body(lambda name: mesh.scene.bodies[name][2])):
+            energy = energy - mean[c] * det * f[which] * 0.5
         return energy
-
-    def _work(self, e, condition, vertices, edges):
-        tau = load(self.mesh, e, condition)
-        if not any(x for t in tau for x in t):
-            return Ball([0.0])
-        nodes = self.nodes(e, self.mesh.edges[e, 0])
-        k, total = len(nodes) - 1, Ball([0.0])
-        for j, (kind, i) in enumerate(nodes):
-            u = (vertices if kind == "v" else edges)[i]
-            for c in range(2):
-                # int B_j = 1 / (k + 1), int (2 s - 1) B_j = (2 j - k) / ((k + 1) (k + 2))
-                w = tau[0][c] / (k + 1) + (tau[1][c] * Q(2 * j - k, (k + 1) * (k + 2)) if len(tau) > 1 else 0)
-                total = total + of_fractions([w]) * u[c]
-        return total
-
-
-def reference_elevate(values, degree):
-    low = len(values) - 1
-    return values if low == degree else [sum(w * x for w, x in zip(row, values)) for row in reference.elevation(low, degree)]

@@ -48,6 +48,7 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         components: Vec::new(),
         failure: None,
         advice: None,
+        other_end: None,
     };
     let dossier = assemble(findings, &fields);
     let text = report::json(&dossier.report).expect("every report can be written");

@@ -337,6 +337,20 @@ fn counted_work(
     work
 }
 
+/// The work on `v` of tractions along edges of any kind, by their Bernstein coefficients, per unit thickness.
+pub fn work_on_edges(problem: &Problem, v: &Displacement, tractions: &[(usize, Vec<[f64; 2]>)]) -> f64 {
+    let mut work = Sum::default();
+    for (e, coefficients) in tractions {
+        let (length, _) = problem.mesh.edge_frame(*e);
+        let u = side_coefficients(problem, v, *e);
+        for c in 0..2 {
+            let [t, u]: [Vec<f64>; 2] = [coefficients.iter().map(|t| t[c]).collect(), u.iter().map(|u| u[c]).collect()];
+            work.add(length * side::integral(&t, &u));
+        }
+    }
+    work.value()
+}
+
 /// The work of a body force on the displacement that `v` has as its triangle `t`, in the terms of a sum.
 pub fn work_inside(force: &BodyForce, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 6] {
     let forces = [0, 1, 2].map(|sub| force.on(sub_corners(corners, sub)).of_area(sub_area(corners)));

@@ -20,7 +20,9 @@ pub mod upper;
 pub use at_rest::without_stress;
 pub use bracket::{Bracket, UpperBound, work_of_remainders};
 pub use cells::{Cell, Enclosed, strain_energy, strain_energy_by};
-pub use energy::{Complementary, Potential, complementary, excess_work, potential, support_work, work, work_of};
+pub use energy::{
+    Complementary, Potential, complementary, excess_work, potential, support_work, work, work_of, work_on_edges,
+};
 pub use gap::{LocalGap, local_gap};
 pub use jump::{jumps, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};

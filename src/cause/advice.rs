@@ -42,7 +42,11 @@ impl Kind {
             "contact" => Kind::Contact,
             "support" => Kind::Support,
             "load" | "loads" => Kind::Load,
-            "body" if name.ends_with("/body_force") => Kind::Load,
+            "body" | "bodies"
+                if ["/body_force", "/temperature", "/initial_stress"].iter().any(|end| name.ends_with(end)) =>
+            {
+                Kind::Load
+            }
             "body" | "bodies" | "stiffness" | "kinematics" => Kind::Material,
             "thickness" => Kind::Thickness,
             "integration" => Kind::Element,

@@ -91,9 +91,9 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
-    let session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
+    let mut session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
     args.proof.refuse_early(&session)?;
-    let given = args.values.all()?;
+    let given = args.values.all(&mut session.scene)?;
     refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
     let has_field = !args.displacement.is_empty();
     if has_field {

@@ -105,6 +105,7 @@ impl Session {
                 is_claimed,
                 failure,
                 advice: run.advice,
+                other_end: run.other_end.as_ref(),
             },
             &fields,
         );

@@ -21,6 +21,7 @@ pub mod mesh;
 mod methods;
 pub mod options;
 pub mod part;
+mod points;
 pub mod progress;
 mod proof;
 pub mod revolved;

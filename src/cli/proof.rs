@@ -1,13 +1,43 @@
 //! `--proof`: what lets a reader verify the bracket travels with the report.
 
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
 use super::options::ProofOptions;
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::Comparison;
 use crate::problem::Note;
-use crate::proof::{Fields, proof, unknown};
-use crate::report::Dossier;
+use crate::process::{Outcome, Scratch, python, supervise};
+use crate::proof::{Fields, NAME, proof, unknown};
+use crate::report::{Dossier, Guarantee};
 use crate::study::Certified;
+
+/// The program that verifies proofs.
+const CHECKER: &str = "hypercircle-check";
+/// How long it may take.
+const LIMIT: Duration = Duration::from_secs(600);
+
+/// What the checker says of a proof: its name and version, or what failed; `None` where it is not installed.
+fn checked(proof: &[u8], begins: impl FnOnce()) -> Option<Result<String, String>> {
+    let program = python::find(Path::new(CHECKER))?;
+    begins();
+    let run = || -> std::io::Result<Result<String, String>> {
+        let scratch = Scratch::new()?;
+        let file = scratch.path().join(NAME);
+        std::fs::write(&file, proof)?;
+        let ended = supervise(Command::new(program).arg(&file).env("TMPDIR", scratch.path()), LIMIT)?;
+        let text = ended.text();
+        let after = |start: &str| text.lines().find_map(|line| line.trim().strip_prefix(start).map(str::to_string));
+        Ok(match ended.outcome {
+            Outcome::Exit(status) if status.success() => Ok(after("by ").unwrap_or_else(|| CHECKER.to_string())),
+            Outcome::TimedOut => Err("it took too long".to_string()),
+            _ => Err(after("not proved: ").unwrap_or(text).trim_end_matches('.').to_string()),
+        })
+    };
+    Some(run().unwrap_or_else(|error| Err(error.to_string())))
+}
 
 impl ProofOptions {
     /// Refuses a scene that the checker could not verify, before it is solved.
@@ -49,9 +79,30 @@ impl Session {
             upper_from: from,
         };
         match proof(&fields) {
-            Ok(bytes) => dossier.proof = Some(bytes),
+            Ok(bytes) => {
+                self.have_checked(dossier, &bytes);
+                dossier.proof = Some(bytes);
+            }
             Err(error) => self.without_proof(dossier, &error.to_string()),
         }
+    }
+
+    /// Runs the checker where it is installed, and tells in the report what it found.
+    fn have_checked(&self, dossier: &mut Dossier<'_>, proof: &[u8]) {
+        let Some(energy) = dossier.report.energy.as_mut() else { return };
+        let guarantee = energy.guarantee.clone();
+        energy.guarantee = match checked(proof, || self.progress.phase("verifying the proof")) {
+            Some(Ok(checker)) => guarantee.proved_by(&checker),
+            Some(Err(why)) => {
+                self.progress.remark(&format!("{CHECKER} did not verify the proof: {why}"));
+                Guarantee { words: format!("{}, but not proved: {why}", guarantee.words), ..guarantee }
+            }
+            None => {
+                let words =
+                    format!("{}; {CHECKER}, which is not installed here, can verify proof.npz", guarantee.words);
+                Guarantee { words, ..guarantee }
+            }
+        };
     }
 
     fn without_proof(&self, dossier: &mut Dossier<'_>, why: &str) {

@@ -18,7 +18,7 @@ use crate::problem::{Problem, ProblemError};
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
-use crate::study::{self, Adapted, Admission, Answer, Certified, Goal, Sharpened, StudyError, outlook};
+use crate::study::{self, Adapted, Admission, Answer, Certified, Goal, OtherEnd, Sharpened, StudyError, outlook};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -49,6 +49,8 @@ pub struct DualRun {
     pub stopped: Option<String>,
     /// What to do about that.
     pub advice: Option<&'static str>,
+    /// The scene of the other ends of ranges of the data, solved.
+    pub other_end: Option<OtherEnd>,
 }
 
 impl Session {
@@ -101,6 +103,7 @@ impl Session {
     /// Bad input, a solver that failed, or no equilibrium.
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: Option<&Path>) -> Result<DualRun, CliError> {
         refuse_unknown(&self.scene, solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
+        self.refuse_ranges()?;
         self.progress.phase("reading the mesh");
         // Quantities and finer meshes begin with what an upper bound in this process leaves.
         let alone = solve.is_adaptive() || !self.scene.quantities.is_empty();
@@ -125,6 +128,7 @@ impl Session {
                     history: Vec::new(),
                     stopped: None,
                     advice: None,
+                    other_end: None,
                 })
             }
             true => {
@@ -147,13 +151,38 @@ impl Session {
                     self.progress.phase(text);
                 };
                 study::adapt(problem, method.as_ref(), &options, &goal, told).map(
-                    |Adapted { certified, history, stopped, advice }| DualRun { certified, history, stopped, advice },
+                    |Adapted { certified, history, stopped, advice }| DualRun {
+                        certified,
+                        history,
+                        stopped,
+                        advice,
+                        other_end: None,
+                    },
                 )
             }
         };
         let mut run = run.map_err(|error| self.refuse(error, folder))?;
         run.certified.dual.seconds.read = read;
+        if let Some(scene) = self.scene.of_highest_energy() {
+            self.progress.phase("solving for the other ends of the ranges");
+            let progress = Progress::new(self.quiet);
+            let other = Session { scene, progress, run: None, ..*self };
+            // Quantities are bounded for the scene itself.
+            run.other_end = Some(OtherEnd::of(&other.solve(solve, limits, folder)?.certified));
+        }
         Ok(run)
+    }
+
+    /// Refuses a scene with ranges of data where one field is held against one scene.
+    fn refuse_ranges(&self) -> Result<(), CliError> {
+        let Some(range) = self.scene.ranges.first().filter(|_| self.command == "certify") else { return Ok(()) };
+        let message = format!(
+            "{}: {} is a range, and a displacement field belongs to one scene",
+            self.scene.path.display(),
+            self.scene.name_of(range)
+        );
+        let remedy = "write the number that the field was computed with";
+        Err(CliError::stopped(Exit::BadInput, message, remedy))
     }
 
     /// The intervals of the quantities of the scene, from a problem that was solved.

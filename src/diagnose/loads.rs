@@ -5,7 +5,7 @@ use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
 use crate::compare::cells;
-use crate::load::BodyForce;
+use crate::load::{Affine, BodyForce};
 use crate::problem::Condition;
 
 /// Coefficients of components that are smaller than this are none.
@@ -59,6 +59,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         let columns = parts.iter().map(|[from, to]| part(*from, *to)).collect();
         terms.push(3, columns, move |x| components(&on, given, &parts, x));
     }
+    let origin = scene.origin;
     for (b, body) in scene.bodies.iter().enumerate() {
         let [fx, fy] = [[1.0, 0.0], [0.0, 1.0]].map(|f| of_body(space, b, &f.into()));
         let force = &body.body_force;
@@ -72,8 +73,25 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
                 false => all(&name, &what, 1.0 + x[0]),
             });
         }
-        // Of a force that is not constant, one that is missing: what is added is told.
         if !force.is_constant() {
+            parts(space, b, terms);
+            let rotation = force.rotation();
+            terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
+                let sentence = match rotation.filter(|rotation| rotation.stiffness() != 0.0) {
+                    Some(rotation) => {
+                        let about = [0, 1].map(|c| origin[c] + rotation.about[c] - x[c] / rotation.stiffness());
+                        format!(
+                            "{what} lacks or adds the constant ({}, {}), as if it turned about ({}, {})",
+                            number(x[0]),
+                            number(x[1]),
+                            number(about[0]),
+                            number(about[1])
+                        )
+                    }
+                    None => format!("{what} lacks or adds the constant ({}, {})", number(x[0]), number(x[1])),
+                };
+                vec![Finding::new(name.clone(), Some(x[0].hypot(x[1])), Some(0.0), sentence)]
+            });
             continue;
         }
         let given = force.given().value;
@@ -82,6 +100,29 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             let vector = |v: [f64; 2]| format!("({}, {})", number(v[0]), number(v[1]));
             let sentence = format!("{what} is {} in place of {}", vector(found), vector(wanted));
             vec![Finding::new(name.clone(), Some(found[0].hypot(found[1])), Some(wanted[0].hypot(wanted[1])), sentence)]
+        });
+    }
+}
+
+/// The parts of a force that is not the same everywhere, each with a factor of its own, where there are several.
+fn parts<'a>(space: &'a Space<'a>, b: usize, terms: &mut Terms<'a>) {
+    let body = &space.problem().scene.bodies[b];
+    let Affine { value, gradient } = body.body_force.given();
+    let rotation = body.body_force.rotation().map(|rotation| BodyForce::NONE.with_rotation(rotation));
+    let all = [
+        ("value", "the constant part of the body force of", BodyForce::constant(value)),
+        ("gradient", "the gradient of the body force of", BodyForce::affine(Affine { value: [0.0; 2], gradient })),
+        ("rotation", "the rotation of", rotation.unwrap_or(BodyForce::NONE)),
+    ];
+    let present: Vec<_> = all.into_iter().filter(|(_, _, force)| !force.is_none()).collect();
+    if present.len() < 2 {
+        return;
+    }
+    for (key, what, force) in present {
+        let column = space.column(of_body(space, b, &force).iter().map(|f| f.map(|x| -x)).collect());
+        let (name, what) = (format!("body/{}/{key}/body_force", body.name), format!("{what} {}", body.name));
+        terms.push(2, vec![column], move |x| {
+            vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))]
         });
     }
 }

@@ -53,6 +53,8 @@ pub(super) struct Start {
     pub c: Vec<f64>,
     /// Jumps of closed contact.
     pub held: Vec<f64>,
+    /// Nodal stresses of fields without traction, on triangles that have some.
+    pub unloaded: Vec<(usize, Vec<[f64; 3]>)>,
 }
 
 /// Stress and moments.
@@ -232,7 +234,10 @@ impl<'a> Loaded<'a> {
     fn stressed(&self, Answered { now, fields }: &Answered, left: Left) -> Response {
         let Loaded { problem, system, .. } = self;
         let (stress, moments) = fields.get_or_init(|| {
-            let stress = system.modes.stresses(problem, &now.s);
+            let mut stress = system.modes.stresses(problem, &now.s);
+            for (t, own) in &self.start.unloaded {
+                stress.block_mut(*t).iter_mut().zip(own).for_each(|(s, o)| (0..3).for_each(|c| s[c] += o[c]));
+            }
             (Arc::new(stress), Arc::new(system.unknowns.moments_of_change(&now.x)))
         });
         Response {

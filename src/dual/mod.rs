@@ -51,7 +51,7 @@ pub use loaded::{Bounds, Loaded};
 pub use method::{DualError, DualMethod, Found, Options, Progress};
 pub use paper::Uzawa;
 pub use petsc::{Divided, LinearSolver, Petsc};
-pub use response::{Factorised, Load, Response, Responses};
+pub use response::{Factorised, Load, Response, Responses, ShapedStrain};
 pub use solver::Solver;
 pub use unknowns::{contact_coefficients, edge_degrees};
 

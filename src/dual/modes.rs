@@ -123,6 +123,17 @@ impl ModeTable {
         field
     }
 
+    /// Nodal stresses of every mode of triangle `t`.
+    pub fn mode_stresses(&self, problem: &Problem, t: usize) -> Vec<Vec<[f64; 3]>> {
+        let corners = problem.mesh.corners(self.classes[self.class[t] as usize].triangle);
+        self.elements.of(t).mode_stresses(corners, &self.of(t))
+    }
+
+    /// Nodal stresses of an orthonormal basis of the fields without traction on triangle `t`.
+    pub fn unloaded(&self, problem: &Problem, t: usize) -> Vec<Vec<[f64; 3]>> {
+        self.elements.of(t).unloaded(problem.mesh.corners(t), &self.materials[problem.mesh.body[t]])
+    }
+
     /// Material of each body.
     pub fn materials(&self) -> &[Material] {
         &self.materials

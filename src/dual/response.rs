@@ -7,14 +7,16 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::hybrid::{Motion, residual};
 use super::loaded::{Loaded, Start};
 use super::modes::ModeTable;
 use super::reduced::{Reduced, Schur};
 use super::rigid::unsupported;
-use super::system::{Structured, System, jump_moments, load_of_tractions};
+use super::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
 use super::{DualError, Options};
-use crate::element::{SideValues, StressField, side};
+use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, side, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 
@@ -68,9 +70,23 @@ pub struct Load {
     /// Initial strains χ (xx, yy, xy), constant on the triangles that have one: the stress wanted is σ̂ + cχ with σ̂ in
     /// equilibrium with the rest of the load.
     pub strains: Vec<(usize, [f64; 3])>,
+    /// Initial strains of any shape, beside the constant ones.
+    pub shaped: Vec<ShapedStrain>,
+    /// Tractions along edges of any kind, interior ones too, by their Bernstein coefficients in the degree of the edge.
+    pub edges: Vec<(usize, Vec<[f64; 2]>)>,
     /// The Bernstein coefficients of φ on every contact pair, one interface after the other, empty where it vanishes: closed
     /// contact is held at the jump −φ.
     pub weights: Vec<Vec<f64>>,
+}
+
+/// An initial strain that is a polynomial on each subtriangle of one triangle: the projection of one of any shape, in a degree no
+/// lower than those of all fields that it is multiplied with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapedStrain {
+    /// The triangle.
+    pub triangle: usize,
+    /// (xx, yy, xy) as a field on this triangle alone.
+    pub strain: StressField,
 }
 
 /// Answers loads.
@@ -113,15 +129,17 @@ impl Responses<'_> {
             let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
             (Cow::Owned(other), modes)
         };
-        let external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
+        let mut external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
+        add_edge_loads(&system.unknowns, &load.edges, &mut external);
         let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
-        let start = system.strained(&problem, &load.strains);
+        let mut start = system.strained(&problem, &load.strains);
+        let unloaded = system.shaped(&problem, &load.shaped, &mut start);
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
         let (y, c) = reduced.condense(&r);
         let weights = load.weights.iter().map(Vec::as_slice);
         let held = jump_moments(&problem, &system.unknowns, weights).into_iter().map(|m| -m).collect();
-        Loaded::new(self, problem, system, Start { s: start, y, c, held })
+        Loaded::new(self, problem, system, Start { s: start, y, c, held, unloaded })
     }
 }
 
@@ -149,4 +167,52 @@ impl System {
         }
         out
     }
+
+    /// Adds the mode parameters −∫ N_k : χ of initial strains of any shape to `s`; fields without traction balance nothing, and their
+    /// part in the stress of least energy, −Σ (∫ F_j : χ) F_j, is known at once: their nodal stresses, triangle by triangle.
+    fn shaped(&self, problem: &Problem, strains: &[ShapedStrain], s: &mut [f64]) -> Vec<(usize, Vec<[f64; 3]>)> {
+        let parts: Vec<(Vec<f64>, Vec<[f64; 3]>)> = strains
+            .par_iter()
+            .with_min_len(16)
+            .map(|ShapedStrain { triangle: t, strain }| {
+                let p = self.modes.degree(*t);
+                let area = problem.mesh.area(*t) / 3.0;
+                let works = |fields: &[Vec<[f64; 3]>]| works(fields, p, strain, area);
+                let of_modes = works(&self.modes.mode_stresses(problem, *t));
+                let fields = self.modes.unloaded(problem, *t);
+                let mut own = vec![[0.0; 3]; if fields.is_empty() { 0 } else { 3 * lattice_len(p) }];
+                for (field, work) in fields.iter().zip(works(&fields)) {
+                    own.iter_mut().zip(field).for_each(|(o, f)| (0..3).for_each(|c| o[c] -= work * f[c]));
+                }
+                (of_modes, own)
+            })
+            .collect();
+        let mut unloaded = Vec::new();
+        for (ShapedStrain { triangle: t, .. }, (of_modes, own)) in strains.iter().zip(parts) {
+            s[self.modes.parameters_of(*t)].iter_mut().zip(of_modes).for_each(|(s, work)| *s -= work);
+            if !own.is_empty() {
+                unloaded.push((*t, own));
+            }
+        }
+        unloaded
+    }
+}
+
+/// ∫ N : χ for stresses N of degree `p` by their nodal values, on a triangle whose three subtriangles have the area `area`.
+fn works(fields: &[Vec<[f64; 3]>], p: usize, strain: &StressField, area: f64) -> Vec<f64> {
+    let r = strain.degree(0);
+    let half = p.max(r);
+    let (of_stress, of_strain) = (Samples::of_stress(p, half), Samples::of_stress(r, half));
+    let nodes = lattice_len(p);
+    let mut out = vec![0.0; fields.len()];
+    for sub in 0..3 {
+        for (q, (_, weight)) in of_stress.points.iter().enumerate() {
+            let chi = strain.sample(0, sub, of_strain, q);
+            for (out, field) in out.iter_mut().zip(fields) {
+                let stress = weighed(&field[sub * nodes..], of_stress.basis(q).iter().copied());
+                *out += weight * area * contraction(stress, chi);
+            }
+        }
+    }
+    out
 }

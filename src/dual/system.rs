@@ -230,6 +230,19 @@ pub fn applied(problem: &Problem, e: usize, ends: [[f64; 2]; 2], degree: usize) 
     along(0).into_iter().zip(along(1)).map(|(x, y)| [x, y]).collect()
 }
 
+/// Adds tractions along any edges, by their Bernstein coefficients in the degree of the edge, whatever the edge is between.
+pub fn add_edge_loads(unknowns: &Unknowns, loads: &[(usize, Vec<[f64; 2]>)], load: &mut [f64]) {
+    for (e, coefficients) in loads {
+        for (k, [x, y]) in coefficients.iter().enumerate() {
+            for component in unknowns.components(*e, k) {
+                for &(dof, c) in component.terms() {
+                    load[dof] += c * (component.direction[0] * x + component.direction[1] * y);
+                }
+            }
+        }
+    }
+}
+
 /// y = A x for a symmetric matrix given by its lower triangle.
 pub fn symmetric_multiply(a: SparseColMatRef<'_, usize, f64>, x: &[f64]) -> Vec<f64> {
     let mut y = vec![0.0; x.len()];

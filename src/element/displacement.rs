@@ -119,9 +119,13 @@ impl Displacement {
         // The subtriangle opposite the corner that is farthest away.
         let sub = (0..3).fold(0, |least, i| if l[i] < l[least] { i } else { least });
         let (j, k) = ((sub + 1) % 3, (sub + 2) % 3);
-        let m = [l[j] - l[sub], l[k] - l[sub], 3.0 * l[sub]];
+        self.in_sub(t, sub, [l[j] - l[sub], l[k] - l[sub], 3.0 * l[sub]])
+    }
+
+    /// The value at the point of subtriangle `sub` of triangle `t` with barycentric coordinates `l` in it.
+    pub fn in_sub(&self, t: usize, sub: usize, l: [f64; 3]) -> [f64; 2] {
         let mut value = [0.0; 2];
-        for (u, weight) in self.sub(t, sub).zip(triangle::basis(self.degree(t), m)) {
+        for (u, weight) in self.sub(t, sub).zip(triangle::basis(self.degree(t), l)) {
             value = [value[0] + weight * u[0], value[1] + weight * u[1]];
         }
         value

@@ -99,6 +99,14 @@ impl StressField {
         }
     }
 
+    /// The functions that nodal values of one subtriangle are multiplied with, at barycentric coordinates `bary` of it.
+    pub fn shapes(degree: usize, bary: [f64; 3]) -> Vec<f64> {
+        match degree {
+            1 => bary.to_vec(),
+            _ => lattice_shape(degree, bary).collect(),
+        }
+    }
+
     /// The values of [`Self::block`] for a degree that is no lower.
     pub fn in_degree(&self, t: usize, degree: usize) -> Cow<'_, [[f64; 3]]> {
         if degree == self.degree(t) {

@@ -216,6 +216,11 @@ impl Material {
         }
     }
 
+    /// The smallest eigenvalue of c of an isotropic material: c e:e is no less than this times |e|².
+    pub fn softest(&self) -> Option<f64> {
+        self.pressure_and_shear().map(|[kappa, gamma]| self.unit() * (0.5 / kappa).min(2.0 / gamma))
+    }
+
     /// The least and the largest modulus of a strip along a direction in the plane; of an isotropic body E and E.
     pub fn young(&self) -> [f64; 2] {
         match &self.law {

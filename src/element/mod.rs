@@ -154,6 +154,11 @@ pub trait EquilibriumElement: Sync {
         Modes { layout, data: Cow::Owned(data) }
     }
 
+    /// Nodal stresses of self-equilibrated fields without any traction, orthonormal in energy: none where every field has a traction.
+    fn unloaded(&self, _corners: [[f64; 2]; 3], _material: &Material) -> Vec<Vec<[f64; 3]>> {
+        Vec::new()
+    }
+
     /// Nodal stresses of every mode.
     fn mode_stresses(&self, corners: [[f64; 2]; 3], modes: &Modes<'_>) -> Vec<Vec<[f64; 3]>> {
         let n = self.parameters();

@@ -9,7 +9,7 @@ use crate::compare::{Candidate, Reactions};
 use crate::element::Displacement;
 use crate::primal::{self, PrimalError, PrimalSeconds};
 use crate::problem::Problem;
-use crate::quantity::{Functional, value_of};
+use crate::quantity::Form;
 use crate::scene::Quantity;
 use crate::statics;
 use crate::study::{candidates, pins};
@@ -120,8 +120,8 @@ fn failure(error: PrimalError) -> End {
 fn asked(problem: &Problem, field: &Displacement, names: &[String]) -> Vec<Asked> {
     let asked = problem.scene.quantities.iter().filter(|quantity| names.contains(&quantity.name));
     let known = |quantity: &Quantity| {
-        let functional = Functional::new(problem, quantity).ok();
-        let value = functional.and_then(|functional| value_of(problem, &functional, field));
+        let form = Form::new(problem, quantity).ok();
+        let value = form.and_then(|form| form.value_of(problem, field));
         Asked { name: quantity.name.clone(), value, lower: None, upper: None }
     };
     asked.map(known).collect()

@@ -8,6 +8,8 @@ use std::collections::HashMap;
 use super::along::match_along;
 use super::bonded::bond;
 use super::boxes::{BoxTree, around};
+use super::bulge::Curvatures;
+use super::concentric::{Concentric, match_around};
 use super::error::at;
 use super::nearby::{CLOSE, ROUND_OFF, distance_to, extent, side_vertices, snap};
 use super::polyline::{chain, inner_points, key};
@@ -48,9 +50,10 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
     }
     snap(&mut mesh, scene, &mut record.notes);
     for joint in scene.joints() {
-        mesh = match joint.direction {
-            None => match_vertices(mesh, scene, joint, &mut record)?,
-            Some(direction) => match_along(mesh, scene, joint, direction, &mut record)?,
+        mesh = match (joint.direction, concentric(&mesh, joint)) {
+            (Some(direction), _) => match_along(mesh, scene, joint, direction, &mut record)?,
+            (None, Some(circles)) => match_around(mesh, scene, joint, circles, &mut record)?,
+            (None, None) => match_vertices(mesh, scene, joint, &mut record)?,
         };
     }
     for index in others {
@@ -62,7 +65,13 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
     Ok(Glued { mesh, notes, uncut: changed.then(|| Uncut::new(before, parent, vertex)) })
 }
 
-/// Puts the vertices of each side into the edges of the other.
+/// The circles of sides with a distance between them, along whose rays they are matched.
+fn concentric(mesh: &Triangulation, joint: Joint) -> Option<Concentric> {
+    let [first, second] = joint.sides;
+    joint.turns.then(|| Concentric::of(mesh, [first, second]))?
+}
+
+/// Puts the vertices of each side into the edges of the other, or beside them where the curve passes that they stand for.
 fn match_vertices(
     mesh: Triangulation,
     scene: &Scene,
@@ -72,12 +81,14 @@ fn match_vertices(
     let names = joint.sides;
     let mut inserted = Vec::new();
     let mut counts = [0, 0];
-    let mut moved = 0.0_f64;
+    let (mut moved, mut beside) = (0.0_f64, 0.0_f64);
+    let curvatures = names.each_ref().map(|name| Curvatures::of(&mesh, name));
     for (from, into) in [(0, 1), (1, 0)] {
         let edges = mesh.boundary(&names[into]);
         let ends = |e: usize| mesh.edges[e].vertices.map(|v| mesh.points[v]);
         let margin = |e: usize| CLOSE * mesh.edge_frame(e).0;
-        let tree = BoxTree::new(edges.iter().map(|&e| around(&ends(e), margin(e))).collect());
+        // A curve whose edges make no corners stays within an eighth of their length.
+        let tree = BoxTree::new(edges.iter().map(|&e| around(&ends(e), 0.125 * mesh.edge_frame(e).0)).collect());
         let present: Vec<_> = edges.iter().flat_map(|&e| ends(e).map(key)).collect();
         let present: std::collections::HashSet<_> = present.into_iter().collect();
         for v in side_vertices(&mesh, &names[from]) {
@@ -85,22 +96,32 @@ fn match_vertices(
             if present.contains(&key(p)) {
                 continue;
             }
-            let nearest = tree
-                .meeting(&[p, p])
-                .into_iter()
-                .map(|i| (distance_to(p, ends(edges[i])), edges[i]))
+            let near: Vec<usize> = tree.meeting(&[p, p]).into_iter().map(|i| edges[i]).collect();
+            let nearest = near
+                .iter()
+                .map(|&e| (distance_to(p, ends(e)), e))
                 .filter(|(d, e)| *d <= margin(*e))
                 .min_by(|x, y| x.0.total_cmp(&y.0));
-            let Some((off, edge)) = nearest else {
+            if let Some((off, edge)) = nearest {
+                moved = moved.max(off);
+                counts[from] += 1;
+                inserted.push((edge, p));
+                continue;
+            }
+            let passing = near
+                .iter()
+                .filter_map(|&e| Some((curvatures[into].passes(e, p, &curvatures[from], v.vertex)?, e)))
+                .min_by(|x, y| x.0.total_cmp(&y.0));
+            let Some((off, edge)) = passing else {
                 let what =
                     format!("the vertex {} of '{}' does not lie on '{}'", at(scene, p), names[from], names[into]);
-                let remedy = "the two sides must be coinciding polylines with the same ends: divide the longer curve \
-                              there and name the common part only, or give both sides the same points; sides that are no such \
-                              polylines, an arc on a line or two arcs of unlike edges, are matched along a `direction`, \
-                              with a `gap` beside their distance where there is one";
+                let remedy = "the two sides must be coinciding polylines, or divide one curve, with the same ends: divide the \
+                              longer one there and name the common part only, or give both sides the same points; sides that lie \
+                              apart are matched along the rays of their centre where they are arcs about one, and along a \
+                              `direction` otherwise, with a `gap` beside their distance where there is one";
                 return Err(MeshError::contact(scene, joint.quoted(), what, remedy));
             };
-            moved = moved.max(off);
+            beside = beside.max(off);
             counts[from] += 1;
             inserted.push((edge, p));
         }
@@ -118,6 +139,16 @@ fn match_vertices(
         })
         .collect();
     record.notes.push(Note { weakens_guarantee: false, text: format!("{}: {}", joint.name(), parts.join(", ")) });
+    if beside > 0.0 {
+        record.notes.push(Note {
+            weakens_guarantee: true,
+            text: format!(
+                "{}: both sides stand for one curve, and their vertices lie up to {beside:.1e} beside the edges of the other \
+                 side; these now pass through them. The bounds are for the bodies with these edges",
+                joint.name()
+            ),
+        });
+    }
     if moved > ROUND_OFF * size {
         record.notes.push(Note {
             weakens_guarantee: true,

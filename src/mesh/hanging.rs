@@ -1,12 +1,10 @@
 //! Places where two parts of a body, or two bodies, touch without being bonded: hanging nodes and doubled vertices.
 
-use std::collections::{BTreeMap, HashMap};
-
 use super::Triangulation;
 use super::boxes::{BoxTree, around};
 use super::error::{MeshError, at};
 use super::labels::contact_names;
-use super::polyline::key;
+use super::touching;
 use crate::scene::Note;
 use crate::scene::Scene;
 
@@ -41,30 +39,7 @@ pub(super) fn check(mesh: &Triangulation, scene: &Scene, notes: &mut Vec<Note>) 
             }
         }
     }
-    let mut touching: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-    let mut seen: HashMap<[[u64; 2]; 2], usize> = HashMap::new();
-    for &e in &boundary {
-        let [a, b] = ends(e).map(key);
-        let Some(here) = body(e) else { continue };
-        if let Some(&other) = seen.get(&[b, a]) {
-            *touching.entry([here.min(other), here.max(other)]).or_insert(0) += 1;
-        }
-        seen.insert([a, b], here);
-    }
-    for ([first, second], edges) in touching {
-        let [first, second] = [first, second].map(|i| &scene.bodies[i].name);
-        let text = if first == second {
-            format!(
-                "body '{first}' is cut open along {edges} edges, whose vertices are doubled: the two sides are free of each \
-                 other; merge the vertices if the body is whole"
-            )
-        } else {
-            format!(
-                "bodies '{first}' and '{second}' touch along {edges} edges without a contact: they are free of each other"
-            )
-        };
-        notes.push(Note { weakens_guarantee: false, text });
-    }
+    notes.extend(touching::notes(mesh, scene));
     Ok(())
 }
 

@@ -77,6 +77,7 @@ pub(super) fn assign(
     notes: &mut Vec<Note>,
 ) -> Result<Labels, MeshError> {
     let used = used_names(scene);
+    let cuts = cuts_of_polygons(raw, cells, halves, scene);
     let mut order: Vec<Pair> = Vec::new();
     let mut on: Map<Pair, Vec<&str>> = Map::default();
     let mut idle: Vec<&str> = Vec::new();
@@ -111,6 +112,11 @@ pub(super) fn assign(
         }
         let place = key.map(|v| at(scene, raw.points[v])).join(" to ");
         let sides: Vec<Side> = halves.joining(key[0], key[1]).map(|side| (side / 3, side % 3)).collect();
+        if let Some(both) = cuts.get(&key) {
+            both.iter().for_each(|(side, name)| labels.put(*side, name));
+            labels.cut.insert(key);
+            continue;
+        }
         match (sides.as_slice(), carrying.as_slice()) {
             ([side], []) => labels.put(*side, names[0]),
             ([side], [name]) => labels.put(*side, name),
@@ -120,7 +126,7 @@ pub(super) fn assign(
             }
             (_, []) => {}
             (both, carrying) => {
-                for (side, name) in facing(cells, both, carrying, &place, scene)? {
+                for (side, name) in facing(raw, cells, both, carrying, &place, scene)? {
                     labels.put(side, name);
                 }
                 labels.cut.insert(key);
@@ -133,9 +139,10 @@ pub(super) fn assign(
     Ok(labels)
 }
 
-/// The two sides of an edge shared by two bodies along which a contact separates them: the name that the contact
+/// The two sides of an edge along which a contact separates two bodies, or cuts one: the name that the contact
 /// lists first goes to the body that the scene lists first, unless `[[boundaries]]` says whose it is.
 fn facing<'a>(
+    raw: &RawMesh,
     cells: &Cells,
     both: &[Side],
     carrying: &[&'a str],
@@ -156,20 +163,13 @@ fn facing<'a>(
         [one, other] => ([*one, *other], [cells.body[one.0], cells.body[other.0]]),
         _ => ([(0, 0); 2], [0, 0]),
     };
-    if bodies[0] == bodies[1] {
-        return Err(MeshError::boundary(
-            scene,
-            name,
-            format!("is a side of a {kind}, but its edge {place} lies inside body '{}'", scene.bodies[bodies[0]].name),
-            format!("a {kind} joins two bodies: make two surfaces of it, each a body"),
-        ));
-    }
     let find = |wanted: &str| carrying.iter().copied().find(|n| *n == wanted);
     match (find(first), find(second), carrying.len()) {
         (Some(first), Some(second), 2) => {
             let forward = match [first, second].map(|name| body_of(name, scene)) {
                 [Some(body), _] if bodies.contains(&body) => bodies[0] == body,
                 [_, Some(body)] if bodies.contains(&body) => bodies[1] == body,
+                _ if bodies[0] == bodies[1] => first_of_one(raw, cells, sides),
                 _ => bodies[0] < bodies[1],
             };
             let (early, late) = if forward { (sides[0], sides[1]) } else { (sides[1], sides[0]) };
@@ -179,10 +179,8 @@ fn facing<'a>(
             scene,
             name,
             format!(
-                "is a side of the {kind} {first}|{second}, but the bodies '{}' and '{}' share the edge {place}, \
-                which has the names {}",
-                scene.bodies[bodies[0]].name,
-                scene.bodies[bodies[1]].name,
+                "is a side of the {kind} {first}|{second}, but {} the edge {place}, which has the names {}",
+                owners(bodies, scene),
                 carrying.join(", ")
             ),
             format!(
@@ -190,6 +188,49 @@ fn facing<'a>(
             ),
         )),
     }
+}
+
+/// Who has triangles on both sides of an edge.
+fn owners(bodies: [usize; 2], scene: &Scene) -> String {
+    let [first, second] = bodies.map(|body| &scene.bodies[body].name);
+    match first == second {
+        true => format!("body '{first}' has triangles on both sides of"),
+        false => format!("the bodies '{first}' and '{second}' share"),
+    }
+}
+
+/// Whether the first of two sides of an edge inside a body is that below it, or on its left where it is upright.
+fn first_of_one(raw: &RawMesh, cells: &Cells, sides: [Side; 2]) -> bool {
+    let corners = cells.triangles[sides[0].0];
+    let [a, b] = [1, 2].map(|i| raw.points[corners[(sides[0].1 + i) % 3]]);
+    // The outward normal (dy, −dx) points up, or to the right.
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    -dx > 0.0 || dx == 0.0 && dy > 0.0
+}
+
+/// Edges that two polygons of one body share and both name: a cut, each side of which has the name that its polygon gives it.
+fn cuts_of_polygons<'a>(
+    raw: &'a RawMesh,
+    cells: &Cells,
+    halves: &HalfEdges,
+    scene: &Scene,
+) -> HashMap<Pair, Vec<(Side, &'a str)>> {
+    let mut found: HashMap<Pair, Vec<(Side, &str)>> = HashMap::new();
+    if !matches!(scene.mesh, MeshSource::Geometry { .. }) {
+        return found;
+    }
+    for ([a, b], name) in raw.segments.iter().filter(|(_, name)| !name.is_empty()) {
+        // A polygon lies on the left of its pieces.
+        let own = halves.joining(*a, *b).find(|side| HalfEdges::ends(&cells.triangles, *side) == [*a, *b]);
+        if let Some(side) = own {
+            let sides = found.entry(pair(*a, *b)).or_default();
+            if sides.iter().all(|(other, _)| *other != (side / 3, side % 3)) {
+                sides.push(((side / 3, side % 3), name.as_str()));
+            }
+        }
+    }
+    found.retain(|_, sides| sides.len() == 2);
+    found
 }
 
 /// The body on whose outline the scene puts this boundary, where it says so.

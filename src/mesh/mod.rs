@@ -9,7 +9,9 @@ pub(crate) mod along;
 pub mod bisect;
 pub(crate) mod bonded;
 mod boxes;
+mod bulge;
 mod cells;
+pub(crate) mod concentric;
 mod content;
 pub(crate) mod error;
 mod file;
@@ -40,11 +42,13 @@ pub(crate) mod testing;
 mod topology;
 #[cfg(test)]
 mod topology_tests;
+mod touching;
 mod uncut;
 
 pub use error::MeshError;
 pub use file_cells::{FileCells, Quadrilateral};
 pub use select::Sets;
+pub use touching::{Touching, touching};
 pub use uncut::Uncut;
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.

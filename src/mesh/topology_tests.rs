@@ -217,7 +217,12 @@ fn contacts_along_shared_curves_that_do_not_fit() {
     let mut raw = shared_curve(&["a", "b"]);
     raw.triangles.iter_mut().for_each(|(_, name)| *name = "left".into());
     let one = contact(scene(&["left"]), "a", "b", Gap::Constant(0.0));
-    refuse(raw, &one, &["inside body 'left'", "separates two bodies"]);
+    let (cut, _) = accept(raw, &one);
+    assert_eq!(side(&cut, "a", false), side(&cut, "b", true));
+    // The first of the two is on the left.
+    let [t, u] = ["a", "b"].map(|name| cut.boundary(name)[0]).map(|e| cut.edges[e].triangles[0].unwrap_or(0));
+    let middle = |t: usize| cut.corners(t).iter().map(|p| p[0]).sum::<f64>() / 3.0;
+    assert!(middle(t) < 1.0 && middle(u) > 1.0);
 }
 
 #[test]

@@ -51,7 +51,7 @@ pub(crate) fn pressed_square() -> Problem {
             Condition::Traction([[0.0, 0.0]; 2]),
             Condition::Traction([[2.0, 0.0]; 2]),
         ],
-        interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair] }],
+        interfaces: vec![Interface { name: "right|rigid".to_owned(), pairs: vec![pair], centre: None }],
         beds: Vec::new(),
         notes: Vec::new(),
         refinement: crate::problem::Refinement::default(),

@@ -89,7 +89,7 @@ pub(super) fn pair_along(
     let facing: Vec<Link> = links.iter().filter(|link| matched.contains_key(&edges[link.edge])).copied().collect();
     notes.extend(unresolved_gap(contact, &facing));
     notes.extend(oblique(contact, &pairs, d));
-    Ok(Interface { name: contact.name(), pairs })
+    Ok(Interface { name: contact.name(), pairs, centre: None })
 }
 
 /// A remark where contact acts along a direction that is not the normal of a straight side: its forces have a tangential part.

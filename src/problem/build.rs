@@ -11,11 +11,12 @@ use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
+use crate::mesh::concentric::Concentric;
 use crate::mesh::error::at;
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
-use crate::scene::{Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
+use crate::scene::{Contact, ContactSides, Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
@@ -127,7 +128,11 @@ impl Problem {
         let mut interfaces = Vec::with_capacity(scene.contacts.len());
         let mut remarks = Vec::new();
         for (interface, contact) in scene.contacts.iter().enumerate() {
-            let mut matched = pair_up(contact, &scene, &mesh, &mut remarks)?;
+            let centre = match coarser {
+                None => rays(contact, &mesh),
+                Some(coarser) => coarser.interfaces.get(interface).and_then(|coarse| coarse.centre),
+            };
+            let mut matched = pair_up(contact, &scene, &mesh, centre, &mut remarks)?;
             if let Some(coarser) = coarser.filter(|coarser| coarser.refinement == Refinement::KeepsEdges) {
                 keep_gap(&mut matched.pairs, coarser, interface);
                 if contact.obstacle.is_some() {
@@ -136,6 +141,7 @@ impl Problem {
             }
             if contact.normals == Normals::Smooth && contact.direction.is_none() && contact.obstacle.is_none() {
                 match coarser {
+                    None if centre.is_some() => {}
                     None => smooth(&mut matched.pairs),
                     Some(coarser) => inherit(&mut matched.pairs, &mesh.points, coarser, interface),
                 }
@@ -319,6 +325,13 @@ pub(super) fn section(scene: &Scene) -> Section {
         Kinematics::Axisymmetric => Section::Revolved { axis: 0.0 - scene.origin[0] },
         Kinematics::PlaneStrain | Kinematics::PlaneStress => Section::Slice,
     }
+}
+
+/// The centre of the circles that the sides of a contact lie on, where they are matched along its rays.
+fn rays(contact: &Contact, mesh: &Triangulation) -> Option<[f64; 2]> {
+    let ContactSides::Between([first, second]) = &contact.sides else { return None };
+    let smooth = contact.normals == Normals::Smooth && contact.direction.is_none();
+    smooth.then(|| Concentric::of(mesh, [first, second]))?.map(|circles| circles.centre)
 }
 
 /// The springs of all supports, then the layers of all bonds.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::along::pair_along;
+use super::around::pair_around;
 use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
@@ -12,13 +13,18 @@ use crate::scene::{Contact, ContactSides, Gap, Obstacle, Scene};
 /// Cosine of the angle between the direction to an obstacle and a normal below which an edge does not face it.
 const GRAZING: f64 = 0.05;
 
-/// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::glue`].
+/// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::glue`], unless they are matched along a
+/// direction or along the rays of a `centre`.
 pub(super) fn pair_up(
     contact: &Contact,
     scene: &Scene,
     mesh: &Triangulation,
+    centre: Option<[f64; 2]>,
     notes: &mut Vec<Note>,
 ) -> Result<Interface, ProblemError> {
+    if let (ContactSides::Between(names), Some(centre)) = (&contact.sides, centre) {
+        return pair_around(contact, names, centre, scene, mesh, notes);
+    }
     if let (ContactSides::Between(names), Some(direction)) = (&contact.sides, contact.direction) {
         return pair_along(contact, names, direction, scene, mesh, notes);
     }
@@ -101,7 +107,7 @@ pub(super) fn pair_up(
         notes.extend(around_obstacle(contact, obstacle, averted > 0));
     }
     notes.extend(unresolved_gap(contact, &links));
-    Ok(Interface { name: contact.name(), pairs })
+    Ok(Interface { name: contact.name(), pairs, centre: None })
 }
 
 /// Remarks on an obstacle with a place of its own.

@@ -35,10 +35,11 @@ pub(super) fn curved(problem: &Problem) -> Curved {
             continue;
         }
         for (k, pair) in pairs.iter().enumerate() {
-            let Some(circle) = around(problem, pairs, k) else { continue };
-            let edges: Vec<usize> = pair.edges.iter().flatten().copied().collect();
-            if edges.iter().all(|&e| has_room(problem, e, &circle)) {
-                found.extend(edges.into_iter().map(|e| (e, circle)));
+            let sides = pair.edges.iter().enumerate().filter_map(|(side, edge)| Some((side, (*edge)?)));
+            let on_circles = sides.map(|(side, e)| Some((e, around(problem, pairs, k, side)?)));
+            let Some(edges) = on_circles.collect::<Option<Vec<(usize, Circle)>>>() else { continue };
+            if edges.iter().all(|(e, circle)| has_room(problem, *e, circle)) {
+                found.extend(edges);
             }
         }
     }
@@ -85,19 +86,21 @@ pub(super) fn beside_long_edges(problem: &Problem) -> Vec<usize> {
     triangles
 }
 
-/// The circle of pair `k`: through the vertices of three pairs in a row, of which it is one.
-fn around(problem: &Problem, pairs: &[ContactPair], k: usize) -> Option<Circle> {
+/// The circle of pair `k` on one of its sides: through the vertices of three pairs in a row, of which it is one.
+fn around(problem: &Problem, pairs: &[ContactPair], k: usize, side: usize) -> Option<Circle> {
     if pairs[k].direction.is_constant() {
         return None;
     }
     let point = |v: usize| problem.mesh.points[v];
     (k.saturating_sub(2)..=k).find_map(|from| {
         let [a, b, c] = pairs.get(from..from + 3)? else { return None };
-        let joined = a.first[1] == b.first[0] && b.first[1] == c.first[0];
+        let [p, q, r] = [a, b, c].map(|pair| if side == 0 { Some(pair.first) } else { pair.second });
+        let [p, q, r] = [p?, q?, r?];
+        let joined = p[1] == q[0] && q[1] == r[0];
         let apart = |[x, y]: [f64; 2], [u, v]: [f64; 2]| (x - u).hypot(y - v);
         let smooth = [(a, b), (b, c)].iter().all(|(p, q)| apart(p.direction.ends[1], q.direction.ends[0]) < NO_CORNER);
-        let circle = Circle::through(point(a.first[0]), point(b.first[0]), point(c.first[1]))?;
-        (joined && smooth && circle.holds(point(b.first[1]), ON_CIRCLE)).then_some(circle)
+        let circle = Circle::through(point(p[0]), point(q[0]), point(r[1]))?;
+        (joined && smooth && circle.holds(point(q[1]), ON_CIRCLE)).then_some(circle)
     })
 }
 

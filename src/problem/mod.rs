@@ -1,6 +1,7 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
 mod along;
+mod around;
 mod bed;
 mod bow;
 mod build;
@@ -205,6 +206,8 @@ pub struct Interface {
     pub name: String,
     /// Matched edges, ordered along the first side from the end that comes first in (x, y) order.
     pub pairs: Vec<ContactPair>,
+    /// The centre of the circles that the sides lie on, where they are matched along its rays.
+    pub centre: Option<[f64; 2]>,
 }
 
 /// Two edges that face each other, or one that faces a rigid obstacle.

@@ -31,6 +31,9 @@ const KNOWN: [(&str, &[&str]); 7] = [
 const KINDS: [(&str, &str, &[&str]); 2] =
     [("model", "kinematics", &["plane-strain", "plane-stress"]), ("supports", "type", &["clamped", "roller"])];
 
+/// Keys that the checker knows as vectors alone.
+const CONSTANT: [(&str, &str); 1] = [("bodies", "body_force")];
+
 /// What the scene with this text has that the checker does not know; `None` where there is nothing.
 pub fn unknown(text: &str) -> Option<String> {
     let scene: Table = text.parse().ok()?;
@@ -39,6 +42,11 @@ pub fn unknown(text: &str) -> Option<String> {
             if let Some(key) = table.keys().find(|key| !keys.contains(&key.as_str())) {
                 let of = if place.is_empty() { String::new() } else { format!(" in `{place}`") };
                 return Some(format!("`{key}`{of}"));
+            }
+            if let Some((_, key)) =
+                CONSTANT.iter().find(|(of, key)| *of == place && !table.get(*key).is_none_or(Value::is_array))
+            {
+                return Some(format!("a `{key}` in `{place}` that is not constant"));
             }
             for (_, key, kinds) in KINDS.iter().filter(|(of, ..)| *of == place) {
                 if let Some(kind) = table.get(*key).and_then(Value::as_str).filter(|kind| !kinds.contains(kind)) {
@@ -78,6 +86,8 @@ mod tests {
         let with = |from: &str, to: &str| unknown(&text.replacen(from, to, 1)).unwrap();
         assert_eq!(with("poisson = 0.3", "poisson = 0.3\nplasticity = 1"), "`plasticity` in `bodies`");
         assert_eq!(with("type = \"roller\"", "type = \"spring\""), "`type = \"spring\"` in `supports`");
+        let force = "poisson = 0.3\nbody_force = { value = [0, -1], gradient = [[0, 0], [0, 1]] }";
+        assert_eq!(with("poisson = 0.3", force), "a `body_force` in `bodies` that is not constant");
         assert_eq!(unknown(&format!("{text}\n[[cracks]]\n")), Some("`cracks`".to_string()));
     }
 }

@@ -6,16 +6,20 @@
 //! into that form by a displacement w̃ that moves the support and vanishes at all vertices beyond it: with w̃ = −w there,
 //! ∫_{Γu} T·w = F(w̃) − ∫ τ:e(w̃) + ∫_{ΓK} t j(w̃).
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use super::lift::lift;
+use super::local::Local;
+use super::point::{Point, Wanted};
 use super::region::{Cut, cut, twice_area};
+use super::tip::{NoTip, Tip};
 use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
 use crate::load::BodyForce;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};
-use crate::scene::{Extent, Holder, Quantity, Region, SupportKind, Target};
+use crate::scene::{Extent, Holder, PointValue, Quantity, Region, SupportKind, Target};
 
 /// What a quantity is, for the words of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +32,8 @@ pub enum Kind {
     Moment,
     /// Mean stress.
     Stress,
+    /// Stress intensity at the tip of a crack.
+    StressIntensity,
 }
 
 impl Kind {
@@ -43,6 +49,7 @@ impl Kind {
             Kind::Force => "force",
             Kind::Moment => "moment",
             Kind::Stress => "stress",
+            Kind::StressIntensity => "stress_intensity",
         }
     }
 
@@ -51,6 +58,11 @@ impl Kind {
         match self {
             Kind::Displacement => sizes.displacement,
             Kind::Stress => sizes.stress,
+            Kind::StressIntensity => {
+                let [low, high] = [f64::min, f64::max]
+                    .map(|of| [0, 1].map(|c| problem.mesh.points.iter().map(|p| p[c]).reduce(of).unwrap_or(0.0)));
+                sizes.stress * (high[0] - low[0]).hypot(high[1] - low[1]).sqrt()
+            }
             Kind::Moment => sizes.force * problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs())),
             Kind::Force => sizes.force,
         }
@@ -79,6 +91,48 @@ pub enum NotBounded {
         /// Name of the body.
         body: String,
     },
+    /// A stress intensity where there is no tip of a crack.
+    #[error(transparent)]
+    NoTip(#[from] NoTip),
+    /// A number that is no linear functional, but a function of several.
+    #[error("`{word}` is no linear functional of the solution")]
+    NotLinear {
+        /// The word of the format.
+        word: &'static str,
+    },
+    /// A point in a body whose values at points are no means with a known weight.
+    #[error(
+        "body '{body}' is not isotropic: the value at a point is a mean with a known weight only in isotropic bodies; ask for the mean over a \
+         small region, `polygon = [...]` or `box = [...]` in the place of `point`"
+    )]
+    PointInAnisotropic {
+        /// Name of the body.
+        body: String,
+    },
+    /// A point that is not in its body.
+    #[error("the point ({x}, {y}) does not lie in body '{body}'; give a point inside the body")]
+    PointOutside {
+        /// As written.
+        x: f64,
+        /// As written.
+        y: f64,
+        /// Name of the body.
+        body: String,
+    },
+    /// A point where values are not bounded.
+    #[error(
+        "the point ({x}, {y}) lies on the outline of body '{body}', where a value at a point is no bounded functional; ask for {instead}"
+    )]
+    PointOnOutline {
+        /// As written.
+        x: f64,
+        /// As written.
+        y: f64,
+        /// Name of the body.
+        body: String,
+        /// What is bounded, in the words of a scene.
+        instead: String,
+    },
     /// A boundary without edges.
     #[error("no edge of the mesh belongs to '{name}'")]
     Empty {
@@ -96,6 +150,12 @@ pub struct Functional {
     pub load: Load,
     /// χ of a region, constant in it; the load has it too.
     pub region: Option<([f64; 3], Vec<Cut>)>,
+    /// A value at a point or a stress intensity. The load has it once it is [`Self::loaded`].
+    pub local: Option<Box<Local>>,
+    /// ∫ c(χ − Πχ):(χ − Πχ) for each of the shaped strains Πχ of the load.
+    pub rests: Vec<f64>,
+    /// What the load leaves of the quantity on a displacement w is at most Σ b_T ‖e(w)‖_T: triangles with their b_T.
+    pub oscillation: Vec<(usize, f64)>,
     /// The part that is known.
     pub constant: f64,
     /// A displacement, linear on triangles, with jumps −φ, where there is one that meets the supports.
@@ -116,6 +176,20 @@ impl Functional {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
             Target::Displacement { of: Extent::Body(body), direction } => on_body(problem, *body, *direction),
             Target::Stress { body, region, component } => mean_stress(problem, *body, region, component.factors()),
+            Target::Point { body, at, value, smoothness } => {
+                let wanted = match value {
+                    PointValue::Displacement(direction) => Wanted::Displacement(*direction),
+                    PointValue::Stress(component) => Wanted::Stress(component.factors()),
+                    PointValue::Invariant(invariant) => return Err(NotBounded::NotLinear { word: invariant.word() }),
+                };
+                Self::at_point(problem, *body, *at, *smoothness, wanted)
+            }
+            Target::StressIntensity { mode, tip } => {
+                let tip = Tip::new(problem, *mode, *tip)?;
+                let constant = tip.of_body_force(problem);
+                let own = Functional::empty(problem, Kind::StressIntensity);
+                Ok(Functional { local: Some(Box::new(Local::Tip(tip))), constant, ..own })
+            }
             Target::ContactForce { contact, window } => {
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
                 // Pressure is positive.
@@ -142,10 +216,55 @@ impl Functional {
         [all(-1.0), all(1.0)]
     }
 
+    /// The value at a point.
+    ///
+    /// # Errors
+    /// [`NotBounded::PointOutside`], [`NotBounded::PointOnOutline`].
+    pub fn at_point(
+        problem: &Problem,
+        body: usize,
+        at: [f64; 2],
+        smoothness: usize,
+        wanted: Wanted,
+    ) -> Result<Self, NotBounded> {
+        let kind = match wanted {
+            Wanted::Stress(_) => Kind::Stress,
+            Wanted::Displacement(_) => Kind::Displacement,
+        };
+        let point = Point::new(problem, body, at, smoothness, wanted)?;
+        Ok(Functional { local: Some(Box::new(Local::Point(point))), ..Functional::empty(problem, kind) })
+    }
+
+    /// The functional with all of its load, for fields of these degrees on each triangle and tractions of these on each edge.
+    pub fn loaded(
+        &self,
+        problem: &Problem,
+        stress_degree: impl Fn(usize) -> usize,
+        edge_degree: impl Fn(usize) -> usize,
+    ) -> Cow<'_, Functional> {
+        let Some(local) = &self.local else { return Cow::Borrowed(self) };
+        let mut own = Functional { local: None, ..self.clone() };
+        local.load(problem, &mut own, stress_degree, edge_degree);
+        Cow::Owned(own)
+    }
+
+    /// Whether it changes with a displacement that has no strain.
+    pub fn is_of_place(&self) -> bool {
+        let load = &self.load;
+        !load.tractions.is_empty()
+            || load.force.iter().any(|f| !f.is_none())
+            || self.local.as_ref().is_some_and(|local| local.is_of_place())
+    }
+
     /// Whether nothing but the normal traction of contacts, and what is known, enters.
     pub fn is_of_contact_alone(&self) -> bool {
         let load = &self.load;
-        load.tractions.is_empty() && load.strains.is_empty() && load.force.iter().all(BodyForce::is_none)
+        self.local.is_none()
+            && load.tractions.is_empty()
+            && load.strains.is_empty()
+            && load.shaped.is_empty()
+            && load.edges.is_empty()
+            && load.force.iter().all(BodyForce::is_none)
     }
 
     fn empty(problem: &Problem, kind: Kind) -> Self {
@@ -156,9 +275,14 @@ impl Functional {
                 force: vec![BodyForce::NONE; problem.scene.bodies.len()],
                 tractions: Vec::new(),
                 strains: Vec::new(),
+                shaped: Vec::new(),
+                edges: Vec::new(),
                 weights: vec![Vec::new(); pairs],
             },
             region: None,
+            local: None,
+            rests: Vec::new(),
+            oscillation: Vec::new(),
             constant: 0.0,
             lift: None,
             scale: if matches!(kind, Kind::Force | Kind::Moment) { problem.scene.thickness } else { 1.0 },

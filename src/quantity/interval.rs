@@ -14,11 +14,11 @@ use super::functional::Functional;
 use super::pass::{strained, uncancelled};
 use super::search::Search;
 use super::springs::{middle_of, square_of, uncancelled_of};
-use super::value::displaced;
+use super::value::{displaced, value_of};
 use crate::bounds::energy::square;
 use crate::bounds::{Bracket, Nearest, OnSprings, UpperBound, excess_work, mid_field, openings_within};
-use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses};
-use crate::element::{StressField, side};
+use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses, ShapedStrain};
+use crate::element::{Material, Samples, StressField, side};
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Ends that are closer than this, relative to the value, are one but for rounding.
@@ -26,6 +26,9 @@ const ONE: f64 = 1e-9;
 
 /// What rounding leaves in a value that was computed, relative to what the data can cause.
 const ROUNDED: f64 = 1e-11;
+
+/// What rounding leaves of projections and of means, relative to the largest that they can be.
+const ROUNDED_MEAN: f64 = 1e-12;
 
 /// Contacts of up to so many jumps have a dense Schur complement.
 const LONGEST_DENSE: usize = 6000;
@@ -119,6 +122,8 @@ pub struct Known<'a> {
     pub(super) upper: &'a UpperBound,
     /// H, per unit thickness.
     pub(super) square: f64,
+    /// G, per unit thickness.
+    gap: f64,
     responses: Responses<'a>,
     pub(super) nearest: Nearest<'a>,
     /// Coefficients of g − j(v) on every pair, not negative, in the degree of the bounds of z.
@@ -166,6 +171,7 @@ impl<'a> Known<'a> {
             dual,
             upper,
             square: ball,
+            gap: gap / problem.scene.thickness,
             responses: factorised.responses(problem, &dual.moments, LONGEST_DENSE, options),
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
@@ -181,6 +187,9 @@ impl<'a> Known<'a> {
     /// The interval of a quantity.
     pub fn interval(&self, functional: &Functional) -> Interval {
         let value = self.value(functional);
+        let unloaded = functional;
+        let degrees = (|t: usize| self.middle.degree(t), |e: usize| self.dual.moments.of(e).len() - 1);
+        let functional = &*unloaded.loaded(self.problem, degrees.0, degrees.1);
         let loaded = self.responses.to(&functional.load);
         let neutral = loaded.held_by_all(self.dual.closed.values()).map_err(not_held);
         let search = Search { known: self, functional, loaded: &loaded };
@@ -217,6 +226,10 @@ impl<'a> Known<'a> {
                 }
             }
         }
+        let remainder = self.remainder(unloaded, functional, &mut shares);
+        let [ends, first_order] = [ends, first_order].map(|[lower, upper]| {
+            [lower + remainder.centre - remainder.radius, upper + remainder.centre + remainder.radius]
+        });
         let of_one_sign = functional.cannot_be();
         let [ends, first_order] = [ends, first_order].map(|interval| clipped(interval, of_one_sign));
         reasons.iter_mut().zip(of_one_sign).filter(|(_, is)| *is).for_each(|(reason, _)| *reason = None);
@@ -245,6 +258,38 @@ impl<'a> Known<'a> {
         let [data, zero] = [&scales.data, &scales.round_off].map(|sizes| functional.kind.size(self.problem, sizes));
         let largest = ends.iter().filter(|end| end.is_finite()).fold(0.0_f64, |m, end| m.max(end.abs()));
         (ROUNDED * data).min((ONE * largest).max(zero))
+    }
+
+    /// What the load leaves of a value at a point on the exact displacement: that of v, and at most so much more, whose parts are added to
+    /// `shares`.
+    fn remainder(&self, exact: &Functional, loaded: &Functional, shares: &mut [f64]) -> Remainder {
+        if exact.local.is_none() {
+            return Remainder { centre: 0.0, radius: 0.0 };
+        }
+        let (v, problem) = (&self.upper.displacement, self.problem);
+        let materials = problem.materials();
+        let known =
+            [exact, loaded].map(|functional| value_of(problem, functional, v).unwrap_or(f64::NAN) / functional.scale);
+        // ‖u − v‖² ≤ 2 G.
+        let parts = || {
+            loaded
+                .oscillation
+                .iter()
+                .map(|(t, b)| (*t, b / materials[problem.mesh.body[*t]].softest().unwrap_or(0.0).sqrt()))
+        };
+        let square: f64 = parts().map(|(_, b)| b * b).sum();
+        let radius = (2.0 * self.gap * square).sqrt();
+        for (t, b) in parts().filter(|_| square > 0.0) {
+            shares[t] += radius * b * b / square;
+        }
+        let strains = loaded
+            .load
+            .shaped
+            .iter()
+            .zip(&loaded.rests)
+            .map(|(shaped, rest)| rest + shaped_square(problem, &materials, shaped));
+        let rounding = ROUNDED_MEAN * (strains.sum::<f64>().sqrt() * self.size + known[0].abs());
+        Remainder { centre: known[0] - known[1], radius: radius + rounding }
     }
 
     /// The response with s at least `floor`, with a remainder of at most `enough` where that can be had.
@@ -285,6 +330,27 @@ impl<'a> Known<'a> {
             *share += 0.5 * (ratio * 0.5 * gap.max(0.0) / thickness + square.max(0.0) / (4.0 * ratio));
         }
     }
+}
+
+/// What the load of an adjoint problem leaves of a quantity.
+struct Remainder {
+    centre: f64,
+    radius: f64,
+}
+
+/// ∫ Πχ : c Πχ.
+fn shaped_square(
+    problem: &Problem,
+    materials: &[Material],
+    ShapedStrain { triangle: t, strain }: &ShapedStrain,
+) -> f64 {
+    let material = &materials[problem.mesh.body[*t]];
+    let samples = Samples::of_stress(strain.degree(0), strain.degree(0));
+    let at = |sub: usize, q: usize| strain.sample(0, sub, samples, q);
+    let of_point = |(q, (_, weight)): (usize, &([f64; 3], f64))| {
+        (0..3).map(|sub| weight * material.strain_product(at(sub, q), at(sub, q))).sum::<f64>()
+    };
+    problem.mesh.area(*t) / 3.0 * samples.points.iter().enumerate().map(of_point).sum::<f64>()
 }
 
 /// The reason for that a response has no stress.

@@ -1,19 +1,31 @@
 //! Quantities of interest: guaranteed intervals for the numbers a scene is solved for.
 //!
-//! Displacement means, forces and moments of contacts and supports, stress means over regions: each a linear functional of
-//! the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]).
+//! Displacement means, forces and moments of contacts and supports, stress means over regions, values at points: each a linear functional
+//! of the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]), or what three of them determine
+//! ([`Form`]).
 
+mod constants;
 mod end;
+mod form;
 mod functional;
 mod interval;
+mod invariant;
 mod lift;
+mod local;
 mod pass;
+mod point;
+mod projection;
 mod region;
 mod search;
 mod springs;
+mod tip;
 mod tried;
 mod value;
 
+pub use form::Form;
 pub use functional::{Functional, Kind, NotBounded};
 pub use interval::{Interval, Known, outside};
+pub use invariant::Invariants;
+pub use point::Wanted;
+pub use tip::NoTip;
 pub use value::{displaced, value_of};

@@ -7,6 +7,7 @@ use super::region::{Cut, Piece};
 use super::springs;
 use crate::bounds::energy::{initial_on, shape, square_on};
 use crate::bounds::{OnSprings, Sum};
+use crate::dual::ShapedStrain;
 use crate::element::Strains;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
@@ -75,6 +76,9 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
             strain[cut.triangle] = Strain::Part(*chi, cut);
         }
     }
+    for (shaped, rest) in functional.load.shaped.iter().zip(&functional.rests) {
+        strain[shaped.triangle] = Strain::Shaped(&shaped.strain, *rest);
+    }
     let terms: Vec<[f64; TERMS]> = (0..count)
         .into_par_iter()
         .with_min_len(128)
@@ -114,6 +118,8 @@ enum Strain<'a> {
     None,
     Whole([f64; 3]),
     Part([f64; 3], &'a Cut),
+    /// A projection, and the square of what it leaves, which is orthogonal to all else.
+    Shaped(&'a StressField, f64),
 }
 
 /// The sums of one triangle.
@@ -132,11 +138,19 @@ fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>
     let mut of_z = Strains::default();
     let mut out = [0.0; TERMS];
     let modulus = largest_modulus(material);
+    let shaped = match strain {
+        Strain::Shaped(chi, rest) => {
+            [PAIR, PAIR + 2, ALONE, ALONE + 2].into_iter().for_each(|i| out[i] += rest);
+            Some((chi, Samples::of_stress(chi.degree(0), half)))
+        }
+        _ => None,
+    };
     for sub in 0..3 {
         of_z.on(corners, lifted, t, sub);
         out[PAIR + 2] += area * modulus * (factor * of_z.largest_spread()).powi(2);
         for (q, (_, weight)) in at_z.points.iter().enumerate() {
             let (balanced, m) = (adjoint.sample(t, sub, at_adjoint, q), middle.sample(t, sub, at_middle, q));
+            let initial = shaped.map_or(initial, |(chi, samples)| material.stress(chi.sample(0, sub, samples, q)));
             let sigma = plus(balanced, initial);
             // In strains: a σ_z − e(z).
             let a_sigma = material.strain(sigma);
@@ -217,11 +231,22 @@ pub fn strained(
     degree: impl Fn(usize) -> usize,
     mut at: impl FnMut(usize, usize, [f64; 3]) -> [f64; 3],
 ) -> f64 {
+    if let Some(local) = &functional.local {
+        return local.strained(problem, degree, at);
+    }
     let mut sum = Sum::default();
     let mut add = |t: usize, sub: usize, l: [f64; 3], by: f64, chi: &[f64; 3]| {
         let s = at(t, sub, l);
         sum.add(by * contraction(*chi, s));
     };
+    for ShapedStrain { triangle: t, strain } in &functional.load.shaped {
+        let area = problem.mesh.area(*t) / 3.0;
+        for sub in 0..3 {
+            for (l, weight) in triangle_rule(degree(*t) + strain.degree(0)) {
+                add(*t, sub, *l, weight * area, &strain.at(0, sub, *l));
+            }
+        }
+    }
     let mut whole = |t: usize, chi: &[f64; 3]| {
         let area = problem.mesh.area(t) / 3.0;
         for sub in 0..3 {

@@ -9,8 +9,9 @@ use super::springs::{adjoint_of, combined, square_of};
 use super::tried::Tried;
 use crate::bounds::energy::square;
 use crate::bounds::{NoUpperBound, NodalValues, OnSprings, Pull, Until};
-use crate::dual::{Loaded, Response};
+use crate::dual::{Load, Loaded, Response, ShapedStrain};
 use crate::element::StressField;
+use crate::problem::Problem;
 
 /// How often, and by what factor, the ratio is raised where it gives nothing.
 const MOST_RAISES: usize = 8;
@@ -76,8 +77,10 @@ impl Search<'_, '_> {
         let springs = adjoint_of(problem, self.functional, &neutral.stress);
         let of_springs = square_of(problem, &springs);
         let balanced = square(problem, &neutral.stress) + of_springs;
-        let square =
-            if self.functional.load.strains.is_empty() { balanced } else { square(problem, &sigma) + of_springs };
+        let load = &self.functional.load;
+        let strained = !load.strains.is_empty() || !load.shaped.is_empty();
+        let rests: f64 = self.functional.rests.iter().sum();
+        let square = if strained { square(problem, &sigma) + of_springs + rests } else { balanced };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
         let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: Some(&springs) };
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
@@ -166,12 +169,31 @@ impl Search<'_, '_> {
     /// σ̂ + cχ, χ by its mean where a triangle is cut.
     fn stress<'f>(&self, adjoint: &'f StressField) -> Cow<'f, StressField> {
         let problem = self.known.problem;
-        let strains = &self.functional.load.strains;
-        if strains.is_empty() {
+        let Load { strains, shaped, .. } = &self.functional.load;
+        if strains.is_empty() && shaped.is_empty() {
             return Cow::Borrowed(adjoint);
         }
         let materials = problem.materials();
         let mut sigma = adjoint.clone();
+        if !shaped.is_empty() {
+            let mut degrees: Vec<usize> = (0..adjoint.len()).map(|t| adjoint.degree(t)).collect();
+            for ShapedStrain { triangle: t, strain } in shaped {
+                degrees[*t] = degrees[*t].max(strain.degree(0));
+            }
+            sigma = StressField::of_degrees(degrees);
+            for t in 0..adjoint.len() {
+                let own = adjoint.in_degree(t, sigma.degree(t));
+                sigma.block_mut(t).copy_from_slice(&own);
+            }
+            for ShapedStrain { triangle: t, strain } in shaped {
+                let material = &materials[problem.mesh.body[*t]];
+                let own = strain.in_degree(0, sigma.degree(*t));
+                for (s, chi) in sigma.block_mut(*t).iter_mut().zip(own.iter()) {
+                    let add = material.stress(*chi);
+                    (0..3).for_each(|c| s[c] += add[c]);
+                }
+            }
+        }
         for (t, chi) in strains {
             let add = materials[problem.mesh.body[*t]].stress(*chi);
             sigma.block_mut(*t).iter_mut().for_each(|s| (0..3).for_each(|c| s[c] += add[c]));
@@ -208,12 +230,25 @@ impl Search<'_, '_> {
         let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs) };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
+            NoUpperBound::ForcedPenetration { x, y, .. } if is_tip(known.problem, [x, y]) => format!(
+                "the contact ends inside a body at ({x}, {y}), and what it carries up to there is no bounded functional; ask for a \
+                 window that is zero there"
+            ),
             NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
         })?;
         Ok(End { nodes, ..self.measured(response, (&z, sign), sign) })
     }
+}
+
+/// Whether both sides of a contact have one vertex at this place of the scene as it was written.
+fn is_tip(problem: &Problem, place: [f64; 2]) -> bool {
+    let shared = problem.pairs().flat_map(|pair| {
+        let second = pair.second;
+        (0..2).filter_map(move |end| second.filter(|second| second[end] == pair.first[end]).map(|second| second[end]))
+    });
+    shared.into_iter().any(|v| problem.scene.as_written(problem.mesh.points[v]) == place)
 }
 
 /// The ratios that were tried for one end, and the best of what they gave.

@@ -3,7 +3,7 @@
 use super::functional::Functional;
 use super::pass::strained;
 use super::springs::product_of;
-use crate::bounds::{Sum, work, work_of};
+use crate::bounds::{Sum, work, work_of, work_on_edges};
 use crate::element::Displacement;
 use crate::element::geometry::sub_area;
 use crate::element::quadrature::triangle_rule;
@@ -12,8 +12,12 @@ use crate::problem::Problem;
 
 /// ∫ q·v, the part of a quantity that is a mean displacement, for any displacement.
 pub fn displaced(problem: &Problem, functional: &Functional, v: &Displacement) -> f64 {
+    if let Some(local) = &functional.local {
+        return local.displaced(problem, v);
+    }
     let load = &functional.load;
     work_of(problem, v, |body| load.force[body], load.tractions.iter().copied()).value()
+        + work_on_edges(problem, v, &load.edges)
 }
 
 /// The quantity of an admissible displacement alone: means of it and of its stress, and forces by the work that they do on

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::guarantee::{Guarantee, GuaranteeLevel};
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::cause::{Cause, Place};
 pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
@@ -35,6 +36,9 @@ pub struct Report {
     pub causes: Vec<Cause>,
     /// The energy bracket; `null` where no dual solution exists.
     pub energy: Option<Energy>,
+    /// What holds for all data in the ranges of the scene; missing where every number is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data_range: Option<DataRangeSummary>,
     /// The dual solve.
     pub dual: Option<DualSummary>,
     /// Displacement solutions.
@@ -149,6 +153,37 @@ pub struct Energy {
     pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
+    /// On whose word it holds.
+    pub guarantee: Guarantee,
+}
+
+/// What is guaranteed for all data of a scene some of whose numbers are known as ranges: the lower bound of the ends with the
+/// lowest energy, and the upper bound of those with the highest.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct DataRangeSummary {
+    /// The numbers that are known between two ends.
+    pub parameters: Vec<RangedParameter>,
+    /// No energy of data in these ranges is lower.
+    pub lower: f64,
+    /// No energy of data in these ranges is higher; `null` where no upper bound could be built.
+    pub upper: Option<f64>,
+    /// Two numbers between which the compliance lies for all of them; `null` where prescribed displacements or gaps take part.
+    pub compliance: Option<[f64; 2]>,
+    /// The exact energy at the other ends lies between these; `null` where no upper bound could be built.
+    pub other_end: Option<[f64; 2]>,
+}
+
+/// A number that is known between two ends.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct RangedParameter {
+    /// What it is.
+    pub name: String,
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// The end that all other numbers of the report are for.
+    pub taken: f64,
 }
 
 /// The dual solve in numbers.

@@ -8,6 +8,7 @@ mod deflate;
 pub(crate) mod document;
 pub mod figure;
 pub mod folder;
+mod guarantee;
 mod html;
 pub mod inventory;
 mod json;

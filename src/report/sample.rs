@@ -167,7 +167,7 @@ fn two_blocks(n: usize) -> Problem {
         scene: scene(),
         mesh,
         conditions,
-        interfaces: vec![Interface { name: "left_face|right_face".into(), pairs }],
+        interfaces: vec![Interface { name: "left_face|right_face".into(), pairs, centre: None }],
         beds: Vec::new(),
         notes,
         refinement: crate::problem::Refinement::default(),

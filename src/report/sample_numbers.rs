@@ -27,6 +27,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         enclosed_work: [-2.0 * upper, -2.0 * lower],
         compliance: Some([-2.0 * upper, -2.0 * lower]),
         guaranteed: true,
+        guarantee: Guarantee::of_notes(&[]),
     };
     let primal = |name: &str, degree, energy: f64| PrimalSummary {
         name: name.into(),
@@ -59,6 +60,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         verdict: verdict_text.into(),
         causes: if failed { causes() } else { Vec::new() },
         energy: solved.then_some(energy),
+        data_range: None,
         dual: solved.then(|| DualSummary {
             method: "condensed".into(),
             degree_min: 1,

@@ -1,7 +1,7 @@
 //! The words shared by the page, the summary and the JUnit file.
 
 use super::number::{significant, vector};
-use super::{Report, Status};
+use super::{GuaranteeLevel, Report, Status};
 use crate::compare::{Basis, Check, MeanPressure};
 
 /// The verdict as one word.
@@ -132,7 +132,9 @@ pub(crate) fn accuracy(report: &Report) -> String {
             let bound = percent(energy.relative_error_bound);
             let differs =
                 format!("The exact stress differs from the computed one by at most {bound} in the energy norm");
-            if energy.guaranteed {
+            if energy.guarantee.level == GuaranteeLevel::Proved {
+                format!("{differs}. This is {}, not estimated.", energy.guarantee.words)
+            } else if energy.guaranteed {
                 format!("{differs}. This is guaranteed, not estimated.")
             } else {
                 format!("{differs}, for the data as represented on the mesh; the notes say what weakens the guarantee.")

@@ -5,7 +5,7 @@ use super::error::{Fault, SceneError};
 use super::raw::{At, RawBond, Table};
 use super::source::counted;
 use super::springs::layer;
-use super::{ContactSides, Scene};
+use super::{ContactSides, Normals, Scene};
 
 /// Two boundaries that are glued to each other. Their vertices need not be the same.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +33,8 @@ pub(crate) struct Joint<'a> {
     pub sides: &'a [String; 2],
     /// The direction along which they are matched; `None` where they coincide.
     pub direction: Option<[f64; 2]>,
+    /// Whether the sides may be those of a contact across a distance, along normals that turn.
+    pub turns: bool,
 }
 
 impl Joint<'_> {
@@ -53,7 +55,12 @@ impl Scene {
     /// Every two boundaries that are made to match: contacts between two sides first, then bonds.
     pub(crate) fn joints(&self) -> impl Iterator<Item = Joint<'_>> {
         let contacts = self.contacts.iter().filter_map(|contact| match &contact.sides {
-            ContactSides::Between(sides) => Some(Joint { kind: "contact", sides, direction: contact.direction }),
+            ContactSides::Between(sides) => Some(Joint {
+                kind: "contact",
+                sides,
+                direction: contact.direction,
+                turns: contact.normals == Normals::Smooth && contact.direction.is_none(),
+            }),
             ContactSides::Rigid(_) => None,
         });
         contacts.chain(self.bonds.iter().map(Bond::joint))
@@ -63,7 +70,7 @@ impl Scene {
 impl Bond {
     /// The bond as two boundaries that are made to match.
     pub(crate) fn joint(&self) -> Joint<'_> {
-        Joint { kind: "bond", sides: &self.sides, direction: None }
+        Joint { kind: "bond", sides: &self.sides, direction: None, turns: false }
     }
 }
 

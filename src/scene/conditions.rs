@@ -7,6 +7,7 @@ use super::bonds::{Bond, bond};
 use super::error::{Fault, SceneError};
 use super::fault::names;
 use super::obstacle::obstacle;
+use super::range::ordered;
 use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
@@ -283,6 +284,16 @@ fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> 
             // One number below zero for the whole of two sides is an interference fit.
             let may_overlap = contact.between.is_some();
             return source.number(&number, (table, "gap"), |g| may_overlap || g >= 0.0, NEGATIVE).map(Gap::Constant);
+        }
+        RawGap::Range(ends) => {
+            let may_overlap = contact.between.is_some();
+            let [low, high] = ordered(ends, raw.span(), (table, "gap"), source)?;
+            for value in [low, high] {
+                let number = At { value, start: raw.start, end: raw.end };
+                source.number(&number, (table, "gap"), |g| may_overlap || g >= 0.0, NEGATIVE)?;
+            }
+            // The end of the lowest energy.
+            return Ok(Gap::Constant(high));
         }
         RawGap::Curve(curve) => return touching(curve, raw, table, source),
         RawGap::Table(rows) => rows,

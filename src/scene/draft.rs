@@ -9,11 +9,12 @@ use std::path::PathBuf;
 
 use toml::Value;
 
+use super::range::{DataRange, Ranged};
 use super::selection::written;
 use super::{
     Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
-    Load, MeshSource, Normals, Obstacle, Part, Polygon, Quantity, Region, Scene, SceneError, Shape, Support,
-    SupportKind, Target, Touching, Traction,
+    Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene, SceneError, Shape,
+    Support, SupportKind, Target, Touching, Traction,
 };
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
@@ -52,6 +53,8 @@ pub struct Draft {
     pub bonds: Vec<Bond>,
     /// What the scene is solved for, in the order of the file.
     pub quantities: Vec<Quantity>,
+    /// Numbers that are known between two ends alone; bodies and contacts have those with the lowest energy.
+    pub ranges: Vec<DataRange>,
 }
 
 impl Draft {
@@ -73,6 +76,7 @@ impl Draft {
             contacts: Vec::new(),
             bonds: Vec::new(),
             quantities: Vec::new(),
+            ranges: Vec::new(),
         }
     }
 
@@ -111,16 +115,35 @@ impl Draft {
         for (i, Body { name, elasticity, initial, body_force }) in self.bodies.iter().enumerate() {
             let cells = self.cells.iter().find(|cells| cells.body == i);
             let cells = cells.map(|cells| format!(", {}", written(&cells.group))).unwrap_or_default();
-            let (name, material, force) =
-                (quoted(name), material(elasticity) + &initial_keys(initial), force(body_force));
+            let material = match (self.range_of(Ranged::Young(i)), elasticity) {
+                (Some(young), Elasticity::Isotropic { poisson, .. }) => {
+                    format!("young = {young}, poisson = {}", number(*poisson))
+                }
+                _ => material(elasticity),
+            };
+            let (name, force) = (quoted(name), force(body_force));
+            let material = material + &initial_keys(initial);
             writeln!(text, "bodies.{name} = {{ {material}, {force}{cells} }}")?;
         }
         let lists = [
             ("boundaries", self.boundaries.iter().map(|b| self.boundary(b)).collect()),
-            ("supports", self.supports.iter().map(support).collect::<Vec<_>>()),
+            (
+                "supports",
+                self.supports
+                    .iter()
+                    .enumerate()
+                    .map(|(i, s)| support(s, |c| self.range_of(Ranged::Spring(i, c))))
+                    .collect::<Vec<_>>(),
+            ),
             ("tractions", self.tractions.iter().map(traction).collect()),
-            ("contacts", self.contacts.iter().map(contact).collect()),
-            ("bonds", self.bonds.iter().map(bond).collect()),
+            (
+                "contacts",
+                self.contacts.iter().enumerate().map(|(i, c)| contact(c, self.range_of(Ranged::Gap(i)))).collect(),
+            ),
+            (
+                "bonds",
+                self.bonds.iter().enumerate().map(|(i, b)| bond(b, |c| self.range_of(Ranged::Layer(i, c)))).collect(),
+            ),
             ("quantities", self.quantities.iter().map(|q| self.quantity(q)).collect()),
         ];
         for (key, tables) in lists.iter().filter(|(_, tables)| !tables.is_empty()) {
@@ -129,6 +152,11 @@ impl Draft {
             writeln!(text, "]")?;
         }
         Ok(())
+    }
+
+    /// The two ends of a number, where it has a range.
+    fn range_of(&self, of: Ranged) -> Option<String> {
+        self.ranges.iter().find(|range| range.of == of).map(|range| list(&[range.low, range.high]))
     }
 
     fn boundary(&self, Boundary { name, body, edges }: &Boundary) -> String {
@@ -178,6 +206,17 @@ impl Draft {
                     Region::Polygon(points) => format!(", polygon = {}", rows(points)),
                 };
                 format!("stress = {}{region}, {}", body(*of), component_of(component))
+            }
+            Target::StressIntensity { mode, tip } => {
+                format!("stress_intensity = {:?}, tip = {}", mode.word(), list(tip))
+            }
+            Target::Point { body: of, at, value, smoothness } => {
+                let (key, value) = match value {
+                    PointValue::Displacement(direction) => ("displacement", format!("direction = {}", list(direction))),
+                    PointValue::Stress(component) => ("stress", component_of(component)),
+                    PointValue::Invariant(invariant) => ("stress", format!("component = {:?}", invariant.word())),
+                };
+                format!("{key} = {}, point = {}, {value}, smoothness = {smoothness}", body(*of), list(at))
             }
         };
         format!("name = {}, {what}", quoted(&quantity.name))
@@ -304,7 +343,13 @@ fn polygon(polygon: &Polygon) -> String {
     format!("{{ body = {body}, points = {points}, edges = [{names}], arcs = [{arcs}] }}")
 }
 
-fn support(Support { on, kind }: &Support) -> String {
+/// Normal and tangential, each a number or the ends that `range` has of it.
+fn both(stiffness: &[f64; 2], range: impl Fn(usize) -> Option<String>) -> String {
+    let [normal, tangential] = [0, 1].map(|c| range(c).unwrap_or_else(|| number(stiffness[c])));
+    format!("[{normal}, {tangential}]")
+}
+
+fn support(Support { on, kind }: &Support, range: impl Fn(usize) -> Option<String>) -> String {
     let on = quoted(on);
     match kind {
         SupportKind::Clamped { displacement } => {
@@ -314,7 +359,9 @@ fn support(Support { on, kind }: &Support) -> String {
             let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
             format!("on = {on}, type = \"roller\"{direction}, displacement = {}", number(*displacement))
         }
-        SupportKind::Spring { stiffness } => format!("on = {on}, type = \"spring\", stiffness = {}", list(stiffness)),
+        SupportKind::Spring { stiffness } => {
+            format!("on = {on}, type = \"spring\", stiffness = {}", both(stiffness, range))
+        }
     }
 }
 
@@ -346,13 +393,13 @@ fn traction(Traction { on, load }: &Traction) -> String {
     }
 }
 
-fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> String {
+fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range: Option<String>) -> String {
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
     };
     let gap = match gap {
-        Gap::Constant(g) => number(*g),
+        Gap::Constant(g) => range.unwrap_or_else(|| number(*g)),
         Gap::Table(table) => rows(table),
         Gap::Circle(Touching { radius, at }) => format!("{{ circle = {}, at = {} }}", number(*radius), number(*at)),
         Gap::Parabola(Touching { radius, at }) => format!("{{ parabola = {}, at = {} }}", number(*radius), number(*at)),
@@ -375,8 +422,8 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact) -> St
     format!("{sides}, gap = {gap}{normals}{direction}")
 }
 
-fn bond(Bond { sides: [a, b], stiffness }: &Bond) -> String {
-    let stiffness = stiffness.map(|k| format!(", stiffness = {}", list(&k))).unwrap_or_default();
+fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
+    let stiffness = stiffness.map(|k| format!(", stiffness = {}", both(&k, range))).unwrap_or_default();
     format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
 }
 

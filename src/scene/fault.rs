@@ -3,6 +3,10 @@
 use super::nearest::suggestion;
 use super::quantity::QuantityFault;
 
+/// Keys with which a traction would be a force at a point, and tables that would list such forces.
+const POINT_LOADS: [&str; 6] = ["point", "force", "node", "nodes", "vertex", "at"];
+const POINT_TABLES: [&str; 6] = ["forces", "point_loads", "loads", "nodal_forces", "cload", "point_forces"];
+
 /// What is wrong inside a scene file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
@@ -228,7 +232,15 @@ impl Fault {
             Fault::Empty => "a scene needs at least [model], [bodies.NAME] and [mesh] or [geometry]".into(),
             Fault::Syntax { message } => syntax_remedy(message).into(),
             Fault::UnknownKey { key, table, .. } if key == "at" && table.starts_with("[[quantities]]") => {
-                "no interval can be guaranteed for a value at a point; take the mean over a short boundary or a small `box`".into()
+                "write `point = [x, y]` for the value at a point inside a body; of the largest value of anything no interval can be guaranteed".into()
+            }
+            Fault::UnknownKey { key, table, .. }
+                if (table.starts_with("[[tractions]]") && POINT_LOADS.contains(&key.as_str()))
+                    || (table == "the scene" && POINT_TABLES.contains(&key.as_str())) =>
+            {
+                "a force at a point has infinite energy, so that no bracket exists and codes give what their mesh gives; spread the same \
+                 resultant over an edge: name a short one there in [[tractions]] and give it the force over its area as `value`"
+                    .into()
             }
             Fault::UnknownKey { key, known, .. } => suggestion(key, known, "keys known here", '`'),
             Fault::MissingKey { remedy, .. } => remedy.clone(),

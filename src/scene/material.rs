@@ -2,6 +2,7 @@
 
 use super::Kinematics;
 use super::error::{Fault, SceneError};
+use super::range::{RawNumber, ends, no_range};
 use super::raw::{At, Pair, RawBody, RawExpansion, RawOrthotropic, RawTemperature, Table};
 use super::source::Source;
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, MatrixKind, Orthotropic};
@@ -99,10 +100,14 @@ fn isotropic(
     };
     let young = raw.young.as_ref().ok_or_else(|| missing("young"))?;
     let words = ("Young's modulus must be positive", "write a positive number, in units of stress");
-    let young = source.positive(young, (label, "young"), words)?;
+    let (low, high) = ends(young, (label, "young"), source)?;
+    high.map(|high| source.positive(&high, (label, "young"), words)).transpose()?;
+    // Of a range the end of the lowest energy.
+    let young = source.positive(&low, (label, "young"), words)?;
     let poisson = raw.poisson.as_ref().ok_or_else(|| missing("poisson"))?;
+    let poisson = no_range(poisson, (label, "poisson"), source)?;
     let words = poisson_words(poisson.value);
-    let poisson = source.number(poisson, (label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
+    let poisson = source.number(&poisson, (label, "poisson"), |nu| -1.0 < nu && nu < 0.5, words)?;
     Ok(Elasticity::Isotropic { young, poisson })
 }
 
@@ -159,6 +164,15 @@ pub(super) fn initial(
             let (key, table) = ("initial_stress".to_owned(), label.to_owned());
             return Err(source.error(stress.span(), Fault::Number { key, table, found, rule, remedy }));
         }
+    }
+    if let Some(young) = raw.young.as_ref().filter(|_| initial.stress != [0.0; 4])
+        && matches!(young.value, RawNumber::Range(_))
+    {
+        let rule =
+            "with an `initial_stress` the energy neither grows nor falls with the modulus: the ends enclose nothing";
+        let remedy = "write one number, or leave `initial_stress` out";
+        let (key, table, found) = ("young".to_owned(), label.to_owned(), source.written(young.span()));
+        return Err(source.error(young.span(), Fault::Number { key, table, found, rule, remedy }));
     }
     let strain = law.initial_strain(kinematics == Kinematics::PlaneStrain, &initial);
     let numbers = strain.value.iter().chain(strain.gradient.as_flattened());

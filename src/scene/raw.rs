@@ -12,6 +12,7 @@ use toml::Spanned;
 
 use super::body_force::{RawForce, RawRotation};
 use super::quantity::RawQuantity;
+use super::range::RawNumber;
 
 /// A value and where it stands in the file.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -212,12 +213,11 @@ pub(super) struct RawArc {
                       {"required": ["compliance"]}])
 )]
 pub(super) struct RawBody {
-    /// Young's modulus.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub young: Option<At<f64>>,
+    /// Young's modulus, or the two ends [low, high] between which it is known to lie.
+    pub young: Option<At<RawNumber>>,
     /// Poisson's ratio.
-    #[schemars(extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 0.5))]
-    pub poisson: Option<At<f64>>,
+    #[schemars(with = "Option<f64>", extend("exclusiveMinimum" = -1, "exclusiveMaximum" = 0.5))]
+    pub poisson: Option<At<RawNumber>>,
     /// Engineering constants of a body with three planes of symmetry.
     pub orthotropic: Option<At<Table<RawOrthotropic>>>,
     /// Stiffness in the axes of the body: six rows of six in the order 11, 22, 33, 23, 13, 12 with engineering shear strains, or in plane stress three of three for 11, 22, 12.
@@ -371,8 +371,8 @@ pub(super) struct RawSupport {
 pub(super) enum RawStiffness {
     /// Along the normal; the tangential direction is free.
     Normal(#[schemars(extend("exclusiveMinimum" = 0))] f64),
-    /// Along the normal and along the boundary.
-    Both(#[schemars(with = "[f64; 2]")] Vec<f64>),
+    /// Along the normal and along the boundary, each a number or the two ends of a range.
+    Both(#[schemars(with = "[RawNumber; 2]")] Vec<RawNumber>),
 }
 
 impl<'de> Deserialize<'de> for RawStiffness {
@@ -509,9 +509,10 @@ pub(super) struct RawBond {
     /// Two boundaries that coincide as polylines.
     #[schemars(with = "[String; 2]")]
     pub between: At<Vec<At<String>>>,
-    /// An elastic layer in place of a rigid bond: force per area and relative displacement, [normal, tangential].
-    #[schemars(with = "Option<[f64; 2]>")]
-    pub stiffness: Option<Pair>,
+    /// An elastic layer in place of a rigid bond: force per area and relative displacement, [normal, tangential], each a number or
+    /// the two ends of a range.
+    #[schemars(with = "Option<[RawNumber; 2]>")]
+    pub stiffness: Option<At<Vec<RawNumber>>>,
 }
 
 /// A rigid obstacle: a straight line or a circle.
@@ -542,7 +543,7 @@ pub(super) struct RawObstacleCircle {
     pub side: Option<At<String>>,
 }
 
-/// A number, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
+/// A number, or the two ends [low, high] between which it is known to lie, or rows [s, g]: piecewise linear in the arc length s from the end of the first side that comes first in
 /// (x, y) order, all around a body anticlockwise from its first vertex in that order; or a circle or parabola of a radius that touches at an s.
 #[derive(Debug, JsonSchema)]
 #[serde(untagged)]
@@ -550,6 +551,8 @@ pub(super) struct RawObstacleCircle {
 pub(super) enum RawGap {
     /// The same everywhere.
     Constant(f64),
+    /// The ends of a number that is known as a range, the lower first.
+    Range(#[schemars(with = "[f64; 2]")] Vec<f64>),
     /// Rows [s, g] with s increasing.
     Table(#[schemars(with = "Vec<[f64; 2]>", length(min = 1))] Vec<Pair>),
     /// A curve that touches the side at one point.
@@ -590,11 +593,17 @@ impl<'de> Deserialize<'de> for RawGap {
                 Ok(RawGap::Constant(number as f64))
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut rows: A) -> Result<RawGap, A::Error> {
-                let mut table = Vec::new();
-                while let Some(row) = rows.next_element()? {
-                    table.push(row);
+                let (mut table, mut ends) = (Vec::new(), Vec::new());
+                while let Some(entry) = rows.next_element::<At<RawNumber>>()? {
+                    match entry.value {
+                        RawNumber::One(end) if table.is_empty() => ends.push(end),
+                        RawNumber::Range(value) if ends.is_empty() => {
+                            table.push(At { value, start: entry.start, end: entry.end });
+                        }
+                        _ => return Err(serde::de::Error::custom("rows [s, g] and numbers in one list")),
+                    }
                 }
-                Ok(RawGap::Table(table))
+                Ok(if ends.is_empty() { RawGap::Table(table) } else { RawGap::Range(ends) })
             }
         }
         deserializer.deserialize_any(NumberOrRows)

@@ -1,7 +1,8 @@
 //! The stiffness of springs and elastic layers.
 
 use super::error::{Fault, SceneError};
-use super::raw::{At, Pair, RawStiffness, RawSupport, Table};
+use super::range::{RawNumber, components};
+use super::raw::{At, RawStiffness, RawSupport, Table};
 use super::source::Source;
 
 const NEGATIVE: (&str, &str) =
@@ -37,27 +38,27 @@ pub(super) fn spring(raw: &At<Table<RawSupport>>, table: &str, source: &Source) 
     let both = match &stiffness.value {
         RawStiffness::Normal(normal) => [source.positive(&at(*normal), place, NONE)?, 0.0],
         RawStiffness::Both(both) => {
-            let list = At { value: both.clone(), start: stiffness.start, end: stiffness.end };
-            source.vector(&list, place)?
+            let ends = components(both, stiffness.span(), place, source)?;
+            for k in ends.as_flattened().iter().copied() {
+                source.number(&at(k), place, |k| k >= 0.0, NEGATIVE)?;
+                if k > 0.0 {
+                    source.positive(&at(k), place, NONE)?;
+                }
+            }
+            ends.map(|[low, _]| low)
         }
     };
-    for k in both {
-        source.number(&at(k), place, |k| k >= 0.0, NEGATIVE)?;
-        if k > 0.0 {
-            source.positive(&at(k), place, NONE)?;
-        }
-    }
     source.number(&at(both[0].max(both[1])), place, |k| k > 0.0, NONE)?;
     Ok(both)
 }
 
 /// The stiffness of an elastic layer, normal and tangential.
-pub(super) fn layer(stiffness: &Pair, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
-    let both = source.vector(stiffness, (table, "stiffness"))?;
-    for value in both {
+pub(super) fn layer(stiffness: &At<Vec<RawNumber>>, table: &str, source: &Source) -> Result<[f64; 2], SceneError> {
+    let ends = components(&stiffness.value, stiffness.span(), (table, "stiffness"), source)?;
+    for value in ends.as_flattened().iter().copied() {
         source.positive(&At { value, start: stiffness.start, end: stiffness.end }, (table, "stiffness"), SLACK)?;
     }
-    Ok(both)
+    Ok(ends.map(|[low, _]| low))
 }
 
 /// Refuses a stiffness beside a support that is rigid.

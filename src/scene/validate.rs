@@ -7,6 +7,7 @@ use super::conditions::{Conditions, conditions, edge_names};
 use super::error::{Fault, SceneError};
 use super::material::{elasticity, initial};
 use super::quantity::quantities;
+use super::range::ranges;
 use super::raw::{At, RawModel, RawScene, Table};
 use super::source::Source;
 use super::{Body, BodyCells, Draft, Kinematics, MeshSource, Scene, files, geometry, selection};
@@ -24,6 +25,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
     let conditions = conditions(&raw, edges.clone(), &source)?;
     let quantities = quantities(&raw, edges, &bodies, &conditions, &source)?;
     let Conditions { supports, tractions, contacts, bonds } = conditions;
+    let ranges = ranges(&raw, &bodies);
     let title = raw.title.unwrap_or_else(|| name.clone());
     let path = path.to_owned();
     Ok(Scene::unchecked(Draft {
@@ -42,6 +44,7 @@ pub(super) fn validate(raw: RawScene, text: &str, path: &Path) -> Result<Scene, 
         contacts,
         bonds,
         quantities,
+        ranges,
     }))
 }
 
@@ -92,7 +95,7 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
         let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
-        let body_force = body_force(raw, &label, source)?;
+        let body_force = body_force(raw, &label, kinematics, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
         let initial = initial(raw, &label, &elasticity, kinematics, source)?;
         Ok(Body { name, elasticity, initial, body_force })

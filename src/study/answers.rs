@@ -4,7 +4,7 @@ use super::Certified;
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::{Displacement, Elements, StressField};
 use crate::problem::Problem;
-use crate::quantity::{Functional, Interval, Kind, Known, NotBounded, displaced};
+use crate::quantity::{Form, Interval, Kind, Known, NoTip, NotBounded, displaced};
 use crate::scene::Quantity;
 
 /// A quantity and what is guaranteed of it.
@@ -43,8 +43,8 @@ impl Answer {
 /// A sentence that names the quantity.
 pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
     for quantity in &problem.scene.quantities {
-        match Functional::new(problem, quantity) {
-            Ok(_) | Err(NotBounded::Shared { .. }) => {}
+        match Form::new(problem, quantity) {
+            Ok(_) | Err(NotBounded::Shared { .. } | NotBounded::NoTip(NoTip::Coarse { .. })) => {}
             Err(error) => return Err(format!("quantity '{}': {error}", quantity.name)),
         }
     }
@@ -81,17 +81,17 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
     let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
-        match (Functional::new(problem, quantity), &known) {
-            (Ok(functional), _) if motions.iter().any(|motion| changes(problem, &functional, motion)) => {
+        match (Form::new(problem, quantity), &known) {
+            (Ok(form), _) if motions.iter().any(|motion| changes(problem, &form, motion)) => {
                 let reason = "a motion that neither supports nor closed contacts resist changes it";
-                Answer::unknown(name, functional.kind, reason)
+                Answer::unknown(name, form.kind(), reason)
             }
-            (Ok(functional), Ok(known)) => {
-                let interval = known.interval(&functional);
+            (Ok(form), Ok(known)) => {
+                let interval = form.interval(known);
                 let sensitivity = sensitivity(&interval, gap);
-                Answer { name, kind: functional.kind, interval, sensitivity }
+                Answer { name, kind: form.kind(), interval, sensitivity }
             }
-            (Ok(functional), Err(reason)) => Answer::unknown(name, functional.kind, reason),
+            (Ok(form), Err(reason)) => Answer::unknown(name, form.kind(), reason),
             (Err(error), _) => Answer::unknown(name, Kind::Force, &error.to_string()),
         }
     };
@@ -128,10 +128,10 @@ fn elements(options: &Options, stress: &StressField) -> Elements {
 const UNMOVED: f64 = 1e-9;
 
 /// Whether a rigid motion changes a quantity.
-fn changes(problem: &Problem, functional: &Functional, motion: &Motion) -> bool {
+fn changes(problem: &Problem, form: &Form, motion: &Motion) -> bool {
+    // No stress changes.
+    let Some(functional) = form.linear() else { return false };
     let largest = motion.iter().fold(0.0_f64, |m, u| m.max(u[0].hypot(u[1])));
-    let load = &functional.load;
-    let is_displacement = !load.tractions.is_empty() || load.force.iter().any(|f| !f.is_none());
-    is_displacement
+    functional.is_of_place()
         && displaced(problem, functional, &Displacement::from_p1(&problem.mesh, motion)).abs() > UNMOVED * largest
 }

@@ -75,8 +75,15 @@ pub fn claim_before_contact(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    let solution = Solution::new(before, own, judged.field.potential.stored())?.within(Extent::of(before, bracket));
-    let solution = Nonmatching::new(solution.with_weak_contact(weak), problem);
+    // Which rule a program used on quadrilaterals shows once its contact forces are taken away.
+    let made = |points| {
+        let solution = Solution::by_rule(before, own, judged.field.potential.stored(), points)?
+            .within(Extent::of(before, bracket));
+        Ok(Nonmatching::new(solution.with_weak_contact(weak), problem))
+    };
+    let tried = cells::rules(own).into_iter().map(made).collect::<Result<Vec<_>, NoUpperBound>>()?;
+    let best = tried.into_iter().min_by(|a, b| a.solution.residual().total_cmp(&b.solution.residual()));
+    let solution = best.map_or_else(|| made(None), Ok)?;
     let checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
 }

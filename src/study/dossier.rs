@@ -6,6 +6,7 @@ use super::curves;
 use super::maps::Fields;
 use super::provenance::{identifier, provenance};
 use super::quantity_checks::summaries;
+use super::ranges::{OtherEnd, data_range, in_words, ranges_note};
 use super::verdict::verdict;
 use crate::bounds::{Bracket, UpperBound};
 use crate::cause::causes;
@@ -14,7 +15,9 @@ use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::Displacement;
 use crate::problem::{Note, Problem};
-use crate::report::{Dossier, DualSummary, Energy, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status};
+use crate::report::{
+    Dossier, DualSummary, Energy, Guarantee, GuaranteeLevel, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status,
+};
 
 /// What a run found.
 #[derive(Debug)]
@@ -49,6 +52,8 @@ pub struct Findings<'a> {
     pub failure: Option<String>,
     /// What to do where refinement ended before its tolerance.
     pub advice: Option<&'static str>,
+    /// The scene of the other ends of ranges of the data, solved.
+    pub other_end: Option<&'a OtherEnd>,
 }
 
 /// Puts the report and its fields together.
@@ -96,10 +101,10 @@ fn report(findings: &Findings<'_>) -> Report {
     // A finer mesh for the sake of the verdict keeps the edges.
     let followed = if findings.finer.is_none() { findings.history.as_slice() } else { &[] };
     notes.extend(curves::remarks(findings.certified, followed));
-    let guaranteed = !notes.iter().any(|n| n.weakens_guarantee);
     let sharpest = findings.finer.map_or(bracket, |finer| &finer.bracket);
-    let energy =
-        comparison.upper(sharpest).map(|(upper, from)| energy(problem, sharpest, bracket, upper, from, guaranteed));
+    let energy = comparison
+        .upper(sharpest)
+        .map(|(upper, from)| energy(problem, sharpest, bracket, upper, from, Guarantee::of_notes(&notes)));
     let blunt = |enough: f64| !energy.as_ref().is_some_and(|energy| sharpest.tells(energy.upper, enough));
     let status = match (&findings.failure, comparison.agrees()) {
         (Some(_), _) => Status::Failed,
@@ -107,6 +112,8 @@ fn report(findings: &Findings<'_>) -> Report {
         (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
         (None, true) => Status::Agree,
     };
+    let across = findings.other_end.map(|end| data_range(problem, sharpest, end));
+    notes.extend(across.as_ref().map(ranges_note));
     let causes = causes(problem, comparison, &findings.diagnosis, findings.advice);
     let (checks, remarks) = comparison.checks.iter().cloned().partition(|check| check.decides());
     let mut provenance = provenance(problem, findings.threads);
@@ -119,9 +126,11 @@ fn report(findings: &Findings<'_>) -> Report {
         command: findings.command.to_string(),
         run: identifier(),
         status,
-        verdict: verdict(findings, status, energy.as_ref(), &causes),
+        verdict: verdict(findings, status, energy.as_ref(), &causes)
+            + &across.as_ref().map_or_else(String::new, in_words),
         causes,
         energy,
+        data_range: across,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
             degree_min: (0..dual.stress.len()).map(|t| dual.stress.degree(t)).min().unwrap_or(0),
@@ -169,8 +178,9 @@ fn energy(
     own: &Bracket,
     upper: &UpperBound,
     from: &str,
-    guaranteed: bool,
+    guarantee: Guarantee,
 ) -> Energy {
+    let guaranteed = guarantee.level == GuaranteeLevel::Guaranteed;
     let free = sharpest.free.as_ref().ok();
     let gap = upper.upper() - sharpest.lower();
     // The constitutive error of a displacement is known against the stress of its own mesh.
@@ -194,6 +204,7 @@ fn energy(
         enclosed_work: enclosed_work(upper, sharpest),
         compliance: problem.is_cone().then(|| enclosed_work(upper, sharpest)),
         guaranteed,
+        guarantee,
     }
 }
 
@@ -227,6 +238,7 @@ pub fn infeasible<'a>(
             verdict: sentence.to_string(),
             causes: Vec::new(),
             energy: None,
+            data_range: None,
             dual: None,
             primal: Vec::new(),
             contact: Vec::new(),

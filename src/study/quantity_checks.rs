@@ -6,7 +6,7 @@ use super::answers::Answer;
 use crate::bounds::Bracket;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged, weighted_reactions};
 use crate::problem::{Problem, Scales};
-use crate::quantity::{Functional, Interval, value_of};
+use crate::quantity::{Form, Interval};
 use crate::report::{QuantityOfModel, QuantitySummary};
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
@@ -63,9 +63,9 @@ pub fn summaries(certified: &Certified, answers: &[Answer], comparison: &Compari
 fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) -> Vec<Result<Told, String>> {
     let problem = &certified.problem;
     let quantity = problem.scene.quantities.iter().find(|quantity| quantity.name == answer.name);
-    let functional = quantity.map(|quantity| Functional::new(problem, quantity));
-    let value = |judged: &Judged| match &functional {
-        Some(Ok(functional)) => told(problem, functional, judged),
+    let form = quantity.map(|quantity| Form::new(problem, quantity));
+    let value = |judged: &Judged| match &form {
+        Some(Ok(form)) => told(problem, form, judged),
         Some(Err(error)) => Err(error.to_string()),
         None => Err("the scene has no quantity of this name".to_string()),
     };
@@ -80,8 +80,13 @@ struct Told {
 }
 
 /// The value of a quantity that the displacement tells, or its reactions where no displacement of the mesh moves a contact alone.
-fn told(problem: &Problem, functional: &Functional, judged: &Judged) -> Result<Told, String> {
+fn told(problem: &Problem, form: &Form, judged: &Judged) -> Result<Told, String> {
     let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    let own = || finite(form.value_of(problem, &judged.field.displacement));
+    let without = "the displacement has no finite value of it";
+    let Some(functional) = form.linear() else {
+        return own().map(|value| Told { value, remark: None }).ok_or_else(|| without.to_string());
+    };
     let of_contact = functional.load.weights.iter().any(|w| !w.is_empty());
     let reactions = judged.candidate.reactions.as_ref().filter(|_| functional.is_of_contact_alone());
     let carried =
@@ -91,13 +96,13 @@ fn told(problem: &Problem, functional: &Functional, judged: &Judged) -> Result<T
     if let Some(value) = carried().filter(|_| on_quadrilaterals) {
         return Ok(Told { value, remark: None });
     }
-    if let Some(value) = finite(value_of(problem, functional, &judged.field.displacement)) {
+    if let Some(value) = own() {
         let remark =
             "the value is that of its stresses on a motion that is linear on triangles, not of its nodal forces";
         return Ok(Told { value, remark: on_quadrilaterals.then(|| remark.to_string()) });
     }
     if functional.lift.is_some() || !of_contact {
-        return Err("the displacement has no finite value of it".to_string());
+        return Err(without.to_string());
     }
     let shared = "the contact shares a vertex with a support or another contact, or its direction turns";
     match carried() {

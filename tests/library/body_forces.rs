@@ -1,7 +1,7 @@
 //! Body forces that are not the same everywhere: equilibrium by a quadrature of the tests' own, the bracket, closed solutions.
 
 use crate::support::random::Random;
-use crate::support::scenes::stack::slanted;
+use crate::support::scenes::stack::{slanted, varying};
 use crate::support::theory::quadrature::gauss;
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, Options};
@@ -23,19 +23,6 @@ fn solved(problem: &Problem, degree: usize) -> Result<Certified, StudyError> {
 
 fn upper(certified: &Certified) -> f64 {
     certified.bracket.free.as_ref().expect("an upper bound").upper()
-}
-
-/// The keys of a random affine force, of a rotation about a random point, or of both.
-fn keys(random: &mut Random) -> String {
-    let mut numbers = |size: f64| [random.between(-size, size), random.between(-size, size)];
-    let (value, gradient, about) = (numbers(0.4), [numbers(0.5), numbers(0.5)], numbers(2.0));
-    let field = format!("body_force = {{ value = {value:?}, gradient = {gradient:?} }}");
-    let turning = format!("rotation = {{ density = 0.3, omega = {:?}, about = {about:?} }}", random.between(0.3, 1.2));
-    match random.below(3) {
-        0 => field,
-        1 => turning,
-        _ => format!("{field}\n{turning}"),
-    }
 }
 
 /// ∫ λ:∇w − ∫ f·w − ∫ (λn)·w over the body, with w of degree 3, relative to the sum of the sizes of its terms. Where λ balances f
@@ -110,7 +97,7 @@ fn stresses_balance_the_force_and_energies_agree_with_local_terms() {
         let mut toml = slanted(&mut random);
         for (k, body) in ["base", "middle", "top"].into_iter().enumerate() {
             if k == affine || only == 0 {
-                toml = toml.loaded(body, &keys(&mut random));
+                toml = toml.loaded(body, &varying(&mut random));
             }
         }
         let given = problem(&toml.size(0.5));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::support::toml::Toml;
 use hypercircle::problem::Problem;
-use hypercircle::scene::{Component, Extent, Holder, Quantity, Region, Scene, Target};
+use hypercircle::scene::{Component, Extent, Holder, Invariant, PointValue, Quantity, Region, Scene, Target};
 
 fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -30,6 +30,7 @@ fn quantities_are_what_the_file_says() {
     let edge = |name: &str, direction| Target::Displacement { of: Extent::Boundary(name.into()), direction };
     let along = Component::along;
     let region = |points: &[[f64; 2]]| Region::Polygon(points.to_vec());
+    let at = |body, at, value, smoothness| Target::Point { body, at, value, smoothness };
     let expected = [
         ("tip", edge("left_load", [1.0, 0.0])),
         ("free edge", edge("left_top", [0.6, -0.8])),
@@ -57,6 +58,9 @@ fn quantities_are_what_the_file_says() {
                 component: along([1.0_f64 / 2.0_f64.sqrt(); 2]),
             },
         ),
+        ("inner displacement", at(0, [0.25, 0.5], PointValue::Displacement([0.0, 1.0]), 4)),
+        ("inner stress", at(1, [1.5, 0.5], PointValue::Stress(Component::YY), 3)),
+        ("inner equivalent", at(0, [0.5, 0.5], PointValue::Invariant(Invariant::VonMises), 2)),
     ];
     let expected: Vec<_> = expected.map(|(name, target)| Quantity { name: name.into(), target }).into();
     assert_eq!(scene.quantities, expected);
@@ -68,7 +72,10 @@ fn quantities_are_what_the_file_says() {
 
 /// A quantity without its name, and what its refusal has to say.
 const MALFORMED: &[(&str, &[&str])] = &[
-    ("", &["does not say what is wanted", "give one of `displacement`, `force`, `moment`, `stress`"]),
+    (
+        "",
+        &["does not say what is wanted", "give one of `displacement`, `force`, `moment`, `stress`, `stress_intensity`"],
+    ),
     (
         "force = \"wall\"\nmoment = \"wall\"\nabout = [0, 0]",
         &["2 things at once: `force`, `moment`", "a table [[quantities]] with a name of its own"],
@@ -82,8 +89,20 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("displacement = \"left\"\nwindow = [0, 1, 2, 3]", &["`window`", "does not go with `displacement`", "`force`"]),
     ("displacement = \"left\"\ncomponent = \"xx\"", &["`component`", "does not go with `displacement`", "`stress`"]),
     ("displacement = \"left\"\nbox = [[0, 0], [1, 1]]", &["`box`", "`displacement`", "a region"]),
-    ("displacement = \"left\"\npoint = [0, 0]", &["unknown key `point`", "keys known here"]),
-    ("stress = \"left\"\nat = [0, 0]", &["unknown key `at`", "small `box`"]),
+    ("displacement = \"left\"\npoint = [0, 0]", &["no `direction`", "direction = [1.0, 0.0]"]),
+    ("displacement = \"left_load\"\npoint = [0, 0]\ndirection = [1, 0]", &["\"left_load\"", "no body", "\"left\""]),
+    ("displacement = \"left\"\npoint = [0]\ndirection = [1, 0]", &["`point`", "1 component, not 2"]),
+    ("displacement = \"left\"\ndirection = [1, 0]\nsmoothness = 2", &["`smoothness`", "a value at a `point`"]),
+    ("stress = \"left\"\npoint = [0, 0]\ncomponent = \"xx\"\nsmoothness = 2.5", &["2.5", "whole number from 0 to 6"]),
+    ("stress = \"left\"\npoint = [0, 0]\ncomponent = \"xx\"\nbox = [[0, 0], [1, 1]]", &["both `point` and `box`"]),
+    ("stress = \"left\"\npoint = [0, 0]\ncomponent = \"mises\"", &["\"mises\"", "\"von-mises\""]),
+    ("stress = \"left\"\ncomponent = \"von-mises\"", &["`von-mises`", "a mean over a region", "point = [x, y]"]),
+    ("force = \"left_face\"\npoint = [0, 0]", &["`point`", "does not go with `force`"]),
+    ("stress_intensity = \"KI\"", &["no `tip`", "tip = [x, y]"]),
+    ("stress_intensity = \"K1\"\ntip = [0, 0]", &["\"K1\"", "\"KI\""]),
+    ("stress_intensity = \"KI\"\ntip = [0, 0]\ndirection = [1, 0]", &["`direction`", "`stress_intensity`"]),
+    ("stress = \"left\"\ncomponent = \"xx\"\ntip = [0, 0]", &["`tip`", "only a `stress_intensity`"]),
+    ("stress = \"left\"\nat = [0, 0]", &["unknown key `at`", "`point = [x, y]`"]),
     ("force = \"left\"", &["no contact or support", "\"left_face|right_face\"", "\"wall\""]),
     ("force = \"left_load\"\ndirection = [1, 0]", &["no contact or support", "\"left_load\""]),
     ("force = \"wall\"", &["no `direction`", "the force of the support"]),

@@ -69,6 +69,6 @@ fn the_schema_knows_quantities() {
         assert!(example.contains(good) && !admitted(&example.replacen(good, bad, 1)), "{bad}");
     }
     let described = schema["$defs"]["Quantity"]["properties"].as_object().expect("properties");
-    assert_eq!(described.len(), 11);
+    assert_eq!(described.len(), 15);
     assert!(described.values().all(|property| property["description"].is_string()));
 }

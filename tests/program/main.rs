@@ -10,6 +10,7 @@ mod command;
 mod command_line;
 mod contact_in_the_mean;
 mod contact_of_others;
+mod decks;
 mod diff;
 mod element;
 mod fields;
@@ -26,8 +27,11 @@ mod named_mistakes;
 mod own_mesh;
 #[path = "../support/pages.rs"]
 mod pages;
+#[path = "../support/decks.rs"]
+mod plates;
 mod printed;
 mod proof;
+mod quadrilateral_blocks;
 mod quadrilaterals;
 mod quantities;
 #[path = "../support/random.rs"]

@@ -87,8 +87,8 @@ fn scene(name: &str) -> String {
     )
 }
 
-/// Writes scenes and fields into a folder; their energies, or nothing where scikit-fem is missing.
-fn made(folder: &Path, cells: &str, seed: u64, names: &[&str]) -> Option<Value> {
+/// What a script of `tests/support/displacement` prints, or nothing where scikit-fem is missing.
+pub fn by_scikit_fem(script: &str, folder: &Path, args: &[&str]) -> Option<Vec<u8>> {
     let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or("/usr/bin/python3".into(), PathBuf::from);
     let site = Path::new(PROGRAM).ancestors().nth(2).expect("a folder of the build").join("python");
     let has = Command::new(&python).args(["-c", "import skfem, meshio"]).env("PYTHONPATH", &site).output();
@@ -96,15 +96,22 @@ fn made(folder: &Path, cells: &str, seed: u64, names: &[&str]) -> Option<Value> 
         eprintln!("skipped: {} has no scikit-fem", python.display());
         return None;
     }
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement").join(script);
+    let output = Command::new(python).arg(program).arg(folder).args(args).env("PYTHONPATH", site).output();
+    let output = output.expect("an interpreter");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(output.stdout)
+}
+
+/// Writes scenes and fields into a folder; their energies, or nothing where scikit-fem is missing.
+fn made(folder: &Path, cells: &str, seed: u64, names: &[&str]) -> Option<Value> {
     for name in ["clamped", "foot"] {
         std::fs::write(folder.join(format!("{name}.toml")), scene(name)).expect("writable");
     }
-    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement/quadrilaterals.py");
-    let mut command = Command::new(python);
-    command.arg(program).arg(folder).arg(seed.to_string()).arg(cells).args(names).env("PYTHONPATH", site);
-    let output = command.output().expect("an interpreter");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(serde_json::from_slice(&output.stdout).expect("JSON"))
+    let seed = seed.to_string();
+    let args: Vec<&str> = [seed.as_str(), cells].iter().chain(names).copied().collect();
+    let printed = by_scikit_fem("quadrilaterals.py", folder, &args)?;
+    Some(serde_json::from_slice(&printed).expect("JSON"))
 }
 
 fn certified(folder: &Path, name: &str, more: &[&str]) -> (i32, Value) {

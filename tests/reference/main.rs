@@ -6,6 +6,7 @@ mod arcs;
 mod cases;
 #[path = "../support/command.rs"]
 mod command;
+mod decks;
 mod engine;
 #[path = "../support/lame.rs"]
 mod lame;
@@ -13,6 +14,8 @@ mod lame;
 #[path = "../support/pages.rs"]
 mod pages;
 mod planted;
+#[path = "../support/decks.rs"]
+mod plates;
 mod printed;
 mod random_scenes;
 mod schemas;

@@ -90,6 +90,10 @@ fn every_random_scene_is_valid_and_every_kind_of_condition_occurs() {
         "[bodies.b5]",
         "[mesh]",
         "_south",
+        "obstacle = { line",
+        "obstacle = { circle",
+        "side = \"inside\"",
+        "move = ",
         "# Random scene",
     ];
     for word in words {

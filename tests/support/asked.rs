@@ -3,7 +3,7 @@
 use hypercircle::dual::Options;
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
-use hypercircle::scene::{Component, Extent, Quantity, Region, Target};
+use hypercircle::scene::{Component, Extent, Invariant, PointValue, Quantity, Region, Target};
 
 use super::random::Random;
 
@@ -48,5 +48,20 @@ pub fn everything(problem: &Problem, random: &mut Random) -> Vec<Quantity> {
     let t = (0..problem.mesh.triangles.len()).find(|&t| problem.mesh.body[t] == 0).expect("a triangle");
     let region = Region::Polygon(problem.mesh.corners(t).to_vec());
     all.push(quantity("corner", Target::Stress { body: 0, region, component }));
+    // Points that lie anywhere, near the outline too.
+    let t = random.below(problem.mesh.triangles.len());
+    let (body, corners) = (problem.mesh.body[t], problem.mesh.corners(t));
+    let weights = [0, 1, 2].map(|_| random.between(0.1, 1.0));
+    let total: f64 = weights.iter().sum();
+    let at = [0, 1].map(|c| (0..3).map(|i| weights[i] / total * corners[i][c]).sum());
+    let values = [
+        ("place", PointValue::Displacement(direction)),
+        ("point", PointValue::Stress(component)),
+        ("equivalent", PointValue::Invariant(random.pick(&Invariant::ALL))),
+    ];
+    for (name, value) in values {
+        let smoothness = random.below(PointValue::SMOOTHEST + 1);
+        all.push(quantity(name, Target::Point { body, at, value, smoothness }));
+    }
     all
 }

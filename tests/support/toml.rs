@@ -111,6 +111,11 @@ impl Toml {
         self
     }
 
+    /// Names of the bodies, with Young's modulus and Poisson's ratio.
+    pub fn bodies(&self) -> Vec<(String, (f64, f64))> {
+        self.bodies.iter().map(|(name, _, constants)| (name.clone(), *constants)).collect()
+    }
+
     /// The scene file.
     pub fn text(&self) -> String {
         let model = self.model.as_deref().unwrap_or("kinematics = \"plane-strain\"");

@@ -17,7 +17,7 @@ use crate::compare::candidate::Candidate;
 use crate::compare::{Allowances, Check};
 use crate::element::quadrature::segment_rule;
 use crate::mesh::sets::DisjointSets;
-use crate::problem::{ContactPair, Problem, Scales};
+use crate::problem::{ContactPair, Interface, Problem, Scales};
 use crate::statics::cone::balanced;
 use crate::vector::{distance, dot};
 
@@ -104,8 +104,28 @@ impl<'a> Nonmatching<'a> {
             }
         }
         checks.extend((0..self.glued.interfaces.len()).map(|index| self.penetration_check(index)));
+        if let Some(contact) = self.glued.interfaces.iter().find(|contact| self.bends(contact)) {
+            let why = format!(
+                "The sides of contact {} divide a curve differently. What lies between their edges and along which normals forces act \
+                 there each program decides for itself, and no field of its own is a solution for the edges of this report. Give both \
+                 sides the same vertices.",
+                contact.name
+            );
+            let of_contact = |check: &&mut Check| !check.passed && check.decides() && check.name != "solution/supports";
+            for check in checks.iter_mut().filter(of_contact) {
+                *check = Check::not_made(&check.name, check.allowed, check.basis, why.as_str());
+            }
+        }
         allow.apply(&mut checks);
         checks
+    }
+
+    /// Whether vertices of the other side were put beside edges that stand for a curve.
+    fn bends(&self, contact: &Interface) -> bool {
+        let Some(uncut) = &self.glued.uncut else { return false };
+        let mesh = &self.glued.mesh;
+        let is_cut = |e: &usize| mesh.edges[*e].triangles[0].is_some_and(|t| uncut.is_cut(mesh, t));
+        contact.pairs.iter().any(|pair| !pair.direction.is_constant() && pair.edges.iter().flatten().any(is_cut))
     }
 
     /// What is left at the triangles of `glued`: of each that of the triangle that it is a part of.

@@ -34,7 +34,7 @@ use self::across::Across;
 use self::factor::Factor;
 use self::reference::{Field, Reference};
 use self::shape::Shape;
-use super::{EquilibriumElement, MAX_DEGREE, Material, Modes, ModesMut};
+use super::{EquilibriumElement, MAX_DEGREE, Material, Modes, ModesMut, lattice_len};
 use crate::lanes::wide;
 use crate::load::{Affine, BodyForce, balancing};
 
@@ -149,6 +149,26 @@ impl EquilibriumElement for Split {
             own[n..].iter_mut().zip(&kept.free[k * free..][..free]).for_each(|(o, c)| *o += s * c);
         }
         self.triangle(corners, &force.times(particular)).stresses(&own[..n], &own[n..], out);
+    }
+
+    /// The second group of columns: the pressure before it is orthogonal to them.
+    fn unloaded(&self, corners: [[f64; 2]; 3], material: &Material) -> Vec<Vec<[f64; 3]>> {
+        let triangle = self.triangle(corners, &BodyForce::NONE);
+        let factor = Factor::new(&triangle, material);
+        let area = triangle.shape.frame.scale * triangle.shape.frame.scale;
+        let unit = (3.0 * material.unit() / area).sqrt();
+        let none = vec![0.0; self.parameters()];
+        let field = |k: usize| {
+            let mut column = vec![0.0; k + 1];
+            column[k] = unit;
+            factor.solve(&mut column);
+            let mut own = none.clone();
+            own[0] = column[0];
+            let mut out = vec![[0.0; 3]; 3 * lattice_len(self.degree)];
+            triangle.stresses(&own, &column[1..], &mut out);
+            out
+        };
+        (1..=self.free()).map(field).collect()
     }
 }
 

@@ -7,6 +7,8 @@ use super::Kind;
 pub(super) enum Family {
     /// A cell of the mesh, with so many nodes.
     Plane(Kind, usize),
+    /// A cell that is rigid, unless a deck has no others: there the type is what a program writes for want of a better one.
+    Rigid(Kind, usize),
     /// No part of the mesh: springs, masses, connectors.
     Idle,
     /// A cell in space.
@@ -20,9 +22,8 @@ const SPACE: [&str; 5] = ["C3D", "DC3D", "AC3D", "CIN3D", "EC3D"];
 /// Trusses, beams, shells of revolution, rigid and surface lines, with the number of their nodes behind.
 const LINE: [&str; 14] =
     ["B2", "B3", "PIPE2", "PIPE3", "T2D", "T3D", "R2D", "RAX", "SAX", "MAX", "SFMAX", "RB2D", "RB3D", "F2D"];
-const IDLE: [&str; 14] = [
-    "SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "R3D", "SFM3D", "DCOUP", "UNI", "DISTC", "ITS", "ELBOW", "U",
-];
+const IDLE: [&str; 13] =
+    ["SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "SFM3D", "DCOUP", "UNI", "DISTC", "ITS", "ELBOW", "U"];
 
 /// The family of elements called `name`.
 pub(super) fn family(name: &str) -> Family {
@@ -32,6 +33,12 @@ pub(super) fn family(name: &str) -> Family {
     }
     if IDLE.iter().any(|prefix| name.starts_with(prefix)) {
         return Family::Idle;
+    }
+    match name.strip_prefix("R3D") {
+        Some("3") => return Family::Rigid(Kind::Triangle, 3),
+        Some("4") => return Family::Rigid(Kind::Quadrilateral, 4),
+        Some(_) => return Family::Idle,
+        None => {}
     }
     if let Some(rest) = LINE.iter().find_map(|prefix| name.strip_prefix(prefix)) {
         // SAX1 has two nodes and SAX2 three; all others have their number.
@@ -79,6 +86,7 @@ mod tests {
             }
         }
         assert_eq!(family("C3D8R"), Family::Space);
+        assert_eq!(family("R3D4"), Family::Rigid(Kind::Quadrilateral, 4));
         for (names, nodes) in
             [("B21 B21H B31 T2D2 T3D2 R2D2 RAX2 SAX1 MAX1 PIPE21", 2), ("B22 B32 B32R T3D3 T2D3 SAX2", 3)]
         {
@@ -86,7 +94,7 @@ mod tests {
                 assert_eq!(family(name), Family::Plane(Kind::Line, nodes), "{name}");
             }
         }
-        for name in ["SPRING1", "MASS", "CONN2D2", "GAPUNI", "R3D4"] {
+        for name in ["SPRING1", "MASS", "CONN2D2", "GAPUNI"] {
             assert_eq!(family(name), Family::Idle, "{name}");
         }
         for name in ["", "CPE", "CPX4", "CPE7"] {

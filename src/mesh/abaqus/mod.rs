@@ -24,11 +24,15 @@ const DAMAGED: &str = "correct the deck, or export the mesh again";
 /// # Errors
 /// [`MeshError::Format`] with the line, or [`MeshError::File`].
 pub(super) fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
-    let mut reader = Reader::default();
-    for keyword in Deck::read(text, file)? {
-        if keyword.name == "STEP" {
-            break;
-        }
+    let deck: Vec<Keyword> = Deck::read(text, file)?.into_iter().take_while(|keyword| keyword.name != "STEP").collect();
+    let is_cell = |keyword: &Keyword| match keyword.parameter("TYPE").map(family) {
+        Some(Family::Plane(kind, _)) => kind != Kind::Line,
+        Some(Family::Space) => true,
+        _ => false,
+    };
+    let all_rigid = !deck.iter().any(|keyword| keyword.name == "ELEMENT" && is_cell(keyword));
+    let mut reader = Reader { all_rigid, ..Reader::default() };
+    for keyword in deck {
         reader.take(&keyword)?;
     }
     let whole = match reader.inside {
@@ -72,6 +76,8 @@ struct Reader {
     parts: HashMap<String, Part>,
     /// What instances have put together.
     whole: Part,
+    /// Whether all cells of the deck are rigid.
+    all_rigid: bool,
     /// The part that is read.
     inside: Option<String>,
     /// By how much the numbers of an instance are moved, by its name in upper case.
@@ -143,7 +149,8 @@ impl Reader {
         let Some(name) = keyword.parameter("TYPE") else { return Err(keyword.fault("*ELEMENT has no TYPE=", DAMAGED)) };
         let (kind, count) = match family(name) {
             Family::Plane(kind, count) => (kind, count),
-            Family::Idle => return Ok(()),
+            Family::Rigid(kind, count) if self.all_rigid => (kind, count),
+            Family::Rigid(..) | Family::Idle => return Ok(()),
             Family::Space => {
                 let numbers: usize = keyword.lines.iter().map(|line| line.fields.len()).sum();
                 let nodes = name.to_ascii_uppercase().split_once("3D").and_then(|(_, rest)| {

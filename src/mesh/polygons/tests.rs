@@ -13,7 +13,10 @@ fn meshed(scene: &Scene) -> Triangulation {
     let (raw, notes) = mesh(scene).expect("good polygons");
     assert!(notes.is_empty(), "{notes:?}");
     let (mesh, notes) = Triangulation::new(raw, scene).expect("a good mesh");
-    assert!(notes.iter().all(|n| n.text.contains("touch along") && n.text.contains("without a contact")), "{notes:?}");
+    assert!(
+        notes.iter().all(|n| n.text.contains("touch along") && n.text.contains("without a contact or a bond")),
+        "{notes:?}"
+    );
     assert_consistent(&mesh);
     mesh
 }
@@ -112,7 +115,17 @@ fn partly_touching_edges_share_their_division() {
 
 #[test]
 fn polygons_of_one_body_are_joined() {
-    let l = vec![rectangle("a", [0.0; 2], [2.0, 1.0]), rectangle("a", [0.0, 1.0], [1.0, 2.0])];
+    let mut l = vec![rectangle("a", [0.0; 2], [2.0, 1.0]), rectangle("a", [0.0, 1.0], [1.0, 2.0])];
+    // Named by both, their common edge is a cut.
+    let drawn = geometry(scene(&["a"]), Some(0.25), l.clone());
+    let (raw, _) = mesh(&drawn).expect("good polygons");
+    let (cut, notes) = Triangulation::new(raw, &drawn).expect("a good mesh");
+    assert!(
+        notes.len() == 1 && notes[0].text.contains("cut open along 4 edges between (0, 1) and (1, 1)"),
+        "{notes:?}"
+    );
+    assert_eq!((cut.pieces().1, cut.boundary("a_bottom").len(), cut.boundary("a_top").len()), (2, 12, 12));
+    l[1].edges[0] = String::new();
     let mesh = meshed(&geometry(scene(&["a"]), Some(0.25), l));
     assert_eq!(euler(&mesh), 1);
     assert!((total_area(&mesh) - 3.0).abs() < 1e-13);

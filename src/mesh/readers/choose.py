@@ -18,6 +18,9 @@ def own_reader(source):
         return read_getfem
     lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     first = lines[0] if lines else ""
+    # First order is meshio's.
+    if first.startswith("MeshVersionFormatted") and has_second_order(source):
+        return read_medit
     if re.fullmatch(r"\d+\s+\d+\s+\d+", first):
         return read_freefem
     if re.match(r'mesh\b.*elemtype', first, re.IGNORECASE):
@@ -25,6 +28,12 @@ def own_reader(source):
     if first == "mesh3d":
         return read_ngsolve
     return None
+
+
+def has_second_order(source):
+    """Whether a text of Medit has sides with a node in the middle."""
+    with open(source, "rb") as file:
+        return re.search(rb"^\s*(Edges|Triangles|Quadrilaterals)[PQ]2", file.read(), re.MULTILINE) is not None
 
 
 def read_own(source, reader):

@@ -1,52 +1,153 @@
-"""Results of CalculiX (.frd) as text: nodes, cells and the displacement of the last step."""
+"""Results of CalculiX (.frd), as text or in binary: nodes, cells and the displacement of the last step.
+
+Plane elements that were expanded into space (OUTPUT=3D) are one layer of cells between equal faces, which is undone.
+"""
+
+import struct
 
 FRD = {7: ("triangle", 3), 8: ("triangle", 6), 9: ("quadrilateral", 4), 10: ("quadrilateral", 8), 11: ("line", 2), 12: ("line", 3),
        1: ("hexahedron", 8), 2: ("prism", 6), 3: ("tetrahedron", 4), 4: ("hexahedron with 20 nodes", 20), 5: ("prism with 15 nodes", 15),
        6: ("tetrahedron with 10 nodes", 10)}
+
+# Of a cell between two equal faces the shape of a face, and the nodes of both.
+FACES = {1: ("quadrilateral", [0, 1, 2, 3], [4, 5, 6, 7]), 2: ("triangle", [0, 1, 2], [3, 4, 5]),
+         4: ("quadrilateral", [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 16, 17, 18, 19]),
+         5: ("triangle", [0, 1, 2, 6, 7, 8], [3, 4, 5, 12, 13, 14])}
+
+# Parts of the largest coordinate and of the largest displacement by which the two faces may differ: digits of the file.
+SAME_PLACE = 2e-5
+SAME_DISPLACEMENT = 1e-4
+
+
+class Frd:
+    """What a file holds: nodes, cells (tag, kind, nodes), and rows of the last displacement."""
+
+    def __init__(self, data):
+        self.data, self.at = data, 0
+        self.nodes, self.cells, self.values = {}, [], {}
+        self.components = 0
+
+    def line(self):
+        end = self.data.find(b"\n", self.at)
+        end = len(self.data) if end < 0 else end
+        text = self.data[self.at:end].decode("latin-1").rstrip("\r")
+        self.at = end + 1
+        return text
+
+    def take(self, form):
+        size = struct.calcsize(form)
+        row = struct.unpack(form, self.data[self.at:self.at + size])
+        self.at += size
+        return row
+
+    def peek(self):
+        """The first characters of the next line."""
+        return self.data[self.at:self.at + 6].decode("latin-1")
+
+    def rows(self, into, count, form, width):
+        """A block of numbers by node, as text or in binary."""
+        if form >= 2:
+            for _ in range(count):
+                tag, *row = self.take("<i" + ("d" if form == 3 else "f") * width)
+                into[tag] = row
+            return
+        end = 13 if form == 1 else 8
+        while self.peek().startswith(" -1"):
+            line = self.line()
+            into[int(line[3:end])] = frd_reals(line, end, width)
+            while self.peek().startswith(" -2"):
+                into[int(line[3:end])] += frd_reals(self.line(), end, width)
+
+    def elements(self, count, form):
+        if form >= 2:
+            for _ in range(count):
+                tag, kind, _, _ = self.take("<4i")
+                self.cells.append((tag, kind, list(self.take(f"<{self.nodes_of(tag, kind)}i"))))
+            return
+        while self.peek().startswith(" -1"):
+            tag, kind = (int(word) for word in self.line()[3:].split()[:2])
+            nodes = []
+            while len(nodes) < self.nodes_of(tag, kind) and self.peek().startswith(" -2"):
+                nodes += [int(word) for word in self.line()[3:].split()]
+            self.cells.append((tag, kind, nodes))
+
+    def nodes_of(self, tag, kind):
+        if kind not in FRD:
+            raise Unreadable(f"element {tag} is of kind {kind}, which CalculiX does not write")
+        return FRD[kind][1]
+
+    def read(self):
+        count = form = 0
+        while self.at < len(self.data):
+            line = self.line()
+            key = line[:6].strip()
+            words = line.split()
+            if key in ("2C", "3C"):
+                # The last word of a block says how it is written.
+                count, form = int(words[1]), int(words[-1]) if len(words) > 2 else 1
+                if key == "2C":
+                    self.rows(self.nodes, count, form, 3)
+                else:
+                    self.elements(count, form)
+            elif key.startswith("100C"):
+                count, form = int(line[24:36]), int(words[-1])
+            elif line.startswith(" -4"):
+                name, width = line[5:13].strip(), 0
+                while self.peek().startswith(" -5"):
+                    component = self.line()
+                    width += 0 if component.rstrip().endswith("ALL") else 1
+                into = {}
+                self.rows(into, count, form, width)
+                if name == "DISP":
+                    self.values = into
+        return self
 
 
 def frd_reals(line, start, count):
     return [real(line[start + 12 * i:start + 12 * i + 12]) for i in range(count) if line[start + 12 * i:start + 12 * i + 12].strip()]
 
 
+def frd_flat(frd):
+    """The cells of one layer between equal faces as those of a face; nothing where they are none."""
+    flat = []
+    size = max((abs(x) for row in frd.nodes.values() for x in row), default=0.0)
+    moved = max((abs(x) for row in frd.values.values() for x in row[:2]), default=0.0)
+    heights = [set(), set()]
+    for tag, kind, nodes in frd.cells:
+        if kind not in FACES or not all(node in frd.nodes for node in nodes):
+            return None
+        shape, *faces = FACES[kind]
+        sides = [[nodes[i] for i in face] for face in faces]
+        for low, high in zip(*sides):
+            p, q = frd.nodes[low], frd.nodes[high]
+            if max(abs(p[0] - q[0]), abs(p[1] - q[1])) > SAME_PLACE * size:
+                return None
+            heights[0].add(p[2])
+            heights[1].add(q[2])
+            u, v = frd.values.get(low), frd.values.get(high)
+            if u and v and max(abs(u[0] - v[0]), abs(u[1] - v[1])) > SAME_DISPLACEMENT * moved:
+                raise Unreadable(f"nodes {low} and {high} lie on the two faces of one layer of cells and move differently, which is no plane state")
+        flat.append((tag, shape, sides[0]))
+    spread = max((max(at) - min(at) for at in heights), default=0.0)
+    return flat if flat and spread <= SAME_PLACE * size else None
+
+
 def read_frd(source):
+    with open(source, "rb") as file:
+        frd = Frd(file.read()).read()
+    if not frd.nodes:
+        raise Unreadable("it has no block of nodes (2C)")
     found = Found("CalculiX")
-    part = kind = None
-    tag = 0
-    nodes, values = [], {}
-    for line in lines_of(source):
-        key = line[:6].strip()
-        if key in ("2C", "3C"):
-            part = key
-            wide = not line.rstrip().endswith(" 0")
-        elif key.startswith("100C"):
-            part = None
-            wide = True
-        elif line.startswith(" -4"):
-            part = "field" if line[5:13].strip() == "DISP" else None
-            values = {} if part else values
-        elif line.startswith(" -3"):
-            part = None
-        elif part == "3C" and line.startswith(" -1"):
-            tag, kind = (int(word) for word in line[3:].split()[:2])
-            nodes = []
-            if kind not in FRD:
-                raise Unreadable(f"element {tag} is of kind {kind}, which CalculiX does not write")
-        elif part == "3C" and line.startswith(" -2"):
-            nodes += [int(word) for word in line[3:].split()]
-            if len(nodes) >= FRD[kind][1]:
-                found.cell(FRD[kind][0], nodes, (), tag)
-        elif part in ("2C", "field") and line.startswith(" -1"):
-            end = 13 if wide else 8
-            row = frd_reals(line, end, 3)
-            if part == "2C":
-                found.point(int(line[3:end]), row)
-            else:
-                values[int(line[3:end])] = row
-    if not found.points:
-        raise Unreadable("it has no block of nodes (2C) as text: have the results written with *NODE FILE, not in binary")
+    flat = frd_flat(frd)
+    cells = flat or [(tag, FRD[kind][0], nodes) for tag, kind, nodes in frd.cells]
+    kept = {node for _, _, nodes in flat for node in nodes} if flat else frd.nodes
+    for tag, row in frd.nodes.items():
+        if tag in kept:
+            found.point(tag, [*row[:2], 0.0] if flat else row)
+    for tag, shape, nodes in cells:
+        found.cell(shape, nodes, (), tag)
     # Nodes without a result, such as those of springs, are told as such.
     nothing = [float("nan")] * 3
-    if values:
-        found.fields["displacement"] = [values.get(tag, nothing) for tag in found.index]
+    if frd.values:
+        found.fields["displacement"] = [frd.values.get(tag, nothing) for tag in found.index]
     return found

@@ -1,4 +1,4 @@
-"""Text formats of finite element programs: FreeFEM, GetFEM, GiD, NGSolve, scikit-fem and Elmer."""
+"""Text formats of finite element programs: FreeFEM, Medit, GetFEM, GiD, NGSolve, scikit-fem and Elmer."""
 
 import json
 import re
@@ -28,6 +28,42 @@ def read_freefem(source):
             *nodes, label = [int(word) for word in words[at:at + corners + 1]]
             found.cell(shape, nodes, [found.number(dimension, label, {})])
             at += corners + 1
+    return found
+
+
+MEDIT = {"edges": (1, "line", 2), "edgesp2": (1, "line", 3), "triangles": (2, "triangle", 3), "trianglesp2": (2, "triangle", 6),
+         "quadrilaterals": (2, "quadrilateral", 4), "quadrilateralsq2": (2, "quadrilateral", 9),
+         "tetrahedra": (3, "tetrahedron", 4), "tetrahedrap2": (3, "tetrahedron with 10 nodes", 10), "hexahedra": (3, "hexahedron", 8),
+         "prisms": (3, "prism", 6), "pyramids": (3, "pyramid", 5)}
+
+
+def read_medit(source):
+    """Medit's text, of second order too. Gmsh writes eight and nine nodes under `Quadrilaterals`, as many as there are numbers."""
+    found = Found("Medit")
+    text = re.sub(r"#.*", "", "\n".join(lines_of(source)))
+    # A keyword, then its numbers.
+    parts = re.findall(r"([A-Za-z_][A-Za-z0-9_]*)([^A-Za-z_]*(?:[0-9.][eEdD][-+0-9][^A-Za-z_]*)*)", text)
+    dimension = 3
+    for keyword, numbers in parts:
+        words = numbers.split()
+        keyword = keyword.lower()
+        if keyword == "dimension":
+            dimension = int(words[0])
+        elif keyword == "vertices":
+            width = dimension + 1
+            if len(words) != 1 + int(words[0]) * width:
+                raise Unreadable(f"it announces {words[0]} vertices of {dimension} coordinates and has others")
+            for tag in range(int(words[0])):
+                found.point(tag + 1, [real(x) for x in words[1 + tag * width:1 + tag * width + dimension]])
+        elif keyword in MEDIT:
+            way, shape, corners = MEDIT[keyword]
+            count = int(words[0])
+            width, rest = divmod(len(words) - 1, max(count, 1))
+            if rest or count and width <= corners:
+                raise Unreadable(f"it announces {count} of {keyword} and has others")
+            for cell in range(count):
+                *nodes, label = [int(word) for word in words[1 + cell * width:1 + (cell + 1) * width]]
+                found.cell(shape, nodes, [found.number(way, label, {})] if label else [])
     return found
 
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
-use super::mark::{Mark, draw};
+use super::mark::{Mark, Spot, draw, draw_spots};
 use super::outline::{View, outline, polyline};
 use super::raster::raster;
 use super::svg::{Anchor, Svg, look, px};
@@ -72,7 +72,13 @@ pub(crate) fn view(problem: &Problem) -> (View, f64) {
 
 /// The map of `values`, one per triangle, on `scale`; triangles whose value is no number stay blank. What is coloured is a group of
 /// the class `cells`.
-pub fn map(problem: &Problem, title: &str, values: &[f64], scale: &Scale, marks: &[Mark]) -> String {
+pub fn map(
+    problem: &Problem,
+    title: &str,
+    values: &[f64],
+    scale: &Scale,
+    (marks, spots): (&[Mark], &[Spot]),
+) -> String {
     let (view, height) = view(problem);
     let mut svg = Svg::new(WIDTH, height, format!("{title}: a map over the bodies"));
     svg.raw(format_args!(r#"<g class="cells">"#));
@@ -85,6 +91,7 @@ pub fn map(problem: &Problem, title: &str, values: &[f64], scale: &Scale, marks:
     for body in 0..problem.scene.bodies.len() {
         svg.path(look::LINE, r#"stroke-width="1""#, &outline(&problem.mesh, body, &view));
     }
+    draw_spots(&mut svg, spots, |at| view.at(at));
     draw(&mut svg, marks, |mark| view.at(mark.at));
     svg.finish()
 }
@@ -195,7 +202,7 @@ mod tests {
         let sample = Sample::new(3, Verdict::Agree);
         let text = {
             let values: Vec<f64> = (0..36).map(f64::from).collect();
-            map(&sample.problem, "<von Mises>", &values, &Scale::of(&values), &[])
+            map(&sample.problem, "<von Mises>", &values, &Scale::of(&values), (&[], &[]))
         };
         assert_well_formed(&text);
         // 36 triangles, 2 outlines, and the ticks are single lines without a z.
@@ -207,11 +214,11 @@ mod tests {
         let sample = Sample::new(96, Verdict::Agree);
         assert!(is_coarsened(&sample.problem));
         let noise: Vec<f64> = (0..sample.problem.mesh.triangles.len()).map(|t| ((t * 7919) % 1009) as f64).collect();
-        let text = map(&sample.problem, "noise", &noise, &Scale::of(&noise), &[]);
+        let text = map(&sample.problem, "noise", &noise, &Scale::of(&noise), (&[], &[]));
         assert!(text.len() < 700_000, "{}", text.len());
         let smooth: Vec<f64> =
             sample.problem.mesh.triangles.iter().map(|t| sample.problem.mesh.points[t[0]][0]).collect();
-        let text = map(&sample.problem, "smooth", &smooth, &Scale::of(&smooth), &[]);
+        let text = map(&sample.problem, "smooth", &smooth, &Scale::of(&smooth), (&[], &[]));
         assert!(text.len() < 150_000, "{}", text.len());
     }
 }

@@ -1,8 +1,9 @@
 //! Marks where something is wrong, the same in every picture.
 
-use super::svg::{Anchor, Svg, look};
+use super::svg::{Anchor, Svg, escape, look, px};
 use crate::problem::Problem;
 use crate::report::Report;
+use crate::scene::Target;
 
 /// A place with the number of its cause.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,50 @@ pub(super) fn draw(svg: &mut Svg, marks: &[Mark], at: impl Fn(&Mark) -> [f64; 2]
         svg.raw(format_args!("</g>"));
     }
 }
+
+/// A point at which a value is wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spot {
+    /// In the coordinates of the problem.
+    pub at: [f64; 2],
+    /// Names of the quantities there.
+    pub names: Vec<String>,
+    /// Whether a check of one of them failed.
+    pub off: bool,
+}
+
+/// The points of the quantities of the scene, each once.
+pub fn spots(problem: &Problem, report: &Report) -> Vec<Spot> {
+    let mut spots: Vec<Spot> = Vec::new();
+    for quantity in &problem.scene.quantities {
+        let Target::Point { at, .. } = quantity.target else { continue };
+        let own = format!("quantity/{}/", quantity.name);
+        let off = report.checks.iter().any(|check| !check.passed && check.name.starts_with(&own));
+        match spots.iter_mut().find(|spot| spot.at == at) {
+            Some(spot) => {
+                spot.names.push(quantity.name.clone());
+                spot.off |= off;
+            }
+            None => spots.push(Spot { at, names: vec![quantity.name.clone()], off }),
+        }
+    }
+    spots
+}
+
+/// Draws a small cross in a disc at each, red where something is wrong, with the names on hovering.
+pub(super) fn draw_spots(svg: &mut Svg, spots: &[Spot], at: impl Fn([f64; 2]) -> [f64; 2]) {
+    for spot in spots {
+        let [x, y] = at(spot.at);
+        svg.raw(format_args!(r#"<g class="spot"><title>{}</title>"#, escape(&spot.names.join(", "))));
+        svg.circle(r##"fill="#f6f8fa" stroke="#1f2328""##, [x, y], 4.5);
+        let cross = format!("M{} {}h6M{} {}v6", px(x - 3.0), px(y), px(x), px(y - 3.0));
+        svg.path(if spot.off { OFF } else { look::LINE }, r#"stroke-width="1.6""#, &cross);
+        svg.raw(format_args!("</g>"));
+    }
+}
+
+/// A cross where something is wrong.
+const OFF: &str = r##"fill="none" stroke="#cf222e""##;
 
 /// A ring that is seen on any ground.
 const RING: &str = r##"class="ring" fill="none" stroke="#cf222e" stroke-width="3""##;

@@ -6,6 +6,7 @@ use super::mark::{Mark, draw};
 use super::outline::{self, View, chains, edge_chains, polyline, stations};
 use super::svg::{Anchor, Svg, look};
 use super::symbols;
+use crate::mesh::touching;
 use crate::problem::{Condition, Interface, Problem};
 use crate::report::number::significant;
 
@@ -27,6 +28,12 @@ pub fn scene(problem: &Problem, marks: &[Mark]) -> String {
     }
     supports(&mut svg, problem, &view);
     contacts(&mut svg, problem, &view);
+    springs(&mut svg, problem, &view);
+    for line in touching(mesh, &problem.scene) {
+        for line in page_chains(problem, &view, &line.edges) {
+            svg.path(look::LOAD, r#"stroke-width="3" stroke-dasharray="2 4""#, &polyline(&line));
+        }
+    }
     tractions(&mut svg, problem, &view);
     labels(&mut svg, problem, &view);
     draw(&mut svg, marks, |mark| view.at(mark.at));
@@ -76,6 +83,18 @@ fn supports(svg: &mut Svg, problem: &Problem, view: &View) {
         if let (Some(u), Some(station)) = (value.filter(|u| *u != [0.0; 2]), stations(&line, 1e9).first()) {
             let d = u[0].hypot(u[1]);
             symbols::arrow(svg, look::LOAD, station.0, [30.0 * u[0] / d, -30.0 * u[1] / d], true);
+        }
+    }
+}
+
+fn springs(svg: &mut Svg, problem: &Problem, view: &View) {
+    for bed in &problem.beds {
+        let first: Vec<usize> = bed.pairs.iter().map(|pair| pair.edge).collect();
+        for line in page_chains(problem, view, &first) {
+            match bed.is_layer() {
+                true => svg.path(look::CONTACT, r#"stroke-width="3" stroke-dasharray="6 2""#, &polyline(&line)),
+                false => symbols::springs(svg, &line),
+            }
         }
     }
 }

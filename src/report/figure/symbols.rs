@@ -52,6 +52,24 @@ pub(crate) fn roller(svg: &mut Svg, line: &[[f64; 2]]) {
     svg.path(look::SUPPORT, r#"stroke-width="1.6""#, &polyline(&shifted));
 }
 
+/// Zigzags between the body and the ground: springs.
+pub(crate) fn springs(svg: &mut Svg, line: &[[f64; 2]]) {
+    let mut d = String::new();
+    for station in stations(line, 20.0) {
+        let (p, tangent) = station;
+        let n = outward(station);
+        let at = |out: f64, aside: f64| along(along(p, n, out), tangent, aside);
+        let zigzag = [(2.0, 0.0), (4.0, 3.0), (7.0, -3.0), (10.0, 3.0), (12.0, 0.0), (15.0, 0.0)];
+        let points: Vec<[f64; 2]> = [p]
+            .into_iter()
+            .chain(zigzag.map(|(out, aside)| at(out, aside)))
+            .chain([at(15.0, -5.0), at(15.0, 5.0)])
+            .collect();
+        d.push_str(&polyline(&points));
+    }
+    svg.path(look::SUPPORT, r#"stroke-width="1.2""#, &d);
+}
+
 /// An arrow of page length |v| that ends at `p`, or starts there where `tail` is set.
 pub(crate) fn arrow(svg: &mut Svg, look: &str, p: [f64; 2], v: [f64; 2], tail: bool) {
     let length = v[0].hypot(v[1]);

@@ -5,7 +5,7 @@ use maud::{Markup, PreEscaped, html};
 use super::links;
 use super::values::values;
 use crate::report::figure::map::{self, Scale};
-use crate::report::figure::mark::Mark;
+use crate::report::figure::mark::{Mark, spots};
 use crate::report::number::{clean, percent};
 use crate::report::{Dossier, Map, MapKind};
 
@@ -46,7 +46,7 @@ pub(super) fn figure(dossier: &Dossier, marks: &[Mark]) -> Markup {
                 button type="button" data-zoom="1.5" { "Zoom in" } button type="button" data-zoom="0.6667" { "Zoom out" }
                 button type="button" data-zoom="0" { "All" }
             }
-            div.stage { (PreEscaped(map::map(dossier.problem, &title, &first.values, &scaled[0].1, marks))) }
+            div.stage { (PreEscaped(map::map(dossier.problem, &title, &first.values, &scaled[0].1, (marks, &spots(dossier.problem, &dossier.report))))) }
             @for (i, kind) in kinds.iter().enumerate() {
                 div.bar data-kind=(kind.in_words()) data-what=(kind.explanation()) hidden[i > 0] {
                     (PreEscaped(map::bar(kind.in_words(), &scale(&maps, *kind))))

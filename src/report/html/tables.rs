@@ -31,7 +31,6 @@ pub(super) fn scroll(label: &str, table: Markup) -> Markup {
 fn energies(report: &Report, energy: &Energy) -> Markup {
     let digits = digits_to_tell(energy.lower, energy.upper).max(10);
     let upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
-    let guaranteed = if energy.guaranteed { "yes" } else { "for the data on the mesh" };
     let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
     let (work, meaning) = match energy.compliance {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
@@ -63,8 +62,13 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
             significant(energy.widening, 3),
             "what rounding and residual equilibrium can have cost, contained in both bounds",
         ),
-        ("guaranteed", guaranteed.to_string(), "whether the bracket holds for the scene as written"),
+        ("guarantee", clean(&energy.guarantee.words), "on whose word the bracket holds for the scene as written"),
     ];
+    let across = report.data_range.as_ref().map(|range| {
+        let digits = range.upper.map_or(6, |upper| digits_to_tell(range.lower, upper).max(6));
+        let upper = range.upper.map_or("∞".to_string(), |upper| significant(upper, digits));
+        format!("{} … {upper}", significant(range.lower, digits))
+    });
     let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
         (false, _) => "not admissible everywhere: no bound",
         (true, true) => "admissible, but the energy is that of a quadrature: no bound",
@@ -82,6 +86,18 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                         tr {
                             td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
                             td.why { (primal_meaning(primal)) }
+                        }
+                    }
+                    @if let Some(across) = &across {
+                        tr {
+                            td { "for all data" } td.n { (across) }
+                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
+                        }
+                    }
+                    @if let Some(across) = &across {
+                        tr {
+                            td { "for all data" } td.n { (across) }
+                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
                         }
                     }
                 }

@@ -75,11 +75,15 @@ impl Context<'_> {
 
     fn target(&self, whole: Range<usize>) -> Result<Target, SceneError> {
         let raw = self.raw;
-        match [&raw.displacement, &raw.force, &raw.moment, &raw.stress] {
-            [Some(of), None, None, None] => self.displacement(of, whole),
-            [None, Some(of), None, None] => self.force(of, whole),
-            [None, None, Some(of), None] => self.moment(of, whole),
-            [None, None, None, Some(of)] => self.stress(of, whole),
+        if raw.stress_intensity.is_none() {
+            self.refuse(&["tip"], "this quantity")?;
+        }
+        match [&raw.displacement, &raw.force, &raw.moment, &raw.stress, &raw.stress_intensity] {
+            [Some(of), None, None, None, None] => self.displacement(of, whole),
+            [None, Some(of), None, None, None] => self.force(of, whole),
+            [None, None, Some(of), None, None] => self.moment(of, whole),
+            [None, None, None, Some(of), None] => self.stress(of, whole),
+            [None, None, None, None, Some(of)] => self.stress_intensity(of, whole),
             several => {
                 let given: Vec<_> =
                     KINDS.into_iter().zip(several).filter_map(|(key, of)| Some((key, of.as_ref()?))).collect();
@@ -100,7 +104,10 @@ impl Context<'_> {
     }
 
     fn displacement(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["window", "about", "box", "polygon", "component"], "`displacement`")?;
+        if let Some(point) = &self.raw.point {
+            return self.displacement_at(of, point, whole);
+        }
+        self.refuse(&["window", "about", "box", "polygon", "component", "smoothness"], "`displacement`")?;
         let name = self.source.name(of, (self.table, "displacement"), "name a boundary or a body")?;
         let body = self.named.bodies.iter().position(|body| body.name == name);
         let boundary = match &self.named.edges {
@@ -134,7 +141,7 @@ impl Context<'_> {
     }
 
     fn force(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["about", "box", "polygon", "component"], "`force`")?;
+        self.refuse(&["about", "box", "polygon", "component", "point", "smoothness"], "`force`")?;
         match self.holder("force", of)? {
             Holder::Contact(contact) => {
                 if let Some(direction) = &self.raw.direction {
@@ -156,7 +163,7 @@ impl Context<'_> {
     }
 
     fn moment(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["direction", "window", "box", "polygon", "component"], "`moment`")?;
+        self.refuse(&["direction", "window", "box", "polygon", "component", "point", "smoothness"], "`moment`")?;
         let of = self.holder("moment", of)?;
         let remedy = "add about = [x, y], the point that the moment is taken about";
         let about = self.required(&self.raw.about, "about", remedy, whole)?;
@@ -164,11 +171,11 @@ impl Context<'_> {
     }
 
     fn stress(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["window", "about"], "`stress`")?;
-        let name = self.source.name(of, (self.table, "stress"), "name a body")?;
-        let Some(body) = self.named.bodies.iter().position(|body| body.name == name) else {
-            return self.unknown("stress", of, "body", names(self.named.bodies.iter().map(|b| b.name.as_str())));
-        };
+        if let Some(point) = &self.raw.point {
+            return self.stress_at(of, point, whole);
+        }
+        self.refuse(&["window", "about", "smoothness"], "`stress`")?;
+        let body = self.body("stress", of)?;
         let one_of = |first, second, both| Fault::OneOf { table: self.table.to_owned(), first, second, both };
         let region = match (&self.raw.corners, &self.raw.polygon) {
             (None, None) => Region::Whole,
@@ -191,9 +198,19 @@ impl Context<'_> {
         Ok(Target::Stress { body, region, component })
     }
 
+    /// The body that a name means.
+    pub(super) fn body(&self, key: &'static str, of: &At<String>) -> Result<usize, SceneError> {
+        let name = self.source.name(of, (self.table, key), "name a body")?;
+        match self.named.bodies.iter().position(|body| body.name == name) {
+            Some(body) => Ok(body),
+            None => self.unknown(key, of, "body", names(self.named.bodies.iter().map(|b| b.name.as_str()))),
+        }
+    }
+
     /// Refuses the first of `keys` that is there; `other` is what it does not go with.
-    fn refuse(&self, keys: &[&'static str], other: &'static str) -> Result<(), SceneError> {
-        let RawQuantity { direction, about, window, corners, polygon, component, .. } = self.raw;
+    pub(super) fn refuse(&self, keys: &[&'static str], other: &'static str) -> Result<(), SceneError> {
+        let RawQuantity { direction, about, window, corners, polygon, component, point, smoothness, tip, .. } =
+            self.raw;
         for &key in keys {
             let (span, remedy) = match key {
                 "direction" => (direction.as_ref().map(At::span), "delete `direction`; a moment in the plane has none"),
@@ -202,6 +219,14 @@ impl Context<'_> {
                 "box" => (corners.as_ref().map(At::span), "delete `box`; only a `stress` is taken over a region"),
                 "polygon" => {
                     (polygon.as_ref().map(At::span), "delete `polygon`; only a `stress` is taken over a region")
+                }
+                "point" => (
+                    point.as_ref().map(At::span),
+                    "delete `point`; only a `displacement` or a `stress` is taken at a point",
+                ),
+                "tip" => (tip.as_ref().map(At::span), "delete `tip`; only a `stress_intensity` has one"),
+                "smoothness" => {
+                    (smoothness.as_ref().map(At::span), "delete `smoothness`; only a value at a `point` has one")
                 }
                 _ => (
                     component.as_ref().map(At::span),
@@ -215,7 +240,7 @@ impl Context<'_> {
         Ok(())
     }
 
-    fn misplaced<T>(
+    pub(super) fn misplaced<T>(
         &self,
         key: &'static str,
         span: Range<usize>,
@@ -225,7 +250,7 @@ impl Context<'_> {
         self.fail(span, Fault::Misplaced { key, table: self.table.to_owned(), other, remedy })
     }
 
-    fn required<'v, V>(
+    pub(super) fn required<'v, V>(
         &self,
         value: &'v Option<V>,
         key: &str,
@@ -258,6 +283,7 @@ impl Context<'_> {
     }
 }
 
-const DIRECTION_OF_DISPLACEMENT: &str = "add the direction of the displacement, for instance direction = [1.0, 0.0]";
+pub(super) const DIRECTION_OF_DISPLACEMENT: &str =
+    "add the direction of the displacement, for instance direction = [1.0, 0.0]";
 const DIRECTION_OF_FORCE: &str =
     "add the direction in which the force of the support is taken, for instance direction = [1.0, 0.0]";

@@ -84,7 +84,7 @@ pub enum QuantityFault {
 }
 
 /// The keys that say what a quantity is.
-pub(super) const KINDS: [&str; 4] = ["displacement", "force", "moment", "stress"];
+pub(super) const KINDS: [&str; 5] = ["displacement", "force", "moment", "stress", "stress_intensity"];
 
 fn kinds(table: &str, found: &[&str]) -> String {
     let found: Vec<String> = found.iter().map(|key| (*key).to_owned()).collect();

@@ -1,11 +1,12 @@
 //! The numbers a scene is solved for: linear functionals of displacement, contact pressure and stress.
 //!
-//! Each is a bounded functional of the energy norm, so that an interval can be guaranteed for it. The displacement of a
-//! point, the largest pressure and a force between two sharp ends are none, and the format has no words for them.
+//! Each is a bounded functional of the energy norm, so that an interval can be guaranteed for it, values at points inside a homogeneous
+//! body among them. The largest pressure and a force between two sharp ends are none, and the format has no words for them.
 
 mod check;
 mod fault;
 mod parts;
+mod point;
 mod raw;
 
 pub(super) use check::quantities;
@@ -65,6 +66,92 @@ pub enum Target {
         /// The component.
         component: Component,
     },
+    /// A value at a point inside a body.
+    Point {
+        /// Index into [`Draft::bodies`](super::Draft::bodies).
+        body: usize,
+        /// The point, counted from [`Draft::origin`](super::Draft::origin); whether it lies inside the body only the mesh can tell.
+        at: [f64; 2],
+        /// The value.
+        value: PointValue,
+        /// n of the weight (1 − s)ⁿ (1 − (n + 3)s/2) of the mean that is the value, at most [`PointValue::SMOOTHEST`].
+        smoothness: usize,
+    },
+    /// The stress intensity at the tip of a crack.
+    StressIntensity {
+        /// Opening or sliding.
+        mode: Mode,
+        /// The tip, counted from [`Draft::origin`](super::Draft::origin).
+        tip: [f64; 2],
+    },
+}
+
+/// How a crack opens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// The faces move apart.
+    I,
+    /// The faces slide in the plane.
+    II,
+}
+
+impl Mode {
+    /// The word of the format.
+    pub fn word(self) -> &'static str {
+        match self {
+            Mode::I => "KI",
+            Mode::II => "KII",
+        }
+    }
+}
+
+/// What is wanted at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PointValue {
+    /// The displacement along a unit vector.
+    Displacement([f64; 2]),
+    /// A component of the stress.
+    Stress(Component),
+    /// A number that the three components determine.
+    Invariant(Invariant),
+}
+
+impl PointValue {
+    /// The largest smoothness.
+    pub const SMOOTHEST: usize = 6;
+
+    /// The smoothness where none is given: one that makes narrow intervals.
+    pub fn smoothness(&self) -> usize {
+        match self {
+            PointValue::Displacement(_) => 4,
+            PointValue::Stress(_) | PointValue::Invariant(_) => 2,
+        }
+    }
+}
+
+/// A number that the components of a stress determine, whatever the axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Invariant {
+    /// Von Mises' equivalent stress, the stress across the plane included.
+    VonMises,
+    /// The larger principal stress in the plane.
+    LargestPrincipal,
+    /// The smaller principal stress in the plane.
+    SmallestPrincipal,
+}
+
+impl Invariant {
+    /// All of them.
+    pub const ALL: [Invariant; 3] = [Invariant::VonMises, Invariant::LargestPrincipal, Invariant::SmallestPrincipal];
+
+    /// The word of the format.
+    pub fn word(self) -> &'static str {
+        match self {
+            Invariant::VonMises => "von-mises",
+            Invariant::LargestPrincipal => "largest-principal",
+            Invariant::SmallestPrincipal => "smallest-principal",
+        }
+    }
 }
 
 /// Where a mean displacement is taken.
@@ -122,7 +209,9 @@ impl Quantity {
     /// Counts coordinates from `origin`.
     pub(super) fn shift(&mut self, origin: [f64; 2]) {
         let points = match &mut self.target {
-            Target::Moment { about, .. } => std::slice::from_mut(about),
+            Target::Moment { about: at, .. } | Target::Point { at, .. } | Target::StressIntensity { tip: at, .. } => {
+                std::slice::from_mut(at)
+            }
             Target::Stress { region: Region::Polygon(points), .. } => points.as_mut_slice(),
             _ => return,
         };

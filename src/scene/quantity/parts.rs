@@ -1,7 +1,7 @@
 //! The parts of a quantity: what it is of, its direction, weight and region.
 
 use super::check::Context;
-use super::{Component, Holder, QuantityFault};
+use super::{Component, Holder, Invariant, QuantityFault};
 use crate::scene::conditions::Conditions;
 use crate::scene::error::{Fault, SceneError};
 use crate::scene::polygon::{Defect, area, defect};
@@ -52,7 +52,13 @@ impl Context<'_> {
             "yy" => Ok(Component::YY),
             "xy" => Ok(Component::XY),
             other => {
-                let known = ["xx", "yy", "xy"].map(String::from).to_vec();
+                let mut known = ["xx", "yy", "xy"].map(String::from).to_vec();
+                if self.raw.point.is_some() {
+                    known.extend(Invariant::ALL.map(|invariant| invariant.word().to_owned()));
+                } else if let Some(invariant) = Invariant::ALL.into_iter().find(|known| known.word() == other) {
+                    let remedy = "add `point = [x, y]`: of a mean over a region only components are bounded";
+                    return self.misplaced(invariant.word(), word.span(), "a mean over a region", remedy);
+                }
                 let (table, found) = (self.table.to_owned(), other.to_owned());
                 self.fail(word.span(), Fault::UnknownWord { key: "component", table, found, known })
             }

@@ -4,20 +4,22 @@ use schemars::JsonSchema;
 
 use crate::scene::raw::{At, Pair};
 
-/// A number the scene is solved for, with a guaranteed interval: one of `displacement`, `force`, `moment`, `stress`.
+/// A number the scene is solved for, with a guaranteed interval: one of `displacement`, `force`, `moment`, `stress`,
+/// `stress_intensity`.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Quantity", extend("oneOf" = [
     {"required": ["displacement", "direction"]},
     {"required": ["force"]},
     {"required": ["moment", "about"]},
-    {"required": ["stress"]}
+    {"required": ["stress"]},
+    {"required": ["stress_intensity", "tip"]}
 ]))]
 pub(in crate::scene) struct RawQuantity {
     /// A name of its own, without `=`: reports and `--tolerance-of NAME=X` use it.
     #[schemars(length(min = 1), regex(pattern = "^[^=]+$"))]
     pub name: At<String>,
-    /// A boundary or a body: the mean over it of the displacement along `direction`.
+    /// A boundary or a body: the mean over it of the displacement along `direction`; a body with `point`: the displacement there.
     #[schemars(length(min = 1))]
     pub displacement: Option<At<String>>,
     /// A contact, as `first|second`, `first|rigid` or one of its sides: the normal force that presses its sides together,
@@ -29,9 +31,16 @@ pub(in crate::scene) struct RawQuantity {
     #[schemars(length(min = 1))]
     pub moment: Option<At<String>>,
     /// A body: the mean of the stress `component`, or of the normal stress along `direction`, over the `box` or `polygon`
-    /// in it, or over all of it.
+    /// in it, or over all of it; with `point` the value there.
     #[schemars(length(min = 1))]
     pub stress: Option<At<String>>,
+    /// `KI` or `KII`: the stress intensity at the `tip` of a crack with faces free of traction, or of half a model with a roller ahead of
+    /// the tip; of KII the faces may touch without friction.
+    #[schemars(extend("enum" = ["KI", "KII"]))]
+    pub stress_intensity: Option<At<String>>,
+    /// The tip of a crack, a vertex of the mesh.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub tip: Option<Pair>,
     /// A direction of any length.
     #[schemars(with = "Option<[f64; 2]>")]
     pub direction: Option<Pair>,
@@ -50,7 +59,13 @@ pub(in crate::scene) struct RawQuantity {
     /// The corners of a region, in either orientation.
     #[schemars(with = "Option<Vec<[f64; 2]>>", length(min = 3))]
     pub polygon: Option<At<Vec<Pair>>>,
-    /// The component of the stress.
-    #[schemars(extend("enum" = ["xx", "yy", "xy"]))]
+    /// The component of the stress; at a point also von Mises' equivalent stress and the principal stresses in the plane.
+    #[schemars(extend("enum" = ["xx", "yy", "xy", "von-mises", "largest-principal", "smallest-principal"]))]
     pub component: Option<At<String>>,
+    /// A point inside an isotropic body, away from its outline, at which a displacement or a stress is wanted.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub point: Option<Pair>,
+    /// How smooth the weight is of the mean that is the value at a point, 0 to 6; where nothing is said 2 for stresses, 4 for displacements.
+    #[schemars(with = "Option<u8>", range(min = 0, max = 6))]
+    pub smoothness: Option<At<f64>>,
 }

@@ -5,6 +5,7 @@ use super::super::scenes::{Lift, Sketch, steps};
 use super::super::strips::Strips;
 use super::material::lift_known;
 use super::{CLOSED, PLAIN, Regime};
+use crate::load::{Affine, BodyForce};
 use crate::problem::Problem;
 use crate::scene::{Contact, ContactSides, Gap};
 
@@ -80,6 +81,26 @@ fn hair_known(closing: f64) -> Known {
     let energy = -1.0 / 6.0 + 0.5 * p * p;
     let strain = 0.5 * (1.0 / 3.0 - p + p * p);
     Known { energy: Some([energy, strain]), ..Known::forces(vec![[f64::NAN, 0.0]], 1.0) }
+}
+
+/// The bar in a centrifuge, between its left end and an obstacle that it touches: the axis lies `radius` to the left, and its weight is one
+/// in all. Far away the force is as good as constant.
+fn centrifuge(radius: f64) -> Result<Problem, String> {
+    let lines = steps(0.0, 1.0, 4);
+    let mut model = Sketch::new().block("bar", [1.0, 0.0], &lines, &lines).roller("bar_left").roller("bar_bottom");
+    let slope = 1.0 / (radius + 0.5);
+    let force = Affine { value: [radius * slope, 0.0], gradient: [[slope, 0.0], [0.0; 2]] };
+    model.scene.bodies[0].body_force = BodyForce::affine(force);
+    model.rigid("bar_right").problem()
+}
+
+/// σ = (R(1 − x) + ½(1 − x²))/(R + ½) − p, whose mean is zero.
+fn centrifuge_known(radius: f64) -> Known {
+    let p = (0.5 * radius + 1.0 / 3.0) / (radius + 0.5);
+    // ∫ σ² of the two parts of σ + p, and what p takes of it.
+    let square = (radius * radius / 3.0 + 5.0 / 12.0 * radius + 2.0 / 15.0) / (radius + 0.5).powi(2);
+    let strain = 0.5 * (square - p * p);
+    Known { energy: Some([-strain, strain]), ..Known::forces(vec![[f64::NAN, 0.0]], 1.0) }
 }
 
 /// Contacts that meet supports and each other.
@@ -204,6 +225,18 @@ pub(super) const REGIMES: &[Regime] = &[
         reduced: &[0, 4],
         build: |gap| Lift { gap: Gap::Constant(gap), ..Lift::new(8) }.model().problem(),
         known: |_| lift_known(),
+        ..PLAIN
+    },
+    Regime {
+        id: "centrifuge",
+        title: "A bar in a centrifuge, pressed against its wall",
+        parameter: "distance of the axis, in lengths of the bar",
+        reported: "the digits of a force that is nearly constant",
+        truth: CLOSED,
+        values: &[0.0, 1.0, 1e3, 1e6, 1e9, 1e12],
+        reduced: &[0, 3, 5],
+        build: centrifuge,
+        known: centrifuge_known,
         ..PLAIN
     },
     Regime {

@@ -3,6 +3,7 @@
 mod contact;
 mod curved;
 mod material;
+mod matter;
 mod meshes;
 mod units;
 
@@ -103,7 +104,7 @@ impl std::fmt::Display for Shown {
 
 /// All regimes.
 pub static REGIMES: &[&[Regime]] =
-    &[material::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
+    &[material::REGIMES, matter::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
 
 /// The regime of that name.
 pub fn regime(id: &str) -> Option<&'static Regime> {

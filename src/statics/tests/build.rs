@@ -218,7 +218,7 @@ impl Build {
                 }
             }
             let second = other.map_or("rigid", |b| &self.bodies[b].name);
-            interfaces.push(Interface { name: format!("{}|{second}", self.bodies[*body].name), pairs });
+            interfaces.push(Interface { name: format!("{}|{second}", self.bodies[*body].name), pairs, centre: None });
         }
         let source = MeshSource::File("test.msh".into());
         let draft = Draft { bodies: self.bodies.clone(), ..Draft::new("test", Kinematics::PlaneStrain, source) };

@@ -216,7 +216,7 @@ impl Setup {
                 arc += length;
             }
             let name = format!("{first}|{}", second.as_deref().unwrap_or("rigid"));
-            interfaces.push(Interface { name, pairs });
+            interfaces.push(Interface { name, pairs, centre: None });
         }
         let draft = Draft { bodies, ..Draft::new("test", kinematics, MeshSource::File("made".into())) };
         let scene = Scene::new(draft).expect("a valid scene");

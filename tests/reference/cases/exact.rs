@@ -41,6 +41,44 @@ fn patch() {
     pressed(&report, 0, |_| 2.0);
 }
 
+/// ε_xx = e₀ + κy in two layers without force and moment: e₀, κ, and −½∫σ²/E − ∫σ αΔT per length.
+fn heated([first, second]: [f64; 2], [cold, warm]: [f64; 2]) -> [f64; 3] {
+    // Moments of y over the layers: ½, ∓⅛, 1/24.
+    let [force, mixed, bending] = [0.5 * (first + second), 0.125 * (second - first), (first + second) / 24.0];
+    let thermal = [0.5 * (first * cold + second * warm), 0.125 * (second * warm - first * cold)];
+    let determinant = force * bending - mixed * mixed;
+    let strain = (thermal[0] * bending - thermal[1] * mixed) / determinant;
+    let bend = (force * thermal[1] - mixed * thermal[0]) / determinant;
+    let layer = |young: f64, free: f64, sign: f64| {
+        // σ = p + q y on 0 … ±½.
+        let [p, q] = [young * (strain - free), young * bend];
+        let square = 0.5 * p * p + sign * 0.25 * p * q + q * q / 24.0;
+        -0.5 * square / young - free * (0.5 * p + sign * 0.125 * q)
+    };
+    [strain, bend, layer(first, cold, -1.0) + layer(second, warm, 1.0)]
+}
+
+#[test]
+fn bimetal() {
+    let report = sound("bimetal");
+    let [strain, bend, energy] = heated([1.0, 2.0], [0.06, 0.18]);
+    // Forces and moment vanish: −Π is what is left of the work of ε0.
+    closed_on(&report, 3.0 * energy);
+    close(report.number("/quantities/0/value"), 3.0 * (strain + 0.25 * bend), 1e-7);
+}
+
+#[test]
+fn laminate() {
+    let report = sound("laminate");
+    let along = 1.0 / 140.0 - 0.3_f64.powi(2) * 10.0 / 140.0_f64.powi(2);
+    let across = 1.0 / 10.0 - 0.45_f64.powi(2) * 10.0 / 10.0_f64.powi(2);
+    let layer = |compliance: f64, sign: f64| {
+        let [e, k] = [0.002_f64, 0.01];
+        (0.5 * e * e + sign * 0.25 * e * k + k * k / 24.0) / compliance
+    };
+    closed_on(&report, -0.5 * 3.0 * (layer(along, -1.0) + layer(across, 1.0)));
+}
+
 #[test]
 fn bending() {
     let report = sound("bending");
@@ -98,6 +136,33 @@ fn compacted() {
     pressed(&report, 0, |_| 2.25);
     pressed(&report, 1, |_| 7.75);
     assert!(report.notes().contains("is not the same everywhere"), "{}", report.notes());
+}
+
+#[test]
+fn springs() {
+    let report = sound("springs");
+    // ½ ∫ σ²/E' in the block and ½ ∫ σ²/k on the springs, ∫ (3 + 1.5 x)² dx = 19.5.
+    closed_on(&report, -0.5 * 19.5 * (0.9375 / 100.0 + 1.0 / 40.0));
+    for (quantity, exact) in [(0, 6.0), (1, 1.0), (2, 3.0 / 40.0)] {
+        for end in ["lower", "upper"] {
+            let found = report.number(&format!("/quantities/{quantity}/{end}"));
+            assert!((found - exact).abs() < 1e-7, "{found} is not {exact}");
+        }
+    }
+}
+
+#[test]
+fn bonded() {
+    let report = sound("bonded");
+    closed_on(&report, -0.5 * 4.0 / 50.0 * 2.0 * 0.5);
+}
+
+#[test]
+fn crack() {
+    let report = sound("crack");
+    closed_on(&report, -0.5 * 0.36 * 0.91 / 10.0 * 6.0);
+    carries(&report, 0, [0.0, -0.6]);
+    pressed(&report, 0, |_| 0.6);
 }
 
 #[test]

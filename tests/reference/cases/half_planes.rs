@@ -71,10 +71,30 @@ fn hertz_elastic() {
     is_hertz(&report, 2.3e-4 * 30.0, 1.0 / (compliance(1.0, 0.3) + compliance(3.0, 0.45)));
 }
 
+/// e of 1/E* = ½ Σ e_i for a half-plane of an orthotropic body in plane strain, axis 1 along the surface or across it.
+fn orthotropic([e1, e2, e3]: [f64; 3], [nu12, nu13, nu23]: [f64; 3], shear: f64, across: bool) -> f64 {
+    let along = [1.0 / e1 - nu13 * nu13 * e3 / (e1 * e1), 1.0 / e2 - nu23 * nu23 * e3 / (e2 * e2)];
+    let mixed = -nu12 / e1 - nu13 / e1 * nu23 / e2 * e3;
+    let [first, second] = if across { [along[1], along[0]] } else { along };
+    (first * second).sqrt() * ((2.0 * mixed + 1.0 / shear) / first + 2.0 * (second / first).sqrt()).sqrt()
+}
+
+#[test]
+fn hertz_orthotropic() {
+    let report = sound("hertz_orthotropic");
+    let half_force = 2.27e-4 * 30.0;
+    carries(&report, 0, [0.0, half_force]);
+    let isotropic = orthotropic([2.0; 3], [0.3; 3], 1.0 / 1.3, false);
+    close(isotropic, 2.0 * compliance(2.0, 0.3), 1e-14);
+    let upper = orthotropic([2.0, 0.8, 1.0], [0.3, 0.25, 0.2], 0.5, false);
+    let lower = orthotropic([6.0, 2.0, 3.0], [0.3, 0.2, 0.25], 1.2, true);
+    is_hertz(&report, half_force, 2.0 / (upper + lower));
+}
+
 /// A parabola given by its values at the vertices, so that the bounds hold for exactly this gap.
 #[test]
 fn gap_tables_are_parabolas_on_the_vertices() {
-    for name in ["hertz_rigid", "hertz_elastic"] {
+    for name in ["hertz_rigid", "hertz_elastic", "hertz_orthotropic"] {
         let text = std::fs::read_to_string(case(name)).expect("readable");
         let scene: toml::Table = text.parse().expect("TOML");
         let rows = scene["contacts"][0]["gap"].as_array().expect("a table");

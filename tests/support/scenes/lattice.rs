@@ -48,6 +48,23 @@ pub fn shapes(random: &mut Random) -> Made {
     scene(random, true)
 }
 
+/// Bodies of any material, some of them warm or with initial stress.
+pub fn matter(random: &mut Random) -> Made {
+    let aside = random.aside();
+    let frame = Frame::random(random);
+    let (length, strain) = (frame.length, frame.load);
+    let general = random.chance(0.4);
+    let layout = Layout::random(random, general);
+    let made = complete(random, aside, frame, layout, Drawn { general, sheared: false, cells: None });
+    let bodies = made.toml.bodies();
+    let keys = |toml: Toml, (name, constants): (String, (f64, f64))| {
+        let keys = super::matter::keys(random, constants, strain, length);
+        toml.matter(&name, &keys)
+    };
+    let toml = bodies.into_iter().fold(made.toml.clone(), keys);
+    Made { toml, ..made }
+}
+
 fn lines(random: &mut Random, n: usize, equal: bool) -> Vec<f64> {
     let mut at = vec![0.0];
     for k in 0..n {

@@ -9,8 +9,10 @@ mod curved;
 mod frame;
 mod lattice;
 mod layout;
+mod matter;
 mod moved;
 mod msh;
+mod obstacles;
 pub mod stack;
 
 use std::path::{Path, PathBuf};
@@ -64,11 +66,14 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 4] = [
+const LATER: [(&str, f64, Family); 7] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
     ("quadrilaterals", 0.12, lattice::quadrilaterals),
+    ("obstacles", 0.1, obstacles::obstacles),
+    ("matter", 0.15, lattice::matter),
+    ("heavy", 0.08, stack::heavy),
 ];
 
 /// The scene of a seed.

@@ -10,6 +10,31 @@ pub fn made(random: &mut Random) -> Made {
     Made { toml: slanted(random), mesh: None, energy: 0.0, rounds: false }
 }
 
+/// [`slanted`] with body forces that are affine, rotations among them, in some of the bodies.
+pub fn heavy(random: &mut Random) -> Made {
+    let mut toml = slanted(random);
+    let all = random.chance(0.5);
+    for body in ["base", "middle", "top"] {
+        if all || random.chance(0.5) {
+            toml = toml.loaded(body, &varying(random));
+        }
+    }
+    Made { toml, mesh: None, energy: 0.0, rounds: false }
+}
+
+/// The keys of a random affine force, of a rotation about a random point, or of both.
+pub fn varying(random: &mut Random) -> String {
+    let mut numbers = |size: f64| [random.between(-size, size), random.between(-size, size)];
+    let (value, gradient, about) = (numbers(0.4), [numbers(0.5), numbers(0.5)], numbers(2.0));
+    let field = format!("body_force = {{ value = {value:?}, gradient = {gradient:?} }}");
+    let turning = format!("rotation = {{ density = 0.3, omega = {:?}, about = {about:?} }}", random.between(0.3, 1.2));
+    match random.below(3) {
+        0 => field,
+        1 => turning,
+        _ => format!("{field}\n{turning}"),
+    }
+}
+
 /// Two or three convex bodies on top of each other, each resting on the slanted edge of the one below.
 pub fn slanted(random: &mut Random) -> Toml {
     let bodies = 2 + random.below(2);

@@ -55,6 +55,7 @@ impl Cut {
         let of = |interface: &Interface| Interface {
             name: interface.name.clone(),
             pairs: interface.pairs.iter().map(pair).collect(),
+            centre: interface.centre,
         };
         Problem {
             scene: problem.scene.clone(),

@@ -175,6 +175,8 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
         let turning = density * omega != 0.0;
         let rotation = Rotation { density, omega, about: [x, y] };
         let body_force = if turning { given.with_rotation(rotation) } else { given };
+        let revolved = kinematics == Kinematics::Axisymmetric;
+        let body_force = if revolved { body_force.about_line() } else { body_force };
         let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
         Ok(Body { name: String::new(), elasticity, initial: Initial::from_numbers(initial), body_force })
     };
@@ -267,7 +269,10 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();
     let mut pairs = pairs.ok_or(io::ErrorKind::InvalidData)?.into_iter();
-    Ok(counts.into_iter().map(|n| Interface { name: String::new(), pairs: pairs.by_ref().take(n).collect() }).collect())
+    Ok(counts
+        .into_iter()
+        .map(|n| Interface { name: String::new(), pairs: pairs.by_ref().take(n).collect(), centre: None })
+        .collect())
 }
 
 fn write_holds(out: &mut Writer<impl Write>, holds: &[Hold]) -> io::Result<()> {
