@@ -136,7 +136,8 @@ impl<'a> Schur<'a> {
     /// Penetration that is `part` of the largest jump or gap, end by end.
     pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
         let unit = &self.unit[..self.jumps];
-        let depth = part * largest(&over(jumps, unit)).max(largest(&over(bound, unit)));
+        let extent = self.laws(bound).iter().fold(largest(&over(jumps, unit)), |most, law| most.max(law.extent()));
+        let depth = part * extent;
         unit.iter().map(|u| u * depth).collect()
     }
 
