@@ -47,9 +47,19 @@ fn same_contact(problem: &Problem, a: &DualSolution, b: &DualSolution) -> bool {
     (0..ta.len()).all(|k| closed[k] == other[k] || ta[k].abs().max(tb[k].abs()) < 1e-7 * largest)
 }
 
+/// Whether springs, elastic layers or bodies of revolution are there, for which only the condensed methods have words.
+fn beyond_plane_contact(problem: &Problem) -> bool {
+    !problem.beds.is_empty() || problem.section().is_revolved()
+}
+
 #[test]
 fn interior_point_and_condensed_agree_on_every_case() {
     for (name, problem) in cases() {
+        if beyond_plane_contact(&problem) {
+            let refused = run(&Clarabel::default(), &problem);
+            assert!(matches!(refused, Err(DualError::NotExpressible { .. })), "{name}: {:?}", refused.err());
+            continue;
+        }
         let (condensed, energy) = run(&Condensed::default(), &problem).expect("condensed");
         let (clarabel, other) = run(&Clarabel::default(), &problem).unwrap_or_else(|e| panic!("{name}: {e}"));
         let scale = complementary(&problem, &condensed.stress).strain.max(energy.abs());
@@ -58,12 +68,14 @@ fn interior_point_and_condensed_agree_on_every_case() {
     }
 }
 
-/// Whether the direction of contact is not the normal of each edge, which the paper does not know.
-fn turning(problem: &Problem) -> bool {
+/// Whether there is something that the paper does not know: a direction of contact that is not the normal of each edge, a body
+/// force that varies, springs, bodies of revolution.
+fn beyond_the_paper(problem: &Problem) -> bool {
     let along = |pair: &ContactPair| {
         pair.direction.ends.iter().all(|n| (n[0] - pair.normal[0]).hypot(n[1] - pair.normal[1]) < 1e-9)
     };
-    !problem.pairs().all(along)
+    let constant = problem.scene.bodies.iter().all(|body| body.body_force.is_constant());
+    beyond_plane_contact(problem) || !constant || !problem.pairs().all(along)
 }
 
 #[test]
@@ -73,14 +85,14 @@ fn uzawa_arrives_on_every_small_case() {
         if !small {
             // Enough to see that a stop is said to be one.
             let stopped = run(&Uzawa { most_iterations: 50, ..Uzawa::default() }, &problem);
-            let wanted = match turning(&problem) {
+            let wanted = match beyond_the_paper(&problem) {
                 true => matches!(stopped, Err(DualError::NotExpressible { .. })),
                 false => matches!(stopped, Err(DualError::NotConverged { .. })),
             };
             assert!(wanted, "{name}: {:?}", stopped.err());
             continue;
         }
-        if turning(&problem) {
+        if beyond_the_paper(&problem) {
             let refused = run(&Uzawa::default(), &problem);
             assert!(matches!(refused, Err(DualError::NotExpressible { .. })), "{name}: {:?}", refused.err());
             continue;
