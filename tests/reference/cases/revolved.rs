@@ -20,12 +20,24 @@ fn holds(report: &Report, energy: f64, relative: f64) {
     }
 }
 
+/// Quantity `k` of the report lies in its interval, which is within `relative` of it.
+#[track_caller]
+fn answers(report: &Report, k: usize, value: f64, relative: f64) {
+    let [lower, upper] = ["lower", "upper"].map(|end| report.number(&format!("/quantities/{k}/{end}")));
+    assert!(lower <= value && value <= upper, "{lower} {value} {upper}");
+    close(lower, value, relative);
+    close(upper, value, relative);
+}
+
 #[test]
 fn tube() {
     let (a, b, nu, pressure): (f64, f64, _, _) = (1.0, 2.0, 0.3, 0.01);
     let k = pressure * a * a / (b * b - a * a);
-    let inside = (1.0 + nu) * k * ((1.0 - 2.0 * nu) * a + b * b / a);
-    holds(&sound("tube"), -PI * pressure * a * inside, 1e-3);
+    let u = |r: f64| (1.0 + nu) * k * ((1.0 - 2.0 * nu) * r + b * b / r);
+    let report = sound("tube");
+    holds(&report, -PI * pressure * a * u(a), 1e-3);
+    answers(&report, 0, u(a), 1e-3);
+    answers(&report, 1, u(b), 1e-3);
 }
 
 /// The polygon is smaller than the sphere, by 0.4 % of the energy.
@@ -51,6 +63,7 @@ fn press_fit() {
     for [_, found] in report.profile(0, "dual") {
         close(found, pressure, 0.02);
     }
+    answers(&report, 0, pressure * 2.0 * PI * b * length, 2e-3);
     // Around the axis a radial force has no resultant.
     for model in models() {
         for c in 0..2 {
@@ -66,7 +79,9 @@ fn spindle() {
     let k = (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu) * load / (8.0 * young);
     // 𝓛 = −½ ∫ ϱω² r u with u = k ((3 − 2ν) b² r − r³).
     let work = 2.0 * PI * length * load * k * b.powi(6) * ((3.0 - 2.0 * nu) / 4.0 - 1.0 / 6.0);
-    holds(&sound("spindle"), -0.5 * work, 2e-2);
+    let report = sound("spindle");
+    holds(&report, -0.5 * work, 2e-2);
+    answers(&report, 0, k * (2.0 - 2.0 * nu) * b.powi(3), 1e-3);
 }
 
 /// Radius of contact and peak pressure within 1 % of Hertz's theory.
