@@ -13,7 +13,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let scene = &space.problem().scene;
     let warm = |body: &Body| Initial { stress: [0.0; 4], ..body.initial };
     let strained = |body: &Body| Initial { stress: body.initial.stress, ..Initial::default() };
-    let kinds: [(&str, &str, &dyn Fn(&Body) -> Initial); 2] =
+    type PartOf<'a> = &'a dyn Fn(&Body) -> Initial;
+    let kinds: [(&str, &str, PartOf<'_>); 2] =
         [("temperature", "temperature", &warm), ("initial_stress", "initial stress", &strained)];
     for (key, what, part) in kinds {
         let own: Vec<usize> = (0..scene.bodies.len()).filter(|b| !part(&scene.bodies[*b]).is_none()).collect();

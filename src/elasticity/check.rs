@@ -85,15 +85,10 @@ fn place(kind: MatrixKind, i: usize, j: usize) -> String {
 }
 
 fn symmetry<const N: usize>(kind: MatrixKind, rows: &[[f64; N]; N]) -> Option<Flaw> {
-    for i in 0..N {
-        if rows[i][i] <= 0.0 {
+    for (i, row) in rows.iter().enumerate() {
+        if row[i] <= 0.0 {
             let rule = "entries on the diagonal must be positive";
-            return Some(Flaw::new(
-                place(kind, i, i),
-                rows[i][i],
-                rule,
-                "check the order of rows: 11, 22, 33, 23, 13, 12",
-            ));
+            return Some(Flaw::new(place(kind, i, i), row[i], rule, "check the order of rows: 11, 22, 33, 23, 13, 12"));
         }
     }
     for i in 0..N {

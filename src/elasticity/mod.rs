@@ -24,6 +24,7 @@ use self::twofold::Twofold;
 
 /// A linear elastic material, in axes of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "it is copied, and a body has one")]
 pub enum Elasticity {
     /// The same in all directions.
     Isotropic {
@@ -83,6 +84,7 @@ impl MatrixKind {
 
 /// Rows of a matrix of elastic constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "it is copied, and a body has one")]
 pub enum Matrix {
     /// In the plane alone, 11, 22, 12: plane stress.
     Three([[f64; 3]; 3]),

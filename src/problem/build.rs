@@ -225,10 +225,11 @@ impl Problem {
         !curved(self).is_empty()
     }
 
-    /// The edges of the two sides of all contacts between bodies, facing each other.
+    /// The edges of the two sides of all contacts between bodies, and of all layers, facing each other.
     pub fn facing_edges(&self) -> Vec<[usize; 2]> {
-        let pairs = self.pairs();
-        pairs.filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?])).collect()
+        let contacts = self.pairs().filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?]));
+        let layers = self.bed_pairs().filter_map(|(pair, _)| Some([pair.edge, pair.opposite?]));
+        contacts.chain(layers).collect()
     }
 
     /// The same problem with the triangles `marked` bisected, and what else that asks for, see

@@ -104,7 +104,7 @@ impl Problem {
     /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
     pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
         let [a, b] = self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v]));
-        (a && b) || (a && k == 0) || (b && k == degree)
+        a && (b || k == 0) || b && k == degree
     }
 
     /// Largest weight of the ends of edge `e`.

@@ -98,8 +98,11 @@ fn held(
     count: usize,
 ) -> Result<(String, Option<Vec<f64>>), CliError> {
     let Claimed { args, arrays } = claimed;
-    let session = Session::new("certify", scene.clone(), count, &args.solve, true)?;
-    let given = args.values.all()?;
+    let mut session = Session::new("certify", scene.clone(), count, &args.solve, true)?;
+    let given = args.values.all(&mut session.scene)?;
+    // Points of a table are quantities that a run from before does not have.
+    let solved = solved.filter(|_| session.scene.quantities.len() == scene.quantities.len());
+    let scene = &session.scene;
     refuse_unknown(scene, given.iter().map(|value| value.name.as_str()))?;
     let folder = args.run.out.is_some().then(|| args.run.report_folder(scene)).transpose()?;
     let field = match arrays {

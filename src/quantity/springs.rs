@@ -90,7 +90,8 @@ pub fn terms(
     (middle, adjoint): (&OnSprings, &OnSprings),
     (lifted, factor): (&Displacement, f64),
 ) -> Vec<SpringTerms> {
-    let of = |((pair, stiffness), (m, q)): ((&BedPair, [f64; 2]), (&[Vec<f64>; 2], &[Vec<f64>; 2]))| {
+    type Sides = [Vec<f64>; 2];
+    let of = |((pair, stiffness), (m, q)): ((&BedPair, [f64; 2]), (&Sides, &Sides))| {
         let (jumps, sizes) = spring_jumps(problem, lifted, pair);
         let mut out = SpringTerms::default();
         for (c, k) in stiffness.into_iter().enumerate().filter(|(_, k)| *k > 0.0) {

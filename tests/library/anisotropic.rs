@@ -37,7 +37,7 @@ fn ply(random: &mut Random, stiff: f64, soft: Option<f64>) -> Orthotropic {
         return Orthotropic { young, poisson, shear, angle };
     }
     let young = [stiff, random.between(0.5, 2.0), random.between(0.5, 2.0)];
-    let most = |i: usize, j: usize| (young[i] / young[j] as f64).sqrt();
+    let most = |i: usize, j: usize| (young[i] / young[j]).sqrt();
     let poisson = [0.4 * most(0, 1), 0.3 * most(0, 2), 0.35 * most(1, 2)].map(|nu: f64| nu * random.between(-0.5, 1.0));
     Orthotropic { young, poisson, shear, angle }
 }

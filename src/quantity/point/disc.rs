@@ -281,8 +281,8 @@ mod tests {
                 for corners in [[square[0], square[1], square[2]], [square[0], square[2], square[3]]] {
                     for spot in disc.spots(corners, 14) {
                         let own = sub_corners(corners, spot.sub);
-                        for c in 0..2 {
-                            let back: f64 = (0..3).map(|i| spot.l[i] * own[i][c]).sum();
+                        for c in [0, 1] {
+                            let back: f64 = spot.l.iter().zip(&own).map(|(l, corner)| l * corner[c]).sum();
                             assert!((back - disc.middle[c] - spot.from_middle[c]).abs() < 1e-13);
                         }
                         for (d, sum) in sums.iter_mut().enumerate() {
