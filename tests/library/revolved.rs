@@ -7,7 +7,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Certified, Goal, StudyError, adapt, answers, certify_divided};
+use hypercircle::study::{Certified, Goal, StudyError, adapt, answers, certify_divided, refuse_quantities};
 
 /// A rectangle in r and z with conditions on its sides.
 fn rectangle(name: &str, [r0, r1]: [f64; 2], [z0, z1]: [f64; 2], poisson: f64) -> String {
@@ -257,6 +257,31 @@ fn what_cannot_be_beside_an_axis_is_refused() {
     let held = "[[supports]]\non = \"rod_in\"\ntype = \"clamped\"\n";
     let held = refused(head("axisymmetric", 0.5) + &body(0.0) + held);
     assert!(held.contains("rod_in") && held.contains("leave it out"), "{held}");
+    let with = |key: &str| {
+        refused(
+            head("axisymmetric", 0.5) + &body(0.5).replace("young", &format!("{key}\nyoung")) + &rollers("rod_foot"),
+        )
+    };
+    for (key, said) in [
+        ("expansion = 1e-5\ntemperature = 80.0", "temperature"),
+        ("initial_stress = [1.0, 0.0, 0.0]", "initial_stress"),
+        ("body_force = { value = [0.0, 0.0], gradient = [[0.0, 1.0], [0.0, 0.0]] }", "varies along z"),
+        ("rotation = { density = 1.0, omega = 1.0, about = [1.0, 0.0] }", "turns about its axis"),
+    ] {
+        assert!(with(key).contains(said), "{}", with(key));
+    }
+    let spring = "[[supports]]\non = \"rod_foot\"\ntype = \"spring\"\nstiffness = [1.0, 0.0]\n";
+    assert!(refused(head("axisymmetric", 0.5) + &body(0.5) + spring).contains("springs"));
+    for asked in [
+        "stress = \"rod\"\ncomponent = \"xx\"",
+        "stress = \"rod\"\npoint = [0.7, 0.5]\ncomponent = \"von-mises\"",
+        "displacement = \"rod\"\ndirection = [0.0, 1.0]",
+        "force = \"rod_foot\"\ndirection = [0.0, 1.0]",
+    ] {
+        let text = head("axisymmetric", 0.5) + &body(0.5) + &rollers("rod_foot") + &quantity("a", asked);
+        let error = refuse_quantities(&problem(&text)).expect_err(asked);
+        assert!(error.contains("a body of revolution has no interval"), "{error}");
+    }
     // Rollers there say what is so anyway.
     problem(&(head("axisymmetric", 0.5) + &body(0.0) + &rollers("rod_in")));
 }
