@@ -85,6 +85,20 @@ class Contact:
         return found
 
 
+KINEMATICS = ("plane-strain", "plane-stress", "axisymmetric")
+"""What a plane figure may stand for."""
+
+
+@dataclass(frozen=True)
+class Revolution:
+    """A body of revolution: the first coordinate of its axis, and the rule for integrals over triangles, with points (n, 2) in the
+    triangle (0, 0), (1, 0), (0, 1) and weights (n,) that sum to one half. The rule is the same from all corners."""
+
+    axis: float
+    points: np.ndarray
+    weights: np.ndarray
+
+
 @dataclass(frozen=True)
 class Problem:
     """What ``problem.json`` says, checked; index arrays are int64, everything else float64.
@@ -95,6 +109,7 @@ class Problem:
 
     kinematics: str
     thickness: float
+    revolution: Revolution | None
     bodies: list[Body]
     points: np.ndarray
     triangles: np.ndarray
@@ -140,12 +155,13 @@ def read_problem(path: Path) -> Problem:
 def parse_problem(data: dict) -> Problem:
     """Check the contents of ``problem.json``; :class:`BadExchange` names the key that is wrong."""
     kinematics = _get(data, "kinematics")
-    if kinematics not in ("plane-strain", "plane-stress"):
-        raise BadExchange(f"kinematics is {kinematics!r}, expected 'plane-strain' or 'plane-stress'")
+    if kinematics not in KINEMATICS:
+        raise BadExchange(f"kinematics is {kinematics!r}, expected one of {', '.join(KINEMATICS)}")
+    revolution = _revolution(_get(data, "revolution")) if kinematics == "axisymmetric" else None
     thickness = _scalar(data, "thickness", "thickness")
     if not thickness > 0.0:
         raise BadExchange(f"thickness is {thickness}, expected a positive number")
-    bodies = [_body(entry, f"bodies[{i}]") for i, entry in enumerate(_records(data, "bodies"))]
+    bodies = [_body(entry, f"bodies[{i}]", 3 if revolution is None else 4) for i, entry in enumerate(_records(data, "bodies"))]
     points = _numbers(data, "points", (-1, 2))
     triangles = _indices(data, "triangles", (-1, 3), len(points))
     edges = _indices(data, "edges", (-1, 2), len(points))
@@ -177,6 +193,7 @@ def parse_problem(data: dict) -> Problem:
     return Problem(
         kinematics=kinematics,
         thickness=thickness,
+        revolution=revolution,
         bodies=bodies,
         points=points,
         triangles=triangles,
@@ -204,7 +221,18 @@ def parse_problem(data: dict) -> Problem:
     )
 
 
-def _body(entry: dict, where: str) -> Body:
+def _revolution(entry) -> Revolution:
+    if not isinstance(entry, dict):
+        raise BadExchange("revolution must be one JSON object")
+    points = _array(entry, "points", "revolution", (-1, 2))
+    return Revolution(
+        axis=_scalar(entry, "axis", "revolution.axis"),
+        points=points,
+        weights=_array(entry, "weights", "revolution", (len(points),)),
+    )
+
+
+def _body(entry: dict, where: str, stresses: int) -> Body:
     name, force, slope = str(_get(entry, "name", where)), _get(entry, "body_force", where), np.zeros((2, 2))
     if isinstance(force, dict):
         inside = f"{where}.body_force"
@@ -213,7 +241,7 @@ def _body(entry: dict, where: str) -> Body:
         force = _array(entry, "body_force", where, (2,))
     initial = _array(entry, "initial_strain", where, (3, 3)) if "initial_strain" in entry else None
     if "stiffness" in entry:
-        stiffness = _array(entry, "stiffness", where, (3, 3))
+        stiffness = _array(entry, "stiffness", where, (stresses, stresses))
         if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
             raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
         return Body(name, float(stiffness.diagonal().max()), 0.0, force, slope, stiffness, initial)

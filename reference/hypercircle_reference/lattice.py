@@ -31,6 +31,15 @@ def traction_weights(degree: int) -> np.ndarray:
     return np.linalg.solve(bernstein(degree).T, moments)
 
 
+def weighted_traction_weights(degree: int) -> np.ndarray:
+    """∫ φ_i (1 − s)² ds, ∫ φ_i s (1 − s) ds and ∫ φ_i s² ds (k + 1, 3), φ_i as in :func:`traction_weights`."""
+    points, by = np.polynomial.legendre.leggauss(degree // 2 + 2)
+    s = 0.5 * (points + 1)
+    at = np.arange(degree + 1) / degree
+    shape = np.linalg.solve(np.vander(at, increasing=True).T, np.vander(s, degree + 1, increasing=True).T)
+    return (0.5 * by * shape) @ np.stack([(1 - s) ** 2, s * (1 - s), s**2], axis=1)
+
+
 def weights(degree: int) -> np.ndarray:
     """Weights of the corners, times k, at each node of a triangle (n, 3), the first falling, then the second."""
     return np.array([(degree - r, r - l, l) for r in range(degree + 1) for l in range(r + 1)])

@@ -21,7 +21,7 @@ from hypercircle_process import BadExchange, Failure
 
 from . import compat
 from .exchange import Problem
-from .lattice import Lattice, square, traction_weights, weights
+from .lattice import Lattice, square, traction_weights, weighted_traction_weights, weights
 from .springs import stiffness as spring_stiffness
 
 GAUSS_POINTS = 6
@@ -178,7 +178,8 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     """
     problem, comm = mesh.problem, mesh.comm
     start = perf_counter()
-    space, dx = compat.vector_space(mesh.mesh, mesh.corners, degree), mesh.measure
+    space = compat.vector_space(mesh.mesh, mesh.corners, degree)
+    section = Slice(mesh) if problem.revolution is None else Revolved(mesh)
     materials = np.array([_lame(body, problem.kinematics, flip_sign) for body in problem.bodies]) * problem.thickness
     forces = np.array([body.body_force for body in problem.bodies]) * problem.thickness
     owner = problem.body[mesh.triangles]
@@ -192,15 +193,17 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     displacement = compat.function(space)
 
     def product(e, d):
-        isotropic = lame * ufl.tr(e) * ufl.tr(d) + 2 * shear * ufl.inner(e, d)
+        isotropic = lame * section.trace(e) * section.trace(d) + 2 * shear * section.contraction(e, d)
         if law is None:
-            return isotropic * dx
-        return (isotropic + ufl.inner(ufl.dot(law, _engineering(e)), _engineering(d))) * dx
+            return section.integral(isotropic)
+        of_others = ufl.inner(ufl.dot(law, section.engineering(e)), section.engineering(d))
+        return section.integral(isotropic + of_others)
 
     def work(u, v):
-        if law is None:
-            return (lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))) * dx
-        return product(_strain(u), _strain(v))
+        if law is None and problem.revolution is None:
+            both = lame * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(_strain(u), _strain(v))
+            return section.integral(both)
+        return product(section.strain(u), section.strain(v))
 
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     bilinear = compat.form(comm, work(u, v))
@@ -211,7 +214,7 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
         elastic = _strain(displacement) - initial
         energy = compat.form(comm, 0.5 * product(elastic, elastic))
         pull = compat.form(comm, product(initial, _strain(v)))
-    linear = compat.form(comm, ufl.inner(force, v) * dx)
+    linear = compat.form(comm, section.integral(ufl.inner(force, v)))
     compiled = perf_counter()
 
     lattice = Lattice.of(problem, degree)
@@ -253,9 +256,55 @@ def _strain(v):
     return ufl.sym(ufl.grad(v))
 
 
-def _engineering(strain):
-    """ε_xx, ε_yy and 2 ε_xy."""
-    return ufl.as_vector([strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
+class Slice:
+    """A slice of a body: strains are those of the plane."""
+
+    def __init__(self, mesh: Mesh):
+        self.measure = mesh.measure
+
+    def integral(self, density):
+        """Over the figure, times what a point of it stands for."""
+        return density * self.measure
+
+    def strain(self, v):
+        """e(v)."""
+        return _strain(v)
+
+    def trace(self, e):
+        """The change of volume."""
+        return ufl.tr(e)
+
+    def contraction(self, e, d):
+        """e:d."""
+        return ufl.inner(e, d)
+
+    def engineering(self, e):
+        """ε_xx, ε_yy and 2 ε_xy."""
+        return ufl.as_vector([e[0, 0], e[1, 1], 2 * e[0, 1]])
+
+
+class Revolved(Slice):
+    """A body of revolution: integrals have the weight r and the rule of the exchange file, and v_r/r is the strain of the hoop."""
+
+    def __init__(self, mesh: Mesh):
+        if mesh.corners != 3:
+            raise BadExchange("kinematics: a body of revolution is modelled on triangles")
+        revolution = mesh.problem.revolution
+        rule = {"quadrature_points": revolution.points, "quadrature_weights": revolution.weights}
+        self.measure = ufl.dx(metadata={"quadrature_rule": "custom", **rule})
+        self.radius = ufl.SpatialCoordinate(mesh.mesh)[0] - revolution.axis
+
+    def integral(self, density):
+        return self.radius * density * self.measure
+
+    def strain(self, v):
+        """e(v) in the directions r, z and θ."""
+        e, hoop = _strain(v), v[0] / self.radius
+        return ufl.as_matrix([[e[0, 0], e[0, 1], 0], [e[0, 1], e[1, 1], 0], [0, 0, hoop]])
+
+    def engineering(self, e):
+        """ε_rr, ε_zz, ε_θθ and 2 ε_rz."""
+        return ufl.as_vector([e[0, 0], e[1, 1], e[2, 2], 2 * e[0, 1]])
 
 
 def _initial_strain(mesh: Mesh, owner: np.ndarray):
@@ -275,11 +324,12 @@ def _stiffness(mesh: Mesh, owner: np.ndarray):
     problem = mesh.problem
     if all(body.stiffness is None for body in problem.bodies):
         return None
-    none = np.zeros((3, 3))
+    size = 3 if problem.revolution is None else 4
+    none = np.zeros((size, size))
     values = np.array([none if body.stiffness is None else body.stiffness for body in problem.bodies])
     values = values[owner] * problem.thickness
-    entry = {(i, j): compat.constant_per_cell(mesh.mesh, values[:, i, j]) for i in range(3) for j in range(i, 3)}
-    return ufl.as_matrix([[entry[min(i, j), max(i, j)] for j in range(3)] for i in range(3)])
+    entry = {(i, j): compat.constant_per_cell(mesh.mesh, values[:, i, j]) for i in range(size) for j in range(i, size)}
+    return ufl.as_matrix([[entry[min(i, j), max(i, j)] for j in range(size)] for i in range(size)])
 
 
 def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
@@ -288,7 +338,7 @@ def _lame(body, kinematics: str, flip_sign: bool) -> tuple[float, float]:
         return 0.0, 0.0
     young, poisson, sign = body.young, body.poisson, -1.0 if flip_sign else 1.0
     shear = young / (2.0 * (1.0 + poisson))
-    if kinematics == "plane-strain":
+    if kinematics != "plane-stress":
         return young * poisson / ((1.0 + poisson) * (1.0 - sign * 2.0 * poisson)), shear
     return young * poisson / (1.0 - sign * poisson * poisson), shear
 
@@ -300,7 +350,16 @@ def _traction_load(problem: Problem, lattice: Lattice) -> np.ndarray:
     ends = problem.edges[edges]
     nodes = np.concatenate([ends[:, :1], lattice.inside_edges(edges), ends[:, 1:]], axis=1)
     length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)
-    np.add.at(load, nodes, length[:, None, None] * (traction_weights(lattice.degree) @ problem.traction_values))
+    if problem.revolution is None:
+        shares = traction_weights(lattice.degree) @ problem.traction_values
+    else:
+        # r P is a quadratic.
+        first, last = problem.traction_values[:, 0], problem.traction_values[:, 1]
+        radius = problem.points[ends][:, :, :1] - problem.revolution.axis
+        middle = radius[:, 0] * last + radius[:, 1] * first
+        quadratic = np.stack([radius[:, 0] * first, middle, radius[:, 1] * last], axis=1)
+        shares = weighted_traction_weights(lattice.degree) @ quadratic
+    np.add.at(load, nodes, length[:, None, None] * shares)
     return problem.thickness * load
 
 

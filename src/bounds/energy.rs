@@ -9,7 +9,7 @@ use super::springs::{complementary_of_springs, potential_of_springs};
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::{sub_area, sub_corners};
-use crate::element::{Displacement, Material, Samples, StressField, contraction, side, triangle};
+use crate::element::{Displacement, Material, Samples, Section, StressField, contraction, side, triangle};
 use crate::element::{Strains, elastic_degree};
 use crate::load::BodyForce;
 use crate::problem::{ContactPair, Problem};
@@ -105,6 +105,11 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
             }
             let material = &materials[mesh.body[t]];
             let third = mesh.area(t) / 3.0;
+            if let Some(revolved) = problem.section().revolved() {
+                let force = problem.body_force(t);
+                let [square, sensitivity] = revolved.square(stress, t, mesh.corners(t), material, force);
+                return [0.5 * square, sensitivity * shape(mesh.corners(t)), 0.0];
+            }
             let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
             let product = |value: &[f64; 3]| material.spread(*value);
@@ -217,7 +222,7 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
             if !counted.triangle(t) {
                 return [0.0; 2];
             }
-            strain_with(&materials[mesh.body[t]], mesh.corners(t), v, t)
+            strain_with(problem.section(), &materials[mesh.body[t]], mesh.corners(t), v, t)
         })
         .collect();
     let strain: Sum = terms.iter().map(|t| t[0]).collect();
@@ -237,15 +242,20 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
 
 /// ½∫ c (e(v) − ε0):(e(v) − ε0) on triangle `t`, per unit thickness, and what a relative error of one in every number could change.
 pub fn strain_on(problem: &Problem, v: &Displacement, t: usize) -> [f64; 2] {
-    strain_with(&problem.material(problem.mesh.body[t]), problem.mesh.corners(t), v, t)
+    strain_with(problem.section(), &problem.material(problem.mesh.body[t]), problem.mesh.corners(t), v, t)
 }
 
 /// ½∫ c e(v):e(v), without initial strain, for the displacement that `v` has as its triangle `own`, on triangle `t`.
 pub fn strain_of(problem: &Problem, v: &Displacement, own: usize, t: usize) -> [f64; 2] {
-    strain_with(&problem.material(problem.mesh.body[t]).without_initial(), problem.mesh.corners(t), v, own)
+    let material = problem.material(problem.mesh.body[t]).without_initial();
+    strain_with(problem.section(), &material, problem.mesh.corners(t), v, own)
 }
 
-fn strain_with(material: &Material, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
+fn strain_with(section: Section, material: &Material, corners: [[f64; 2]; 3], v: &Displacement, t: usize) -> [f64; 2] {
+    if let Some(revolved) = section.revolved() {
+        let [energy, sensitivity] = revolved.strain_energy(v, t, corners, material);
+        return [energy, sensitivity * shape(corners)];
+    }
     let area = sub_area(corners);
     let samples = Samples::of(elastic_degree(v.degree(t), material), 0);
     let (mut strain, mut sensitivity) = (0.0, 0.0);
@@ -310,11 +320,15 @@ fn counted_work(
     tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
     counted: Counted<'_>,
 ) -> Sum {
-    let mesh = &problem.mesh;
+    let (mesh, section) = (&problem.mesh, problem.section());
     let mut work = Sum::default();
     for t in (0..mesh.triangles.len()).filter(|t| counted.triangle(*t)) {
         let force = force(mesh.body[t]);
         if !force.is_none() {
+            if let Some(revolved) = section.revolved() {
+                work.extend(revolved.work_inside(&force, mesh.corners(t), v, t));
+                continue;
+            }
             work.extend(work_inside(&force, mesh.corners(t), v, t));
         }
     }
@@ -355,7 +369,9 @@ fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]
     }
     let (length, _) = problem.mesh.edge_frame(e);
     let u = side_coefficients(problem, v, e);
-    let along = |c: usize| side::integral(&[a[c], b[c]], &u.iter().map(|u| u[c]).collect::<Vec<_>>());
+    let own = problem.weighted(e, [a, b]);
+    let values = |list: &[[f64; 2]], c: usize| list.iter().map(|u| u[c]).collect::<Vec<_>>();
+    let along = |c: usize| side::integral(&values(&own, c), &values(&u, c));
     [0, 1].map(|c| length * along(c))
 }
 

@@ -72,6 +72,10 @@ pub fn constitutive_error(problem: &Problem, stress: &StressField, v: &Displacem
             }
             let material = &materials[mesh.body[t]];
             let corners = mesh.corners(t);
+            if let Some(revolved) = problem.section().revolved() {
+                let force = problem.body_force(t);
+                return thickness * revolved.constitutive_error(stress, v, t, corners, material, force);
+            }
             let (of_v, own) = (elastic_degree(v.degree(t), material), stress.degree(t));
             let (samples, shapes) = (Samples::of(of_v, own), Samples::of_stress(own, of_v));
             let mut sum = 0.0;

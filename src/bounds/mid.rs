@@ -20,7 +20,8 @@ use crate::problem::Problem;
 
 /// m = (λ + c e(v))/2, of the higher degree of the two; `None` where they are on different meshes.
 pub fn mid_field(problem: &Problem, stress: &StressField, v: &Displacement) -> Option<StressField> {
-    if stress.len() != v.len() {
+    // Weighted stresses and those of a displacement have no common space.
+    if stress.len() != v.len() || problem.section().is_revolved() {
         return None;
     }
     let own = degrees(problem, v);

@@ -9,6 +9,7 @@ use clap::{ValueEnum, value_parser};
 use super::methods::MethodOptions;
 use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive, tolerance};
 use super::progress::Progress;
+use super::revolved::refuse_unsupported;
 use super::session::refuse_unknown;
 use super::{CliError, Exit, say};
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
@@ -170,6 +171,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut scenes: Vec<Scene> = Vec::new();
     for path in &args.scenes {
         let scene = Scene::read(path)?;
+        refuse_unsupported("chart", &scene)?;
         refuse_unknown(&scene, args.quantities().iter().map(String::as_str))?;
         if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
             let message = format!("{} and {} have the same name", other.path.display(), path.display());

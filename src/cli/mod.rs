@@ -25,6 +25,7 @@ pub mod part;
 mod points;
 pub mod progress;
 mod proof;
+pub mod revolved;
 pub mod say;
 pub mod schema;
 pub mod session;

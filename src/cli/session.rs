@@ -7,6 +7,7 @@ use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
 use super::options::{Engine, EngineOptions, Limits, SolveOptions};
 use super::progress::Progress;
+use super::revolved::refuse_unsupported;
 use super::{CliError, Exit, ci, program, threads};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
@@ -89,6 +90,7 @@ impl Session {
         solve: &SolveOptions,
         quiet: bool,
     ) -> Result<Self, CliError> {
+        refuse_unsupported(command, &scene)?;
         let budget = enough(solve.memory.budget(threads))?;
         let (start, progress) = (Instant::now(), Progress::new(quiet));
         Ok(Session { scene, progress, start, command, quiet, run: None, threads, budget })

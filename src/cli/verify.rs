@@ -9,12 +9,14 @@ use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions, positive};
+use super::revolved::refuse_models;
 use super::session::Session;
 use super::{CliError, Exit};
 use crate::compare::compare;
 use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand, WantedCells};
 use crate::problem::Note;
 use crate::process::limit;
+use crate::scene::Kinematics;
 use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
 
 /// Options of `verify`.
@@ -125,6 +127,10 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     args.refuse_unheard()?;
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
+    refuse_models(&session.scene, &args.degrees())?;
+    // There are none on quadrilaterals of a body of revolution.
+    let revolved = session.scene.kinematics == Kinematics::Axisymmetric;
+    let cells = if revolved { WantedCells::Triangles } else { args.primal_cells };
     args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
@@ -137,7 +143,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let options = primal::Options {
         program: args.reference.clone(),
         degrees: args.degrees(),
-        cells: args.primal_cells,
+        cells,
         sabotage: args.sabotage.map(|s| match s {
             Planted::FlipSign => primal::Sabotage::FlipSign,
             Planted::DropRow => primal::Sabotage::DropRow,
@@ -164,7 +170,7 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     });
     let mesh = &certified.problem.mesh;
     let on_cells = match args.reference {
-        None => primal::remark(mesh, &primal::spaces(mesh, args.primal_cells, &args.degrees())),
+        None => primal::remark(mesh, &primal::spaces(mesh, cells, &args.degrees())),
         Some(_) => None,
     };
     let candidates = candidates(&certified.problem, solutions);

@@ -8,7 +8,7 @@ use super::outcome::{ContactSummary, Profile, TwoSides};
 use super::peak::Peaks;
 use super::pressure::{
     Piece, contact_ends, disagreement, dual_pressure, l2, maximum, open_length, profile, reaction_moment,
-    reaction_pressure, resultant, trace_pressure,
+    reaction_pressure, resultant, trace_pressure, unweighted, without_radial,
 };
 use super::resultant::{forces, resultant_check};
 use super::tolerance::chosen;
@@ -52,8 +52,9 @@ impl Sides<'_> {
     pub fn compare(&self, all: &[Judged]) -> (Vec<ContactSummary>, Vec<Check>) {
         let (mut summaries, mut checks) = (Vec::new(), Vec::new());
         for (index, interface) in self.problem.interfaces.iter().enumerate() {
-            let own = dual_pressure(self.dual, index);
-            let mut summary = self.summary((index, interface), &own);
+            let weighted = dual_pressure(self.dual, index);
+            let own = unweighted(self.problem, interface, &weighted);
+            let mut summary = self.summary((index, interface), &weighted);
             for judged in all {
                 summary.profiles.extend(self.profiles(index, interface, judged));
             }
@@ -70,16 +71,18 @@ impl Sides<'_> {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
+        let own = &unweighted(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
         ContactSummary {
             name: interface.name.clone(),
             resultant: TwoSides { dual: force, primal: None },
             moment: TwoSides { dual: about_zero(problem, moment, force), primal: None },
             pressure_max: TwoSides { dual: largest, primal: None },
             pressure_max_at: TwoSides { dual: problem.scene.as_written(at), primal: None },
-            pressure_mean: mean::around(problem, (index, interface), own, at, length - open, self.gap),
+            pressure_mean: if problem.section().is_revolved() { None } else { around() },
             open_fraction: open / length,
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
@@ -115,7 +118,7 @@ impl Sides<'_> {
             None => trace_pressure(problem, interface, best),
         };
         let (force, moment) = resultant(problem, interface, &pieces);
-        let force = reactions.map_or(force, |r| r.resultant);
+        let force = reactions.map_or(force, |r| without_radial(problem, r.resultant));
         let moment = reactions.map_or(moment, |r| reaction_moment(problem, interface, r));
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
@@ -135,7 +138,8 @@ impl Sides<'_> {
             return checks;
         }
         // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
-        let bounded = reactions.filter(|_| best.candidate.is_polynomial());
+        let by_rule = !best.candidate.is_polynomial() || problem.section().is_revolved();
+        let bounded = reactions.filter(|_| !by_rule);
         let nodes = bounded.map(|r| nodal_pressures(problem, (index, interface), own, self.dual, best, r));
         let means = nodes.as_deref().and_then(nodal::difference);
         let floor = self.no_pressure().max(SEEN * self.scales.data.stress);
@@ -284,5 +288,5 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
 /// The moment about the point (0, 0) of the file, from that about the point from which coordinates count.
 fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     let [x, y] = problem.scene.origin;
-    if [x, y] == [0.0; 2] { moment } else { moment + (x * force[1] - y * force[0]) }
+    if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
 }

@@ -99,7 +99,7 @@ impl<'a> Weight<'a> {
             let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
-                Condition::Clamped(_) | Condition::Elastic { .. } => true,
+                Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
                 Condition::Roller { direction, .. } => across(*direction),
                 Condition::Contact { .. } => across(mesh.edge_frame(e).1),

@@ -18,6 +18,7 @@ mod peak;
 mod piece;
 pub mod pressure;
 mod resultant;
+mod revolved;
 pub mod solution;
 mod springs;
 mod stress;
@@ -33,7 +34,7 @@ pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use pressure::weighted_reactions;
 pub use solution::{Nonmatching, Numbering, Solution};
-pub use stress::{primal_means, von_mises_map};
+pub use stress::{primal_means, von_mises_map, von_mises_of, von_mises_of_field, von_mises_of_means};
 pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
 
 use ceiling::Ceilings;

@@ -173,7 +173,7 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
             let across = |d: [f64; 2]| dot(n, d).abs() > ALIGNED;
             let stops = match condition {
                 Condition::Interior | Condition::Traction(_) => false,
-                Condition::Clamped(_) | Condition::Elastic { .. } => true,
+                Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
                 Condition::Roller { direction, .. } => across(*direction),
                 Condition::Contact { .. } => across(problem.mesh.edge_frame(e).1),

@@ -79,6 +79,9 @@ pub struct ComponentDifference {
     pub xx: f64,
     /// σ_yy.
     pub yy: f64,
+    /// The hoop stress of a body of revolution, whose xx, yy and xy are rr, zz and rz.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tt: Option<f64>,
     /// σ_xy.
     pub xy: f64,
     /// Von Mises stress.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::candidate::{Judged, Reactions};
 pub use super::piece::{Piece, variation};
+use super::revolved::stress_at;
 use crate::dual::DualSolution;
 use crate::element::displacement::through;
 use crate::element::{Strains, elastic_degree, side};
@@ -15,6 +16,50 @@ pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
     dual.contact_traction[interface].iter().map(pressure).collect()
 }
 
+/// Pressures from those times the weight of the section, which is all that a body of revolution has on its edges; between the points of the
+/// degree they are interpolated.
+pub fn unweighted(problem: &Problem, interface: &Interface, own: &[Piece]) -> Vec<Piece> {
+    let section = problem.section();
+    if !section.is_revolved() {
+        return own.to_vec();
+    }
+    let of_pair = |(pair, piece): (&ContactPair, &Piece)| {
+        let [a, b] = pair.first.map(|v| section.weight(problem.mesh.points[v]));
+        let coefficients: Vec<f64> = piece.coefficients().collect();
+        if a == b {
+            return Piece::polynomial(coefficients.iter().map(|c| c / a).collect());
+        }
+        let last = (coefficients.len() - 1).max(1);
+        let at = |i: usize| {
+            // On the axis the value close by.
+            let s = (i as f64 / last as f64).clamp(ASIDE, 1.0 - ASIDE);
+            [side::value(&coefficients, s) / (a + s * (b - a)), 0.0]
+        };
+        Piece::polynomial(through(&(0..=last).map(at).collect::<Vec<_>>()).iter().map(|c| c[0]).collect())
+    };
+    interface.pairs.iter().zip(own).map(of_pair).collect()
+}
+
+/// The mean weight of the section beside vertex `v` of a pair, as the Bernstein polynomial of that vertex weighs it where there are `inner`
+/// more between.
+fn around(problem: &Problem, pair: &ContactPair, v: usize, inner: usize) -> f64 {
+    let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+    let degree = (inner + 1) as f64;
+    let (own, other) = if v == pair.first[0] { (a, b) } else { (b, a) };
+    if a == b { a } else { ((degree + 1.0) * own + other) / (degree + 2.0) }
+}
+
+/// The same of the polynomials between.
+fn around_between(problem: &Problem, pair: &ContactPair, inner: usize) -> Vec<f64> {
+    let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+    let degree = (inner + 1) as f64;
+    let at = |j: usize| ((degree + 1.0 - j as f64) * a + (j as f64 + 1.0) * b) / (degree + 2.0);
+    (1..=inner).map(|j| if a == b { a } else { at(j) }).collect()
+}
+
+/// Part of an edge that is as near to its end as pressures beside an axis are taken.
+const ASIDE: f64 = 1e-6;
+
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
 pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &Reactions) -> Vec<Piece> {
     let thickness = problem.scene.thickness;
@@ -24,7 +69,8 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
     let mut weight = HashMap::new();
     for (k, pair) in interface.pairs.iter().enumerate() {
         for v in pair.first {
-            *weight.entry(v).or_insert(0.0) += share(k) * pair.length * thickness;
+            *weight.entry(v).or_insert(0.0) +=
+                share(k) * pair.length * thickness * around(problem, pair, v, inner(k).len());
         }
     }
     let force: HashMap<_, _> = reactions.vertices.iter().copied().zip(reactions.vertex.iter().copied()).collect();
@@ -36,7 +82,8 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
         .map(|(k, pair)| {
             let [a, b] = pair.first.map(at);
             let part = share(k) * pair.length * thickness;
-            let inner = inner(k).iter().map(|r| r / part);
+            let between = around_between(problem, pair, inner(k).len());
+            let inner = inner(k).iter().zip(between).map(|(r, around)| r / (part * around));
             if !pair.direction.is_constant() && inner.len() > 0 {
                 // Apart, those of a direction that hardly turns say little; together they do.
                 let count = inner.len() as f64;
@@ -59,15 +106,22 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         let material = &materials[mesh.body[t]];
         strains.elastic(mesh.corners(t), &judged.field.displacement, t, sub, material);
         let n = pair.normal;
-        let pressure = |e: [f64; 3]| {
-            let s = material.stress(e);
+        let revolved = problem.section().revolved();
+        let pressure = |e: [f64; 3], l: [f64; 3]| {
+            let s = match revolved {
+                None => material.stress(e),
+                Some(revolved) => {
+                    let [rr, zz, _, rz] = stress_at(problem, revolved, &judged.field.displacement, t, sub, l);
+                    [rr, zz, rz]
+                }
+            };
             -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
         };
         // Of degree k − 1 on the edge, from corner to corner of the subtriangle.
         let degree = elastic_degree(judged.field.displacement.degree(t), material);
         let values: Vec<[f64; 2]> = (0..=degree.max(1))
             .map(|j| j as f64 / degree.max(1) as f64)
-            .map(|s| [pressure(strains.at([1.0 - s, s, 0.0])), 0.0])
+            .map(|s| [pressure(strains.at([1.0 - s, s, 0.0]), [1.0 - s, s, 0.0]), 0.0])
             .collect();
         let mut pressures: Vec<f64> = through(&values).into_iter().map(|p| p[0]).collect();
         if mesh.edges[e].vertices[0] != pair.first[0] {
@@ -92,12 +146,20 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
         // The arm of a force along a direction that turns is quadratic.
         moment -= size * p.integral(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);
     }
-    (force, moment)
+    (without_radial(problem, force), if problem.section().is_revolved() { 0.0 } else { moment })
+}
+
+/// A force, of a body of revolution along its axis: around it radial forces and moments cancel.
+pub fn without_radial(problem: &Problem, force: [f64; 2]) -> [f64; 2] {
+    if problem.section().is_revolved() { [0.0, force[1]] } else { force }
 }
 
 /// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.
 pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
+    if problem.section().is_revolved() {
+        return 0.0;
+    }
     let mut normal = HashMap::new();
     let mut moment = 0.0;
     for (k, pair) in interface.pairs.iter().enumerate() {

@@ -30,7 +30,7 @@ pub fn resultant_check(
     let of_displacements = best.balance.as_ref().map(|b| b.reaction_tolerance(index));
     let round_off =
         RESULTANT * forces(sides.problem).max(size) + of_displacements.unwrap_or(0.0) + sides.scales.round_off.force;
-    let norm = if best.candidate.is_polynomial() {
+    let norm = if best.candidate.is_polynomial() && !sides.problem.section().is_revolved() {
         translation_norm(sides.problem, (index, interface), dual, primal, best.candidate.on_quadrilaterals.is_some())
     } else {
         Err(Meets::Distorted)
@@ -192,11 +192,14 @@ pub fn forces(problem: &Problem) -> f64 {
     let mut sum = 0.0;
     for (e, condition) in problem.conditions.iter().enumerate() {
         if let Condition::Traction([a, b]) = condition {
-            sum += 0.5 * mesh.edge_frame(e).0 * (a[0].hypot(a[1]) + b[0].hypot(b[1]));
+            sum += problem.largest_weight(e) * 0.5 * mesh.edge_frame(e).0 * (a[0].hypot(a[1]) + b[0].hypot(b[1]));
         }
     }
     for t in 0..mesh.triangles.len() {
-        sum += mesh.area(t) * problem.force_on(t).largest();
+        let largest = problem.force_on(t).largest();
+        let volume =
+            if problem.section().is_revolved() { problem.section().volume(mesh.corners(t)) } else { mesh.area(t) };
+        sum += volume * largest;
     }
     problem.scene.thickness * sum
 }

@@ -2,11 +2,38 @@
 
 use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
+use super::revolved::{compare_stresses, von_mises_of_displacement};
 use crate::dual::DualSolution;
 use crate::element::geometry::sub_corners;
-use crate::element::{Samples, contraction};
+use crate::element::{Samples, StressField, contraction};
 use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
+
+/// Von Mises stress of a stress (xx, yy, out of the plane, xy).
+pub fn von_mises_of(s: [f64; 4]) -> f64 {
+    let (a, b, c) = (s[0] - s[1], s[1] - s[2], s[2] - s[0]);
+    (0.5 * (a * a + b * b + c * c) + 3.0 * s[3] * s[3]).sqrt()
+}
+
+/// Von Mises stress of the mean stress of a [`StressField`] on each triangle.
+pub fn von_mises_of_means(problem: &Problem, stress: &StressField) -> Vec<f64> {
+    let mesh = &problem.mesh;
+    let all = 0..stress.len();
+    match problem.section().revolved() {
+        None => von_mises_map(problem, &all.map(|t| stress.mean(t)).collect::<Vec<_>>()),
+        Some(revolved) => {
+            all.map(|t| von_mises_of(revolved.mean(stress, t, mesh.corners(t), problem.body_force(t)))).collect()
+        }
+    }
+}
+
+/// Von Mises stress of the mean stress of a displacement solution on each triangle.
+pub fn von_mises_of_field(problem: &Problem, judged: &Judged) -> Vec<f64> {
+    match problem.section().revolved() {
+        None => von_mises_map(problem, &primal_means(problem, judged)),
+        Some(revolved) => von_mises_of_displacement(problem, revolved, &judged.field.displacement),
+    }
+}
 
 /// Mean stress of the displacement solution on each triangle.
 pub fn primal_means(problem: &Problem, judged: &Judged) -> Vec<[f64; 3]> {
@@ -45,6 +72,9 @@ fn centroid(corners: [[f64; 2]; 3]) -> [f64; 2] {
 
 /// Compares the stresses.
 pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judged: &Judged) -> StressSummary {
+    if let Some(revolved) = problem.section().revolved() {
+        return compare_stresses(problem, revolved, (dual, complementary), judged);
+    }
     let mesh = &problem.mesh;
     let materials = problem.materials();
     // ½‖λ_h − σ(u_h)‖² on each triangle.
@@ -85,12 +115,13 @@ pub fn compare(problem: &Problem, dual: &DualSolution, complementary: f64, judge
         worst_at: [0, 1].map(|c| (corners[0][c] + corners[1][c] + corners[2][c]) / 3.0),
         worst_share: if total > 0.0 { terms.get(worst).copied().unwrap_or(0.0) / total } else { 0.0 },
         von_mises_max: TwoSides {
-            dual: largest((0..mesh.triangles.len()).map(|t| dual.stress.mean(t)).collect()),
+            dual: von_mises_of_means(problem, &dual.stress).into_iter().fold(0.0, f64::max),
             primal: Some(largest(primal_means(problem, judged))),
         },
         component_l2_difference: ComponentDifference {
             xx: relative(difference[0]),
             yy: relative(difference[1]),
+            tt: None,
             xy: relative(difference[2]),
             von_mises: relative(mises),
         },

@@ -18,7 +18,9 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     };
     let isotropic = |body: &Body| body.elasticity.isotropic();
     let (other, sentence) = match scene.kinematics {
-        Kinematics::PlaneStrain => (Kinematics::PlaneStress, "plane stress stands in place of plane strain"),
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
+            (Kinematics::PlaneStress, "plane stress stands in place of plane strain")
+        }
         Kinematics::PlaneStress => (Kinematics::PlaneStrain, "plane strain stands in place of plane stress"),
     };
     let negative =

@@ -43,7 +43,7 @@ impl Moduli {
     pub fn of(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
         let mu = young / (2.0 * (1.0 + poisson));
         let lambda = match kinematics {
-            Kinematics::PlaneStrain => 2.0 * mu * poisson / (1.0 - 2.0 * poisson),
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => 2.0 * mu * poisson / (1.0 - 2.0 * poisson),
             Kinematics::PlaneStress => 2.0 * mu * poisson / (1.0 - poisson),
         };
         Moduli { lambda, mu, shear: mu, other: [[0.0; 3]; 3] }
@@ -57,7 +57,7 @@ impl Moduli {
     /// Young's modulus and Poisson's ratio of a material with these constants.
     pub fn engineering(kinematics: Kinematics, lambda: f64, mu: f64) -> [f64; 2] {
         let poisson = match kinematics {
-            Kinematics::PlaneStrain => 0.5 * lambda / (lambda + mu),
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => 0.5 * lambda / (lambda + mu),
             Kinematics::PlaneStress => lambda / (lambda + 2.0 * mu),
         };
         [2.0 * mu * (1.0 + poisson), poisson]

@@ -83,7 +83,7 @@ impl ActiveSet {
         let symbolic = structure?;
         seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
-        let mut closed = from.unwrap_or_else(|| vec![true; system.jump_bound.len()]);
+        let mut closed = from.unwrap_or_else(|| system.jump_bound.iter().map(|g| g.is_finite()).collect());
         let most_steps = most_steps.min(self.most_steps + 4 * closed.len());
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
@@ -127,7 +127,8 @@ impl ActiveSet {
                 most_steps: self.most_refinements,
             };
             let now = refinement.run(Refined::new(problem, &system, x))?;
-            let depth = now.x[first_jump..].iter().chain(&system.jump_bound).fold(0.0_f64, |m, j| m.max(j.abs()));
+            let bounds = system.jump_bound.iter().filter(|g| g.is_finite());
+            let depth = now.x[first_jump..].iter().chain(bounds).fold(0.0_f64, |m, j| m.max(j.abs()));
             let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
             let mut next = next_state(&closed, &misses);
             left = misses.iter().fold(0.0, |m, by| by.max(m));

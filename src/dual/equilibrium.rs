@@ -4,7 +4,8 @@ use nalgebra::DMatrix;
 
 use super::contact_moments::columns;
 use super::resultants::work_within;
-use crate::element::{SideValues, StressField, side};
+use super::system::applied;
+use crate::element::{SideValues, StressField};
 use crate::problem::{BedPair, Condition, ContactPair, Problem, Scales};
 use crate::vector::long::largest;
 use crate::vector::norm;
@@ -80,8 +81,9 @@ impl<'a> Relative<'a> {
     /// `left` on edge `e`.
     fn of(&self, left: f64, e: usize) -> f64 {
         let at = self.problem.mesh.edges[e].triangles.iter().flatten();
-        let near = at.clone().fold(self.scale, |m, &t| m.max(self.stressed[t]));
-        let left = left - at.fold(0.0_f64, |m, &t| m.max(self.rounding[t]));
+        let weight = self.problem.largest_weight(e);
+        let near = at.clone().fold(weight * self.scale, |m, &t| m.max(self.stressed[t]));
+        let left = left - weight * at.fold(0.0_f64, |m, &t| m.max(self.rounding[t]));
         if left <= 0.0 {
             0.0
         } else if near > 0.0 {
@@ -114,10 +116,11 @@ impl Measured<'_> {
             Condition::Interior => {
                 own.iter().zip(self.traction(e, 1, degree)).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect()
             }
-            Condition::Traction([a, b]) => {
-                let applied = side::linear([a[0], b[0]], degree).zip(side::linear([a[1], b[1]], degree));
-                own.iter().zip(applied).map(|(t, p)| [t[0] - p.0, t[1] - p.1]).collect()
+            Condition::Traction(ends) => {
+                let applied = applied(self.problem, e, *ends, degree);
+                own.iter().zip(applied).map(|(t, p)| [t[0] - p[0], t[1] - p[1]]).collect()
             }
+            Condition::Axis => own,
             Condition::Roller { direction: [x, y], .. } => {
                 let across = |[a, b]: &[f64; 2]| {
                     let across = b * x - a * y;
@@ -202,15 +205,28 @@ fn largest_resultant(problem: &Problem, stress: &StressField, moments: &SideValu
                 (0..2).for_each(|c| force[body][c] += share * t[c]);
                 gross[body] += share * norm(t);
             }
-            rounding[body] += length * scales.stress_round_off(problem, at, stress.degree(at));
+            rounding[body] +=
+                length * problem.largest_weight(e) * scales.stress_round_off(problem, at, stress.degree(at));
         }
     }
     for t in 0..mesh.triangles.len() {
         let body = mesh.body[t];
+        if problem.section().is_revolved() {
+            // A radial force has no resultant.
+            let [_, axial] = problem.section().forces(problem.body_force(t));
+            let volume = problem.section().volume(mesh.corners(t));
+            force[body][1] += axial * volume;
+            gross[body] += problem.force_on(t).largest() * volume;
+            continue;
+        }
         let f = problem.force_on(t).of_area(mesh.area(t));
         let whole = f.resultant();
         (0..2).for_each(|c| force[body][c] += whole[c]);
         gross[body] += f.largest() * mesh.area(t);
+    }
+    if problem.section().is_revolved() {
+        // A radial force has no resultant.
+        force.iter_mut().for_each(|force| force[0] = 0.0);
     }
     // A body without load carries nothing but rounding errors, which are not to be compared with each other.
     let least = 1e-3 * gross.iter().copied().fold(0.0, f64::max);

@@ -94,7 +94,9 @@ pub fn held_unknowns(problem: &Problem, unknowns: &Unknowns, motions: &[Motion])
         let mut z = unknowns.project(|e, k| {
             let [a, b] = mesh.edges[e].vertices;
             let [near, far] = moments_of_ends(problem, unknowns, e, k);
-            [0, 1].map(|c| near * u[a][c] + far * u[b][c])
+            // What nothing resists holds nothing.
+            let idle = problem.vanishes(e, k, unknowns.degree(e));
+            [0, 1].map(|c| if idle { 0.0 } else { near * u[a][c] + far * u[b][c] })
         });
         // Gaussian elimination: what the unknowns held so far leave of the motion, and where it is largest. Motions of few
         // bodies have few entries, and meet few of the others.

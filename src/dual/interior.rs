@@ -16,7 +16,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
 use super::equilibrium::Equilibrium;
 use super::hybrid::{Motion, parameters, residual};
-use super::method::without_springs;
+use super::method::{plane_only, without_springs};
 use super::rows::Sides;
 use super::system::System;
 use super::{DualError, DualMethod, Found, Options, Phases, Size};
@@ -61,6 +61,7 @@ impl DualMethod for Clarabel {
 
     fn solve(&self, problem: &Problem, _motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         let mut seconds = Phases::default();
+        plane_only(problem, self.name())?;
         let start = Instant::now();
         without_springs(problem, self.name())?;
         let system = System::new(problem, options);

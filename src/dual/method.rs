@@ -118,6 +118,18 @@ pub struct Options {
 /// Receives iterations made and relative residual reached.
 pub type Progress = Arc<dyn Fn(usize, f64) + Send + Sync>;
 
+/// Refuses bodies of revolution, of which a method knows nothing.
+///
+/// # Errors
+/// [`DualError::NotExpressible`].
+pub(super) fn plane_only(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    if !problem.section().is_revolved() {
+        return Ok(());
+    }
+    let remedy = "leave --method and --engine out, or use --method active-set";
+    Err(DualError::NotExpressible { method, what: "bodies of revolution".to_string(), remedy })
+}
+
 impl Default for Options {
     fn default() -> Self {
         Options {

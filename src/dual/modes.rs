@@ -40,15 +40,17 @@ impl ModeTable {
     pub fn new(problem: &Problem, elements: Elements) -> Self {
         let materials = problem.materials();
         let mesh = &problem.mesh;
+        let section = problem.section();
+        let place = |t: usize| section.place(mesh.corners(t));
         // A force that is not the same everywhere differs on triangles that are congruent.
         let own = |t: usize| (!problem.body_force(t).is_constant()).then_some(t);
-        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), own(t));
+        let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), own(t), place(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;
         let classes: Vec<Class> = first
             .into_iter()
             .map(|t| {
-                let layout = elements.of(t).layout();
+                let layout = section.layout(elements.of(t), mesh.corners(t));
                 let start = end;
                 end += layout.len();
                 Class { triangle: t, layout, start }
@@ -59,7 +61,8 @@ impl ModeTable {
         of_classes.into_par_iter().zip(&classes).with_min_len(64).for_each(|(out, class)| {
             let t = class.triangle;
             let body = mesh.body[t];
-            elements.of(t).compute(mesh.corners(t), &materials[body], problem.body_force(t), class.layout.split(out));
+            let out = class.layout.split(out);
+            section.compute(elements.of(t), mesh.corners(t), &materials[body], problem.body_force(t), out);
         });
         let first_parameter = starts(class.iter().map(|&c| classes[c as usize].layout.parameters));
         ModeTable { elements, class, classes, data, first_parameter, materials }
@@ -114,7 +117,8 @@ impl ModeTable {
             // What was kept belongs to the triangle that it was computed on.
             let corners = mesh.corners(self.classes[self.class[t] as usize].triangle);
             let force = problem.body_force(t);
-            self.elements.of(t).stresses(corners, force, &self.of(t), &s[self.parameters_of(t)], 1.0, block);
+            let (modes, s) = (self.of(t), &s[self.parameters_of(t)]);
+            problem.section().stresses(self.elements.of(t), corners, force, &modes, s, block);
         });
         field
     }

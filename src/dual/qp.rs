@@ -170,7 +170,7 @@ fn slack(s: &Mat<f64>, c: &[f64], jumps: &[f64], closed: &[bool]) -> Vec<f64> {
 }
 
 /// The largest of the bounds that there are.
-fn largest_finite(bounds: &[f64]) -> f64 {
+pub fn largest_finite(bounds: &[f64]) -> f64 {
     bounds.iter().filter(|g| g.is_finite()).fold(0.0, |m, g| m.max(g.abs()))
 }
 

@@ -8,7 +8,7 @@ use super::clearing::cleared;
 use super::factor::{Breakdown, Factor, SymbolicFactor, power_of_two_near};
 use super::hybrid::{Motion, explain, held_unknowns};
 use super::long_contact::LongContact;
-use super::qp::{self, ContactState};
+use super::qp::{self, ContactState, largest_finite};
 use super::system::{System, isolate};
 use super::{DualError, Options};
 use crate::budget::Budget;
@@ -213,10 +213,10 @@ impl<'a> Schur<'a> {
     pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
         match self {
             Schur::Dense(Dense { unit, .. }) => {
-                let depth = part * largest(&over(jumps, unit)).max(largest(&over(bound, unit)));
+                let depth = part * largest(&over(jumps, unit)).max(largest_finite(&over(bound, unit)));
                 unit.iter().map(|u| u * depth).collect()
             }
-            Schur::Long(..) => vec![part * largest(jumps).max(largest(bound)); jumps.len()],
+            Schur::Long(..) => vec![part * largest(jumps).max(largest_finite(bound)); jumps.len()],
         }
     }
 

@@ -129,7 +129,7 @@ impl Responses<'_> {
             let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
             (Cow::Owned(other), modes)
         };
-        let mut external = load_of_tractions(&system.unknowns, load.tractions.iter().copied());
+        let mut external = load_of_tractions(&problem, &system.unknowns, load.tractions.iter().copied());
         add_edge_loads(&system.unknowns, &load.edges, &mut external);
         let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
         let mut start = system.strained(&problem, &load.strains);

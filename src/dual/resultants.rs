@@ -21,9 +21,19 @@ pub fn work_within(problem: &Problem, stress: &StressField, moments: &SideValues
     let means: Vec<[f64; 2]> = (0..moments.len()).into_par_iter().with_min_len(1024).map(mean).collect();
     let of = |t: usize| {
         let corners = from_centroid(mesh.corners(t));
-        let force = problem.force_on(t).of_area(mesh.area(t));
-        let [fx, fy, moment] = resultant(stress, t, corners, force.resultant());
-        let moment = moment + force.moment();
+        let [fx, fy, moment] = match problem.section().revolved() {
+            // The hoop stress balances what is along r.
+            Some(_) => {
+                let [_, axial] = problem.section().forces(problem.body_force(t));
+                let force = axial * problem.section().volume(mesh.corners(t));
+                [0.0, resultant(stress, t, corners, [0.0, force])[1], 0.0]
+            }
+            None => {
+                let force = problem.force_on(t).of_area(mesh.area(t));
+                let [fx, fy, moment] = resultant(stress, t, corners, force.resultant());
+                [fx, fy, moment + force.moment()]
+            }
+        };
         let of_edges = mesh.triangle_edges[t].map(|e| means[e]);
         let largest = of_edges.iter().fold(0.0_f64, |m, u| m.max(u[0].hypot(u[1])));
         let longest = (0..3).map(|i| along(corners, i)).fold(0.0_f64, |m, [x, y]| m.max(x.hypot(y)));

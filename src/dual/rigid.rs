@@ -49,6 +49,11 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
     let mesh = &problem.mesh;
     let mut moved = vec![Matrix3::zeros(); pieces.count()];
     let mut clamped = vec![false; pieces.count()];
+    if problem.section().is_revolved() {
+        // Motions along the axis alone strain nothing.
+        let across = Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0));
+        moved.iter_mut().for_each(|moved| *moved += across);
+    }
     for (e, condition) in problem.conditions.iter().enumerate() {
         let Some(t) = mesh.edges[e].triangles[0] else { continue };
         let piece = pieces.of_triangle[t];

@@ -86,7 +86,7 @@ impl System {
         let springs = Springs::new(problem, &unknowns);
         let ((mut values, mut rhs), done) = rayon::join(entries, || beside(&unknowns, pattern.symbolic.as_ref()));
         springs.assemble(&pattern, &mut values);
-        let external = load_of_tractions(&unknowns, problem.tractions());
+        let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
         let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
@@ -154,7 +154,17 @@ fn entries(
 /// ∫ g B_k of each jump.
 pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
     let gaps: Vec<Vec<f64>> = problem.pairs().map(ContactPair::gap_polynomial).collect();
-    jump_moments(problem, unknowns, gaps.iter().map(Vec::as_slice))
+    let mut bounds = jump_moments(problem, unknowns, gaps.iter().map(Vec::as_slice));
+    // A coefficient of the pressure on the axis of revolution has no weight, and its jump no bound.
+    for (pair, jumps) in problem.pairs().zip(unknowns.jump_blocks()) {
+        let on_axis = pair.first.map(|v| problem.section().on_axis(problem.mesh.points[v]));
+        for (end, at) in [jumps.start, jumps.start + jumps.len - 1].into_iter().enumerate() {
+            if on_axis[end] {
+                bounds[at - unknowns.first_jump] = f64::INFINITY;
+            }
+        }
+    }
+    bounds
 }
 
 /// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.
@@ -182,20 +192,42 @@ pub fn isolate(matrix: &mut SparseColMat<usize, f64>, given: impl Fn(usize) -> b
 }
 
 /// The coefficients, on every unknown, of tractions given by their values at the ends of edges.
-pub fn load_of_tractions(unknowns: &Unknowns, tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>) -> Vec<f64> {
+pub fn load_of_tractions(
+    problem: &Problem,
+    unknowns: &Unknowns,
+    tractions: impl Iterator<Item = (usize, [[f64; 2]; 2])>,
+) -> Vec<f64> {
     let mut load = vec![0.0; unknowns.count];
-    for (e, [a, b]) in tractions {
-        let degree = unknowns.degree(e);
-        let along = |c: usize| side::linear([a[c], b[c]], degree);
-        for (k, value) in along(0).zip(along(1)).enumerate() {
+    for (e, ends) in tractions {
+        for (k, value) in applied(problem, e, ends, unknowns.degree(e)).into_iter().enumerate() {
             for component in unknowns.components(e, k) {
                 for &(dof, c) in component.terms() {
-                    load[dof] += c * (component.direction[0] * value.0 + component.direction[1] * value.1);
+                    load[dof] += c * (component.direction[0] * value[0] + component.direction[1] * value[1]);
                 }
             }
         }
     }
     load
+}
+
+/// The coefficients of degree `degree` of the weighted traction with these values at the ends of edge `e`. One of a higher degree is
+/// represented by the nearest, and what is left of it is left of equilibrium.
+pub fn applied(problem: &Problem, e: usize, ends: [[f64; 2]; 2], degree: usize) -> Vec<[f64; 2]> {
+    let own = problem.weighted(e, ends);
+    let along = |c: usize| -> Vec<f64> {
+        match own[..] {
+            [a, b] => side::linear([a[c], b[c]], degree).collect(),
+            _ => {
+                let values: Vec<f64> = own.iter().map(|t| t[c]).collect();
+                if values.len() <= degree + 1 {
+                    side::elevate(&values, degree)
+                } else {
+                    side::from_moments(&side::moments(&values, degree))
+                }
+            }
+        }
+    };
+    along(0).into_iter().zip(along(1)).map(|(x, y)| [x, y]).collect()
 }
 
 /// Adds tractions along any edges, by their Bernstein coefficients in the degree of the edge, whatever the edge is between.
@@ -272,6 +304,18 @@ fn local(unknowns: &Unknowns, modes: &ModeTable, initial: &[f64], sides: &Sides,
         tractions = &turned;
     }
     gram(tractions, m, stiffness);
+    resist_on_axis(m, stiffness);
+}
+
+/// Coefficients that have no traction in any mode, as those on an axis of revolution, stand for displacements that nothing resists: a
+/// spring of any stiffness keeps them at zero.
+fn resist_on_axis(m: usize, stiffness: &mut [f64]) {
+    if (0..m).any(|i| stiffness[i * m + i] == 0.0) {
+        let largest = (0..m).fold(0.0_f64, |largest, i| largest.max(stiffness[i * m + i]));
+        (0..m).filter(|i| stiffness[i * m + i] == 0.0).collect::<Vec<_>>().into_iter().for_each(|i| {
+            stiffness[i * m + i] = largest;
+        });
+    }
 }
 
 wide! {

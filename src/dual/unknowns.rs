@@ -132,7 +132,7 @@ impl Unknowns {
                     first_block[e] = push(2 * coefficients);
                 }
                 Condition::Roller { .. } => first_block[e] = push(coefficients),
-                Condition::Clamped(_) => {}
+                Condition::Clamped(_) | Condition::Axis => {}
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let jumps = matched.direction.columns(of_pair(matched));
@@ -158,6 +158,7 @@ impl Unknowns {
                     direction,
                     given: displacement * problem.mesh.edge_frame(e).0 / f64::from(degree[e] + 1),
                 },
+                Condition::Axis => EdgeMoments::Given(vec![[0.0; 2]; usize::from(degree[e]) + 1]),
                 Condition::Clamped(ends) => {
                     EdgeMoments::Given(side::linear_moments(ends, problem.mesh.edge_frame(e).0, degree[e].into()))
                 }

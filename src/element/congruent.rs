@@ -5,7 +5,7 @@ use std::hash::Hash;
 
 /// Edge vectors that agree to this fraction of the size of a triangle are the same: well above what rounding of the coordinates
 /// does, well below what equilibrium could notice.
-const SAME: f64 = 1.0 / (1_u64 << 42) as f64;
+pub const SAME: f64 = 1.0 / (1_u64 << 42) as f64;
 
 /// Edge vectors of a triangle in units of its size, rounded up to a power of two, and the exponent of that. Triangles with the same
 /// vectors are similar and not turned against each other; with the same exponent too they are congruent.

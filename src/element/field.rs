@@ -157,7 +157,7 @@ impl StressField {
 }
 
 /// The matrix that gives Bernstein coefficients of degree p, row by row, from values at p + 1 equally spaced points.
-fn from_equispaced(p: usize) -> &'static [f64] {
+pub(super) fn from_equispaced(p: usize) -> &'static [f64] {
     static MATRICES: [OnceLock<Vec<f64>>; 16] = [const { OnceLock::new() }; 16];
     MATRICES[p].get_or_init(|| {
         let at = |j: usize| if p == 0 { 0.5 } else { j as f64 / p as f64 };

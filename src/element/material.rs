@@ -11,6 +11,7 @@ mod stiffness;
 use self::isotropic::Isotropic;
 use self::plane::General;
 pub use self::stiffness::Stiffness;
+use super::revolved;
 use crate::elasticity::{Elasticity, Initial, InitialStrain};
 use crate::scene::Kinematics;
 
@@ -20,6 +21,8 @@ use crate::scene::Kinematics;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     law: Law,
+    /// That of a body of revolution, where it is one.
+    revolved: Option<revolved::Law>,
     initial: InitialStrain,
 }
 
@@ -66,23 +69,33 @@ impl Roots {
 impl Material {
     /// The material of a body. Constants that are no material give one whose numbers are none.
     pub fn new(kinematics: Kinematics, elasticity: &Elasticity) -> Self {
-        let strain = kinematics == Kinematics::PlaneStrain;
-        match elasticity.isotropic() {
-            Some([young, poisson]) => Self::isotropic(kinematics, young, poisson),
-            None => match elasticity.plane(strain) {
-                Some(plane) => Material { law: Law::General(General::new(&plane)), initial: InitialStrain::NONE },
-                None => Self::isotropic(kinematics, f64::NAN, 0.0),
+        let revolved = match kinematics {
+            Kinematics::Axisymmetric => revolved::Law::of(elasticity),
+            Kinematics::PlaneStrain | Kinematics::PlaneStress => None,
+        };
+        let law = match elasticity.isotropic() {
+            Some([young, poisson]) => Law::Isotropic(Isotropic::new(kinematics, young, poisson)),
+            None => match elasticity.plane(kinematics != Kinematics::PlaneStress) {
+                Some(plane) => Law::General(General::new(&plane)),
+                None => Law::Isotropic(Isotropic::new(kinematics, f64::NAN, 0.0)),
             },
-        }
+        };
+        Material { law, revolved, initial: InitialStrain::NONE }
     }
 
     /// That of Young's modulus `young` and Poisson's ratio `poisson` in (−1, ½).
     pub fn isotropic(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
-        Material { law: Law::Isotropic(Isotropic::new(kinematics, young, poisson)), initial: InitialStrain::NONE }
+        Self::new(kinematics, &Elasticity::Isotropic { young, poisson })
     }
 
     /// Any material at all, for what knows nothing of it.
-    pub const ANY: Self = Material { law: Law::Isotropic(Isotropic::ANY), initial: InitialStrain::NONE };
+    pub const ANY: Self =
+        Material { law: Law::Isotropic(Isotropic::ANY), revolved: None, initial: InitialStrain::NONE };
+
+    /// The law with the hoop of a body of revolution; one whose numbers are none where the material has no such law.
+    pub fn revolved(&self) -> revolved::Law {
+        self.revolved.unwrap_or(revolved::Law::NONE)
+    }
 
     /// The same with what the body has before it is loaded.
     #[must_use]

@@ -23,7 +23,9 @@ pub mod on_quadrilaterals;
 pub mod plain;
 pub mod quadrature;
 pub mod quadrilateral;
+pub mod revolved;
 mod samples;
+mod section;
 pub mod side;
 mod side_values;
 pub mod spanned;
@@ -44,6 +46,7 @@ pub use on_quadrilaterals::OnQuadrilaterals;
 pub use plain::PlainDisplacement;
 pub use quadrilateral::Quadrilateral;
 pub use samples::Samples;
+pub use section::{Revolved, Section};
 pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;
 pub use strain::{Strains, elastic_degree};
@@ -226,6 +229,11 @@ impl<'a> Modes<'a> {
     /// Reads what an element of this layout wrote.
     pub fn view(layout: Layout, data: &'a [f64]) -> Self {
         Modes { layout, data: Cow::Borrowed(data) }
+    }
+
+    /// Owns what an element of this layout wrote.
+    pub fn owned(layout: Layout, data: Vec<f64>) -> Modes<'static> {
+        Modes { layout, data: Cow::Owned(data) }
     }
 
     /// Dimension of N(K).

@@ -41,6 +41,14 @@ pub fn triangle_rule(degree: usize) -> &'static TriangleRule {
     }
 }
 
+/// The rule for displacement models of bodies of revolution, whose integrals are rational: the same from all corners, so that programs that
+/// order them differently integrate alike; exact to degree 11.
+pub fn even_rule() -> Vec<([f64; 3], f64)> {
+    let turned =
+        |i: usize| triangle_rule(11).iter().map(move |(l, weight)| ([0, 1, 2].map(|j| l[(i + j) % 3]), weight / 3.0));
+    (0..3).flat_map(turned).collect()
+}
+
 /// The rules with n points in each direction, exact to degree 2n − 1, and those with more behind them.
 struct Gauss {
     segment: Vec<(f64, f64)>,

@@ -95,6 +95,11 @@ impl Strains {
         samples.basis(q).iter().zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
     }
 
+    /// The same as [`Self::spread`] at the point with barycentric coordinates `l`.
+    pub fn spread_at(&self, l: [f64; 3]) -> f64 {
+        triangle::basis(self.degree, l).zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
+    }
+
     /// The largest sum of absolute values of products that make a coefficient.
     pub fn largest_spread(&self) -> f64 {
         self.spreads.iter().copied().fold(0.0, f64::max)

@@ -30,6 +30,8 @@ use crate::vector::norm;
 pub struct BodyForce {
     given: Affine,
     rotation: Option<Rotation>,
+    /// Whether it turns about the line through its centre along y, and not about the centre.
+    about_line: bool,
 }
 
 /// A body that turns with its frame: in it the force ϱω²(x − c) acts.
@@ -59,7 +61,7 @@ impl From<[f64; 2]> for BodyForce {
 impl BodyForce {
     /// No force.
     pub const NONE: BodyForce =
-        BodyForce { given: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] }, rotation: None };
+        BodyForce { given: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] }, rotation: None, about_line: false };
 
     /// The same force everywhere.
     pub fn constant(force: [f64; 2]) -> Self {
@@ -68,12 +70,18 @@ impl BodyForce {
 
     /// value + gradient · x.
     pub fn affine(given: Affine) -> Self {
-        BodyForce { given, rotation: None }
+        BodyForce { given, ..BodyForce::NONE }
     }
 
     /// With the centrifugal force of a rotation, in place of any other.
     pub fn with_rotation(self, rotation: Rotation) -> Self {
         BodyForce { rotation: Some(rotation), ..self }
+    }
+
+    /// The same with its rotation about the line through the centre along y, as that of a body of revolution: the force is ϱω²(x − c_x) along x.
+    #[must_use]
+    pub fn about_line(self) -> Self {
+        BodyForce { about_line: true, ..self }
     }
 
     /// The force as it was given, without that of a rotation.
@@ -105,7 +113,8 @@ impl BodyForce {
     pub fn at(&self, point: [f64; 2]) -> [f64; 2] {
         let mut force = if self.given.is_constant() { self.given.value } else { self.given.at(point) };
         if let Some(rotation) = self.rotation {
-            (0..2).for_each(|c| force[c] += rotation.stiffness() * (point[c] - rotation.about[c]));
+            (0..if self.about_line { 1 } else { 2 })
+                .for_each(|c| force[c] += rotation.stiffness() * (point[c] - rotation.about[c]));
         }
         force
     }
@@ -114,7 +123,7 @@ impl BodyForce {
     pub fn gradient(&self) -> [[f64; 2]; 2] {
         let [[xx, xy], [yx, yy]] = self.given.gradient;
         let turning = self.turning();
-        [[xx + turning, xy], [yx, yy + turning]]
+        [[xx + turning, xy], [yx, if self.about_line { yy } else { yy + turning }]]
     }
 
     /// The same force as one affine function of x.
@@ -141,7 +150,7 @@ impl BodyForce {
     /// Its size times a factor.
     pub fn times(&self, factor: f64) -> Self {
         let scaled = |rotation: Rotation| Rotation { density: factor * rotation.density, ..rotation };
-        BodyForce { given: self.given.times(factor), rotation: self.rotation.map(scaled) }
+        BodyForce { given: self.given.times(factor), rotation: self.rotation.map(scaled), ..*self }
     }
 
     /// The same force in coordinates that count from `middle`.
@@ -174,6 +183,15 @@ mod tests {
             let [p, q] = [turning.at(point), plain.at(point)];
             assert!((0..2).all(|i| (p[i] - q[i]).abs() < 1e-14), "{p:?} {q:?}");
         }
+    }
+
+    #[test]
+    fn a_rotation_about_a_line_leaves_what_is_along_it() {
+        let rotation = Rotation { density: 0.5, omega: 2.0, about: [3.0, -1.0] };
+        let turning = BodyForce::constant([0.0, -1.0]).with_rotation(rotation).about_line();
+        assert_eq!(turning.at([5.0, 7.0]), [4.0, -1.0]);
+        assert_eq!(turning.gradient(), [[2.0, 0.0], [0.0, 0.0]]);
+        assert_eq!(turning.times(0.5).at([5.0, 7.0]), [2.0, -0.5]);
     }
 
     #[test]

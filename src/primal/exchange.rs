@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
 use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::element::plain::inner_len;
+use crate::element::quadrature::even_rule;
 use crate::load::{Affine, BodyForce};
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, ContactPair, Pin, Problem};
@@ -30,6 +31,8 @@ struct ProblemFile<'a> {
     version: u32,
     kinematics: &'static str,
     thickness: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    revolution: Option<RevolutionEntry>,
     bodies: Vec<BodyEntry<'a>>,
     points: &'a [[f64; 2]],
     triangles: &'a [[usize; 3]],
@@ -45,6 +48,27 @@ struct ProblemFile<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     springs: Vec<SpringEntry>,
     pins: Vec<PinEntry>,
+}
+
+/// The first coordinate of the axis, and the rule for integrals over triangles: points in the triangle (0, 0), (1, 0), (0, 1), weights that sum
+/// to one half.
+#[derive(Serialize)]
+struct RevolutionEntry {
+    axis: f64,
+    points: Vec<[f64; 2]>,
+    weights: Vec<f64>,
+}
+
+impl RevolutionEntry {
+    fn new(problem: &Problem) -> Option<Self> {
+        let axis = problem.section().weight([0.0; 2]);
+        let rule = problem.section().is_revolved().then(even_rule)?;
+        Some(RevolutionEntry {
+            axis: 0.0 - axis,
+            points: rule.iter().map(|(l, _)| [l[1], l[2]]).collect(),
+            weights: rule.iter().map(|(_, weight)| 0.5 * weight).collect(),
+        })
+    }
 }
 
 #[derive(Serialize)]
@@ -76,14 +100,40 @@ impl From<&BodyForce> for Force {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum MaterialEntry {
-    Isotropic { young: f64, poisson: f64 },
-    General { stiffness: [[f64; 3]; 3] },
+    Isotropic {
+        young: f64,
+        poisson: f64,
+    },
+    General {
+        stiffness: [[f64; 3]; 3],
+    },
+    /// rr, zz, tt and 2 rz of a body of revolution.
+    Revolved {
+        stiffness: [[f64; 4]; 4],
+    },
 }
 
 impl MaterialEntry {
     fn new(problem: &Problem, body: usize) -> Self {
         match problem.scene.bodies[body].elasticity.isotropic() {
             Some([young, poisson]) => MaterialEntry::Isotropic { young, poisson },
+            None if problem.section().is_revolved() => {
+                let law = problem.material(body).revolved();
+                let unit = |i: usize| {
+                    [0, 1, 2, 3].map(|j| {
+                        if i != j {
+                            0.0
+                        } else if i < 3 {
+                            1.0
+                        } else {
+                            0.5
+                        }
+                    })
+                };
+                let columns = [0, 1, 2, 3].map(|i| law.stress(unit(i)));
+                let symmetric = |i: usize| [0, 1, 2, 3].map(|j| 0.5 * (columns[i][j] + columns[j][i]));
+                MaterialEntry::Revolved { stiffness: [0, 1, 2, 3].map(symmetric) }
+            }
             None => {
                 let material = problem.material(body);
                 let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]].map(|e| material.stress(e));
@@ -185,6 +235,7 @@ impl<'a> ProblemFile<'a> {
                 Condition::Traction(values) if values != [[0.0; 2]; 2] => {
                     tractions.push(TractionEntry { edge, values })
                 }
+                Condition::Axis => roller.push(RollerEntry { edge, normal: [-1.0, 0.0], displacement: 0.0 }),
                 Condition::Traction(_)
                 | Condition::Interior
                 | Condition::Contact { .. }
@@ -196,6 +247,7 @@ impl<'a> ProblemFile<'a> {
             version: 1,
             kinematics: scene.kinematics.name(),
             thickness: scene.thickness,
+            revolution: RevolutionEntry::new(problem),
             bodies: scene
                 .bodies
                 .iter()

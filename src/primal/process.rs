@@ -24,10 +24,10 @@ const PACKAGE: Package = Package {
         ("group.py", include_str!("../../reference/hypercircle_reference/group.py")),
         ("inside.py", include_str!("../../reference/hypercircle_reference/inside.py")),
         ("lattice.py", include_str!("../../reference/hypercircle_reference/lattice.py")),
-        ("springs.py", include_str!("../../reference/hypercircle_reference/springs.py")),
         ("model.py", include_str!("../../reference/hypercircle_reference/model.py")),
         ("run.py", include_str!("../../reference/hypercircle_reference/run.py")),
         ("solve.py", include_str!("../../reference/hypercircle_reference/solve.py")),
+        ("springs.py", include_str!("../../reference/hypercircle_reference/springs.py")),
     ],
 };
 

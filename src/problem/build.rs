@@ -8,12 +8,15 @@ use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
+use crate::element::Section;
+use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
 use crate::mesh::concentric::Concentric;
+use crate::mesh::error::at;
 use crate::mesh::labels::contact_names;
 use crate::mesh::meshio::PATIENCE;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
-use crate::scene::{Contact, ContactSides, Draft, Load, MeshSource, Normals, Scene, SupportKind};
+use crate::scene::{Contact, ContactSides, Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
@@ -97,6 +100,8 @@ impl Problem {
         mut notes: Vec<Note>,
         coarser: Option<&Coarser>,
     ) -> Result<Problem, ProblemError> {
+        let section = section(&scene);
+        on_axis(&scene, &mesh, section)?;
         let roles = roles(&scene);
         let mut conditions: Vec<Condition> = (0..mesh.edges.len())
             .map(|e| {
@@ -104,6 +109,7 @@ impl Problem {
                 let role = edge.name.and_then(|n| roles.get(mesh.names[n].as_str()));
                 match role {
                     _ if !edge.is_boundary() => Condition::Interior,
+                    _ if edge.vertices.iter().all(|v| section.on_axis(mesh.points[*v])) => Condition::Axis,
                     Some(Role::Support(SupportKind::Clamped { displacement })) => {
                         Condition::Clamped(edge.vertices.map(|v| displacement.at(mesh.points[v])))
                     }
@@ -219,10 +225,11 @@ impl Problem {
         !curved(self).is_empty()
     }
 
-    /// The edges of the two sides of all contacts between bodies, facing each other.
+    /// The edges of the two sides of all contacts between bodies, and of all layers, facing each other.
     pub fn facing_edges(&self) -> Vec<[usize; 2]> {
-        let pairs = self.pairs();
-        pairs.filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?])).collect()
+        let contacts = self.pairs().filter_map(|pair| Some([pair.edges[0]?, pair.edges[1]?]));
+        let layers = self.bed_pairs().filter_map(|(pair, _)| Some([pair.edge, pair.opposite?]));
+        contacts.chain(layers).collect()
     }
 
     /// The same problem with the triangles `marked` bisected, and what else that asks for, see
@@ -260,6 +267,64 @@ impl Problem {
         let finer = bisect(&self.mesh, refinement, marked, &self.facing_edges(), &curved);
         let problem = self.divided(finer.mesh, &curved)?;
         Ok((problem, finer.refinement, finer.parent))
+    }
+}
+
+/// Refuses points beyond the axis of revolution, and conditions on it that cannot be.
+fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), ProblemError> {
+    if !section.is_revolved() {
+        return Ok(());
+    }
+    if let Some(point) = mesh.points.iter().find(|p| section.weight(**p) < 0.0) {
+        let what = format!("the point {} lies beyond the axis of revolution", at(scene, *point));
+        let remedy = "points of an axisymmetric scene are (r, z) with r ≥ 0";
+        return Err(MeshError::cells(scene, what, remedy).into());
+    }
+    only_what_turns(scene, section)?;
+    let roles = roles(scene);
+    for edge in mesh.edges.iter().filter(|edge| edge.vertices.iter().all(|v| section.on_axis(mesh.points[*v]))) {
+        let Some((name, role)) = edge.name.and_then(|n| Some((&mesh.names[n], roles.get(mesh.names[n].as_str())?)))
+        else {
+            continue;
+        };
+        let idle = matches!(role, Role::Support(SupportKind::Roller { direction: None, displacement }) if *displacement == 0.0);
+        if !idle {
+            let what = "lies on the axis of revolution, where nothing can be prescribed";
+            return Err(
+                MeshError::boundary(scene, name, what, "leave it out: nothing needs to be said on the axis").into()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Refuses bodies and springs that bodies of revolution do not have here.
+fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> {
+    let refused = |what: String, remedy: &str| Err(MeshError::cells(scene, what, remedy).into());
+    for body in &scene.bodies {
+        if !body.initial.is_none() {
+            let what = format!("body '{}' of revolution has an initial strain, stress or temperature", body.name);
+            return refused(what, "leave `expansion`, `temperature` and `initial_stress` out of axisymmetric scenes");
+        }
+        if !section.carries(&body.body_force) {
+            let what =
+                format!("the body force of '{}' of revolution varies along z, or its axial part varies", body.name);
+            return refused(what, "give F_r as value + gradient · r, and a constant F_z");
+        }
+    }
+    let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
+    if springs || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
+        let what = "a body of revolution has springs or an elastic layer".to_string();
+        return refused(what, "leave `stiffness` out of axisymmetric scenes");
+    }
+    Ok(())
+}
+
+/// What the plane figure of a scene stands for.
+pub(super) fn section(scene: &Scene) -> Section {
+    match scene.kinematics {
+        Kinematics::Axisymmetric => Section::Revolved { axis: 0.0 - scene.origin[0] },
+        Kinematics::PlaneStrain | Kinematics::PlaneStress => Section::Slice,
     }
 }
 

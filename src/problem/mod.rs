@@ -23,7 +23,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
-use crate::element::Material;
+use crate::element::{Material, Section};
 use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
@@ -78,7 +78,38 @@ impl Problem {
 
     /// The least degree of stresses on triangle `t` that balance its loads.
     pub fn least_degree(&self, t: usize) -> usize {
-        self.body_force(t).stress_degree()
+        if !self.section().is_revolved() {
+            return self.body_force(t).stress_degree();
+        }
+        // Beside the axis loads count times the distance from it: an axial weight, or a traction that is not the same along its edge.
+        let [_, axial] = self.section().forces(self.body_force(t));
+        let of_edge = |e: &usize| match self.conditions[*e] {
+            Condition::Traction(ends) => self.weighted(*e, ends).len() - 1,
+            _ => 1,
+        };
+        let of_edges = self.mesh.triangle_edges[t].iter().map(of_edge).max().unwrap_or(1);
+        of_edges.max(if axial == 0.0 { 1 } else { 2 })
+    }
+
+    /// What the plane figure stands for.
+    pub fn section(&self) -> Section {
+        build::section(&self.scene)
+    }
+
+    /// Bernstein coefficients of a traction on edge `e`, given by its values at the ends, times the weight of the section.
+    pub fn weighted(&self, e: usize, ends: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+        self.section().weighted(self.mesh.edges[e].vertices.map(|v| self.mesh.points[v]), ends)
+    }
+
+    /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
+    pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
+        let [a, b] = self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v]));
+        a && (b || k == 0) || b && k == degree
+    }
+
+    /// Largest weight of the ends of edge `e`.
+    pub fn largest_weight(&self, e: usize) -> f64 {
+        self.mesh.edges[e].vertices.iter().fold(0.0, |m, v| self.section().weight(self.mesh.points[*v]).max(m))
     }
 
     /// The pairs of all contacts, one interface after the other.
@@ -129,6 +160,8 @@ pub enum Condition {
         /// The prescribed component.
         displacement: f64,
     },
+    /// A side on the axis of revolution: u_r = 0, and no traction.
+    Axis,
     /// Side 0 or 1 of `interfaces[interface].pairs[pair]`.
     Contact {
         /// Index into [`Problem::interfaces`].

@@ -53,6 +53,7 @@ fn conditions_follow_the_names() {
         let middle = [0, 1].map(|k| 0.5 * edge.vertices.iter().map(|&v| mesh.points[v][k]).sum::<f64>());
         match problem.conditions[e] {
             Condition::Interior => assert!(!edge.is_boundary()),
+            Condition::Axis => panic!("no axis in the plane"),
             Condition::Clamped(u) => assert_eq!((middle[0], u), (2.0, [[0.0; 2]; 2])),
             Condition::Roller { .. } => assert!(middle[1] == 0.0 && middle[0] < 1.0),
             Condition::Contact { .. } => assert_eq!(middle[0], 1.0),

@@ -86,6 +86,7 @@ fn condition_entry<'py>(py: Python<'py>, condition: &Condition) -> PyResult<Boun
     let entry = PyDict::new(py);
     let kind = match condition {
         Condition::Interior => "interior",
+        Condition::Axis => "axis",
         Condition::Traction(values) => {
             entry.set_item("values", *values)?;
             "traction"

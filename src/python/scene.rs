@@ -232,11 +232,20 @@ impl Scene {
     }
 }
 
+/// Bodies of revolution are solved from the command line, whose reports know weighted stresses.
+fn plane_only(scene: &crate::scene::Scene) -> PyResult<()> {
+    if scene.kinematics == crate::scene::Kinematics::Axisymmetric {
+        return Err(fault("bodies of revolution are not solved from Python; use the command `hypercircle solve`"));
+    }
+    Ok(())
+}
+
 impl Scene {
     fn solve_as(&self, py: Python<'_>, args: Args) -> PyResult<Solution> {
         let count = threads(args.solve.threads);
         let scene = Arc::clone(&self.of);
         aside(py, count, || {
+            plane_only(&scene)?;
             let folder = args.run.out.is_some().then(|| args.run.report_folder(&scene)).transpose()?;
             let session = Session::new("solve", (*scene).clone(), count, &args.solve, true)?;
             let solved = solved(&args, &session, folder.as_deref())?;

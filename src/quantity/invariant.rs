@@ -138,7 +138,8 @@ mod tests {
                         }
                     }
                     assert!(low <= least + 1e-12 && high >= largest - 1e-12, "{of:?} {bounds:?}");
-                    assert!(low >= least - 0.02 && high <= largest + 1e-9, "{of:?} {bounds:?}: {low} {least}");
+                    // Shear stresses of either sign are nearest to zero between two points of the grid.
+                    assert!(low >= least - 0.02 && high <= largest + 0.02, "{of:?} {bounds:?}: {low} {least}");
                 }
             }
         }

@@ -8,6 +8,7 @@ mod sheet;
 
 use super::Dossier;
 use super::lattice::Lattice;
+use crate::compare::von_mises_of;
 use crate::element::geometry::sub_corners;
 use crate::problem::Problem;
 pub(super) use sheet::shortened;
@@ -108,9 +109,24 @@ fn point_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io:
         [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum())
     };
     let tensor = |t, sub, l, s: [f64; 3]| [s[0], s[1], out_of_plane(problem, t, s, place(t, sub, l)), s[2], 0.0, 0.0];
+    let section = problem.section().revolved();
     out.open("PointData", &dual.map(|_| ("Tensors", "dual_stress")).into_iter().collect::<Vec<_>>())?;
     let steps = steps(dossier, lattice);
-    if let Some(dual) = dual {
+    if let (Some(dual), Some(revolved)) = (dual, section) {
+        let of = |t: usize, sub, l| revolved.stress_at(dual, t, sub, mesh.corners(t), problem.body_force(t), l);
+        let tensor = |t, sub, l| {
+            let [rr, zz, tt, rz] = of(t, sub, l);
+            [rr, zz, tt, rz, 0.0, 0.0]
+        };
+        let mean = |t, sub, l| {
+            let [rr, zz, tt, _] = of(t, sub, l);
+            [(rr + zz + tt) / 3.0]
+        };
+        out.stresses("dual_stress", &TENSOR, &lattice.values(tensor), &steps)?;
+        out.stresses("von_mises", &[], &lattice.values(|t, sub, l| [von_mises_of(of(t, sub, l))]), &steps)?;
+        out.stresses("mean_stress", &[], &lattice.values(mean), &steps)?;
+    }
+    if let (Some(dual), None) = (dual, section) {
         let stress = |t, sub, l| dual.at(t, sub, l);
         out.stresses(
             "dual_stress",
@@ -194,7 +210,12 @@ fn steps(dossier: &Dossier, lattice: &Lattice) -> Vec<f64> {
     let step = |t: usize| {
         let values = all().filter(|stress| t < stress.len()).flat_map(|stress| stress.block(t).as_flattened());
         let largest = values.filter(|x| x.is_finite()).fold(0.0_f64, |m, x| m.max(x.abs()));
-        if largest > 0.0 { STEP * largest.log2().floor().exp2() } else { 0.0 }
+        // Weighted stresses have another size than those that are written.
+        if largest > 0.0 && !dossier.problem.section().is_revolved() {
+            STEP * largest.log2().floor().exp2()
+        } else {
+            0.0
+        }
     };
     let of = |t: usize| std::iter::repeat_n(step(t), lattice.nodes(t));
     (0..lattice.degrees.len()).flat_map(of).collect()

@@ -5,6 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::Kinematics;
 use super::conditions::affine;
 use super::error::SceneError;
 use super::fault::Fault;
@@ -33,7 +34,7 @@ pub(super) struct RawRotation {
     pub density: At<f64>,
     /// Angular velocity, in radians per time.
     pub omega: At<f64>,
-    /// The point that stays at rest; the origin where it is missing.
+    /// The point that stays at rest, the origin where it is missing; a body of revolution turns about its axis.
     #[schemars(with = "Option<[f64; 2]>")]
     pub about: Option<Pair>,
 }
@@ -62,7 +63,12 @@ impl<'de> Deserialize<'de> for RawForce {
 }
 
 /// All that acts on a body, whose table is `label`.
-pub(super) fn body_force(raw: &RawBody, label: &str, source: &Source) -> Result<BodyForce, SceneError> {
+pub(super) fn body_force(
+    raw: &RawBody,
+    label: &str,
+    kinematics: Kinematics,
+    source: &Source,
+) -> Result<BodyForce, SceneError> {
     let force = match &raw.body_force {
         None => BodyForce::NONE,
         Some(At { value: RawForce::Constant(vector), start, end }) => {
@@ -79,11 +85,19 @@ pub(super) fn body_force(raw: &RawBody, label: &str, source: &Source) -> Result<
     let density = source.positive(&rotation.density, (&label, "density"), words)?;
     let omega = source.number(&rotation.omega, (&label, "omega"), |_| true, ("", ""))?;
     let about = rotation.about.as_ref().map(|about| source.vector(about, (&label, "about"))).transpose()?;
+    let revolved = kinematics == Kinematics::Axisymmetric;
+    if let Some(key) = rotation.about.as_ref().filter(|_| revolved && about.is_some_and(|[r, _]| r != 0.0)) {
+        let (rule, remedy) = ("a body of revolution turns about its axis", "leave `about` out");
+        let found = format!("{:?}", about.unwrap_or_default());
+        let fault = Fault::Number { key: "about".to_owned(), table: label, found, rule, remedy };
+        return Err(source.error(key.span(), fault));
+    }
     let turning = Rotation { density, omega, about: about.unwrap_or_default() };
     if turning.stiffness() > LARGEST {
         let ((rule, remedy), found) = (OVERFLOWS, omega.to_string());
         let fault = Fault::Number { key: "omega".to_owned(), table: label, found, rule, remedy };
         return Err(source.error(rotation.omega.span(), fault));
     }
-    Ok(force.with_rotation(turning))
+    let force = force.with_rotation(turning);
+    Ok(if revolved { force.about_line() } else { force })
 }

@@ -66,7 +66,7 @@ impl Draft {
             path: PathBuf::from(format!("{name}.toml")),
             origin: [0.0; 2],
             kinematics,
-            thickness: 1.0,
+            thickness: kinematics.measure(),
             mesh,
             bodies: Vec::new(),
             cells: Vec::new(),
@@ -90,12 +90,11 @@ impl Draft {
 
     fn write(&self, text: &mut String) -> std::fmt::Result {
         writeln!(text, "title = {}", quoted(&self.title))?;
-        writeln!(
-            text,
-            "model = {{ kinematics = {:?}, thickness = {} }}",
-            self.kinematics.name(),
-            number(self.thickness)
-        )?;
+        let thickness = match self.kinematics {
+            Kinematics::Axisymmetric => String::new(),
+            _ => format!(", thickness = {}", number(self.thickness)),
+        };
+        writeln!(text, "model = {{ kinematics = {:?}{thickness} }}", self.kinematics.name())?;
         match &self.mesh {
             MeshSource::File(path) => writeln!(text, "mesh.file = {}", quoted(&path.to_string_lossy()))?,
             MeshSource::Parts(parts) => {

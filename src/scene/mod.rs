@@ -68,6 +68,8 @@ pub enum Kinematics {
     PlaneStrain,
     /// No stress across the plane: σ_33 = 0
     PlaneStress,
+    /// A body of revolution: points are (r, z)
+    Axisymmetric,
 }
 
 impl Kinematics {
@@ -76,6 +78,7 @@ impl Kinematics {
         match self {
             Kinematics::PlaneStrain => "plane-strain",
             Kinematics::PlaneStress => "plane-stress",
+            Kinematics::Axisymmetric => "axisymmetric",
         }
     }
 
@@ -89,7 +92,13 @@ impl Kinematics {
         match self {
             Kinematics::PlaneStrain => "plane strain",
             Kinematics::PlaneStress => "plane stress",
+            Kinematics::Axisymmetric => "a body of revolution",
         }
+    }
+
+    /// What integrals over the figure are multiplied by where no thickness is given: the whole turn for a body of revolution.
+    pub fn measure(self) -> f64 {
+        if self == Kinematics::Axisymmetric { std::f64::consts::TAU } else { 1.0 }
     }
 }
 

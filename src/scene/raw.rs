@@ -121,10 +121,10 @@ pub(super) struct RawScene {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Model")]
 pub(super) struct RawModel {
-    /// Plane strain or plane stress.
-    #[schemars(extend("enum" = ["plane-strain", "plane-stress"]))]
+    /// Plane strain, plane stress, or a body of revolution with points (r, z).
+    #[schemars(extend("enum" = ["plane-strain", "plane-stress", "axisymmetric"]))]
     pub kinematics: At<String>,
-    /// Thickness of the plate, 1 where it is missing.
+    /// Thickness of the plate, 1 where it is missing; a body of revolution has none.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness: Option<At<f64>>,
 }

@@ -58,13 +58,22 @@ fn model(raw: &At<Table<RawModel>>, source: &Source) -> Result<(Kinematics, f64)
     let table = "[model]";
     let Table(model) = &raw.value;
     let Some(kinematics) = Kinematics::named(&model.kinematics.value) else {
-        let known = [Kinematics::PlaneStrain, Kinematics::PlaneStress].map(|k| k.name().to_owned()).to_vec();
+        let known = [Kinematics::PlaneStrain, Kinematics::PlaneStress, Kinematics::Axisymmetric]
+            .map(|k| k.name().to_owned())
+            .to_vec();
         let found = model.kinematics.value.clone();
         let fault = Fault::UnknownWord { key: "kinematics", table: table.into(), found, known };
         return Err(source.error(model.kinematics.span(), fault));
     };
     let thickness = match &model.thickness {
-        None => 1.0,
+        None => kinematics.measure(),
+        Some(number) if kinematics == Kinematics::Axisymmetric => {
+            let words = (
+                "a body of revolution has no thickness: its forces and energies are those of the full turn",
+                "leave `thickness` out",
+            );
+            source.number(number, (table, "thickness"), |_| false, words)?
+        }
         Some(number) => {
             let words = ("a thickness must be positive", "write a positive number, or leave `thickness` out for 1");
             source.positive(number, (table, "thickness"), words)?
@@ -86,7 +95,7 @@ fn bodies(raw: &RawScene, kinematics: Kinematics, source: &Source) -> Result<(Ve
         let name =
             source.name(name, ("the scene", "bodies"), "give the body the name that the mesh or a polygon uses")?;
         let elasticity = elasticity(raw, &label, table.span(), kinematics, source)?;
-        let body_force = body_force(raw, &label, source)?;
+        let body_force = body_force(raw, &label, kinematics, source)?;
         cells.extend(selection::cells(raw, &label, index, source)?);
         let initial = initial(raw, &label, &elasticity, kinematics, source)?;
         Ok(Body { name, elasticity, initial, body_force })

@@ -19,7 +19,7 @@ pub struct LoadResultants {
 impl LoadResultants {
     /// The resultants of the loads of `problem`.
     pub fn new(problem: &Problem, components: &Components) -> Self {
-        let mesh = &problem.mesh;
+        let (mesh, section) = (&problem.mesh, problem.section());
         let mut sums = vec![[Compensated::default(); 4]; components.count()];
         let mut add = |c: usize, force: [f64; 2], moment: f64, magnitude: f64| {
             for (sum, value) in sums[c].iter_mut().zip([force[0], force[1], moment, magnitude]) {
@@ -35,6 +35,12 @@ impl LoadResultants {
             let [p, q, r] = arms;
             let area = 0.5 * cross([q[0] - p[0], q[1] - p[1]], [r[0] - p[0], r[1] - p[1]]);
             let centroid = [(p[0] + q[0] + r[0]) / 3.0, (p[1] + q[1] + r[1]) / 3.0];
+            if section.is_revolved() {
+                let weight = section.volume(mesh.corners(t));
+                let [_, axial] = section.forces(problem.body_force(t));
+                add(c, [0.0, weight * axial], 0.0, weight * f.largest());
+                continue;
+            }
             let f = f.of_area(area);
             let force = f.resultant();
             // A force that turns its sign on a triangle is not small for that.
@@ -50,6 +56,13 @@ impl LoadResultants {
             let [x, y] = mesh.edges[e].vertices.map(|v| arm(mesh.points[v], components.centre[c]));
             let length = (y[0] - x[0]).hypot(y[1] - x[1]);
             let half = 0.5 * length;
+            if section.is_revolved() {
+                let own = problem.weighted(e, [*p, *q]);
+                let share = length / own.len() as f64;
+                let force = own.iter().map(|t| share * t[1]).sum();
+                add(c, [0.0, force], 0.0, own.iter().map(|t| share * t[0].hypot(t[1])).sum());
+                continue;
+            }
             let moment = length / 6.0 * (2.0 * cross(x, *p) + 2.0 * cross(y, *q) + cross(x, *q) + cross(y, *p));
             let magnitude = half * (p[0].hypot(p[1]) + q[0].hypot(q[1]));
             add(c, [half * (p[0] + q[0]), half * (p[1] + q[1])], moment, magnitude);

@@ -100,6 +100,7 @@ pub(super) fn vertex_pins(
             kinds[v] = match (condition, kinds[v]) {
                 (Condition::Clamped(_), _) | (_, None) => None,
                 (Condition::Interior | Condition::Traction(_), kind) => kind,
+                (Condition::Axis, _) => Some(Kind::Along([0.0, 1.0])),
                 (_, Some(Kind::Free)) => Some(Kind::Along(tangent)),
                 (_, Some(Kind::Along(t))) if (t[0] * tangent[1] - t[1] * tangent[0]).abs() < 1e-6 => kinds[v],
                 _ => Some(Kind::Corner),
@@ -132,7 +133,7 @@ pub(super) fn edge_pins(problem: &Problem, group: &Group, held: &[DVector<f64>])
     let places = problem.conditions.iter().enumerate().flat_map(|(e, condition)| {
         let kind = match condition {
             Condition::Interior | Condition::Traction(_) => Some(Kind::Free),
-            Condition::Clamped(_) | Condition::Elastic { .. } => None,
+            Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => None,
             Condition::Roller { .. } | Condition::Contact { .. } => Some(Kind::Along(tangent(problem, e))),
         };
         let component = mesh.edges[e].triangles[0].map(|t| group.components.of_triangle[t]);

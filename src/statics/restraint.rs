@@ -282,6 +282,10 @@ impl Group<'_> {
         let mesh = &problem.mesh;
         let mut directions: Vec<Vec<[f64; 2]>> = vec![Vec::new(); self.members.len()];
         let mut oblique: Vec<Part> = Vec::new();
+        if problem.section().is_revolved() {
+            // A body of revolution moves along its axis alone.
+            oblique.extend((0..self.members.len()).flat_map(|m| [(m, Vector3::x()), (m, Vector3::z())]));
+        }
         for (e, direction) in held_directions(problem) {
             let Some(t) = mesh.edges[e].triangles[0] else { continue };
             let c = self.components.of_triangle[t];

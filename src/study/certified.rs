@@ -87,9 +87,13 @@ pub(super) fn carrying_loads(mut problem: Problem, options: &Options) -> Result<
     let bodies = (0..problem.scene.bodies.len()).filter(|&b| short(b));
     let names: Vec<&str> = bodies.map(|b| problem.scene.bodies[b].name.as_str()).collect();
     if !names.is_empty() {
+        let why = match problem.section().is_revolved() {
+            true => "The loads on {}, times the distance from the axis, are no linear functions",
+            false => "The body force of {} is not the same everywhere",
+        };
         let text = format!(
-            "The body force of {} is not the same everywhere: stresses that balance it exactly have degree 2 at least, and have it there.",
-            names.join(", ")
+            "{}: stresses that balance it exactly have degree 2 at least, and have it there.",
+            why.replace("{}", &names.join(", "))
         );
         problem.notes.push(Note { weakens_guarantee: false, text });
     }

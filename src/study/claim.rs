@@ -125,6 +125,10 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
 /// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
 /// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
 pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
+    if problem.section().is_revolved() {
+        // Mistakes are looked for in the plane.
+        return Vec::new();
+    }
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());

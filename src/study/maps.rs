@@ -3,7 +3,7 @@
 use super::answers::Answer;
 use super::certified::Certified;
 use crate::bounds::{UpperBound, mid_field, stress_of};
-use crate::compare::{Comparison, primal_means, von_mises_map};
+use crate::compare::{Comparison, von_mises_map, von_mises_of_field, von_mises_of_means};
 use crate::element::StressField;
 use crate::problem::Problem;
 use crate::report::{Map, MapKind, plain};
@@ -21,15 +21,16 @@ impl Fields {
     pub fn new(certified: &Certified, comparison: &Comparison, answers: &[Answer]) -> Self {
         let Certified { problem, dual, bracket, .. } = certified;
         let means = |stress: &StressField| (0..stress.len()).map(|t| stress.mean(t)).collect::<Vec<_>>();
-        let mises = |who: &str, key: &str, means: &[[f64; 3]]| Map {
+        let of_values = |who: &str, key: &str, values: Vec<f64>| Map {
             key: format!("von_mises_{key}"),
             title: who.to_string(),
             kind: MapKind::VonMises,
-            values: von_mises_map(problem, means),
+            values,
         };
-        let mut maps = vec![mises("dual", "dual", &means(&dual.stress))];
+        let mises = |who: &str, key: &str, means: &[[f64; 3]]| of_values(who, key, von_mises_map(problem, means));
+        let mut maps = vec![of_values("dual", "dual", von_mises_of_means(problem, &dual.stress))];
         let models = || comparison.judged.iter().map(|judged| (judged.candidate.name.as_str(), judged));
-        maps.extend(models().map(|(name, judged)| mises(name, &plain(name), &primal_means(problem, judged))));
+        maps.extend(models().map(|(name, judged)| of_values(name, &plain(name), von_mises_of_field(problem, judged))));
         let upper = comparison.upper(bracket).map(|(upper, _)| upper);
         let mid = upper.and_then(|upper| mid_field(problem, &dual.stress, &upper.displacement));
         maps.extend(mid.as_ref().map(|mid| mises("half-way between the bounds", "mid", &means(mid))));
@@ -50,6 +51,8 @@ impl Fields {
         maps.extend(answers.iter().filter_map(of_quantity));
         let stresses =
             models().map(|(name, judged)| (name.to_string(), stress_of(problem, &judged.field.displacement)));
+        // Those of a body of revolution are no polynomials.
+        let stresses = stresses.filter(|_| !problem.section().is_revolved());
         Fields { mid, stresses: stresses.collect(), maps }
     }
 

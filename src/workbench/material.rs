@@ -41,6 +41,11 @@ impl Material {
         if !above_zero(thickness) {
             return Err(format!("the thickness is {thickness}; it is a finite number above zero"));
         }
+        if kinematics == Kinematics::Axisymmetric {
+            return Err(
+                "elements of bodies of revolution are not examined; use plane-strain or plane-stress".to_string()
+            );
+        }
         Ok(Material { kinematics, young, poisson, thickness })
     }
 
@@ -64,7 +69,7 @@ impl Material {
     /// The same in the other plane state.
     pub fn in_other_kinematics(self) -> Self {
         let kinematics = match self.kinematics {
-            Kinematics::PlaneStrain => Kinematics::PlaneStress,
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => Kinematics::PlaneStress,
             Kinematics::PlaneStress => Kinematics::PlaneStrain,
         };
         Material { kinematics, ..self }

@@ -62,6 +62,7 @@ mod quadrilaterals;
 mod quantities;
 mod ranges;
 mod refinement_ends;
+mod revolved;
 mod rings;
 mod rounding;
 mod scene_schema;

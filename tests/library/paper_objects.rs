@@ -253,7 +253,7 @@ fn auxiliary_field_balances_everything() {
                 Condition::Traction(p) => assert!(largest([own[end][0] - p[end][0], own[end][1] - p[end][1]]) < 1e-11),
                 Condition::Roller { .. } => assert!(tt.abs() < 1e-11),
                 Condition::Contact { .. } => assert!((tn - g).abs() < 1e-11 && tt.abs() < 1e-11),
-                Condition::Clamped(_) | Condition::Elastic { .. } => {}
+                Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => {}
             }
             match condition {
                 Condition::Contact { .. } if left => (0..2).for_each(|c| on_contact[c] += 0.5 * length * own[end][c]),

@@ -3,6 +3,7 @@
 use crate::support::random::Random;
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, Options};
+use hypercircle::mesh::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Certified, answers, certify};
@@ -204,6 +205,27 @@ fn brackets_and_intervals_hold_with_springs_layers_and_contact() {
                 wide.name
             );
         }
+    }
+}
+
+/// Refinement of a few triangles on one side of a layer divides the edges of the other with them, and brackets nest.
+#[test]
+fn both_sides_of_a_layer_are_divided_together() {
+    let mut coarse = problem(&two(Some([7.0, 2.0])).text());
+    let mut edges = RefinementEdges::longest(&coarse.mesh);
+    let mut before = ends(&solved(coarse.clone()));
+    for _ in 0..3 {
+        let beside = coarse.bed_pairs().next().map(|(pair, _)| pair.edge).expect("a layer");
+        let marked = coarse.mesh.edges[beside].triangles[0].expect("a triangle");
+        let (finer, next, _) = coarse.bisect(&edges, &[marked]).expect("sides that match");
+        (coarse, edges) = (finer, next);
+        let now = ends(&solved(coarse.clone()));
+        let room = 1e-10 * now[0].abs();
+        assert!(
+            before[0] - room <= now[0] && now[0] <= now[1] + room && now[1] <= before[1] + room,
+            "{before:?} {now:?}"
+        );
+        before = now;
     }
 }
 

@@ -35,7 +35,7 @@ impl Material {
         // α + β, α − β and γ.
         let (sum, difference) = match self.kinematics {
             Kinematics::PlaneStress => (1.0 - nu, 1.0 + nu),
-            Kinematics::PlaneStrain => ((1.0 + nu) * (1.0 - 2.0 * nu), 1.0 + nu),
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => ((1.0 + nu) * (1.0 - 2.0 * nu), 1.0 + nu),
         };
         [0.5 * sum, 0.5 * difference, 2.0 * (1.0 + nu)].map(|c| (c / self.young).sqrt())
     }

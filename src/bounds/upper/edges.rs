@@ -28,6 +28,20 @@ pub fn inside(moments: &[[f64; 2]], length: f64, ends: [[f64; 2]; 2]) -> impl It
     (0..p).map(move |j| [0, 1].map(|c| (0..p).map(|i| inverse[(j, i)] * rest[i][c]).sum::<f64>()))
 }
 
+/// The inner Bernstein coefficients of degree k: of degree p + 1 as [`inside`] gives them, of degree p + 2 with all moments.
+pub fn inside_of(k: usize, moments: &[[f64; 2]], length: f64, ends: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+    let p = moments.len() - 1;
+    if k <= p + 1 {
+        return inside(moments, length, ends).collect();
+    }
+    let matrix = DMatrix::from_fn(p + 1, p + 1, |i, j| product(p, i, k, j + 1));
+    let inverse = matrix.try_inverse().unwrap_or_else(|| DMatrix::identity(p + 1, p + 1));
+    let rest = |i: usize, c: usize| {
+        moments[i][c] / length - product(p, i, k, 0) * ends[0][c] - product(p, i, k, k) * ends[1][c]
+    };
+    (0..=p).map(|j| [0, 1].map(|c| (0..=p).map(|i| inverse[(j, i)] * rest(i, c)).sum::<f64>())).collect()
+}
+
 /// The inverse of ∫ B_i B_{j + 1} ds of degrees p − 1 and p + 1.
 fn inverse(p: usize) -> &'static DMatrix<f64> {
     static KNOWN: [OnceLock<DMatrix<f64>>; MOST] = [const { OnceLock::new() }; MOST];

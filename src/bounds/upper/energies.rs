@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::nodes::Nodes;
 use super::pull::Pull;
+use super::split::Split;
 use super::stiffness::Stiffness;
 use crate::element::side::product;
 use crate::element::{congruent, parts, starts};
@@ -36,7 +37,8 @@ impl TriangleEnergies {
         let (class, first) = similar(problem, nodes);
         let of = |t: &usize| {
             let (k, degrees) = (nodes.triangle_degree(mesh, *t), mesh.triangle_edges[*t].map(|e| nodes.degree(e)));
-            Stiffness::new(k, degrees, like(*t), &materials[mesh.body[*t]])
+            let split = Split::of(problem.section(), k, like(*t), &materials[mesh.body[*t]]);
+            Stiffness::of(k, degrees, split)
         };
         let stiffness: Vec<Option<Stiffness>> = first.par_iter().with_min_len(16).map(of).collect();
         let count = |c: &u32| stiffness[*c as usize].as_ref().map_or(0, |s| s.size + s.inside);
@@ -77,7 +79,9 @@ impl TriangleEnergies {
 pub fn similar(problem: &Problem, nodes: &Nodes) -> (Vec<u32>, Vec<usize>) {
     let mesh = &problem.mesh;
     let degrees = |t: usize| mesh.triangle_edges[t].map(|e| nodes.degree(e));
-    let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t));
+    // In the plane similar triangles have the same stiffness.
+    let place = |t: usize| problem.section().place(mesh.corners(t)).map(|at| (at, congruent::shape(mesh.corners(t)).1));
+    let key = |t: usize| (congruent::shape(mesh.corners(t)).0, mesh.body[t], degrees(t), place(t));
     congruent::classes((0..mesh.triangles.len()).map(key))
 }
 
@@ -129,6 +133,8 @@ fn add_tractions(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, t: usize, loa
     let degrees = mesh.triangle_edges[t].map(|e| nodes.degree(e));
     for (i, &e) in mesh.triangle_edges[t].iter().enumerate() {
         let Some(ends) = pull.traction(problem, e) else { continue };
+        let applied = problem.weighted(e, ends);
+        let last = applied.len() - 1;
         // A boundary edge runs from corner i + 1 to corner i + 2 of its triangle.
         let (length, _) = mesh.edge_frame(e);
         let first = 3 + degrees[..i].iter().map(|k| k - 1).sum::<usize>();
@@ -139,9 +145,9 @@ fn add_tractions(problem: &Problem, nodes: &Nodes, pull: Pull<'_>, t: usize, loa
                 j if j == k => (i + 2) % 3,
                 j => first + j - 1,
             };
-            let weights = [0, 1].map(|end| length * product(1, end, k, j));
+            let weights = |i: usize| length * product(last, i, k, j);
             for c in 0..2 {
-                load[2 * node + c] += weights[0] * ends[0][c] + weights[1] * ends[1][c];
+                load[2 * node + c] += (0..=last).map(|i| weights(i) * applied[i][c]).sum::<f64>();
             }
         }
     }

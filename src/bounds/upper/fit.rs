@@ -66,7 +66,7 @@ fn corner_values(
     let reference = Reference::of(stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
     let initial = material.initial();
-    let strain = reference.strain(|sub, q, l| {
+    let in_plane = |sub: usize, q: usize, l: [f64; 3]| {
         let own = material.strain(stress.sample(t, sub, shapes, q));
         if initial.is_none() || !with_initial {
             return own;
@@ -74,7 +74,14 @@ fn corner_values(
         let corners = sub_corners(corners, sub);
         let added = initial.at([0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum()));
         [0, 1, 2].map(|c| own[c] + added[c])
-    });
+    };
+    let strain = match problem.section().revolved() {
+        None => reference.strain(in_plane),
+        Some(revolved) => {
+            let of = revolved.plane_strain_of(stress, t, corners, material, problem.body_force(t));
+            reference.strain(|sub, _, l| of(sub, l))
+        }
+    };
     let local = Local { p, gradients: gradients(p), strain };
     // Rigid part: least squares between the edge means of the fit and those of the dual solution.
     let (mut shift, mut turn, mut inertia) = ([0.0; 2], 0.0, 0.0);

@@ -20,13 +20,16 @@ pub struct Groundwork {
 }
 
 impl Groundwork {
-    /// For displacements of one degree more than stresses, whose degree on every edge is given.
+    /// For displacements that go with stresses whose degree on every edge is given.
     ///
     /// # Errors
     /// [`NoUpperBound::SupportsDisagree`].
     pub fn new(problem: &Problem, degrees: impl IntoIterator<Item = usize>) -> Result<Self, NoUpperBound> {
         let holds = holds(problem)?;
-        let nodes = Nodes::new(problem.mesh.points.len(), degrees.into_iter().map(|p| p + 1));
+        let nodes = Nodes::new(
+            problem.mesh.points.len(),
+            degrees.into_iter().map(|p| problem.section().displacement_degree(p)),
+        );
         let rows = rows(problem, &nodes);
         let model = Model::new(problem, &holds, &nodes, &rows, Pull::SCENE);
         let patches = Patches::new(problem, &nodes);

@@ -139,6 +139,7 @@ pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]
     let normals = roller_directions(problem);
     let of = |e: usize, v: usize| match (problem.conditions[e], normals.get(&e)) {
         (Condition::Clamped(_), _) => Hold::Fixed(prescribed(e, v)),
+        (Condition::Axis, _) => Hold::Line { normal: [1.0, 0.0], value: 0.0 },
         (Condition::Roller { .. }, Some(normal)) => {
             let u = prescribed(e, v);
             Hold::Line { normal: *normal, value: u[0] * normal[0] + u[1] * normal[1] }
@@ -163,6 +164,10 @@ pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]
             let [x, y] = problem.scene.as_written(mesh.points[v]);
             holds.vertices[v] = next.ok_or(NoUpperBound::SupportsDisagree { x, y })?;
         }
+    }
+    for (hold, point) in holds.vertices.iter_mut().zip(&mesh.points).filter(|(_, p)| problem.section().on_axis(**p)) {
+        let [x, y] = problem.scene.as_written(*point);
+        *hold = hold.with_line([1.0, 0.0], 0.0, size).ok_or(NoUpperBound::SupportsDisagree { x, y })?;
     }
     Ok(holds)
 }

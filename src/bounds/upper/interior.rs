@@ -12,7 +12,7 @@ use crate::problem::Problem;
 /// Completes values at the nodes to a displacement on the split triangles, with what `model` has eliminated. It is the same for
 /// triangles of nearly the same shape; energies at their minimum are no different to the last digit.
 pub fn fill(problem: &Problem, field: &NodalValues, model: &Model) -> Displacement {
-    completed(problem, field, |t, k, block| inside(k, model.energies.of(t), block))
+    completed(problem, field, |t, k, block| inside(k, model.energies.of(t), model.translations, block))
 }
 
 /// The same with the coefficients inside each triangle as [`fill`] has found them elsewhere.
@@ -25,6 +25,7 @@ pub fn filled_with<'a>(
         let (boundary, inside) = block.split_at_mut(3 * k);
         // There and back, as there: not a digit is another.
         let base = boundary[0];
+        let base = [0, 1].map(|c| problem.section().translations()[c] * base[c]);
         about(base, boundary);
         back(base, boundary);
         inside.copy_from_slice(found(t));
@@ -61,8 +62,8 @@ fn completed(
 
 /// Sets the inner coefficients, those on the boundary being given. Where nothing could be eliminated there is no unique minimum,
 /// and the quadratic is as good as any.
-fn inside(k: usize, energy: Option<TriangleEnergy<'_>>, block: &mut [[f64; 2]]) {
-    let base = block[0];
+fn inside(k: usize, energy: Option<TriangleEnergy<'_>>, translations: [f64; 2], block: &mut [[f64; 2]]) {
+    let base = [0, 1].map(|c| translations[c] * block[0][c]);
     about(base, &mut block[..3 * k]);
     match energy {
         Some(energy) => {
@@ -142,7 +143,7 @@ mod tests {
                 found[3 * k..].fill([7.0, -5.0]);
                 let stiffness = Stiffness::new(k, [k; 3], CORNERS, &material).expect("a unique minimum");
                 let (load, within) = (vec![0.0; stiffness.size], vec![0.0; stiffness.inside]);
-                inside(k, Some(TriangleEnergy::new(&stiffness, &load, &within)), &mut found);
+                inside(k, Some(TriangleEnergy::new(&stiffness, &load, &within)), [1.0; 2], &mut found);
                 for (a, b) in found.iter().zip(exact.block(0)) {
                     assert!((a[0] - b[0]).hypot(a[1] - b[1]) < allowed, "degree {k}: {a:?} is not {b:?}");
                 }
@@ -174,7 +175,7 @@ mod tests {
             }
             let mut found = exact.block(0).to_vec();
             found[3 * k..].fill([7.0, -5.0]);
-            inside(k, None, &mut found);
+            inside(k, None, [1.0; 2], &mut found);
             for (a, b) in found.iter().zip(exact.block(0)) {
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-13, "degree {k}: {a:?} is not {b:?}");
             }

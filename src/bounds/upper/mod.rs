@@ -138,8 +138,16 @@ fn relaxed(
     ends::restrict(problem, rows, &holds.vertices, vertex, share)?;
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
-        let inside = edges::inside(moments.of(e), mesh.edge_frame(e).0, ends);
         let own = &mut field.values[nodes.inside(e)];
+        let degree = moments.of(e).len() - 1;
+        // On the axis of revolution the dual solution says nothing.
+        let unknown = problem.vanishes(e, 0, degree) || problem.vanishes(e, degree, degree);
+        let inside = if unknown {
+            let linear = nodes::elevated(&ends, own.len() + 1);
+            linear[1..=own.len()].to_vec()
+        } else {
+            edges::inside_of(own.len() + 1, moments.of(e), mesh.edge_frame(e).0, ends)
+        };
         let held = holds.inside(e, own.len());
         for ((value, found), hold) in own.iter_mut().zip(inside).zip(held) {
             *value = hold.impose(found);

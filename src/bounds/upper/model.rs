@@ -30,6 +30,8 @@ pub struct Model {
     /// The ends of the edge of each node beyond the vertices.
     ends: Vec<[usize; 2]>,
     vertices: usize,
+    /// As [`crate::element::Section::translations`].
+    pub translations: [f64; 2],
 }
 
 impl Model {
@@ -71,6 +73,7 @@ impl Model {
                 .flat_map(|e| std::iter::repeat_n(mesh.edges[e].vertices, nodes.inside(e).len()))
                 .collect(),
             vertices: mesh.points.len(),
+            translations: problem.section().translations(),
         }
     }
 
@@ -109,7 +112,8 @@ impl Model {
         let nodes = self.nodes(t);
         let base = values[nodes[0]];
         out.clear();
-        out.extend(nodes.iter().flat_map(|&node| [values[node][0] - base[0], values[node][1] - base[1]]));
+        let [p, q] = self.translations;
+        out.extend(nodes.iter().flat_map(|&node| [values[node][0] - p * base[0], values[node][1] - q * base[1]]));
     }
 
     /// The nodes on the boundary of triangle `t`, as [`Nodes::of_triangle`] gives them.

@@ -26,7 +26,7 @@ impl Pull<'_> {
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
         let corners = problem.mesh.corners(t);
-        let mut forces = load(k, corners, &problem.body_force(t).times(self.scene));
+        let mut forces = load(problem.section(), k, corners, &problem.body_force(t).times(self.scene));
         let body = problem.mesh.body[t];
         if self.initial && !problem.scene.bodies[body].initial.is_none() {
             let material = problem.material(body);

@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
-use crate::element::{Material, Samples, StressField, triangle};
+use crate::element::{Material, Samples, Section, StressField, triangle};
 use crate::load::BodyForce;
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.
@@ -43,6 +43,17 @@ impl Split {
                 }
                 split.put(nodes[entry.nodes[0]], nodes[entry.nodes[1]], sum);
             }
+        }
+        split
+    }
+
+    /// The same of a triangle of the given section.
+    pub fn of(section: Section, k: usize, corners: [[f64; 2]; 3], material: &Material) -> Self {
+        let Some(revolved) = section.revolved() else { return Self::new(k, corners, material) };
+        let all = 2 * split_len(k);
+        let mut split = Split { boundary: 6 * k, inside: all - 6 * k, matrix: vec![0.0; all * all] };
+        for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+            revolved.stiffness(k, corners, sub, material, |a, b, pair| split.put(nodes[a], nodes[b], pair));
         }
         split
     }
@@ -77,9 +88,16 @@ impl Split {
 }
 
 /// The forces of a body force on every coefficient of degree `k`, x and y of each.
-pub fn load(k: usize, corners: [[f64; 2]; 3], force: &BodyForce) -> Vec<f64> {
+pub fn load(section: Section, k: usize, corners: [[f64; 2]; 3], force: &BodyForce) -> Vec<f64> {
     let mut out = vec![0.0; 2 * split_len(k)];
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        if let Some(revolved) = section.revolved() {
+            for (node, [x, y]) in nodes.iter().zip(revolved.body_forces(corners, sub, k, force)) {
+                out[2 * node] += x;
+                out[2 * node + 1] += y;
+            }
+            continue;
+        }
         let force = force.on(sub_corners(corners, sub)).of_area(sub_area(corners));
         for (node, alpha) in nodes.iter().zip(triangle::indices(k)) {
             let [x, y] = force.against(alpha);
@@ -198,7 +216,7 @@ mod tests {
     #[test]
     fn the_load_is_the_work_of_the_body_force() {
         for k in 1..=MOST {
-            let forces = load(k, CORNERS, &BodyForce::constant([2.0, -3.0]));
+            let forces = load(Section::Slice, k, CORNERS, &BodyForce::constant([2.0, -3.0]));
             // A unit translation does the work of the whole force.
             let work = |c: usize| forces.iter().skip(c).step_by(2).sum::<f64>();
             let area = 3.0 * sub_area(CORNERS);

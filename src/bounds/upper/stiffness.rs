@@ -2,6 +2,7 @@
 
 use super::cholesky;
 use super::split::Split;
+#[cfg(test)]
 use crate::element::Material;
 use crate::element::side::elevation;
 use crate::lanes::wide;
@@ -26,9 +27,14 @@ pub struct Stiffness {
 impl Stiffness {
     /// That of a triangle of degree `k` with sides of degrees `degrees`; `None` where the inside has no unique minimum in
     /// numbers.
+    #[cfg(test)]
     pub fn new(k: usize, degrees: [usize; 3], corners: [[f64; 2]; 3], material: &Material) -> Option<Self> {
+        Self::of(k, degrees, Split::new(k, corners, material))
+    }
+
+    /// The same from the stiffness of a triangle with its inside.
+    pub fn of(k: usize, degrees: [usize; 3], split: Split) -> Option<Self> {
         // With K_ii = L Lᵀ and Y = L⁻¹ K_ib, what is left is K_bb − YᵀY.
-        let split = Split::new(k, corners, material);
         let (boundary, inside) = (split.boundary, split.inside);
         let mut factor = split.inside();
         if !cholesky::factorise(&mut factor, inside, 0.0) {

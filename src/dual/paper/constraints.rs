@@ -160,7 +160,7 @@ impl Constraints {
                             all.equality(Meaning::Applied { edge, component, basis }, target, vec![term(0, axis)]);
                         }
                     }
-                    Condition::Clamped(_) | Condition::Elastic { .. } => {}
+                    Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => {}
                     Condition::Roller { direction: [x, y], .. } => {
                         all.equality(Meaning::RollerShear { edge, basis }, 0.0, vec![term(0, [-y, *x])]);
                     }

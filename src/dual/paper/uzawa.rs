@@ -10,7 +10,7 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
-use crate::dual::method::without_springs;
+use crate::dual::method::{plane_only, without_springs};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
@@ -119,6 +119,7 @@ impl DualMethod for Uzawa {
 
 /// The rows (3.7) and (3.8) are those of normal tractions, linear on every pair of edges.
 fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Result<(), DualError> {
+    plane_only(problem, method)?;
     if let Some(body) = problem.scene.bodies.iter().find(|body| !body.body_force.is_constant()) {
         return Err(DualError::NotExpressible {
             method,

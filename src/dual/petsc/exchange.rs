@@ -123,7 +123,7 @@ pub fn write(
     indices("beside.i64", &beside)?;
     let begins = unknowns.blocks.iter().map(|block| block.start as i64).chain([unknowns.count as i64]);
     indices("blocks.i64", &begins.collect::<Vec<_>>())?;
-    numbers("external.f64", &load_of_tractions(unknowns, problem.tractions()))?;
+    numbers("external.f64", &load_of_tractions(problem, unknowns, problem.tractions()))?;
     let bounds = jump_bounds(problem, unknowns);
     numbers("bound.f64", &bounds)?;
     let guess = guess.filter(|guess| guess.len() == bounds.len());

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::equilibrium::Equilibrium;
-use super::method::without_springs;
+use super::method::{plane_only, without_springs};
 use super::modes::ModeTable;
 use super::unknowns::Unknowns;
 use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
@@ -116,6 +116,7 @@ impl DualMethod for Petsc {
     }
 
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
+        plane_only(problem, self.name())?;
         let start = Instant::now();
         without_springs(problem, self.name())?;
         let modes = ModeTable::new(problem, options.elements.clone());

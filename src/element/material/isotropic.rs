@@ -28,7 +28,7 @@ impl Isotropic {
 
     pub fn new(kinematics: Kinematics, young: f64, poisson: f64) -> Self {
         let (kappa, transverse, uniaxial) = match kinematics {
-            Kinematics::PlaneStrain => (
+            Kinematics::PlaneStrain | Kinematics::Axisymmetric => (
                 0.5 * (1.0 + poisson) * (1.0 - 2.0 * poisson),
                 poisson,
                 young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),

@@ -5,7 +5,7 @@ use crate::elasticity::Orthotropic;
 fn textbook(kinematics: Kinematics, young: f64, nu: f64, e: [f64; 3]) -> [f64; 3] {
     let mu = young / (2.0 * (1.0 + nu));
     let lambda = match kinematics {
-        Kinematics::PlaneStrain => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         Kinematics::PlaneStress => young * nu / (1.0 - nu * nu),
     };
     let tr = e[0] + e[1];

@@ -26,7 +26,7 @@
 
 mod across;
 mod factor;
-mod polynomials;
+pub mod polynomials;
 mod reference;
 mod shape;
 

@@ -7,7 +7,17 @@ use crate::load::{BodyForce, Rotation};
 use crate::problem::Problem;
 use crate::report::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
-use crate::scene::{Affine, Gap, Load, Scene, SupportKind};
+use crate::scene::{Affine, Gap, Kinematics, Load, Scene, SupportKind};
+
+/// The state of strain in words, and the thickness where there is one.
+fn state(scene: &Scene) -> String {
+    match scene.kinematics {
+        Kinematics::Axisymmetric => {
+            "body of revolution: points are (r, z), energies and forces those of the full turn".to_string()
+        }
+        kinematics => format!("{}, thickness {}", kinematics.words(), significant(scene.thickness, 6)),
+    }
+}
 
 /// The box with everything a reader has to know of the scene.
 pub(super) fn card(dossier: &Dossier) -> Markup {
@@ -17,7 +27,7 @@ pub(super) fn card(dossier: &Dossier) -> Markup {
         section.card #scene aria-label="the scene in numbers" {
             h2 { "What was computed" }
             dl.scene {
-                dt { "State" } dd { (scene.kinematics.words()) ", thickness " (significant(scene.thickness, 6)) "; units as in the scene" }
+                dt { "State" } dd { (state(scene)) "; units as in the scene" }
                 dt { "Materials" }
                 dd { ul { @for body in &scene.bodies { li {
                     bdi { (clean(&body.name)) } ": " (elasticity(&body.elasticity))

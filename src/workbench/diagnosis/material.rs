@@ -54,7 +54,7 @@ fn wrong_modulus(m: &Material) -> [(&'static str, f64, &'static str); 3] {
             ("plane-stress-factor", 1.0 - nu, "E/(1 + ν) stands where E/(1 − ν²) belongs"),
             ("plane-stress-factor", 1.0 - nu * nu, "E stands where E/(1 − ν²) belongs"),
         ],
-        Kinematics::PlaneStrain => [
+        Kinematics::PlaneStrain | Kinematics::Axisymmetric => [
             ("plane-strain-factor", 1.0 + nu, "E/(1 − 2ν) stands where E/((1 + ν)(1 − 2ν)) belongs"),
             ("plane-strain-factor", 1.0 - 2.0 * nu, "E/(1 + ν) stands where E/((1 + ν)(1 − 2ν)) belongs"),
             (

@@ -140,7 +140,12 @@ fn one<T: Copy>(list: Vec<T>) -> io::Result<T> {
 
 /// What energies and contact take of a scene: materials and loads on bodies.
 fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
-    out.indices([usize::from(scene.kinematics == Kinematics::PlaneStress)])?;
+    let kinematics = match scene.kinematics {
+        Kinematics::PlaneStrain => 0,
+        Kinematics::PlaneStress => 1,
+        Kinematics::Axisymmetric => 2,
+    };
+    out.indices([kinematics])?;
     out.numbers([scene.thickness, scene.origin[0], scene.origin[1]])?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.elasticity.to_numbers()))?;
     out.numbers(scene.bodies.iter().flat_map(|body| body.initial.to_numbers()))?;
@@ -153,7 +158,11 @@ fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
 }
 
 fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
-    let kinematics = if one(from.indices()?)? == 0 { Kinematics::PlaneStrain } else { Kinematics::PlaneStress };
+    let kinematics = match one(from.indices()?)? {
+        0 => Kinematics::PlaneStrain,
+        1 => Kinematics::PlaneStress,
+        _ => Kinematics::Axisymmetric,
+    };
     let [thickness, x, y] = one(from.vectors()?)?;
     let laws: Vec<[f64; NUMBERS]> = from.vectors()?;
     let initial: Vec<[f64; 10]> = from.vectors()?;
@@ -166,6 +175,8 @@ fn read_scene(from: &mut Reader<impl Read>) -> io::Result<Scene> {
         let turning = density * omega != 0.0;
         let rotation = Rotation { density, omega, about: [x, y] };
         let body_force = if turning { given.with_rotation(rotation) } else { given };
+        let revolved = kinematics == Kinematics::Axisymmetric;
+        let body_force = if revolved { body_force.about_line() } else { body_force };
         let elasticity = Elasticity::from_numbers(law).ok_or(io::ErrorKind::InvalidData)?;
         Ok(Body { name: String::new(), elasticity, initial: Initial::from_numbers(initial), body_force })
     };
@@ -201,6 +212,7 @@ fn read_mesh(from: &mut Reader<impl Read>) -> io::Result<Triangulation> {
 fn write_conditions(out: &mut Writer<impl Write>, conditions: &[Condition]) -> io::Result<()> {
     let told = |condition: &Condition| match *condition {
         Condition::Interior => ([0; 4], [0.0; 4]),
+        Condition::Axis => ([9, 0, 0, 0], [0.0; 4]),
         Condition::Traction([a, b]) => ([1, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Clamped([a, b]) => ([2, 0, 0, 0], [a[0], a[1], b[0], b[1]]),
         Condition::Roller { direction: [x, y], displacement } => ([3, 0, 0, 0], [x, y, displacement, 0.0]),
@@ -215,6 +227,7 @@ fn read_conditions(from: &mut Reader<impl Read>) -> io::Result<Vec<Condition>> {
     let (kinds, numbers) = (from.tuples()?, from.vectors()?);
     let of = |([kind, interface, pair, side], [a, b, c, d]): ([usize; 4], [f64; 4])| match kind {
         0 => Ok(Condition::Interior),
+        9 => Ok(Condition::Axis),
         1 => Ok(Condition::Traction([[a, b], [c, d]])),
         2 => Ok(Condition::Clamped([[a, b], [c, d]])),
         3 => Ok(Condition::Roller { direction: [a, b], displacement: c }),
