@@ -16,7 +16,7 @@ fn told(output: &Output) -> String {
 /// Rows of a table of Markdown that begin with `case`.
 fn rows(text: &str, case: &str) -> Vec<Vec<String>> {
     let of_case = |row: &Vec<String>| row.first().is_some_and(|first| first == case);
-    let cells = |line: &str| line.trim_matches('|').split(" | ").map(|cell| cell.trim().to_string()).collect();
+    let cells = |line: &str| line.trim_matches('|').split(" | ").map(|cell| cell.trim().replace('\\', "")).collect();
     text.lines().filter(|line| line.starts_with('|')).map(cells).filter(of_case).collect()
 }
 
