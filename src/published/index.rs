@@ -13,11 +13,12 @@ macro_rules! scenes {
 }
 
 const INDEX: &str = include_str!("../../cases/published/index.toml");
-const SCENES: [(&str, &str); 13] = scenes![
+const SCENES: [(&str, &str); 14] = scenes![
     "cook",
     "kirsch",
     "hondros",
     "lame",
+    "turning_disc",
     "cantilever",
     "bimetal",
     "centre_crack",

@@ -26,15 +26,15 @@ impl Verdict {
         if value.elsewhere.is_some() {
             return Verdict::Elsewhere;
         }
-        if !(width <= 2.0 * wanted) {
+        let is_narrow = width <= 2.0 * wanted;
+        if !is_narrow || !value.number().is_finite() {
             return Verdict::Undecided;
         }
         let distance = outside(ends, 0.0, value.number());
         match () {
             _ if distance == 0.0 => Verdict::Inside,
             _ if distance <= value.accuracy => Verdict::Accurate,
-            _ if distance.is_finite() => Verdict::Outside(distance - value.accuracy),
-            _ => Verdict::Undecided,
+            _ => Verdict::Outside(distance - value.accuracy),
         }
     }
 
