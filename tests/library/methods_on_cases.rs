@@ -5,7 +5,7 @@ use std::path::Path;
 use hypercircle::bounds::complementary;
 use hypercircle::dual::{self, Clarabel, Condensed, DualError, DualMethod, DualSolution, Motion, Options, Uzawa};
 use hypercircle::problem::{ContactPair, Problem};
-use hypercircle::scene::Scene;
+use hypercircle::scene::{Body, Scene};
 use hypercircle::statics;
 
 /// Cases above this size may end at Uzawa's iteration limit, and then say so.
@@ -51,11 +51,21 @@ fn same_contact(problem: &Problem, a: &DualSolution, b: &DualSolution) -> bool {
 fn interior_point_and_condensed_agree_on_every_case() {
     for (name, problem) in cases() {
         let (condensed, energy) = run(&Condensed::default(), &problem).expect("condensed");
-        let (clarabel, other) = run(&Clarabel::default(), &problem).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let (clarabel, other) = match run(&Clarabel::default(), &problem) {
+            // Only what the other methods have of their own may be refused.
+            Err(DualError::NotExpressible { .. }) if beyond_the_paper(&problem) => continue,
+            found => found.unwrap_or_else(|e| panic!("{name}: {e}")),
+        };
         let scale = complementary(&problem, &condensed.stress).strain.max(energy.abs());
         assert!((energy - other).abs() <= 1e-8 * scale, "{name}: {energy} and {other}");
         assert!(same_contact(&problem, &condensed, &clarabel), "{name}: contact states differ");
     }
+}
+
+/// Whether a scene has springs, a force that is not constant, an initial strain, or is one of revolution.
+fn beyond_the_paper(problem: &Problem) -> bool {
+    let more = |body: &Body| !body.body_force.is_constant() || !body.initial.is_none();
+    !problem.beds.is_empty() || problem.section().is_revolved() || problem.scene.bodies.iter().any(more)
 }
 
 /// Whether the direction of contact is not the normal of each edge, which the paper does not know.
@@ -73,7 +83,7 @@ fn uzawa_arrives_on_every_small_case() {
         if !small {
             // Enough to see that a stop is said to be one.
             let stopped = run(&Uzawa { most_iterations: 50, ..Uzawa::default() }, &problem);
-            let wanted = match turning(&problem) {
+            let wanted = match turning(&problem) || beyond_the_paper(&problem) {
                 true => matches!(stopped, Err(DualError::NotExpressible { .. })),
                 false => matches!(stopped, Err(DualError::NotConverged { .. })),
             };
@@ -86,7 +96,10 @@ fn uzawa_arrives_on_every_small_case() {
             continue;
         }
         let (condensed, energy) = run(&Condensed::default(), &problem).expect("condensed");
-        let (_, other) = run(&Uzawa::default(), &problem).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let (_, other) = match run(&Uzawa::default(), &problem) {
+            Err(DualError::NotExpressible { .. }) if beyond_the_paper(&problem) => continue,
+            found => found.unwrap_or_else(|e| panic!("{name}: {e}")),
+        };
         let scale = complementary(&problem, &condensed.stress).strain.max(energy.abs());
         assert!((energy - other).abs() <= 1e-5 * scale, "{name}: {energy} and {other}");
     }
