@@ -79,6 +79,7 @@ pub mod primal;
 pub mod problem;
 pub mod process;
 pub mod proof;
+pub mod published;
 #[cfg(feature = "python")]
 mod python;
 pub mod quantity;

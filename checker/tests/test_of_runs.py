@@ -1,11 +1,12 @@
 """Proofs that hypercircle makes: scenes of all kinds are proved, as they were claimed. HYPERCIRCLE names the program."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
-from hypercircle_check.main import check
+from hypercircle_check.main import check, main
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(os.environ.get("HYPERCIRCLE", ROOT / "target/debug/hypercircle"))
@@ -33,3 +34,15 @@ def test_scene(tmp_path, scene, options):
     subprocess.run(line, check=True, timeout=300)
     proof = check(tmp_path, ROOT / f"{scene}.toml")
     assert proof.lower <= proof.upper
+
+
+@pytest.mark.skipif(not PROGRAM.is_file(), reason=f"{PROGRAM} is not built")
+def test_page(tmp_path, capsys):
+    """docs/proof.md shows what the checker prints, but for version, time and digits that are rounding."""
+    page = (ROOT / "docs/proof.md").read_text()
+    shown = page.split("```text\n")[1].split("```")[0].splitlines()
+    case = ROOT / "cases/two_blocks.toml"
+    subprocess.run([PROGRAM, "solve", case, "--proof", "--quiet", "--out", tmp_path], check=True, timeout=300)
+    assert main([str(tmp_path), "--scene", str(case)]) == 0
+    rough = lambda lines: [re.sub(r"\d\.\de-1[1-9]", "so much", line) for line in lines]
+    assert rough(capsys.readouterr().out.splitlines())[: len(shown)] == rough(shown)

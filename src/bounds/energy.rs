@@ -78,11 +78,14 @@ pub fn initial_on(stress: &StressField, t: usize, material: &Material, corners: 
     [sum, size]
 }
 
-/// ‖σ‖²_a, per unit thickness.
+/// ‖σ‖²_a, per unit thickness; of a stress without body forces in a body of revolution.
 pub fn square(problem: &Problem, stress: &StressField) -> f64 {
     let mesh = &problem.mesh;
     let materials = problem.materials();
-    let of = |t: usize| square_on(stress, t, &materials[mesh.body[t]], mesh.area(t) / 3.0);
+    let of = |t: usize| match problem.section().revolved() {
+        None => square_on(stress, t, &materials[mesh.body[t]], mesh.area(t) / 3.0),
+        Some(revolved) => revolved.square(stress, t, mesh.corners(t), &materials[mesh.body[t]], &BodyForce::NONE)[0],
+    };
     let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
     terms.into_iter().collect::<Sum>().value()
 }

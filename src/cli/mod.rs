@@ -3,6 +3,7 @@
 //! A command reads its input, calls the library and returns an [`Exit`] or a [`CliError`]. Nothing is written before
 //! there is a result to write, so an error leaves no file behind.
 
+pub mod cases;
 pub mod certify;
 pub mod chart;
 pub mod ci;
@@ -79,6 +80,8 @@ pub enum Command {
     Diff(diff::Args),
     /// Show what a mesh file holds, and write a scene to start from
     Mesh(mesh::Args),
+    /// List the published benchmarks, and run them: is the printed number inside the guaranteed interval?
+    Cases(cases::Args),
     /// Measure accuracy against time, every method and refinement
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
@@ -156,6 +159,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Element(args) => element::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Mesh(args) => mesh::run(args),
+        Command::Cases(args) => cases::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
         Command::Measure(args) => measure::run(args),

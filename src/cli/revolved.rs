@@ -23,18 +23,13 @@ pub fn refuse_unsupported(command: &str, scene: &Scene) -> Result<(), CliError> 
     if scene.kinematics != Kinematics::Axisymmetric {
         return Ok(());
     }
-    let refused = |what: String, remedy: &str| Err(CliError::stopped(Exit::BadInput, what, remedy));
     if !matches!(command, "solve" | "verify") {
         let what = format!("{}: `{command}` does not take bodies of revolution", scene.path.display());
-        return refused(what, "`hypercircle solve` and `verify` take axisymmetric scenes");
-    }
-    if let Some(quantity) = scene.quantities.first() {
-        let what = format!(
-            "{}: the quantity `{}` has no interval, because those of bodies of revolution are not computed",
-            scene.path.display(),
-            quantity.name
-        );
-        return refused(what, "leave [[quantities]] out of the axisymmetric scene");
+        return Err(CliError::stopped(
+            Exit::BadInput,
+            what,
+            "`hypercircle solve` and `verify` take axisymmetric scenes",
+        ));
     }
     Ok(())
 }

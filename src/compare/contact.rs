@@ -95,7 +95,8 @@ impl Sides<'_> {
     /// Pressure curves of a displacement solution: from its reactions, and from its stresses.
     fn profiles(&self, index: usize, interface: &Interface, judged: &Judged) -> Vec<Profile> {
         let name = &judged.candidate.name;
-        let reactions = judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).map(|reactions| {
+        let reactions = judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| !has_tip(interface));
+        let reactions = reactions.map(|reactions| {
             let pieces = reaction_pressure(self.problem, interface, reactions);
             Profile { model: format!("{name} reactions"), points: profile(interface, &pieces) }
         });
@@ -112,7 +113,7 @@ impl Sides<'_> {
         summary: &mut ContactSummary,
     ) -> Vec<Check> {
         let problem = self.problem;
-        let reactions = best.candidate.reactions.as_ref().and_then(|r| r.get(index));
+        let reactions = best.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| !has_tip(interface));
         let pieces = match reactions {
             Some(reactions) => reaction_pressure(problem, interface, reactions),
             None => trace_pressure(problem, interface, best),
@@ -289,4 +290,9 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
 fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     let [x, y] = problem.scene.origin;
     if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
+}
+
+/// Whether both sides end in one vertex: at the tip of a crack no reaction is seen, it holds itself.
+fn has_tip(interface: &Interface) -> bool {
+    interface.pairs.iter().any(|pair| pair.second.is_some_and(|second| (0..2).any(|k| second[k] == pair.first[k])))
 }

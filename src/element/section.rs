@@ -36,6 +36,14 @@ impl Section {
         self != Section::Slice
     }
 
+    /// First coordinate of the points of the axis of a body of revolution.
+    pub fn axis(self) -> Option<f64> {
+        match self {
+            Section::Slice => None,
+            Section::Revolved { axis } => Some(axis),
+        }
+    }
+
     /// The weight of a point in integrals: one, or its distance from the axis.
     pub fn weight(self, point: [f64; 2]) -> f64 {
         match self {
@@ -170,7 +178,7 @@ impl Section {
 }
 
 impl Revolved {
-    fn radial(self, force: &BodyForce) -> [f64; 2] {
+    pub(super) fn radial(self, force: &BodyForce) -> [f64; 2] {
         Section::Revolved { axis: self.axis }.radial(force)
     }
 
@@ -198,11 +206,11 @@ impl Revolved {
         })
     }
 
-    fn radii(self, corners: Corners, sub: usize) -> [f64; 3] {
+    pub(super) fn radii(self, corners: Corners, sub: usize) -> [f64; 3] {
         sub_corners(corners, sub).map(|p| p[0] - self.axis)
     }
 
-    fn weighted(stress: &StressField, t: usize, sub: usize, corners: Corners, force: [f64; 2]) -> Weighted {
+    pub(super) fn weighted(stress: &StressField, t: usize, sub: usize, corners: Corners, force: [f64; 2]) -> Weighted {
         let (degree, n) = (stress.degree(t), lattice_len(stress.degree(t)));
         Weighted::new(degree, &stress.block(t)[n * sub..][..n], &sub_gradients(corners, sub), force)
     }
@@ -278,12 +286,12 @@ impl Revolved {
     }
 
     /// v_r at a point of a subtriangle.
-    fn radial_of(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
+    pub(super) fn radial_of(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
         v.sub(t, sub).zip(triangle::basis(v.degree(t), bary)).map(|(u, b)| u[0] * b).sum()
     }
 
     /// The size of what is added up for v_r.
-    fn size(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
+    pub(super) fn size(v: &Displacement, t: usize, sub: usize, bary: [f64; 3]) -> f64 {
         v.sub(t, sub).zip(triangle::basis(v.degree(t), bary)).map(|(u, b)| (u[0] * b).abs()).sum()
     }
 

@@ -84,6 +84,11 @@ impl BodyForce {
         BodyForce { about_line: true, ..self }
     }
 
+    /// Whether its rotation is about a line, as that of a body of revolution.
+    pub fn is_about_line(&self) -> bool {
+        self.about_line
+    }
+
     /// The force as it was given, without that of a rotation.
     pub fn given(&self) -> Affine {
         self.given

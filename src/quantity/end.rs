@@ -42,10 +42,11 @@ impl End {
 impl Search<'_, '_> {
     /// The bound of a pair; z is `lifted` times a factor.
     pub fn measured(&self, response: &Response, lifted: (&Displacement, f64), sign: f64) -> End {
-        let Known { problem, middle, springs, .. } = self.known;
+        let Known { problem, middle, springs, dual, upper, .. } = self.known;
         let adjoint = adjoint_of(problem, self.functional, &response.stress);
         let springs = (springs, &adjoint);
-        let fields = Fields { middle, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1, springs };
+        let known = (&dual.stress, &upper.displacement);
+        let fields = Fields { middle, known, adjoint: &response.stress, lifted: lifted.0, factor: lifted.1, springs };
         let pass = pass(problem, self.functional, fields);
         let Bound { bound, centre, distance, ratio, beyond } = self.bounded(response, Some(lifted), &pass, sign);
         End { bound, centre, first_order: None, distance, ratio, beyond, pass, nodes: NodalValues::none() }

@@ -133,6 +133,14 @@ pub enum NotBounded {
         /// What is bounded, in the words of a scene.
         instead: String,
     },
+    /// What has no interval in bodies of revolution.
+    #[error(
+        "a body of revolution has no interval for {what}; ask for the force of a contact or the mean displacement of a boundary"
+    )]
+    Revolved {
+        /// In words.
+        what: &'static str,
+    },
     /// A boundary without edges.
     #[error("no edge of the mesh belongs to '{name}'")]
     Empty {
@@ -172,6 +180,9 @@ impl Functional {
     /// # Errors
     /// [`NotBounded`].
     pub fn new(problem: &Problem, quantity: &Quantity) -> Result<Self, NotBounded> {
+        if problem.section().is_revolved() {
+            refuse_in_revolved(&quantity.target)?;
+        }
         match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
             Target::Displacement { of: Extent::Body(body), direction } => on_body(problem, *body, *direction),
@@ -227,6 +238,9 @@ impl Functional {
         smoothness: usize,
         wanted: Wanted,
     ) -> Result<Self, NotBounded> {
+        if problem.section().is_revolved() {
+            return Err(NotBounded::Revolved { what: "values at points" });
+        }
         let kind = match wanted {
             Wanted::Stress(_) => Kind::Stress,
             Wanted::Displacement(_) => Kind::Displacement,
@@ -291,6 +305,20 @@ impl Functional {
     }
 }
 
+/// Refuses what has no interval in bodies of revolution.
+fn refuse_in_revolved(target: &Target) -> Result<(), NotBounded> {
+    let what = match target {
+        Target::Displacement { of: Extent::Boundary(_), .. } | Target::ContactForce { .. } => return Ok(()),
+        Target::Displacement { of: Extent::Body(_), .. } => "the mean displacement of a body",
+        Target::Stress { .. } => "mean stresses",
+        Target::Point { .. } => "values at points",
+        Target::StressIntensity { .. } => "stress intensities",
+        Target::SupportForce { .. } => "forces of supports",
+        Target::Moment { .. } => "moments",
+    };
+    Err(NotBounded::Revolved { what })
+}
+
 /// A weight: 0 at the first and last arc length, 1 between the inner two.
 fn trapezoid([a, b, c, d]: [f64; 4], s: f64) -> f64 {
     let rise = if b > a {
@@ -313,21 +341,27 @@ fn trapezoid([a, b, c, d]: [f64; 4], s: f64) -> f64 {
 fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional, NotBounded> {
     let edges = problem.mesh.boundary(name);
     let length = |e: usize| problem.mesh.edge_frame(e).0;
-    let total: f64 = edges.iter().map(|&e| length(e)).sum();
-    if edges.is_empty() {
+    // ∫ of a linear function, times the weight of the section.
+    let integral = |e: usize, ends: [[f64; 2]; 2]| {
+        let own = problem.weighted(e, ends);
+        [0, 1].map(|c| length(e) * own.iter().map(|v| v[c]).sum::<f64>() / own.len() as f64)
+    };
+    let total: f64 = edges.iter().map(|&e| integral(e, [[1.0, 0.0]; 2])[0]).sum();
+    if edges.is_empty() || total <= 0.0 {
         return Err(NotBounded::Empty { name: name.to_string() });
     }
     let mut functional = Functional::empty(problem, Kind::Displacement);
     let q = d.map(|d| d / total);
     for e in edges {
         match problem.conditions[e] {
-            Condition::Clamped([a, b]) => {
-                functional.constant += 0.5 * length(e) * (q[0] * (a[0] + b[0]) + q[1] * (a[1] + b[1]));
+            Condition::Clamped(ends) => {
+                let [x, y] = integral(e, ends);
+                functional.constant += q[0] * x + q[1] * y;
             }
             Condition::Roller { direction: [x, y], displacement } => {
                 // What the roller prescribes is known; the load acts across it.
                 let along = q[0] * x + q[1] * y;
-                functional.constant += length(e) * along * displacement;
+                functional.constant += along * integral(e, [[displacement, 0.0]; 2])[0];
                 functional.load.tractions.push((e, [[q[0] - along * x, q[1] - along * y]; 2]));
             }
             _ => functional.load.tractions.push((e, [q; 2])),

@@ -12,6 +12,7 @@
 use super::end::End;
 use super::functional::Functional;
 use super::pass::{strained, uncancelled};
+use super::revolved;
 use super::search::Search;
 use super::springs::{middle_of, square_of, uncancelled_of};
 use super::value::{displaced, value_of};
@@ -128,7 +129,7 @@ pub struct Known<'a> {
     pub(super) nearest: Nearest<'a>,
     /// Coefficients of g − j(v) on every pair, not negative, in the degree of the bounds of z.
     pub(super) openings: Vec<Vec<f64>>,
-    /// m, and ‖m‖_a.
+    /// m, λ in a body of revolution, and ‖m‖_a at most.
     pub(super) middle: StressField,
     pub(super) size: f64,
     /// m on springs.
@@ -164,7 +165,19 @@ impl<'a> Known<'a> {
             let found = openings_within(problem, &upper.displacement, pair, count.max(1) - 1);
             found.unwrap_or_else(|| vec![0.0; count.max(1)]).into_iter().map(|o| o.max(0.0)).collect()
         };
-        let middle = mid_field(problem, &dual.stress, &upper.displacement).ok_or("λ and v are on different meshes")?;
+        let (middle, in_bodies) = match problem.section().revolved() {
+            None => {
+                let middle = mid_field(problem, &dual.stress, &upper.displacement);
+                let middle = middle.ok_or("λ and v are on different meshes")?;
+                let square = square(problem, &middle);
+                (middle, square)
+            }
+            // λ stands for m where that only guides.
+            Some(of) => {
+                let both = revolved::squares(problem, of, &dual.stress, &upper.displacement, true);
+                (dual.stress.clone(), 0.5 * both)
+            }
+        };
         let springs = middle_of(problem, &dual.stress, &upper.displacement);
         Ok(Known {
             problem,
@@ -175,7 +188,7 @@ impl<'a> Known<'a> {
             responses: factorised.responses(problem, &dual.moments, LONGEST_DENSE, options),
             openings: problem.pairs().zip(nearest.counts()).map(open).collect(),
             nearest,
-            size: (square(problem, &middle) + square_of(problem, &springs)).sqrt(),
+            size: (in_bodies + square_of(problem, &springs)).sqrt(),
             springs,
             uncancelled: uncancelled(problem, &dual.stress, &upper.displacement)
                 + uncancelled_of(problem, &dual.stress, &upper.displacement),

@@ -16,6 +16,7 @@ mod pass;
 mod point;
 mod projection;
 mod region;
+mod revolved;
 mod search;
 mod springs;
 mod tip;

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::functional::Functional;
 use super::region::{Cut, Piece};
-use super::springs;
+use super::{revolved, springs};
 use crate::bounds::energy::{initial_on, shape, square_on};
 use crate::bounds::{OnSprings, Sum};
 use crate::dual::ShapedStrain;
@@ -17,8 +17,10 @@ use crate::problem::Problem;
 /// m, and the fields of an adjoint pair.
 #[derive(Clone, Copy)]
 pub struct Fields<'a> {
-    /// m.
+    /// m, in a body of revolution anything.
     pub middle: &'a StressField,
+    /// λ and v.
+    pub known: (&'a StressField, &'a Displacement),
     /// σ̂.
     pub adjoint: &'a StressField,
     /// z over `factor`.
@@ -82,7 +84,10 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
     let terms: Vec<[f64; TERMS]> = (0..count)
         .into_par_iter()
         .with_min_len(128)
-        .map(|t| triangle(problem, &materials[mesh.body[t]], t, strain[t], fields))
+        .map(|t| match problem.section().revolved() {
+            Some(revolved) => revolved::triangle(problem, revolved, &materials[mesh.body[t]], t, fields),
+            None => triangle(problem, &materials[mesh.body[t]], t, strain[t], fields),
+        })
         .collect();
     let sum = |i: usize| terms.iter().map(|t| t[i]).collect::<Sum>().value();
     let integrals = |first: usize| Integrals { square: sum(first), work: sum(first + 1), uncancelled: sum(first + 2) };
@@ -106,11 +111,11 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
 }
 
 /// Where the sums of a triangle stand: three of the pair, three without z, one of the stress in balance, two of initial strains.
-const PAIR: usize = 0;
+pub(super) const PAIR: usize = 0;
 const ALONE: usize = 3;
-const BALANCED: usize = 6;
+pub(super) const BALANCED: usize = 6;
 const INITIAL: usize = 7;
-const TERMS: usize = 9;
+pub(super) const TERMS: usize = 9;
 
 /// χ on a triangle.
 #[derive(Clone, Copy)]
@@ -188,6 +193,9 @@ fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>
 
 /// The square of the norm that m would have if nothing cancelled in it.
 pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displacement) -> f64 {
+    if let Some(revolved) = problem.section().revolved() {
+        return revolved::squares(problem, revolved, stress, displacement, false);
+    }
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let of = |t: usize| {

@@ -2,6 +2,7 @@
 
 use super::functional::Functional;
 use super::pass::strained;
+use super::revolved;
 use super::springs::product_of;
 use crate::bounds::{Sum, work, work_of, work_on_edges};
 use crate::element::Displacement;
@@ -44,6 +45,9 @@ pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) ->
 
 /// ∫ σ(v) : e(w).
 fn product(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 {
+    if let Some(revolved) = problem.section().revolved() {
+        return revolved::product(problem, revolved, v, w);
+    }
     let materials = problem.materials();
     let (mut of_v, mut of_w) = (Strains::default(), Strains::default());
     let mut sum = Sum::default();

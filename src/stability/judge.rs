@@ -14,6 +14,8 @@ const RESULTANT: f64 = 1e-9;
 const RESULTANT_PRIMAL: f64 = 1e-6;
 /// Deviations that the method's own equilibrium residual accounts for are this many times the residual at most.
 const ACCOUNTED: f64 = 1e3;
+/// A force that equilibrium does not determine is off by this many times the guaranteed relative error of the stresses at most.
+const FROM_STRESSES: f64 = 10.0;
 /// Relative errors beyond which an answer is inaccurate …
 const INACCURATE: f64 = 0.25;
 /// … and beyond which an answer that comes without a bound is wrong.
@@ -146,9 +148,10 @@ fn resultants(method: Method, answer: &Answer, claim: &Claim<'_>) -> Complaint {
         return None;
     }
     let why = format!("a contact force is off by {relative:.1e} of the loads");
+    let guaranteed = answer.relative_error_bound.filter(|_| claim.known.indeterminate).unwrap_or(0.0);
     let said = match method.is_primal() {
         true => relative <= 1e-2,
-        false => relative <= ACCOUNTED * answer.equilibrium.unwrap_or(0.0),
+        false => relative <= (ACCOUNTED * answer.equilibrium.unwrap_or(0.0)).max(FROM_STRESSES * guaranteed),
     };
     Some((if said { Outcome::Inaccurate } else { Outcome::Wrong }, why))
 }

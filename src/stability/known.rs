@@ -7,8 +7,10 @@ pub struct Known {
     pub solvable: bool,
     /// Exact energy and 𝒮 of the exact stress, from a closed solution.
     pub energy: Option<[f64; 2]>,
-    /// Force on the first side of each contact, from statics; NaN for a component that statics does not give.
+    /// Force on the first side of each contact; NaN for a component that is not known.
     pub resultants: Vec<[f64; 2]>,
+    /// Equilibrium alone does not determine these forces: they are as good as the stresses that they are integrals of.
+    pub indeterminate: bool,
     /// Size of the applied forces: what deviations of resultants are relative to.
     pub load: f64,
     /// Total variation of the exact pressure on each contact, where it is known.
@@ -20,7 +22,21 @@ pub struct Known {
 impl Known {
     /// An equilibrium exists and the forces on each contact are these.
     pub fn forces(resultants: Vec<[f64; 2]>, load: f64) -> Self {
-        Known { solvable: true, energy: None, resultants, load, variation: Vec::new(), scale: None }
+        Known {
+            solvable: true,
+            energy: None,
+            resultants,
+            indeterminate: false,
+            load,
+            variation: Vec::new(),
+            scale: None,
+        }
+    }
+
+    /// The forces come from an exact solution, and not from equilibrium alone.
+    pub fn indeterminate(mut self) -> Self {
+        self.indeterminate = true;
+        self
     }
 
     /// No equilibrium exists.

@@ -58,6 +58,7 @@ mod paper_theorems;
 mod points;
 mod prescribed;
 mod pressure_at_ends;
+mod published;
 mod quadrilaterals;
 mod quantities;
 mod ranges;

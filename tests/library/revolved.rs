@@ -7,7 +7,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Certified, Goal, StudyError, adapt, certify_divided};
+use hypercircle::study::{Certified, Goal, StudyError, adapt, answers, certify_divided, refuse_quantities};
 
 /// A rectangle in r and z with conditions on its sides.
 fn rectangle(name: &str, [r0, r1]: [f64; 2], [z0, z1]: [f64; 2], poisson: f64) -> String {
@@ -174,6 +174,62 @@ fn brackets_of_all_degrees_and_meshes_hold_one_energy() {
     }
 }
 
+/// The guaranteed ends of every quantity, in degree `degree`.
+fn intervals(text: &str, degree: usize) -> Vec<[f64; 2]> {
+    let options = Options { elements: Elements::Uniform(block(degree)), keep_factor: true, ..Options::default() };
+    let certified = certify_divided(problem(text), &Condensed::default(), &options);
+    let certified = certified.unwrap_or_else(|e| panic!("{e}\n{text}"));
+    answers(&certified, &options, |_| true).into_iter().map(|answer| answer.interval.ends).collect()
+}
+
+fn quantity(name: &str, of: &str) -> String {
+    format!("[[quantities]]\nname = \"{name}\"\n{of}\n")
+}
+
+#[test]
+fn intervals_of_the_full_turn_hold_the_values_of_lame() {
+    let moved = |on: &str| quantity(on, &format!("displacement = \"{on}\"\ndirection = [1.0, 0.0]"));
+    let text = tube(0.3, 0.5) + &moved("tube_in") + &moved("tube_out");
+    // u = (1 + ν) ((1 − 2ν) r + b²/r)/3.
+    let of_tube = [1.0, 2.0].map(|r: f64| 1.3 * (0.4 * r + 4.0 / r) / 3.0);
+    let bodies = rectangle("shaft", [0.0, 1.0], [0.0, 0.5], 0.3) + &rectangle("hub", [1.0, 2.0], [0.0, 0.5], 0.3);
+    let fit = "[[contacts]]\nbetween = [\"shaft_out\", \"hub_in\"]\ngap = -0.01\n";
+    let fit = head("axisymmetric", 0.25) + &bodies + &rollers("shaft_foot") + &rollers("hub_foot") + fit;
+    let fit = fit + &quantity("press", "force = \"shaft_out\"");
+    // Pressure times the area of the seat.
+    let of_fit = [0.01 * 3.0 / 8.0 * TAU * 0.5];
+    for (degree, wide) in [(1, 3e-2), (2, 5e-4)] {
+        for (text, exact) in [(&text, &of_tube[..]), (&fit, &of_fit)] {
+            for ([lower, upper], exact) in intervals(text, degree).into_iter().zip(exact) {
+                assert!(lower <= *exact && *exact <= upper, "degree {degree}: {lower} {exact} {upper}");
+                assert!(upper - lower < wide * exact, "degree {degree}: {lower} {exact} {upper}");
+            }
+        }
+    }
+}
+
+#[test]
+fn intervals_of_all_degrees_hold_one_value() {
+    let mut random = Random::new(48);
+    for _ in 0..2 {
+        let (a, b) = (random.between(0.1, 0.3), random.between(0.1, 0.3));
+        let asked = quantity("all", "force = \"low_top\"")
+            + &quantity("part", &format!("force = \"low_top\"\nwindow = [0.0, {a:?}, {a:?}, {:?}]", a + b))
+            + &quantity("top", "displacement = \"up_top\"\ndirection = [0.0, 1.0]")
+            + &quantity("side", "displacement = \"low_out\"\ndirection = [1.0, 0.0]");
+        let text = random_scene(&mut random) + &asked;
+        let all = [1, 2, 3].map(|degree| intervals(&text, degree));
+        for k in 0..4 {
+            let ends = all.each_ref().map(|of| of[k]);
+            let lower = ends.iter().fold(f64::NEG_INFINITY, |m, e| m.max(e[0]));
+            let upper = ends.iter().fold(f64::INFINITY, |m, e| m.min(e[1]));
+            let size = 1e-9 * lower.abs().max(upper.abs());
+            assert!(lower <= upper + size && upper.is_finite() && lower.is_finite(), "{k}: {ends:?}\n{text}");
+            assert!(ends[2][1] - ends[2][0] <= ends[0][1] - ends[0][0] + size, "{k}: {ends:?}\n{text}");
+        }
+    }
+}
+
 #[test]
 fn what_moves_along_the_axis_is_no_equilibrium() {
     let body = rectangle("ring", [1.0, 2.0], [0.0, 1.0], 0.3);
@@ -201,6 +257,31 @@ fn what_cannot_be_beside_an_axis_is_refused() {
     let held = "[[supports]]\non = \"rod_in\"\ntype = \"clamped\"\n";
     let held = refused(head("axisymmetric", 0.5) + &body(0.0) + held);
     assert!(held.contains("rod_in") && held.contains("leave it out"), "{held}");
+    let with = |key: &str| {
+        refused(
+            head("axisymmetric", 0.5) + &body(0.5).replace("young", &format!("{key}\nyoung")) + &rollers("rod_foot"),
+        )
+    };
+    for (key, said) in [
+        ("expansion = 1e-5\ntemperature = 80.0", "temperature"),
+        ("initial_stress = [1.0, 0.0, 0.0]", "initial_stress"),
+        ("body_force = { value = [0.0, 0.0], gradient = [[0.0, 1.0], [0.0, 0.0]] }", "varies along z"),
+        ("rotation = { density = 1.0, omega = 1.0, about = [1.0, 0.0] }", "turns about its axis"),
+    ] {
+        assert!(with(key).contains(said), "{}", with(key));
+    }
+    let spring = "[[supports]]\non = \"rod_foot\"\ntype = \"spring\"\nstiffness = [1.0, 0.0]\n";
+    assert!(refused(head("axisymmetric", 0.5) + &body(0.5) + spring).contains("springs"));
+    for asked in [
+        "stress = \"rod\"\ncomponent = \"xx\"",
+        "stress = \"rod\"\npoint = [0.7, 0.5]\ncomponent = \"von-mises\"",
+        "displacement = \"rod\"\ndirection = [0.0, 1.0]",
+        "force = \"rod_foot\"\ndirection = [0.0, 1.0]",
+    ] {
+        let text = head("axisymmetric", 0.5) + &body(0.5) + &rollers("rod_foot") + &quantity("a", asked);
+        let error = refuse_quantities(&problem(&text)).expect_err(asked);
+        assert!(error.contains("a body of revolution has no interval"), "{error}");
+    }
     // Rollers there say what is so anyway.
     problem(&(head("axisymmetric", 0.5) + &body(0.0) + &rollers("rod_in")));
 }

@@ -177,7 +177,7 @@ pub const MALFORMED: &[Malformed] = &[
     at("direction_and_normals.toml", 42, &["`normals`", "`direction`"]),
     at("arc_in_line.toml", 13, &["[1.0, 0.5]", "beside the straight line"]),
     at("arc_without_edge.toml", 13, &["edge 4", "edges 0 to 3"]),
-    at("quantity_at_a_point.toml", 46, &["`at` in [[quantities]] number 1", "mean over a short boundary"]),
+    at("quantity_at_a_point.toml", 46, &["`at` in [[quantities]] number 1", "`point = [x, y]`"]),
     at("quantity_of_nothing.toml", 44, &["\"left_fase\"", "no contact or support", "did you mean \"left_face\"?"]),
     at("title_number.toml", 1, &["`title`", "text in double quotes"]),
     at("date.toml", 20, &["`young` in [bodies.left]", "a number"]),

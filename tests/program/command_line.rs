@@ -141,7 +141,7 @@ fn the_scene_schema_names_every_table_and_forbids_others() {
         }
         assert_eq!(schema["required"], serde_json::json!(["model", "bodies"]));
         let support = &schema["$defs"]["Support"]["properties"];
-        assert_eq!(support["type"]["enum"], serde_json::json!(["clamped", "roller"]));
+        assert_eq!(support["type"]["enum"], serde_json::json!(["clamped", "roller", "spring"]));
         let point = &schema["$defs"]["Polygon"]["properties"]["points"]["items"];
         assert_eq!((&point["minItems"], &point["maxItems"]), (&2.into(), &2.into()));
         assert_eq!(schema["$defs"]["Body"]["properties"]["poisson"]["exclusiveMaximum"], 0.5);

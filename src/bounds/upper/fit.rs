@@ -16,12 +16,13 @@ use crate::element::displacement::MOST;
 use crate::element::geometry::{from_centroid, gradients, sub_corners};
 use crate::element::quadrature::{segment_rule, triangle_rule};
 use crate::element::{Material, Samples, SideValues, StressField, triangle, weighed};
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
 ///
 /// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place; the strain is aλ_h, with the initial
-/// strains of the scene or without.
+/// strains and forces of the scene or without.
 pub fn vertex_values(
     problem: &Problem,
     stress: &StressField,
@@ -78,7 +79,8 @@ fn corner_values(
     let strain = match problem.section().revolved() {
         None => reference.strain(in_plane),
         Some(revolved) => {
-            let of = revolved.plane_strain_of(stress, t, corners, material, problem.body_force(t));
+            let force = if with_initial { problem.body_force(t) } else { &BodyForce::NONE };
+            let of = revolved.plane_strain_of(stress, t, corners, material, force);
             reference.strain(|sub, _, l| of(sub, l))
         }
     };

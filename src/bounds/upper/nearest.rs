@@ -32,7 +32,8 @@ impl<'a> Nearest<'a> {
     /// # Errors
     /// None: supports that hold nothing in place agree.
     pub fn new(problem: &'a Problem, like: &SideValues<[f64; 2]>, prepared: &Prepared) -> Result<Self, NoUpperBound> {
-        let nodes = Nodes::new(problem.mesh.points.len(), like.iter().map(|moments| moments.len()));
+        let degree = |moments: &[[f64; 2]]| problem.section().displacement_degree(moments.len() - 1);
+        let nodes = Nodes::new(problem.mesh.points.len(), like.iter().map(degree));
         let rows = rows(problem, &nodes);
         let holds = holds_at(problem, |_, _| [0.0; 2])?;
         let made = prepared.take().filter(|made| made.model.is_free_as(&holds, &nodes));
@@ -54,8 +55,9 @@ impl<'a> Nearest<'a> {
         }
         for e in 0..self.problem.mesh.edges.len() {
             let ends = self.problem.mesh.edges[e].vertices.map(|v| field.values[v]);
-            let inside = edges::inside(moments.of(e), self.problem.mesh.edge_frame(e).0, ends);
             let own = &mut field.values[self.nodes.inside(e)];
+            let length = self.problem.mesh.edge_frame(e).0;
+            let inside = edges::inside_of(own.len() + 1, moments.of(e), length, ends);
             let held = self.holds.inside(e, own.len());
             for ((value, found), hold) in own.iter_mut().zip(inside).zip(held) {
                 *value = hold.impose(found);

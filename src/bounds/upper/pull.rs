@@ -4,6 +4,7 @@ use super::split::{self, load};
 use crate::bounds::springs::OnSprings;
 use crate::element::StressField;
 use crate::element::geometry::sub_corners;
+use crate::load::BodyForce;
 use crate::problem::{Condition, Problem};
 
 /// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
@@ -13,7 +14,8 @@ pub struct Pull<'a> {
     pub scene: f64,
     /// Whether the initial strains of the scene pull too: forces ∫ cε0 : e(v).
     pub initial: bool,
-    /// Forces ∫ σ : e(v) of a stress on every triangle.
+    /// Forces ∫ σ : e(v) of a stress on every triangle. In a body of revolution it is one that balances minus the body forces of the
+    /// scene times [`Self::scene`].
     pub stress: Option<&'a StressField>,
     /// Work ∫ f j(v) of forces on the jumps of springs.
     pub springs: Option<&'a OnSprings>,
@@ -26,6 +28,14 @@ impl Pull<'_> {
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
         let corners = problem.mesh.corners(t);
+        if let (Some(revolved), Some(stress)) = (problem.section().revolved(), self.stress) {
+            // The hoop stress takes up the radial body force: what is left of that is none.
+            let [_, axial] = problem.section().forces(problem.body_force(t));
+            let axial = BodyForce::constant([0.0, self.scene * axial]);
+            let mut forces = load(problem.section(), k, corners, &axial);
+            split::pull_revolved(k, corners, &revolved.stresses_on(stress, t, corners, &BodyForce::NONE), &mut forces);
+            return forces;
+        }
         let mut forces = load(problem.section(), k, corners, &problem.body_force(t).times(self.scene));
         let body = problem.mesh.body[t];
         if self.initial && !problem.scene.bodies[body].initial.is_none() {

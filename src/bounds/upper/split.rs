@@ -13,6 +13,8 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
+use crate::element::quadrature::triangle_rule;
+use crate::element::revolved::Weighted;
 use crate::element::{Material, Samples, Section, StressField, triangle};
 use crate::load::BodyForce;
 
@@ -125,6 +127,28 @@ pub fn pull(k: usize, corners: [[f64; 2]; 3], stress: &StressField, t: usize, ou
                     out[2 * node] += by * force[0];
                     out[2 * node + 1] += by * force[1];
                 }
+            }
+        }
+    }
+}
+
+/// Adds to them the forces ∫ σ : e(φ) r of a weighted stress, given on the three subtriangles, on the coefficients of degree `k`.
+pub fn pull_revolved(k: usize, corners: [[f64; 2]; 3], stress: &[Weighted; 3], out: &mut [f64]) {
+    let area = sub_area(corners);
+    for (sub, (nodes, stress)) in SplitNodes::of(k).subs.iter().zip(stress).enumerate() {
+        let g = sub_gradients(corners, sub);
+        for &(l, weight) in triangle_rule(stress.degree() + k) {
+            let (s, hoop, weight) = (stress.sigma(l), stress.hoop(l), area * weight);
+            let forces = g.map(|g| [s[0] * g[0] + s[2] * g[1], s[2] * g[0] + s[1] * g[1]]);
+            for (beta, b) in triangle::indices(k - 1).zip(triangle::basis(k - 1, l)) {
+                for (i, force) in forces.iter().enumerate() {
+                    let node = nodes[triangle::number(triangle::raised(beta, i))];
+                    (0..2).for_each(|c| out[2 * node + c] += k as f64 * weight * b * force[c]);
+                }
+            }
+            // λ_θθ φ_r/r · r.
+            for (node, b) in nodes.iter().zip(triangle::basis(k, l)) {
+                out[2 * node] += weight * b * hoop;
             }
         }
     }

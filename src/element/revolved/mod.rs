@@ -19,11 +19,13 @@ mod householder;
 mod law;
 mod modes;
 mod rule;
+mod sampled;
 mod stress;
 
 pub use law::{Law, Tensor};
 pub use modes::Ring;
 pub use rule::{Point, rule};
+pub use sampled::{Sampled, Strained};
 pub use stress::Weighted;
 
 /// By how much the majorant of 1/r may lie above it in what is a bound, relative to it.

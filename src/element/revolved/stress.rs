@@ -54,6 +54,11 @@ impl Weighted {
         Weighted { degree, sigma, hoop, spread, force }
     }
 
+    /// Degree of Σ.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
     /// Σ at a point of the subtriangle.
     pub fn sigma(&self, bary: [f64; 3]) -> [f64; 3] {
         let mut sum = [0.0; 3];
@@ -61,6 +66,11 @@ impl Weighted {
             (0..3).for_each(|c| sum[c] += b * s[c]);
         }
         sum
+    }
+
+    /// ∂_r Σ_rr + ∂_z Σ_rz at a point of the subtriangle.
+    pub fn hoop(&self, bary: [f64; 3]) -> f64 {
+        triangle::basis(self.degree - 1, bary).zip(&self.hoop).map(|(b, h)| b * h).sum()
     }
 
     /// λ at a point of the subtriangle, and the size of what its hoop stress is a sum of.

@@ -136,7 +136,7 @@ def read_frd(source):
     with open(source, "rb") as file:
         frd = Frd(file.read()).read()
     if not frd.nodes:
-        raise Unreadable("it has no block of nodes (2C)")
+        raise Unreadable("it has no block of nodes (2C), which CalculiX writes where the deck asks for `*NODE FILE` and U")
     found = Found("CalculiX")
     flat = frd_flat(frd)
     cells = flat or [(tag, FRD[kind][0], nodes) for tag, kind, nodes in frd.cells]

@@ -18,9 +18,10 @@ const LONGEST_ARROW: f64 = 44.0;
 /// The bodies in their undeformed state with everything that holds, loads or meets them.
 pub fn scene(problem: &Problem, marks: &[Mark]) -> String {
     let mesh = &problem.mesh;
-    let (view, height) = View::fit(mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
+    let (view, height) = view(problem);
     let mut svg =
         Svg::new(WIDTH, height, format!("The scene {} with its supports, loads and contacts", problem.scene.title));
+    other_half(&mut svg, problem, &view, height);
     for body in 0..problem.scene.bodies.len() {
         let look = look::BODIES[body % look::BODIES.len()];
         let d = outline::outline(mesh, body, &view);
@@ -40,9 +41,42 @@ pub fn scene(problem: &Problem, marks: &[Mark]) -> String {
     svg.finish()
 }
 
+/// The first coordinate of the axis of a body of revolution that lies near enough to be drawn.
+fn axis(problem: &Problem) -> Option<f64> {
+    let axis = problem.section().axis()?;
+    let radii = problem.mesh.points.iter().map(|p| p[0] - axis);
+    let (least, most) = radii.fold((f64::INFINITY, 0.0_f64), |(least, most), r| (least.min(r), most.max(r)));
+    (least <= most - least).then_some(axis)
+}
+
+/// All of the scene, with the other half of a body of revolution.
+fn view(problem: &Problem) -> (View, f64) {
+    let points = problem.mesh.points.iter().copied();
+    match axis(problem) {
+        Some(axis) => {
+            let mirrored = points.clone().map(|[x, y]| [2.0 * axis - x, y]);
+            View::fit(points.chain(mirrored), WIDTH, 460.0, MARGIN)
+        }
+        None => View::fit(points, WIDTH, 460.0, MARGIN),
+    }
+}
+
+/// The axis of a body of revolution, and a pale image of the section beyond it.
+fn other_half(svg: &mut Svg, problem: &Problem, view: &View, height: f64) {
+    let Some(axis) = axis(problem) else { return };
+    let [x, _] = view.at([axis, 0.0]);
+    svg.raw(format_args!(r#"<g transform="translate({} 0) scale(-1 1)" opacity="0.3">"#, 2.0 * x));
+    for body in 0..problem.scene.bodies.len() {
+        let look = look::BODIES[body % look::BODIES.len()];
+        svg.path(look, r#"fill-rule="evenodd""#, &outline::outline(&problem.mesh, body, view));
+    }
+    svg.raw(format_args!("</g>"));
+    svg.line(look::LINE, r#"stroke-dasharray="12 3 2 3""#, [x, 0.3 * MARGIN], [x, height - 0.3 * MARGIN]);
+}
+
 /// The factor by which the picture exaggerates the gap of the contacts, or `None` where every gap is zero.
 pub fn gap_exaggeration(problem: &Problem) -> Option<f64> {
-    let (view, _) = View::fit(problem.mesh.points.iter().copied(), WIDTH, 460.0, MARGIN);
+    let (view, _) = view(problem);
     let largest = problem.pairs().flat_map(|p| p.gap).fold(0.0, f64::max);
     let page = largest * view.scale;
     if !(page.is_finite() && page > 0.0) {

@@ -90,7 +90,9 @@ fn force(force: &BodyForce) -> Markup {
     html! {
         @if force.given() != Affine::default() { ", body force " (affine(force.given())) }
         @if let Some(Rotation { density, omega, about }) = force.rotation() {
-            ", turning about " (vector(about, 5)) " with ω = " (significant(omega, 5)) ", ϱ = " (significant(density, 5))
+            ", turning about "
+            @if force.is_about_line() { "the axis" } @else { (vector(about, 5)) }
+            " with ω = " (significant(omega, 5)) ", ϱ = " (significant(density, 5))
         }
     }
 }

@@ -76,7 +76,7 @@ pub(super) const REGIMES: &[Regime] = &[
         values: LEFT,
         reduced: &[0, 3],
         build: |left| balanced(left).problem(),
-        known: |left| Known::forces(vec![[-left, 0.0]], 1.0),
+        known: |left| Known::forces(vec![[-left, 0.0]], 1.0).indeterminate(),
         ..PLAIN
     },
 ];

@@ -12,6 +12,7 @@ mod near_vertices;
 mod own_solver;
 mod quadrilaterals;
 mod repeatable;
+mod revolved;
 mod run;
 mod sabotage;
 mod statics;
@@ -27,6 +28,7 @@ fn every_case_is_asserted_and_listed() {
         include_str!("half_planes.rs"),
         include_str!("curved.rs"),
         include_str!("quadrilaterals.rs"),
+        include_str!("revolved.rs"),
     ]
     .concat();
     let mut count = 0;

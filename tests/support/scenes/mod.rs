@@ -71,7 +71,7 @@ const LATER: [(&str, f64, Family); 7] = [
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
     ("quadrilaterals", 0.12, lattice::quadrilaterals),
-    ("obstacles", 0.1, obstacles::obstacles),
+    ("obstacles", 0.16, obstacles::obstacles),
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
 ];
