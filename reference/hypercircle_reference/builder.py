@@ -30,14 +30,41 @@ class JumpRow:
 
 
 @dataclass(frozen=True)
+class SlipRow:
+    """One term of the work of friction: ``weight`` |w[column] − kink|, all of it where the tangential jump that it stands for is
+    no other unknown's.
+
+    Its part of ∂𝓛/∂w times ``vector`` is the force on the first side, along ``tangent`` where that is its direction. ``vertex``,
+    ``pair`` and ``inner`` are those of :class:`JumpRow`.
+    """
+
+    column: int
+    weight: float
+    contact: int
+    vector: np.ndarray
+    tangent: np.ndarray
+    vertex: int
+    pair: int
+    inner: int = 0
+
+
+@dataclass(frozen=True)
 class Constraints:
-    """u = T w + offset with lower ≤ w ≤ upper; ``rows`` lists the inequalities behind the finite bounds."""
+    """u = T w + offset with lower ≤ w ≤ upper; ``rows`` lists the inequalities behind the finite bounds.
+
+    Friction adds Σ weight |w − kink| to the energy, of which ``slips`` lists the terms, and ``slid``, the work that supports
+    decide alone.
+    """
 
     T: sparse.csr_matrix
     offset: np.ndarray
     lower: np.ndarray
     upper: np.ndarray
     rows: list[JumpRow]
+    kink: np.ndarray
+    weight: np.ndarray
+    slips: list[SlipRow]
+    slid: float
 
     @property
     def bounded(self) -> np.ndarray:
@@ -55,6 +82,9 @@ class Builder:
         self.upper: list[np.ndarray] = []
         self.columns = 0
         self.rows: list[JumpRow] = []
+        self.slips: list[SlipRow] = []
+        self.kinks: dict[int, float] = {}
+        self.slid = 0.0
 
     def new_columns(self, upper, lower=None) -> np.ndarray:
         upper = np.atleast_1d(np.asarray(upper, dtype=float))
@@ -66,6 +96,20 @@ class Builder:
     def add(self, rows, columns, values) -> None:
         rows, columns, values = np.broadcast_arrays(rows, columns, values)
         self.entries.append((rows.reshape(-1), columns.reshape(-1), values.reshape(-1)))
+
+    def rub(self, kink: float, row: SlipRow) -> None:
+        """Add a term to the work of friction; all terms of one unknown have the same ``kink``."""
+        self.kinks[row.column] = kink
+        self.slips.append(row)
+
+    def friction(self) -> tuple[np.ndarray, np.ndarray]:
+        """Kink and weight of every unknown, zero where there is no friction."""
+        kink, weight = np.zeros(self.columns), np.zeros(self.columns)
+        for column, value in self.kinks.items():
+            kink[column] = value
+        for row in self.slips:
+            weight[row.column] += row.weight
+        return kink, weight
 
     def matrix(self, rows: int) -> sparse.csr_matrix:
         i, j, v = (np.concatenate(parts) for parts in zip(*self.entries))

@@ -34,18 +34,42 @@ class Bound:
 
 
 @dataclass(frozen=True)
+class Slip:
+    """|F x| of friction row ``row`` is, or is at most, the sum over its entries of |factor| |w − kink|: ``unknown`` is the index of w.
+
+    ``leader`` is the row of (B, F) that w itself is.
+    """
+
+    row: int
+    unknown: int
+    factor: float
+    kink: float
+    leader: int
+
+
+@dataclass(frozen=True)
 class Elimination:
-    """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side)."""
+    """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side).
+
+    ``given`` are the friction rows whose value the supports decide, with that value.
+    """
 
     offset: np.ndarray
     jumps: np.ndarray
     free: np.ndarray
     upper: list[Bound | None]
     lower: list[Bound | None]
+    slips: list[Slip]
+    given: list[tuple[int, float]]
 
 
-def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray) -> Elimination:
-    """Parametrise {x : C x = d, B x ≤ g}; rows of C and B have entries of order one.
+def eliminate(
+    C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray, F: np.ndarray | None = None
+) -> Elimination:
+    """Parametrise {x : C x = d, B x ≤ g}; rows of C, B and F have entries of order one. Each |F x| is told by the unknowns.
+
+    Where a row of F is no multiple of one unknown, as at the corner of a contact line, it is a combination of several that
+    are all zero when it sticks, and |F x| is replaced by the sum of their absolute values, which is nowhere less.
 
     The y are components of x, and ``stiffness``, one positive number per component, decides which: the stiff ones.
     The displacement of a stiff body is then an unknown of its own and never a small difference of large ones.
@@ -85,15 +109,57 @@ def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffn
 
     chosen = _independent(rows[leaders], np.array([bound.value for bound in upper]), lower)
     leaders = [leaders[k] for k in chosen]
-    jumps, free = _parametrise(np.vstack([_independent_rows(C), B[leaders]]), len(leaders), stiffness)
-    rigid = B[leaders] @ offset
+    upper, lower = [upper[k] for k in chosen], [lower[k] for k in chosen]
+    rubbing = np.zeros((0, len(offset))) if F is None else F
+    everything = np.vstack([B, rubbing])
+    leaders += _further(everything @ kernel, leaders, len(B))
+    own = everything[leaders]
+    jumps, free = _parametrise(np.vstack([_independent_rows(C), own]), len(leaders), stiffness)
+    rigid = own @ offset
+    slips, given = _slips(rubbing, offset, kernel, own, rigid, leaders)
+    new = [None] * (len(leaders) - len(chosen))
     return Elimination(
         offset=offset - jumps @ rigid,
         jumps=jumps,
         free=free,
-        upper=[_shift(upper[k], value) for k, value in zip(chosen, rigid)],
-        lower=[_shift(lower[k], value) for k, value in zip(chosen, rigid)],
+        upper=[_shift(bound, value) for bound, value in zip(upper + new, rigid)],
+        lower=[_shift(bound, value) for bound, value in zip(lower + new, rigid)],
+        slips=slips,
+        given=given,
     )
+
+
+def _further(rows: np.ndarray, leaders: list[int], begin: int) -> list[int]:
+    """Rows from ``begin`` on that are unknowns of their own: independent of the leaders and of each other."""
+    found: list[int] = []
+    for row in range(begin, len(rows)):
+        if np.linalg.norm(rows[row]) <= RELATIVE:
+            continue
+        M = rows[leaders + found + [row]]
+        if np.linalg.matrix_rank(M / np.linalg.norm(M, axis=1)[:, None], tol=RELATIVE) == len(M):
+            found.append(row)
+    return found
+
+
+def _slips(rubbing, offset, kernel, own, rigid, leaders) -> tuple[list[Slip], list[tuple[int, float]]]:
+    """The friction rows in terms of the unknowns, and those that the supports decide."""
+    slips: list[Slip] = []
+    given: list[tuple[int, float]] = []
+    for row, F in enumerate(rubbing):
+        value = float(F @ offset)
+        if np.linalg.norm(F @ kernel) <= RELATIVE:
+            given.append((row, value))
+            continue
+        factors = np.linalg.lstsq((own @ kernel).T, F @ kernel, rcond=None)[0]
+        factors[np.abs(factors) <= RELATIVE] = 0.0
+        rest = value - float(factors @ rigid)
+        used = np.flatnonzero(factors)
+        if abs(rest) <= RELATIVE * (abs(value) + np.abs(factors) @ np.abs(rigid)):
+            rest = 0.0
+        if len(used) > 1 and rest != 0.0:
+            raise Conflict("supports move the corner of a contact with friction")
+        slips += [Slip(row, int(k), float(factors[k]), -rest / float(factors[k]), leaders[k]) for k in used]
+    return slips, given
 
 
 def _shift(bound: Bound | None, value: float) -> Bound | None:
