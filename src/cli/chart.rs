@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use clap::{ValueEnum, value_parser};
 
+use super::friction::refuse_friction;
 use super::methods::MethodOptions;
 use super::options::{MemoryOptions, NamedTolerance, RunOptions, positive, tolerance};
 use super::progress::Progress;
@@ -172,6 +173,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     for path in &args.scenes {
         let scene = Scene::read(path)?;
         refuse_unsupported("chart", &scene)?;
+        refuse_friction("chart", &scene)?;
         refuse_unknown(&scene, args.quantities().iter().map(String::as_str))?;
         if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
             let message = format!("{} and {} have the same name", other.path.display(), path.display());

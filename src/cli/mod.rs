@@ -12,6 +12,7 @@ pub mod diff;
 pub mod element;
 pub mod error;
 pub mod exit;
+pub mod friction;
 pub mod gather;
 pub mod given;
 pub mod job;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::friction::refuse_friction;
 use super::job::JobOptions;
 use super::memory::{COARSER, enough, too_fine};
 use super::options::{Engine, EngineOptions, Limits, SolveOptions};
@@ -91,6 +92,7 @@ impl Session {
         quiet: bool,
     ) -> Result<Self, CliError> {
         refuse_unsupported(command, &scene)?;
+        refuse_friction(command, &scene)?;
         let budget = enough(solve.memory.budget(threads))?;
         let (start, progress) = (Instant::now(), Progress::new(quiet));
         Ok(Session { scene, progress, start, command, quiet, run: None, threads, budget })

@@ -210,6 +210,23 @@ struct PairEntry {
     gap: [f64; 2],
     #[serde(skip_serializing_if = "Vec::is_empty")]
     gap_below: Vec<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionEntry>,
+}
+
+/// The friction of a pair.
+#[derive(Serialize)]
+struct FrictionEntry {
+    bound: [f64; 2],
+    tangent: [[f64; 2]; 2],
+    length: f64,
+}
+
+impl FrictionEntry {
+    fn new(pair: &ContactPair) -> Option<Self> {
+        let friction = pair.friction?;
+        Some(FrictionEntry { bound: friction.bound, tangent: friction.tangent.ends, length: pair.length })
+    }
 }
 
 #[derive(Serialize)]
@@ -287,6 +304,7 @@ impl<'a> ProblemFile<'a> {
                             direction: pair.direction.ends,
                             gap: pair.gap,
                             gap_below: gap_below(pair),
+                            friction: FrictionEntry::new(pair),
                         })
                         .collect(),
                 })

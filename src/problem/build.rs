@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
+use super::friction::resist;
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, rubs};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
@@ -150,6 +151,7 @@ impl Problem {
                     replace(&mut notes, &matched);
                 }
             }
+            resist(contact, &mesh, &mut matched, &mut remarks);
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {
                     if let Some(edge) = edge {
@@ -311,6 +313,10 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
                 format!("the body force of '{}' of revolution varies along z, or its axial part varies", body.name);
             return refused(what, "give F_r as value + gradient · r, and a constant F_z");
         }
+    }
+    if rubs(scene) {
+        let what = "a contact of a body of revolution has friction".to_string();
+        return refused(what, "leave `friction` out of axisymmetric scenes");
     }
     let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
     if springs || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {

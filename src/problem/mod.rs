@@ -9,6 +9,7 @@ mod contact;
 mod curves;
 mod direction;
 mod error;
+mod friction;
 mod normals;
 mod scales;
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub use bed::{Bed, BedPair};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
+pub use friction::{Friction, rubs};
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
@@ -231,6 +233,8 @@ pub struct ContactPair {
     pub gap: [f64; 2],
     /// How far it lies below its chord between them.
     pub bow: Bow,
+    /// What resists sliding, where something does.
+    pub friction: Option<Friction>,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

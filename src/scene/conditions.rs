@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::bonds::{Bond, bond};
 use super::error::{Fault, SceneError};
 use super::fault::names;
+use super::friction::friction;
 use super::obstacle::obstacle;
 use super::range::ordered;
 use super::raw::{
@@ -13,6 +14,7 @@ use super::raw::{
 };
 use super::source::{Source, counted};
 use super::springs::{no_stiffness, spring};
+use super::table::table_of;
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
 };
@@ -228,7 +230,8 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     };
     let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    Ok(Contact { normals: normals(contact, table, source)?, direction, obstacle, ..Contact::new(sides, gap) })
+    let (normals, friction) = (normals(contact, table, source)?, friction(contact, table, source)?);
+    Ok(Contact { normals, direction, obstacle, friction, ..Contact::new(sides, gap) })
 }
 
 /// A unit vector for a contact between two sides.
@@ -262,21 +265,10 @@ fn normals(contact: &RawContact, table: &str, source: &Source) -> Result<Normals
     }
 }
 
-/// Least distance of two rows of a gap table, in parts of the last arc length: both become vertices of the mesh.
-const CLOSEST: f64 = 1e-9;
-const CLOSE: (&str, &str) = (
-    "no mesh can have vertices as close together as this row and the one before it",
-    "move the two apart, or leave out one of them",
-);
-
 fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> Result<Gap, SceneError> {
     const NEGATIVE: (&str, &str) = (
         "the sides must not overlap at the start",
         "write a gap of zero or more; an interference fit is one number below zero, between two sides",
-    );
-    const ARC: (&str, &str) = (
-        "an arc length is not negative",
-        "measure s along the first side, from its end that comes first in (x, y) order",
     );
     let rows = match &raw.value {
         RawGap::Constant(g) => {
@@ -298,35 +290,7 @@ fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> 
         RawGap::Curve(curve) => return touching(curve, raw, table, source),
         RawGap::Table(rows) => rows,
     };
-    if rows.is_empty() {
-        let remedy = "write at least one row [s, g], or a number";
-        let (key, found, expected) = ("gap".to_owned(), "0 rows".to_owned(), "at least one".to_owned());
-        return Err(source.error(raw.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
-    }
-    let mut checked: Vec<[f64; 2]> = Vec::with_capacity(rows.len());
-    for (i, row) in rows.iter().enumerate() {
-        let key = format!("gap[{i}]");
-        let [s, g] = source.vector(row, (table, &key))?;
-        for (value, words) in [(s, ARC), (g, NEGATIVE)] {
-            let number = At { value, start: row.start, end: row.end };
-            source.number(&number, (table, &key), |x| x >= 0.0, words)?;
-        }
-        if let Some([before, _]) = checked.last()
-            && s <= *before
-        {
-            let relation = if s == *before { "the same as" } else { "less than" };
-            let fault = Fault::GapOrder { row: i + 1, table: table.to_owned(), s: format!("{s:?}"), relation };
-            return Err(source.error(row.span(), fault));
-        }
-        checked.push([s, g]);
-    }
-    let length = checked.last().map_or(0.0, |row| row[0]);
-    if let Some(i) = (1..checked.len()).find(|&i| checked[i][0] - checked[i - 1][0] < CLOSEST * length) {
-        let (key, found) = (format!("gap[{i}]"), source.written(rows[i].span()));
-        let fault = Fault::Number { key, table: table.to_owned(), found, rule: CLOSE.0, remedy: CLOSE.1 };
-        return Err(source.error(rows[i].span(), fault).with_related(rows[i - 1].span(), "the row before"));
-    }
-    Ok(Gap::Table(checked))
+    table_of(rows, raw.span(), (table, "gap"), NEGATIVE, source).map(Gap::Table)
 }
 
 fn touching(curve: &RawCurve, raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError> {

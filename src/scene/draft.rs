@@ -12,9 +12,9 @@ use toml::Value;
 use super::range::{DataRange, Ranged};
 use super::selection::written;
 use super::{
-    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
-    Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene, SceneError, Shape,
-    Support, SupportKind, Target, Touching, Traction,
+    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, FrictionBound, Gap,
+    Holder, Kinematics, Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene,
+    SceneError, Shape, Support, SupportKind, Target, Touching, Traction,
 };
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
@@ -138,7 +138,7 @@ impl Draft {
             ("tractions", self.tractions.iter().map(traction).collect()),
             (
                 "contacts",
-                self.contacts.iter().enumerate().map(|(i, c)| contact(c, self.range_of(Ranged::Gap(i)))).collect(),
+                self.contacts.iter().enumerate().map(|(i, c)| contact(c, |of| self.range_of(of(i)))).collect(),
             ),
             (
                 "bonds",
@@ -393,13 +393,14 @@ fn traction(Traction { on, load }: &Traction) -> String {
     }
 }
 
-fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range: Option<String>) -> String {
+fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<String>) -> String {
+    let Contact { sides, gap, normals, direction, obstacle, friction } = contact;
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
     };
     let gap = match gap {
-        Gap::Constant(g) => range.unwrap_or_else(|| number(*g)),
+        Gap::Constant(g) => range(Ranged::Gap).unwrap_or_else(|| number(*g)),
         Gap::Table(table) => rows(table),
         Gap::Circle(Touching { radius, at }) => format!("{{ circle = {}, at = {} }}", number(*radius), number(*at)),
         Gap::Parabola(Touching { radius, at }) => format!("{{ parabola = {}, at = {} }}", number(*radius), number(*at)),
@@ -409,6 +410,13 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    let friction = friction.as_ref().map_or_else(String::new, |bound| {
+        let bound = match bound {
+            FrictionBound::Constant(bound) => range(Ranged::Friction).unwrap_or_else(|| number(*bound)),
+            FrictionBound::Table(table) => rows(table),
+        };
+        format!(", friction = {{ bound = {bound} }}")
+    });
     if let Some(Obstacle { shape, moved }) = obstacle {
         let shape = match shape {
             Shape::Line(ends) => format!("line = {}", rows(ends)),
@@ -417,9 +425,9 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range
                 format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
             }
         };
-        return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{friction}", list(moved));
     }
-    format!("{sides}, gap = {gap}{normals}{direction}")
+    format!("{sides}, gap = {gap}{normals}{direction}{friction}")
 }
 
 fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {

@@ -14,6 +14,7 @@ mod draft;
 pub mod error;
 mod fault;
 mod files;
+mod friction;
 mod geometry;
 mod material;
 mod nearest;
@@ -27,6 +28,7 @@ mod read;
 mod selection;
 mod source;
 mod springs;
+mod table;
 pub(crate) mod text;
 mod validate;
 
@@ -43,6 +45,7 @@ pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
 pub use error::{Fault, SceneError};
 pub use files::Part;
+pub use friction::FrictionBound;
 pub use obstacle::{Obstacle, Shape};
 pub use quantity::{Component, Extent, Holder, Invariant, Mode, PointValue, Quantity, Region, Target};
 pub use range::{DataRange, Ranged};
@@ -222,7 +225,7 @@ pub enum Load {
     Pressure(f64),
 }
 
-/// A frictionless unilateral contact.
+/// A unilateral contact, without friction or with a given bound of the tangential traction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// The two boundaries, or the one that meets a rigid obstacle.
@@ -235,6 +238,8 @@ pub struct Contact {
     pub direction: Option<[f64; 2]>,
     /// A rigid obstacle that is not of the shape of the boundary.
     pub obstacle: Option<Obstacle>,
+    /// Bound of the tangential traction; `None` without friction.
+    pub friction: Option<FrictionBound>,
 }
 
 /// Where the directions of contact come from.
@@ -259,7 +264,7 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None }
+        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None, friction: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.
@@ -308,17 +313,7 @@ impl Gap {
     pub fn at(&self, s: f64) -> f64 {
         match self {
             Gap::Constant(g) => *g,
-            Gap::Table(rows) => {
-                let after = rows.partition_point(|row| row[0] <= s);
-                if after == 0 {
-                    rows[0][1]
-                } else if after == rows.len() {
-                    rows[after - 1][1]
-                } else {
-                    let ([s0, g0], [s1, g1]) = (rows[after - 1], rows[after]);
-                    g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
-                }
-            }
+            Gap::Table(rows) => table::at(rows, s),
             Gap::Circle(circle) => circle.distance(s - circle.at),
             Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
         }

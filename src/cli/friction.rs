@@ -1,0 +1,24 @@
+//! What commands and options do with friction.
+
+use super::{CliError, Exit};
+use crate::problem::rubs;
+use crate::scene::Scene;
+
+/// The commands that take contacts with friction.
+const COMMANDS: [&str; 0] = [];
+
+/// Refuses what is not there for contacts with friction.
+///
+/// # Errors
+/// Names what was asked for, and what there is.
+pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
+    if !rubs(scene) {
+        return Ok(());
+    }
+    let path = scene.path.display();
+    if !COMMANDS.contains(&command) {
+        let what = format!("{path}: `{command}` does not take contacts with friction");
+        return Err(CliError::stopped(Exit::BadInput, what, "leave `friction` out of the scene"));
+    }
+    Ok(())
+}
