@@ -101,8 +101,19 @@ pub struct Reactions {
     /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree k from 2 on): k − 1, or k where the direction
     /// of contact turns.
     pub edge: Option<Vec<Vec<f64>>>,
+    /// What friction puts on the first side, where it rubs.
+    pub friction: Option<FrictionForces>,
     /// Force on the first side.
     pub resultant: [f64; 2],
+}
+
+/// Variationally consistent forces of friction on the first side of an interface along t̂, thickness included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionForces {
+    /// At each of [`Reactions::vertices`].
+    pub vertex: Vec<f64>,
+    /// Conjugate to the inner Bernstein coefficients of the tangential jump of each pair.
+    pub edge: Option<Vec<Vec<f64>>>,
 }
 
 /// A candidate after it was evaluated.

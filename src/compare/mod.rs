@@ -10,6 +10,7 @@ mod contact;
 mod energy;
 mod forces;
 mod forces_on_quadrilaterals;
+mod friction;
 mod mean;
 mod nodal;
 mod on_quadrilaterals;
@@ -25,7 +26,7 @@ mod stress;
 mod tolerance;
 
 pub use balance::Balance;
-pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
+pub use candidate::{ADMISSIBLE, Candidate, FrictionForces, Judged, Reactions};
 pub use ceiling::Extent;
 pub use check::{Basis, Check};
 pub use forces::NodalForces;

@@ -442,6 +442,12 @@ fn check(solution: &PrimalSolution, Space { cells, degree }: Space, problem: &Pr
         if !fits {
             return Err(format!("the reactions of {} do not match its edges", contact.name));
         }
+        let rubs = contact.vertex_friction.as_ref().is_none_or(|forces| forces.len() == contact.vertices.len());
+        let inside = contact.edge_friction.iter().flatten().zip(contact.edge_reaction.iter().flatten());
+        let few = contact.edge_friction.as_ref().is_some_and(|pairs| Some(pairs.len()) != edges);
+        if !rubs || few || inside.into_iter().any(|(own, other)| own.len() != other.len()) {
+            return Err(format!("the friction forces of {} do not match its edges", contact.name));
+        }
     }
     Ok(())
 }
