@@ -13,6 +13,7 @@ mod matter;
 mod moved;
 mod msh;
 mod obstacles;
+mod rough;
 pub mod stack;
 
 use std::path::{Path, PathBuf};
@@ -66,7 +67,7 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 7] = [
+const LATER: [(&str, f64, Family); 8] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
@@ -74,6 +75,7 @@ const LATER: [(&str, f64, Family); 7] = [
     ("obstacles", 0.16, obstacles::obstacles),
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
+    ("rough", 0.15, rough::rough),
 ];
 
 /// The scene of a seed.
