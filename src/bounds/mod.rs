@@ -5,6 +5,7 @@ mod bracket;
 mod cells;
 mod counted;
 pub mod energy;
+mod friction;
 mod gap;
 mod jump;
 mod mid;
@@ -23,8 +24,9 @@ pub use cells::{Cell, Enclosed, strain_energy, strain_energy_by};
 pub use energy::{
     Complementary, Potential, complementary, excess_work, potential, support_work, work, work_of, work_on_edges,
 };
+pub use friction::{absolute, friction_error, slides};
 pub use gap::{LocalGap, local_gap};
-pub use jump::{jumps, openings, openings_within, side_coefficients};
+pub use jump::{jumps, jumps_along, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;

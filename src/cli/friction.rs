@@ -5,7 +5,7 @@ use crate::problem::rubs;
 use crate::scene::Scene;
 
 /// The commands that take contacts with friction.
-const COMMANDS: [&str; 0] = [];
+const COMMANDS: [&str; 1] = ["solve"];
 
 /// Refuses what is not there for contacts with friction.
 ///

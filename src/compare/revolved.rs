@@ -108,7 +108,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate) -> (NodalForces, Potenti
         }
     }
     let magnitude = strain + rounded;
-    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0 })
+    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0, friction: 0.0 })
 }
 
 /// σ(v) at a point of a subtriangle: (rr, zz, tt, rz).

@@ -61,15 +61,19 @@ pub trait DualMethod: Sync {
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError>;
 }
 
-/// Refuses springs and elastic layers to a method that has no words for them.
+/// Refuses springs, elastic layers and friction to a method that has no words for them.
 ///
 /// # Errors
 /// [`DualError::NotExpressible`].
-pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+pub(super) fn contact_alone(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    let remedy = "use --method condensed or active-set, without --engine";
+    if let Some(interface) = problem.interfaces.iter().find(|i| i.pairs.iter().any(|pair| pair.friction.is_some())) {
+        let what = format!("the friction of contact {}", interface.name);
+        return Err(DualError::NotExpressible { method, what, remedy });
+    }
     let Some(bed) = problem.beds.first() else { return Ok(()) };
     let what =
         if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
-    let remedy = "use --method condensed or active-set, without --engine";
     Err(DualError::NotExpressible { method, what, remedy })
 }
 

@@ -33,6 +33,7 @@ mod rows;
 mod schur;
 mod settling;
 mod solver;
+mod states;
 mod system;
 mod unknowns;
 pub mod yardstick;

@@ -111,7 +111,7 @@ impl Law {
             Law::AtMost { bound } => Law::AtMost { bound: bound / size },
             Law::Between { lower, upper } => Law::Between { lower: lower / size, upper: upper / size },
             Law::Elastic { gap, stiffness } => Law::Elastic { gap: gap / size, stiffness },
-            Law::Friction { threshold } => Law::Friction { threshold: threshold / size },
+            Law::Friction { threshold, centre } => Law::Friction { threshold: threshold / size, centre: centre / size },
             Law::Free | Law::Spring { .. } => self,
         }
     }

@@ -21,9 +21,12 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// Bernstein coefficients of τ̄ in degree `degree`.
+    /// Bernstein coefficients of degree `degree` of a function that is nowhere larger than τ̄: τ̄ itself, but for degree 0.
     pub fn coefficients(&self, degree: usize) -> Vec<f64> {
-        side::linear(self.bound, degree).collect()
+        match degree {
+            0 => vec![self.bound[0].min(self.bound[1])],
+            _ => side::linear(self.bound, degree).collect(),
+        }
     }
 
     /// The larger of the two ends.

@@ -11,7 +11,7 @@ use super::patches::Patches;
 use super::prepared::{Made, Prepared};
 use super::rows::{Row, rows};
 use super::share::Whole;
-use super::{Holds, NoUpperBound, Pull, Until, edges, fit, holds_at, interior, relax, restricted};
+use super::{Holds, NoUpperBound, Pull, Sliding, Until, edges, fit, holds_at, interior, relax, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -82,7 +82,9 @@ impl<'a> Nearest<'a> {
             rows.iter().cloned().zip(bounds).map(|(row, bound)| row.bounded(*bound)).collect()
         };
         let rows: Vec<Vec<Row>> = self.rows.iter().zip(bounds).map(bounded).collect();
-        let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field, &Whole)?.0);
+        let admissible = |field: NodalValues| {
+            Ok(restricted(self.problem, (&self.holds, &rows, &Sliding::default()), field, &Whole)?.0)
+        };
         let candidates = vec![admissible(start)?];
         let at_rest = || admissible(NodalValues::zeros(self.nodes.clone()));
         self.pulled(pull, &rows, |model, patches| {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
-use crate::dual::method::{plane_only, without_springs};
+use crate::dual::method::{contact_alone, plane_only};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::{SideValues, side};
 use crate::problem::{ContactPair, Problem, Sizes};
@@ -135,7 +135,7 @@ fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Re
             remedy: "use another method, or --degree 1",
         });
     }
-    without_springs(problem, method)?;
+    contact_alone(problem, method)?;
     let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
     let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
     Err(DualError::NotExpressible {

@@ -15,7 +15,7 @@ use crate::bounds::upper::nodes::{NodalValues, Nodes};
 use crate::bounds::upper::patches::{grouped, size};
 use crate::bounds::upper::rows::rows;
 use crate::bounds::upper::share::Whole;
-use crate::bounds::upper::{NoUpperBound, interior, restricted};
+use crate::bounds::upper::{NoUpperBound, Sliding, interior, restricted};
 use crate::element::displacement::split_len;
 use crate::element::{Displacement, SideValues, StressField, parts, starts};
 use crate::problem::Problem;
@@ -259,7 +259,13 @@ impl<'a> Division<'a> {
                 rest = behind;
             }
         }
-        let field = restricted(self.problem, &self.holds, &rows(self.problem, &self.nodes), field, &Whole)?.0;
+        let field = restricted(
+            self.problem,
+            (&self.holds, &rows(self.problem, &self.nodes), &Sliding::default()),
+            field,
+            &Whole,
+        )?
+        .0;
         Ok(Some(interior::filled_with(self.problem, &field, |t| &inside[start[t]..start[t + 1]])))
     }
 }

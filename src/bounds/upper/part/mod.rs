@@ -26,7 +26,7 @@ use super::patches::Patches;
 use super::prepared::Made;
 use super::rows::rows;
 use super::share::Share;
-use super::{Groundwork, NoUpperBound, Pull, interior, relaxed, restricted};
+use super::{Groundwork, NoUpperBound, Pull, Sliding, interior, relaxed, restricted};
 use crate::bounds::counted::Counted;
 use crate::bounds::ranks::Ranks;
 use crate::bounds::sum::Sum;
@@ -103,7 +103,7 @@ impl Part {
         let mut ground = Groundwork { nodes, holds: holds.clone(), rows, made };
         let field = relaxed(&mut ground, problem, (stress, moments), floor, None, &share)?;
         let values = self.own_nodes.iter().map(|node| field.values[*node]).collect();
-        let field = restricted(problem, holds, &ground.rows, field, &share)?.0;
+        let field = restricted(problem, (holds, &ground.rows, &Sliding::default()), field, &share)?.0;
         let filled = interior::fill(problem, &field, &ground.made.model);
         let own = (0..filled.len()).filter(|t| own_triangles[*t]);
         let inside = own.flat_map(|t| &filled.block(t)[3 * filled.degree(t)..]).copied().collect();
