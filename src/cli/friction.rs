@@ -5,7 +5,7 @@ use crate::problem::rubs;
 use crate::scene::Scene;
 
 /// The commands that take contacts with friction.
-const COMMANDS: [&str; 1] = ["solve"];
+const COMMANDS: [&str; 3] = ["solve", "verify", "certify"];
 
 /// Refuses what is not there for contacts with friction.
 ///

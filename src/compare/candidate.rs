@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
+use super::friction;
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::revolved;
 use super::solution::Numbering;
@@ -85,6 +86,13 @@ impl Candidate {
         self.on_quadrilaterals.as_ref().is_none_or(|own| own.field.is_polynomial())
     }
 
+    /// What its model counts for ∫ τ̄ |j_t|.
+    fn friction_work(&self, problem: &Problem) -> f64 {
+        let coefficients = self.higher.as_ref().filter(|_| self.degree > 2);
+        let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
+        friction::work(problem, self.degree, value)
+    }
+
     /// The largest component of all displacements.
     pub fn largest(&self) -> f64 {
         self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
@@ -123,7 +131,7 @@ pub struct Judged {
     pub candidate: Candidate,
     /// The field as delivered, or the polynomials on triangles that have its values.
     pub field: UpperBound,
-    /// The energy of the field as delivered.
+    /// The energy of the field as delivered; of a solution with friction as its model counts it.
     pub own: Potential,
     /// How far it was from admissible.
     pub violation: Violation,
@@ -161,12 +169,15 @@ impl Judged {
             let admissible = UpperBound::of_mended_cells(problem, dual, cells, (&field, mended));
             (UpperBound::of_cells(problem, dual, cells, field), admissible)
         };
-        let own = match &candidate.on_quadrilaterals {
+        let mut own = match &candidate.on_quadrilaterals {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             // Integrals over a body of revolution are rational, and a model's those of its rule.
             _ if problem.section().is_revolved() && candidate.is_solution => revolved::forces(problem, &candidate).1,
             _ => field.potential,
         };
+        if candidate.is_solution && problem.has_friction() {
+            own.friction = candidate.friction_work(problem);
+        }
         let balance = candidate
             .is_solution
             .then(|| Balance::new(problem, &candidate, field.potential.stored() + initial_energy(problem)));

@@ -2,6 +2,7 @@
 
 use super::candidate::Judged;
 use super::ceiling::{Allowance, Ceilings};
+use super::friction::{dual_friction, friction_resultant, reported_moment, trace_friction};
 use super::mean;
 use super::nodal::{self, NodalDifference, nodal_pressures};
 use super::outcome::{ContactSummary, Profile, TwoSides};
@@ -71,6 +72,8 @@ impl Sides<'_> {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
+        let along = friction_resultant(problem, interface, &dual_friction(problem, self.dual, interface));
+        let (force, moment) = together((force, moment), along);
         let own = &unweighted(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
@@ -118,9 +121,11 @@ impl Sides<'_> {
             Some(reactions) => reaction_pressure(problem, interface, reactions),
             None => trace_pressure(problem, interface, best),
         };
-        let (force, moment) = resultant(problem, interface, &pieces);
+        let along = friction_resultant(problem, interface, &trace_friction(problem, interface, best));
+        let (force, moment) = together(resultant(problem, interface, &pieces), along);
         let force = reactions.map_or(force, |r| without_radial(problem, r.resultant));
-        let moment = reactions.map_or(moment, |r| reaction_moment(problem, interface, r));
+        let of_reactions = |r| reaction_moment(problem, interface, r) + reported_moment(problem, interface, r);
+        let moment = reactions.map_or(moment, of_reactions);
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
         // Reactions are zero or not; a trace is never quite zero.
@@ -258,6 +263,11 @@ impl Sides<'_> {
             ),
         ]
     }
+}
+
+/// The sum of forces and moments.
+fn together((force, moment): ([f64; 2], f64), (other, more): ([f64; 2], f64)) -> ([f64; 2], f64) {
+    ([force[0] + other[0], force[1] + other[1]], moment + more)
 }
 
 /// Pressures of a field that brings no reactions: theory does not limit their difference.

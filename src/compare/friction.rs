@@ -9,9 +9,14 @@
 
 use std::collections::BTreeMap;
 
+use super::candidate::{Judged, Reactions};
+use super::piece::Piece;
+use super::pressure::{resultant, trace_along};
 use crate::bounds::{Nodes, Row, bernstein, of_pair, sides};
+use crate::dual::DualSolution;
+use crate::dual::equilibrium::contact_tractions;
 use crate::element::side;
-use crate::problem::{Bow, ContactPair, Problem};
+use crate::problem::{Bow, ContactPair, Direction, Interface, Problem};
 use crate::vector::cross;
 
 /// Tangents whose cross product is smaller are one.
@@ -100,6 +105,55 @@ pub fn limits(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<f64> 
     };
     let whole = problem.scene.thickness * pair.length;
     side::moments(&bound, degree).into_iter().map(|moment| whole * moment).collect()
+}
+
+/// The traction along t̂ on the first side, of the dual solution; zero where there is no friction.
+pub fn dual_friction(problem: &Problem, dual: &DualSolution, interface: &Interface) -> Vec<Piece> {
+    let of = |pair: &ContactPair| match pair.friction {
+        Some(_) => Piece::polynomial(contact_tractions(problem, &dual.stress, pair)[1].clone()),
+        None => Piece::polynomial(vec![0.0]),
+    };
+    interface.pairs.iter().map(of).collect()
+}
+
+/// The same from the stresses of a displacement.
+pub fn trace_friction(problem: &Problem, interface: &Interface, judged: &Judged) -> Vec<Piece> {
+    trace_along(problem, interface, judged, |pair| pair.friction.map_or([0.0; 2], |friction| friction.tangent.at(0.5)))
+}
+
+/// Force and moment about the origin of tractions along t̂, as they act on the first side, thickness included.
+pub fn friction_resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
+    let along = |pair: &ContactPair| {
+        let direction = pair.friction.map(|friction| friction.tangent);
+        let reversed = |d: Direction| Direction { ends: d.ends.map(|t| t.map(|x| -x)), ..d };
+        direction.map(|d| ContactPair { direction: reversed(d), ..pair.clone() })
+    };
+    let rubbing = interface.pairs.iter().zip(pieces).filter_map(|(pair, piece)| Some((along(pair)?, piece.clone())));
+    let (pairs, pieces): (Vec<ContactPair>, Vec<Piece>) = rubbing.unzip();
+    resultant(problem, &Interface { name: interface.name.clone(), pairs, centre: None }, &pieces)
+}
+
+/// Moment about the origin of reported forces of friction, as they act on the first side.
+pub fn reported_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
+    let Some(friction) = &reactions.friction else { return 0.0 };
+    let arm = |[x, y]: [f64; 2], t: [f64; 2]| x * t[1] - y * t[0];
+    let (mut tangents, mut moment) = (BTreeMap::new(), 0.0);
+    for (k, pair) in interface.pairs.iter().enumerate() {
+        let Some(Direction { ends, .. }) = pair.friction.map(|friction| friction.tangent) else { continue };
+        for (v, t) in pair.first.into_iter().zip(ends) {
+            tangents.entry(v).or_insert(t);
+        }
+        let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
+        let inner = friction.edge.as_ref().and_then(|e| e.get(k)).map_or(&[][..], Vec::as_slice);
+        for (j, force) in inner.iter().enumerate() {
+            let s = (j + 1) as f64 / (inner.len() + 1) as f64;
+            moment += force * arm([0, 1].map(|c| a[c] + s * (b[c] - a[c])), ends[0]);
+        }
+    }
+    for (v, force) in reactions.vertices.iter().zip(&friction.vertex) {
+        moment += tangents.get(v).map_or(0.0, |t| force * arm(problem.mesh.points[*v], *t));
+    }
+    moment
 }
 
 /// Σ c_i |d_i| of a displacement solution of degree `degree` with these values, or coefficients, at nodes.
