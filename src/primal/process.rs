@@ -27,6 +27,7 @@ const PACKAGE: Package = Package {
         ("model.py", include_str!("../../reference/hypercircle_reference/model.py")),
         ("run.py", include_str!("../../reference/hypercircle_reference/run.py")),
         ("solve.py", include_str!("../../reference/hypercircle_reference/solve.py")),
+        ("friction.py", include_str!("../../reference/hypercircle_reference/friction.py")),
         ("springs.py", include_str!("../../reference/hypercircle_reference/springs.py")),
     ],
 };
