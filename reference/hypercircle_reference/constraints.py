@@ -26,8 +26,9 @@ from hypercircle_process import BadExchange
 from .builder import Builder, Constraints, JumpRow, SlipRow
 from .exchange import Problem
 from .friction import check as check_friction, vertex_slips
-from .group import RELATIVE, Conflict, eliminate
-from .inside import inside_contacts, inside_friction, inside_supports, inside_turning, turning_vertex_jumps, vertex_jumps_inside
+from .group import Conflict, eliminate
+from .inside import inside_contacts, inside_friction, inside_supports, inside_turning
+from .inside import turning_friction, turning_vertex_jumps, vertex_jumps_inside
 from .lattice import Lattice
 
 
@@ -49,6 +50,7 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
         inside_friction(problem, lattice, builder, done)
         if not nodal_contact:
             inside_turning(problem, lattice, builder, done)
+            turning_friction(problem, lattice, builder)
     free = np.flatnonzero(~done)
     dofs = (2 * free[:, None] + np.arange(2)).reshape(-1)
     builder.add(dofs, builder.new_columns(np.full(len(dofs), np.inf)), 1.0)
@@ -60,7 +62,7 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
         T = (T + follow @ T).tocsr()
         offset = offset + follow @ offset
     bounds = (np.concatenate(builder.lower), np.concatenate(builder.upper))
-    return Constraints(T, offset, *bounds, builder.rows, *builder.friction(), builder.slips, builder.slid)
+    return Constraints(T, offset, *bounds, builder.rows, *builder.friction(), builder.slips, builder.slid, builder.coupled(2 * nodes))
 
 
 def _vertex_groups(problem: Problem, degree: int, builder: Builder, done: np.ndarray) -> None:
@@ -123,16 +125,14 @@ def _one_group(problem: Problem, builder: Builder, stiffness, vertices, equaliti
         for bound in filter(None, bounds):
             (first, _), normal, _, contact = jumps[bound.row]
             builder.rows.append(JumpRow(int(column), bound.factor, contact, normal, first, -1))
-    shared = [slip.row for slip in result.slips]
     for slip in result.slips:
         (first, _), tangent, weight, contact = slips[slip.row]
-        vector = tangent / slip.factor if shared.count(slip.row) == 1 else (jumps + slips)[slip.leader][1]
-        row = SlipRow(int(columns[slip.unknown]), weight * abs(slip.factor), contact, vector, tangent, first, -1)
-        before = builder.kinks.get(row.column, slip.kink)
-        if abs(before - slip.kink) > RELATIVE * max(abs(before), abs(slip.kink)):
-            x, y = problem.points[vertices[0]]
-            raise BadExchange(f"two contacts with friction stick in different places at ({x:g}, {y:g}), where a support leaves one freedom")
-        builder.rub(before, row)
+        where = (contact, tangent / slip.factor, tangent, first, -1)
+        builder.rub(slip.kink, SlipRow(int(columns[slip.unknown]), weight * abs(slip.factor), *where))
+    for row in result.coupled:
+        ends, tangent, weight, contact = slips[row]
+        terms = [(v, sign * tangent) for v, sign in zip(ends, (1.0, -1.0)) if v >= 0]
+        builder.rub_coupled(terms, SlipRow(-1, weight, contact, tangent, tangent, ends[0], -1))
     builder.slid += sum(slips[row][2] * abs(value) for row, value in result.given)
 
 

@@ -99,16 +99,19 @@ class Descent:
         self._in, self._out = A.createVecRight(), A.createVecLeft()
         self.begin = A.getOwnershipRange()[0]
 
-    def minimise(self, near: np.ndarray | float = np.inf) -> Minimum:
+    def minimise(self, near: np.ndarray | float = np.inf, start: np.ndarray | None = None) -> Minimum:
         """Start with every unknown at its bound where that is nearer than ``near``, since a body may be held by contact
-        alone, and descend. From a bound far away, rounding can hide the way back."""
+        alone, or with those at a bound that are so at ``start``, and descend. From a bound far away, rounding can hide the way back."""
         nothing = np.zeros_like(self.b)
         if self._count((self.b != 0.0) | (self.lower > 0.0) | (self.upper < 0.0) | self.rubs & (self.kink != 0.0)) == 0:
             return Minimum(nothing, nothing, nothing, 0.0, 1, AT_ROUNDING)
         bound = np.where(np.isfinite(self.upper), self.upper, self.lower)
         bound = np.where(self.rubs, np.clip(self.kink, self.lower, self.upper), bound)
         bounded = np.isfinite(bound) & (np.abs(bound) < near)
-        w, face = np.where(bounded, bound, np.clip(nothing, self.lower, self.upper)), _Face(self, bounded)
+        begin = np.clip(nothing if start is None else start, self.lower, self.upper)
+        if start is not None:
+            bounded, bound = (begin == self.upper) | (begin == self.lower) | self.rubs & (begin == self.kink), begin
+        w, face = np.where(bounded, bound, begin), _Face(self, bounded)
         self._take(np.where(bounded, 0.0, np.sign(w - self.kink)))
         gradient, unit = self._gradient(w, nothing)
         step, _ = face.step(w, self._slope(gradient), unit)
@@ -167,6 +170,10 @@ class Descent:
             best = Minimum(w, gradient, ROUNDING * unit, found.left, best.steps + moved.steps, best.reason)
         matrix.destroy()
         return best
+
+    def gradient(self, w: np.ndarray) -> np.ndarray:
+        """A w − b."""
+        return self._gradient(w, 0.0)[0]
 
     def imbalance(self, w: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         """How far the gradient A w − b is from what bounds and friction can balance, row by row."""

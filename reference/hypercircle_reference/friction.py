@@ -1,7 +1,8 @@
 """Friction with a given bound τ̄: the term ∫ τ̄ |j_t| ds of the energy, from the Bernstein coefficients of the tangential jump j_t.
 
 With j_t = Σ d_i B_i it is replaced by Σ c_i |d_i|, c_i = ∫ τ̄ B_i ds: nowhere less, equal wherever j_t keeps its sign along the
-edge, and a sum of terms with an unknown each. The forces conjugate to the d_i are then the ∫ T_t B_i ds, each at most its c_i.
+edge. The forces conjugate to the d_i are then the ∫ T_t B_i ds, each at most its c_i. Where t̂ does not turn each d_i is an unknown; where
+it turns the coefficients are those of degree k + 1, of degree 1 the ends alone, and see :mod:`coupled`.
 """
 
 from __future__ import annotations
@@ -33,16 +34,10 @@ def _products(p: int, k: int) -> np.ndarray:
 
 
 def check(problem: Problem, degree: int, nodal_contact: bool) -> None:
-    """Refuse what the unknowns of friction do not cover."""
+    """Refuse friction where contact is asked for at nodes alone."""
     rubbing = [contact for contact in problem.contacts if contact.rubs.any()]
     if rubbing and nodal_contact and degree > 1:
         raise BadExchange(f"contact {rubbing[0].name} has friction, which is not modelled with contact at the nodes only")
-    for contact in rubbing:
-        if degree > 1 and np.any(contact.rubs & contact.turns):
-            raise BadExchange(
-                f"contact {contact.name} has friction and a direction that turns along its edges, which is modelled with degree 1 "
-                f"only, not {degree}"
-            )
 
 
 def vertex_slips(problem: Problem, degree: int) -> list[tuple[tuple[int, int], np.ndarray, float, int]]:
@@ -51,11 +46,12 @@ def vertex_slips(problem: Problem, degree: int) -> list[tuple[tuple[int, int], n
     for index, contact in enumerate(problem.contacts):
         if not contact.rubs.any():
             continue
-        share = weights(problem, contact, degree)
+        shares = {k: weights(problem, contact, k) for k in (degree, degree + 1)}
         for pair in np.flatnonzero(contact.rubs):
+            k = degree + 1 if degree > 1 and contact.turns[pair] else degree
             for end in range(2):
                 ends = (int(contact.first[pair, end]), int(contact.second[pair, end]))
                 tangent = contact.tangent[pair, end]
                 entry = found.setdefault((index, *ends, *tangent), [ends, tangent, 0.0, index])
-                entry[2] += float(share[pair, end * degree])
+                entry[2] += float(shares[k][pair, end * k])
     return [tuple(entry) for entry in found.values() if entry[2] > 0.0]

@@ -35,23 +35,20 @@ class Bound:
 
 @dataclass(frozen=True)
 class Slip:
-    """|F x| of friction row ``row`` is, or is at most, the sum over its entries of |factor| |w − kink|: ``unknown`` is the index of w.
-
-    ``leader`` is the row of (B, F) that w itself is.
-    """
+    """Friction row ``row`` is F x = factor (w − kink) with the unknown w of index ``unknown``."""
 
     row: int
     unknown: int
     factor: float
     kink: float
-    leader: int
 
 
 @dataclass(frozen=True)
 class Elimination:
     """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side).
 
-    ``given`` are the friction rows whose value the supports decide, with that value.
+    ``given`` are the friction rows whose value the supports decide, with that value, and ``coupled`` those that are told by several
+    unknowns, as at the corner of a contact line.
     """
 
     offset: np.ndarray
@@ -61,15 +58,13 @@ class Elimination:
     lower: list[Bound | None]
     slips: list[Slip]
     given: list[tuple[int, float]]
+    coupled: list[int]
 
 
 def eliminate(
     C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray, F: np.ndarray | None = None
 ) -> Elimination:
-    """Parametrise {x : C x = d, B x ≤ g}; rows of C, B and F have entries of order one. Each |F x| is told by the unknowns.
-
-    Where a row of F is no multiple of one unknown, as at the corner of a contact line, it is a combination of several that
-    are all zero when it sticks, and |F x| is replaced by the sum of their absolute values, which is nowhere less.
+    """Parametrise {x : C x = d, B x ≤ g}; rows of C, B and F have entries of order one. Rows of F are unknowns too, as many as can be.
 
     The y are components of x, and ``stiffness``, one positive number per component, decides which: the stiff ones.
     The displacement of a stiff body is then an unknown of its own and never a small difference of large ones.
@@ -116,7 +111,7 @@ def eliminate(
     own = everything[leaders]
     jumps, free = _parametrise(np.vstack([_independent_rows(C), own]), len(leaders), stiffness)
     rigid = own @ offset
-    slips, given = _slips(rubbing, offset, kernel, own, rigid, leaders)
+    slips, given, coupled = _slips(rubbing, offset, kernel, own, rigid)
     new = [None] * (len(leaders) - len(chosen))
     return Elimination(
         offset=offset - jumps @ rigid,
@@ -126,6 +121,7 @@ def eliminate(
         lower=[_shift(bound, value) for bound, value in zip(lower + new, rigid)],
         slips=slips,
         given=given,
+        coupled=coupled,
     )
 
 
@@ -141,25 +137,33 @@ def _further(rows: np.ndarray, leaders: list[int], begin: int) -> list[int]:
     return found
 
 
-def _slips(rubbing, offset, kernel, own, rigid, leaders) -> tuple[list[Slip], list[tuple[int, float]]]:
-    """The friction rows in terms of the unknowns, and those that the supports decide."""
+def _slips(rubbing, offset, kernel, own, rigid) -> tuple[list[Slip], list[tuple[int, float]], list[int]]:
+    """The friction rows that are an unknown's, those that the supports decide, and all others."""
     slips: list[Slip] = []
     given: list[tuple[int, float]] = []
+    coupled: list[int] = []
+    kinks: dict[int, float] = {}
     for row, F in enumerate(rubbing):
         value = float(F @ offset)
         if np.linalg.norm(F @ kernel) <= RELATIVE:
             given.append((row, value))
             continue
         factors = np.linalg.lstsq((own @ kernel).T, F @ kernel, rcond=None)[0]
-        factors[np.abs(factors) <= RELATIVE] = 0.0
-        rest = value - float(factors @ rigid)
-        used = np.flatnonzero(factors)
-        if abs(rest) <= RELATIVE * (abs(value) + np.abs(factors) @ np.abs(rigid)):
+        used = np.flatnonzero(np.abs(factors) > RELATIVE)
+        if len(used) > 1:
+            coupled.append(row)
+            continue
+        k, factor = int(used[0]), float(factors[used[0]])
+        rest = value - factor * float(rigid[k])
+        if abs(rest) <= RELATIVE * (abs(value) + abs(factor * rigid[k])):
             rest = 0.0
-        if len(used) > 1 and rest != 0.0:
-            raise Conflict("supports move the corner of a contact with friction")
-        slips += [Slip(row, int(k), float(factors[k]), -rest / float(factors[k]), leaders[k]) for k in used]
-    return slips, given
+        kink = -rest / factor
+        before = kinks.setdefault(k, kink)
+        if abs(before - kink) > RELATIVE * max(abs(before), abs(kink)):
+            coupled.append(row)
+        else:
+            slips.append(Slip(row, k, factor, before))
+    return slips, given, coupled
 
 
 def _shift(bound: Bound | None, value: float) -> Bound | None:

@@ -67,7 +67,7 @@ def inside_friction(problem: Problem, lattice: Lattice, builder: Builder, done: 
     k = lattice.degree
     shape = bernstein(k)[1:-1, 1:-1]
     for index, whole in enumerate(problem.contacts):
-        pairs = np.flatnonzero(whole.rubs)
+        pairs = np.flatnonzero(whole.rubs & ~whole.turns)
         contact = whole.part(pairs)
         follower, leader, sign = _sides(problem, lattice, contact)
         moved = 2 * follower[..., None] + AXIS
@@ -117,6 +117,34 @@ def inside_turning(problem: Problem, lattice: Lattice, builder: Builder, done: n
             for inner, column in enumerate(own):
                 normal = ((k - inner) * first + (inner + 1) * last) / (k + 1)
                 builder.rows.append(JumpRow(int(column), 1.0, index, normal, -1, int(pair), inner))
+
+
+def turning_friction(problem: Problem, lattice: Lattice, builder: Builder) -> None:
+    """The work of friction on what is between the ends of pairs where t̂ turns, with the coefficients
+    d_r = ((k + 1 − r) J_r·T0 + r J_(r−1)·T1)/(k + 1)."""
+    k = lattice.degree
+    # J_r from the values at the nodes.
+    back = np.linalg.inv(bernstein(k))
+    for index, whole in enumerate(problem.contacts):
+        pairs = np.flatnonzero(whole.turns & whole.rubs)
+        contact = whole.part(pairs)
+        share = friction_weights(problem, contact, k + 1)
+        sides = []
+        for side, ends in enumerate((contact.first, contact.second)):
+            inside = lattice.along(problem, contact.edges[:, side], ends[:, 0])
+            sides.append(np.column_stack([ends[:, :1], inside, ends[:, 1:]]))
+        for i, pair in enumerate(pairs):
+            first, last = contact.tangent[i]
+            for r in range(1, k + 1):
+                along = ((k + 1 - r) * np.outer(back[r], first) + r * np.outer(back[r - 1], last)) / (k + 1)
+                terms = [
+                    (int(node), sign * factor)
+                    for nodes, sign in zip(sides, (1.0, -1.0))
+                    for node, factor in zip(nodes[i], along)
+                    if node >= 0
+                ]
+                tangent = ((k + 1 - r) * first + r * last) / (k + 1)
+                builder.rub_coupled(terms, SlipRow(-1, float(share[i, r]), index, tangent, tangent, -1, int(pair), r - 1))
 
 
 class _Turning:

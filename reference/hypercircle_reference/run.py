@@ -104,8 +104,9 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
         else:
             at_edge[row.contact][row.pair][row.inner] += reaction
         resultant[row.contact] -= reaction * row.normal
-    for row in constraints.slips:
-        force = by_friction[row.column] * row.weight / constraints.weight[row.column] * row.vector
+    alone = [(row, by_friction[row.column] * row.weight / constraints.weight[row.column]) for row in constraints.slips]
+    for row, size in alone + list(zip(constraints.coupled.rows, -solution.coupled)):
+        force = size * row.vector
         along = float(force @ row.tangent)
         if row.vertex >= 0:
             rubbing[row.contact][place[row.contact][row.vertex]] += along

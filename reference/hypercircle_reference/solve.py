@@ -10,11 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sparse
 from petsc4py import PETSc
 
 from hypercircle_process import Failure, log
 
 from .constraints import Constraints
+from .coupled import CoupledDescent, Rows
 from .descent import EPSILON, Descent, Minimum, absolute
 from .model import Model
 
@@ -34,6 +36,7 @@ class Solution:
     displacement: np.ndarray
     gradient: np.ndarray
     jumps: np.ndarray
+    coupled: np.ndarray
     energy: float
     strain_energy: float
     friction: float
@@ -112,10 +115,14 @@ class Reduced:
                 found = self._checked(descent, np.finfo(float).tiny)
             except Failure:
                 raise failure from None
-        return self._gather(found)
+        return self._gather(*found)
 
-    def _checked(self, descent: Descent, near: np.ndarray | float) -> Minimum:
-        """The minimum found from bounds nearer than ``near``, improved where it fails its check."""
+    def _checked(self, descent: Descent, near: np.ndarray | float) -> tuple[Minimum, np.ndarray]:
+        """The minimum found from bounds nearer than ``near``, improved where it fails its check; and forces of coupled rows."""
+        if self.constraints.coupled.rows:
+            found, forces = CoupledDescent(descent, self._coupled()).minimise(near)
+            self._check(descent, found)
+            return found, forces
         found = descent.minimise(near)
         try:
             self._check(descent, found)
@@ -123,7 +130,14 @@ class Reduced:
             log(self.comm, f"{failure}; once more, with further motion resisted")
             found = descent.improved(found)
             self._check(descent, found)
-        return found
+        return found, np.zeros(0)
+
+    def _coupled(self) -> Rows:
+        """The coupled rows in the scaled unknowns."""
+        coupled, scale = self.constraints.coupled, np.concatenate(self.comm.allgather(self.scale.array_r.copy()))
+        matrix = (coupled.matrix @ self.constraints.T)[:, self.order] @ sparse.diags(scale)
+        kink = -(coupled.matrix @ self.constraints.offset)
+        return Rows.of(matrix.tocsr(), coupled.weight, kink)
 
     def _displacement(self, w: PETSc.Vec) -> PETSc.Vec:
         """u = T w + u0 of the unscaled unknowns."""
@@ -157,7 +171,7 @@ class Reduced:
                 f"where {load * load:.1e} is at stake; a body moves rigidly by far more than displacements can resolve"
             )
 
-    def _gather(self, found: Minimum) -> Solution:
+    def _gather(self, found: Minimum, coupled: np.ndarray) -> Solution:
         rubs = self.weight > 0.0
         closed = [found.w == self.upper, found.w == self.lower, rubs & (found.w == self.kink)]
         slipped = self.comm.allreduce(float(self.weight @ np.abs(found.w - self.kink)))
@@ -170,11 +184,12 @@ class Reduced:
             w.array[at] = bound[mine[at]]
         u = self._displacement(w)
         strain_energy, work = self.model.strain_energy(u), u.dot(self.model.working)
-        friction = slipped + self.constraints.slid
         displacement = np.zeros(len(self.constraints.offset))
         pieces = self.comm.allgather((self.dofs, u.array_r.copy(), w.array_r.copy(), gradient.array_r.copy()))
         for dofs, values, *_ in pieces:
             displacement[dofs] = values
+        rows = self.constraints.coupled
+        friction = slipped + self.constraints.slid + float(rows.weight @ np.abs(rows.matrix @ displacement))
         jumps, derivative = np.empty(len(self.order)), np.empty(len(self.order))
         jumps[self.order] = np.concatenate([piece[2] for piece in pieces])
         derivative[self.order] = np.concatenate([piece[3] for piece in pieces])
@@ -182,6 +197,7 @@ class Reduced:
             displacement=displacement,
             gradient=derivative,
             jumps=jumps,
+            coupled=coupled,
             energy=strain_energy + friction - work,
             strain_energy=strain_energy,
             friction=friction,

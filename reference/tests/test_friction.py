@@ -250,8 +250,9 @@ def test_quadrilaterals_and_triangles_agree(solve):
     assert q2 < q1 and abs(q2 - p2) < 0.1 * (q1 - q2)
 
 
-def test_two_ranks_find_the_same(solve, mpirun, tmp_path):
-    data = pressed(0.18)
+@pytest.mark.parametrize("turns", (False, True))
+def test_two_ranks_find_the_same(solve, mpirun, tmp_path, turns):
+    data = rings(12, -0.2, 0.015) if turns else pressed(0.18)
     (tmp_path / "problem.json").write_text(json.dumps(data))
     command = (sys.executable, "-m", "hypercircle_reference", "problem.json", "--out", ".", "--degree", "2")
     here = Path(__file__).parent.parent
@@ -266,6 +267,80 @@ def test_what_is_not_modelled_is_refused(solve):
     data = pressed(0.18)
     with pytest.raises(BadExchange, match="nodes only"):
         solve(data, 2, nodal_contact=True)
-    data["contacts"][0]["pairs"][0]["direction"][0] = [0.995, 0.0998]
-    with pytest.raises(BadExchange, match="turns along its edges"):
-        solve(data, 2)
+
+
+def rings(n, turned, bound, quarter=0.5 * math.pi):
+    """A ring in another one, n edges around: the outer one clamped at radius 3, the inner one turned at radius 1, in contact at 2."""
+    b = Builder()
+
+    def ring(body, low, high, layers=3):
+        base = len(b.data["points"])
+        for j in range(layers + 1):
+            r = low + (high - low) * j / layers
+            b.data["points"] += [[r * math.cos(4 * quarter * i / n), r * math.sin(4 * quarter * i / n)] for i in range(n)]
+        at = lambda i, j: base + j * n + i % n
+        for j in range(layers):
+            for i in range(n):
+                p, q, r, s = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+                for corners in [(p, r, q), (p, s, r)]:
+                    b.triangle(body, corners)
+        return [[at(i, j) for i in range(n + 1)] for j in (0, layers)]
+
+    inner, outer = ring(b.body("inner"), 1.0, 2.0), ring(b.body("outer"), 2.0, 3.0)
+    b.clamp(outer[1])
+    for e in b.edges_of(inner[0]):
+        ends = [b.data["points"][v] for v in b.data["edges"][e]]
+        b.data["clamped"].append({"edge": e, "displacement": [[-turned * y, turned * x] for x, y in ends]})
+    b.contact(inner[1], outer[0], (1.0, 0.0))
+    for pair in b.data["contacts"][0]["pairs"]:
+        normals = np.array([b.data["points"][v] for v in pair["first"]]) / 2.0
+        middle = normals.sum(axis=0)
+        pair["direction"] = normals.tolist()
+        pair["normal"] = (middle / np.linalg.norm(middle)).tolist()
+        rub(pair, b.data["points"], lambda x, y: bound)
+    return b.data
+
+
+@pytest.mark.parametrize("degree", DEGREES)
+@pytest.mark.parametrize("turned", (0.05, -0.2))
+def test_a_ring_turns_in_another_one(solve, degree, turned):
+    """Shear T/(2π r²); beyond the bound at r = 2 the ring slides, which a direction that turns lets it do."""
+    bound, shear = 0.015, 1.0 / 2.6
+    torque = abs(turned) * 4.0 * math.pi * shear / (1.0 - 1.0 / 9.0)
+    most = 2.0 * math.pi * 4.0 * bound
+    held = min(torque, most)
+    slid = abs(turned) * (1.0 - held / torque)
+    exact = 0.5 * held * (abs(turned) - slid) + held * slid
+    errors = []
+    for n in (12, 24):
+        result = solve(rings(n, turned, bound), degree)
+        errors.append(abs(result["energy"] / exact - 1.0))
+        assert (result["friction_work"] > 1e-12) == (torque > most)
+        force = np.array(result["contacts"][0]["vertex_friction"])
+        assert np.ptp(force) < 1e-9 and force[0] * turned < 0.0
+    # What is left is the polygon in the place of the circle, and the shear of 1/r² in three layers.
+    assert errors[1] < (0.08 if degree == 1 else 0.02) and errors[1] < 0.55 * errors[0], errors
+
+
+@pytest.mark.parametrize("degree", (2, 3))
+def test_coupled_friction_obeys_its_law(solve, degree):
+    """Where the direction turns, too: work that is Σ c |d|, the balance of work, and a resultant of statics; the same on any unknowns."""
+    b = Builder()
+    lower = b.block(b.body("lower"), 5, 3, lambda s, t: (s, t - 1.0))
+    upper = b.block(b.body("upper", 3.0), 5, 3, lambda s, t: (s, t))
+    b.clamp(lower["bottom"])
+    b.load(upper["top"], lambda x, y: (0.09, -0.3 + 0.2 * x))
+    b.contact(upper["bottom"], lower["top"], (0.0, -1.0))
+    energies = []
+    for pair in b.data["contacts"][0]["pairs"]:
+        angles = [0.3 * (b.data["points"][v][0] - 0.5) for v in pair["first"]]
+        pair["direction"] = [[math.sin(a), -math.cos(a)] for a in angles]
+        rub(pair, b.data["points"], lambda x, y: 0.12)
+    for softer in (1.0, 9.0):
+        b.data["bodies"][0]["young"] = softer
+        result = solve(b.data, degree)
+        assert result["energy"] == pytest.approx(-result["strain_energy"], rel=1e-9)
+        assert result["contacts"][0]["resultant"] == pytest.approx([-0.09, 0.2], rel=1e-9)
+        assert result["friction_work"] > 0.0
+        energies.append(result["energy"])
+    assert energies[1] > energies[0]
