@@ -267,6 +267,12 @@ impl Solution<'_> {
                 }
             }
             let sticking = self.sticking(&group, &slot);
+            if self.couples(&group) {
+                let load = DVector::from_iterator(size, group.vertices.iter().flat_map(|v| rest[*v].map(|f| -f)));
+                let left = rubbing::least(&load, &rows, &sticking);
+                slot.into_iter().for_each(|(v, i)| rest[v] = [-left[i], -left[i + 1]]);
+                continue;
+            }
             let pushing = rows.len();
             rows.extend(sticking.iter().flat_map(|(row, _)| [row.clone(), -row]));
             let mut load = DVector::zeros(size);

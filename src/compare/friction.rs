@@ -58,7 +58,7 @@ pub fn at_ends(problem: &Problem, degree: usize) -> Vec<EndSlide> {
     let mut found: BTreeMap<(usize, usize, Option<usize>), Vec<EndSlide>> = BTreeMap::new();
     for (interface, contact) in problem.interfaces.iter().enumerate() {
         for pair in &contact.pairs {
-            let (Some(friction), limits) = (pair.friction, limits(problem, pair, degree)) else { continue };
+            let (Some(friction), limits) = (pair.friction, limits(problem, pair, degree_along(pair, degree))) else { continue };
             for (end, limit) in [(0, limits.first()), (1, limits.last())] {
                 let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
                 let (tangent, limit) = (friction.tangent.ends[end], limit.copied().unwrap_or(0.0));
@@ -73,23 +73,27 @@ pub fn at_ends(problem: &Problem, degree: usize) -> Vec<EndSlide> {
     found.into_values().flatten().collect()
 }
 
-/// The coefficients between the ends of a pair along which t̂ does not turn, as functions of values for degree 2 and of Bernstein
-/// coefficients above; none without friction.
+/// The degree of the jump along t̂: one more where that turns, though of a displacement of degree 1 the ends alone are counted.
+fn degree_along(pair: &ContactPair, degree: usize) -> usize {
+    if degree > 1 && !pair.direction.is_constant() { degree + 1 } else { degree }
+}
+
+/// The coefficients between the ends of a pair, as functions of values for degree 2 and of Bernstein coefficients above; none without
+/// friction.
 pub fn inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Slide> {
-    let Some(friction) = pair.friction.filter(|_| degree > 1 && pair.direction.is_constant()) else {
-        return Vec::new();
-    };
-    let along = ContactPair { direction: friction.tangent, gap: [0.0; 2], bow: Bow::default(), ..pair.clone() };
+    let Some(friction) = pair.friction.filter(|_| degree > 1) else { return Vec::new() };
+    let tangential = ContactPair { direction: friction.tangent, gap: [0.0; 2], bow: Bow::default(), ..pair.clone() };
     let vertices = problem.mesh.points.len();
     let rows = match degree {
-        2 => bernstein(&along, vertices),
+        2 => bernstein(&tangential, vertices),
         _ => {
             let nodes = Nodes::new(vertices, std::iter::repeat_n(degree, problem.mesh.edges.len()));
-            of_pair(&along, &sides(&along, &problem.mesh, &nodes))
+            of_pair(&tangential, &sides(&tangential, &problem.mesh, &nodes))
         }
     };
-    let slides = rows.into_iter().zip(limits(problem, pair, degree)).map(|(row, limit)| Slide { row, limit });
-    slides.skip(1).take(degree - 1).collect()
+    let along = degree_along(pair, degree);
+    let slides = rows.into_iter().zip(limits(problem, pair, along)).map(|(row, limit)| Slide { row, limit });
+    slides.skip(1).take(along - 1).collect()
 }
 
 /// c_0, …, c_k of a pair, thickness included; none without friction.

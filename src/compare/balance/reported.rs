@@ -33,9 +33,11 @@ impl Solution<'_> {
                     2 => asked_in_the_middle(pair, left[vertices + e]),
                     degree => self.asked_inside(pair, degree, left),
                 };
+                // With friction along a direction that turns a node does not tell which of its forces is which.
+                let told = pair.friction.is_none() || pair.direction.is_constant();
                 for (i, asked) in asked.into_iter().enumerate() {
                     let r = r.get(i).copied().unwrap_or(0.0);
-                    worst = worst.max((r - asked.reaction).abs());
+                    worst = worst.max(if told { (r - asked.reaction).abs() } else { 0.0 });
                     add(asked.moved.map(|n| -r * n));
                 }
             }
@@ -44,9 +46,12 @@ impl Solution<'_> {
             let inside = interface.pairs.iter().zip(friction.edge.iter().flatten());
             for (pair, forces) in inside {
                 let asked = self.asked_of_friction(pair, left);
+                let Some(friction) = pair.friction else { continue };
+                let steps = (forces.len() + 1) as f64;
                 for (i, force) in forces.iter().enumerate() {
-                    worst = worst.max((force - asked.get(i).copied().unwrap_or(0.0)).abs());
-                    add(pair.friction.map_or([0.0; 2], |f| f.tangent.ends[0].map(|t| force * t)));
+                    let told = pair.direction.is_constant();
+                    worst = worst.max(if told { (force - asked.get(i).copied().unwrap_or(0.0)).abs() } else { 0.0 });
+                    add(friction.tangent.at((i + 1) as f64 / steps).map(|t| force * t));
                 }
             }
         }
@@ -89,7 +94,9 @@ impl Solution<'_> {
     fn meetings(&self, index: usize, interface: &Interface) -> HashMap<usize, Meeting> {
         let others = self.problem.interfaces.iter().enumerate().filter(|(other, _)| *other != index);
         let ends = others.flat_map(|(_, other)| &other.pairs).flat_map(End::of);
-        let elsewhere: HashSet<usize> = ends.flat_map(|end| [Some(end.first), end.second]).flatten().collect();
+        let mut elsewhere: HashSet<usize> = ends.flat_map(|end| [Some(end.first), end.second]).flatten().collect();
+        // Where friction does not act for itself, what presses cannot be told from what rubs.
+        elsewhere.extend(self.slides.iter().filter(|(_, coupled)| *coupled).map(|(slide, _)| slide.first));
         let mut meetings: HashMap<usize, Meeting> = HashMap::new();
         let mut facing: HashMap<usize, usize> = HashMap::new();
         for end in interface.pairs.iter().flat_map(End::of) {

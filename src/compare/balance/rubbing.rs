@@ -7,15 +7,15 @@ use nalgebra::DVector;
 use super::{Group, HELD, Solution, dot};
 use crate::bounds::{Hold, Holds};
 use crate::compare::friction::{EndSlide, inside};
-use crate::problem::Problem;
+use crate::problem::{Interface, Problem};
 use crate::vector::cross;
 
 /// Directions whose cross product, or product, is smaller are parallel, or at right angles.
 const ALIGNED: f64 = 1e-9;
-/// How many times its bound friction may carry at a vertex where contacts along several directions meet, whose law couples them.
-const COUPLED: f64 = 4.0;
+/// Sweeps in which forces of several directions are shared out.
+const SWEEPS: usize = 4000;
 
-impl Solution<'_> {
+impl<'a> Solution<'a> {
     /// Takes the forces of the coefficients inside the pairs out of `rest`.
     pub(super) fn slide_inside(&self, rest: &mut [[f64; 2]]) {
         let degree = self.candidate.degree;
@@ -26,9 +26,17 @@ impl Solution<'_> {
         let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
         let within = self.closed_within();
         let vertices = self.problem.mesh.points.len();
-        for pair in self.problem.pairs() {
-            for slide in inside(self.problem, pair, degree) {
+        let pairs = |(index, interface): (usize, &'a Interface)| {
+            interface.pairs.iter().enumerate().map(move |(k, pair)| (index, k, pair))
+        };
+        for (index, k, pair) in self.problem.interfaces.iter().enumerate().flat_map(pairs) {
+            for (i, slide) in inside(self.problem, pair, degree).into_iter().enumerate() {
                 let force = slide.force(slide.row.excess_at(value), within).unwrap_or_else(|| {
+                    // Where the direction turns the forces of several coefficients act on the same nodes: those reported are as good as any.
+                    let told = self.reported_inside(index, k, i).filter(|_| !pair.direction.is_constant());
+                    if let Some(force) = told {
+                        return (-force).clamp(-slide.limit, slide.limit);
+                    }
                     // The nodes inside the edges are those that no other coefficient moves.
                     let own = || slide.row.terms().iter().filter(|(node, _)| *node >= vertices);
                     let pull: f64 = own().map(|(node, factor)| dot(rest[*node], *factor)).sum();
@@ -47,10 +55,16 @@ impl Solution<'_> {
         }
     }
 
+    /// The force of friction that is reported for coefficient `i` inside pair `k` of interface `index`.
+    fn reported_inside(&self, index: usize, k: usize, i: usize) -> Option<f64> {
+        let friction = self.candidate.reactions.as_ref()?.get(index)?.friction.as_ref()?;
+        friction.edge.as_ref()?.get(k)?.get(i).copied()
+    }
+
     /// Takes the forces at vertices where the sides slide out of `rest`.
     pub(super) fn slide_at_vertices(&self, rest: &mut [[f64; 2]]) {
         let within = self.closed_within();
-        for (slide, _) in self.slides.iter().filter(|(_, coupled)| !coupled) {
+        for (slide, _) in &self.slides {
             let jump = self.along(slide);
             if jump.abs() <= within {
                 continue;
@@ -68,8 +82,8 @@ impl Solution<'_> {
     pub(super) fn sticking(&self, group: &Group, slot: &HashMap<usize, usize>) -> Vec<(DVector<f64>, f64)> {
         let within = self.closed_within();
         let own = self.slides.iter().filter(|(slide, _)| group.vertices.contains(&slide.first));
-        let row = |(slide, coupled): &(EndSlide, bool)| {
-            if !coupled && self.along(slide).abs() > within {
+        let row = |(slide, _): &(EndSlide, bool)| {
+            if self.along(slide).abs() > within {
                 return None;
             }
             let mut row = DVector::<f64>::zeros(2 * group.vertices.len());
@@ -80,10 +94,14 @@ impl Solution<'_> {
                 row[slot[&v] + 1] += sign * d[1];
             }
             let length = row.norm();
-            let limit = if *coupled { COUPLED * slide.limit } else { slide.limit };
-            (length > HELD).then(|| (row / length, limit * length))
+            (length > HELD).then(|| (row / length, slide.limit * length))
         };
         own.filter_map(row).collect()
+    }
+
+    /// Whether what friction does at one place of a group depends on what it does at another, or on what presses there.
+    pub(super) fn couples(&self, group: &Group) -> bool {
+        self.slides.iter().any(|(slide, coupled)| *coupled && group.vertices.contains(&slide.first))
     }
 
     /// j_t.
@@ -114,4 +132,30 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
         [Some(slide.first), slide.second].into_iter().flatten().any(|v| askew(v, slide.tangent) || beside(v))
     };
     slides.iter().map(is_coupled).collect()
+}
+
+/// What is left of a load by forces ≥ 0 on the unit rows `pushing` and forces within their limits on those `sticking`, as little as
+/// can be: coordinate by coordinate, since rows of several contacts may say the same.
+pub(super) fn least(
+    load: &DVector<f64>,
+    pushing: &[DVector<f64>],
+    sticking: &[(DVector<f64>, f64)],
+) -> DVector<f64> {
+    let bounded = sticking.iter().map(|(row, limit)| (row, [-limit, *limit]));
+    let rows: Vec<(&DVector<f64>, [f64; 2])> =
+        pushing.iter().map(|row| (row, [0.0, f64::INFINITY])).chain(bounded).collect();
+    let (mut forces, mut left) = (vec![0.0; rows.len()], load.clone());
+    for _ in 0..SWEEPS {
+        let mut moved = 0.0_f64;
+        for ((row, [low, high]), force) in rows.iter().zip(&mut forces) {
+            let next = (*force + row.dot(&left)).clamp(*low, *high);
+            left.axpy(*force - next, row, 1.0);
+            moved = moved.max((next - *force).abs());
+            *force = next;
+        }
+        if moved <= f64::EPSILON * load.norm() {
+            break;
+        }
+    }
+    left
 }
