@@ -18,8 +18,11 @@ from hypercircle_process import Failure, log
 
 from .descent import EPSILON, Descent, Minimum
 
-STIFF = 100.0
-"""Stiffness of the springs beside the unit diagonal of A."""
+STIFF, STIFFER, STIFFEST = 100.0, 30.0, 1e7
+"""Stiffness of the springs beside the unit diagonal of A; by how much it grows where rounds gain little; and the most it is."""
+
+SLOW = 0.3
+"""Rounds gain little where what is stretched falls by less than this factor."""
 
 STRETCHED = 1e-13
 """Springs are as good as rigid where they are stretched by less, relative to the largest jump."""
@@ -48,8 +51,8 @@ class Rows:
 class CoupledDescent:
     """A :class:`Descent` with coupled rows beside its own laws; the arrays are the share of this rank."""
 
-    def __init__(self, descent: Descent, rows: Rows):
-        self.descent, self.rows, self.comm = descent, rows, descent.comm
+    def __init__(self, descent: Descent, rows: Rows, stiff: float = STIFF):
+        self.descent, self.rows, self.comm, self.stiff = descent, rows, descent.comm, stiff
         A = descent.A
         begin, end = A.getOwnershipRange()
         size, count = A.getSize()[0], len(rows.weight)
@@ -73,7 +76,7 @@ class CoupledDescent:
         stretch = sp.csr_matrix((np.concatenate([R.data, -np.ones(count)]), (i, j)), shape=(count, size + count))
         self.stretch = stretch
         mine = np.concatenate([number[begin:end], slack[self.own]])
-        springs = (STIFF * stretch.T @ stretch).tocsr()[mine]
+        springs = (stiff * stretch.T @ stretch).tocsr()[mine]
         indptr, indices, values = A.getValuesCSR()
         own = sp.csr_matrix((values, number[indices], indptr), shape=(end - begin, size + count))
         whole = (sp.vstack([own, sp.csr_matrix((len(self.own), size + count))]) + springs).tocsr()
@@ -98,31 +101,33 @@ class CoupledDescent:
             whole[numbers] = part
         return whole
 
-    def minimise(self, near: np.ndarray | float) -> tuple[Minimum, np.ndarray]:
-        """The minimum, with the forces of friction in its gradient, and the f_k (m,)."""
+    def minimise(self, near: np.ndarray | float, forces: np.ndarray | None = None) -> tuple[Minimum, np.ndarray]:
+        """The minimum, with the forces of friction in its gradient, and the f_k (m,), which begin with ``forces``."""
         it, rows = self.descent, self.rows
         scale = self.scale[self.mine]
         infinite = np.full(len(rows.weight), np.inf)
         lower, upper = self._joined(it.lower, -infinite) / scale, self._joined(it.upper, infinite) / scale
         kink, weight = self._joined(it.kink, rows.kink) / scale, self._joined(it.weight, rows.weight) * scale
-        near = self._joined(np.broadcast_to(near, it.b.shape), infinite) / scale
-        forces = np.zeros(len(rows.weight))
+        wide = self._joined(np.broadcast_to(near, it.b.shape), infinite) / scale
+        forces = np.zeros(len(rows.weight)) if forces is None else forces
         start, steps, best = None, 0, np.inf
         for _ in range(ROUNDS):
             right = self._joined(it.b, 0.0 * forces) - (self.stretch.T @ forces)[self.mine]
             terms = self._joined(it.terms, 0.0 * forces) + (abs(self.stretch).T @ np.abs(forces))[self.mine]
             descent = Descent(self.matrix, right * scale, lower, upper, terms * scale, kink, weight)
-            found = descent.minimise(near, start)
+            found = descent.minimise(wide, start)
             start, steps = found.w, steps + found.steps
             x = self._all(found.w * scale)
             stretched = self.stretch @ x
-            forces = forces + STIFF * stretched
+            forces = forces + self.stiff * stretched
             size = max(np.abs(rows.kink).max(initial=0.0), np.abs(x[self.slack]).max(initial=0.0), self._size(x))
             worst = np.abs(stretched).max(initial=0.0)
             log(self.comm, f"coupled friction: stretched by {worst:.1e} of {size:.1e}")
             # Rounding ends what is gained from round to round.
             if worst <= STRETCHED * size or (worst >= best and worst <= 1e4 * STRETCHED * size):
                 return self._found(found, forces, steps), forces / rows.length
+            if worst > SLOW * best and self.stiff < STIFFEST:
+                return CoupledDescent(it, rows, STIFFER * self.stiff).minimise(near, forces)
             best = min(best, worst)
         raise Failure(f"the friction of coupled jumps has not settled after {ROUNDS} rounds")
 
