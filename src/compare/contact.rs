@@ -2,6 +2,7 @@
 
 use super::candidate::Judged;
 use super::ceiling::{Allowance, Ceilings};
+use super::friction::on_contact;
 use super::mean;
 use super::nodal::{self, NodalDifference, nodal_pressures};
 use super::outcome::{ContactSummary, Profile, TwoSides};
@@ -75,6 +76,9 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        let friction = on_contact(problem, self.dual, interface, (own, threshold));
+        let (tangential, turning) = friction.as_ref().map_or(([0.0; 2], 0.0), |friction| friction.resultant);
+        let (force, moment) = ([force[0] + tangential[0], force[1] + tangential[1]], moment + turning);
         let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
         ContactSummary {
             name: interface.name.clone(),
@@ -87,6 +91,7 @@ impl Sides<'_> {
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
             pressure_l2_difference: None,
+            friction: friction.map(|friction| friction.summary),
             length,
             profiles: vec![Profile { model: "dual".to_string(), points: profile(interface, own) }],
         }

@@ -205,6 +205,8 @@ fn energy(
         compliance: (problem.is_cone() && !problem.has_friction()).then(|| enclosed_work(upper, sharpest)),
         guaranteed,
         guarantee,
+        guaranteed_for: "scene".to_string(),
+        friction_work: problem.has_friction().then_some(upper.potential.friction),
     }
 }
 
