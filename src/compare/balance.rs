@@ -6,7 +6,7 @@
 //! ∫ σ(u_h):e(φ) − L(φ) + Σ_r R_r b_r(φ) ∈ forces of the supports,  R_r ≥ 0,  R_r = 0 where b_r(u_h) < g_r,
 //!
 //! with b_r the bounded coefficients of v_n' + v_n'': its values at the vertices of degree 1, its Bernstein coefficients
-//! of higher degrees. Friction has forces of its own there (`friction`). From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
+//! of higher degrees. Friction has forces of its own there (`slides`). From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
 //! is what the solver left and what rounding of the displacements costs. A wrong modulus, load, thickness, support or
 //! contact leaves far more, however small its effect on the energy is.
 
@@ -20,7 +20,7 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use super::friction::{EndSlide, at_ends};
+use super::slides::{EndSlide, at_ends};
 use super::revolved;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;

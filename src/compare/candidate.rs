@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
-use super::friction;
+use super::slides;
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::revolved;
 use super::solution::Numbering;
@@ -90,7 +90,7 @@ impl Candidate {
     fn friction_work(&self, problem: &Problem) -> f64 {
         let coefficients = self.higher.as_ref().filter(|_| self.degree > 2);
         let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
-        friction::work(problem, self.degree, value)
+        slides::work(problem, self.degree, value)
     }
 
     /// The largest component of all displacements.

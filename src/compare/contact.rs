@@ -2,7 +2,7 @@
 
 use super::candidate::Judged;
 use super::ceiling::{Allowance, Ceilings};
-use super::friction::{dual_friction, friction_resultant, reported_moment, trace_friction};
+use super::friction::on_contact;
 use super::mean;
 use super::nodal::{self, NodalDifference, nodal_pressures};
 use super::outcome::{ContactSummary, Profile, TwoSides};
@@ -12,6 +12,7 @@ use super::pressure::{
     reaction_pressure, resultant, trace_pressure, unweighted, without_radial,
 };
 use super::resultant::{forces, resultant_check};
+use super::slides::{friction_resultant, reported_moment, trace_friction};
 use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::dual::DualSolution;
@@ -72,12 +73,13 @@ impl Sides<'_> {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let (force, moment) = resultant(problem, interface, own);
-        let along = friction_resultant(problem, interface, &dual_friction(problem, self.dual, interface));
-        let (force, moment) = together((force, moment), along);
         let own = &unweighted(problem, interface, own);
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        let friction = on_contact(problem, self.dual, interface, (own, threshold));
+        let (tangential, turning) = friction.as_ref().map_or(([0.0; 2], 0.0), |friction| friction.resultant);
+        let (force, moment) = ([force[0] + tangential[0], force[1] + tangential[1]], moment + turning);
         let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
         ContactSummary {
             name: interface.name.clone(),
@@ -90,6 +92,7 @@ impl Sides<'_> {
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
             pressure_l2_difference: None,
+            friction: friction.map(|friction| friction.summary),
             length,
             profiles: vec![Profile { model: "dual".to_string(), points: profile(interface, own) }],
         }

@@ -201,7 +201,8 @@ impl Problem {
         Problem::with_directions(self.scene.clone(), mesh, self.notes.clone(), Some(&coarser))
     }
 
-    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
+    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) + ∫ τ̄ |u_t' − u_t''| = L(u), the
+    /// integral over contacts with friction.
     pub fn is_cone(&self) -> bool {
         let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none());
         no_gap && !self.conditions.iter().any(Condition::is_moved)

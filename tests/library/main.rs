@@ -26,6 +26,7 @@ mod effectivity;
 mod element_formulas;
 mod element_properties;
 mod equilibrium;
+mod friction;
 mod fuzzed;
 mod gap_breaks;
 mod gap_curves;

@@ -15,9 +15,15 @@ use crate::element::side::lower_moments;
 use crate::element::{SideValues, StressField};
 use crate::problem::{ContactPair, Friction, Problem};
 use crate::vector::dot;
+use crate::vector::long::largest;
 
 /// Part of the bound from which a traction is at it.
 const AT_BOUND: f64 = 1.0 - 1e-6;
+/// Part of the stresses nearby that rounding may leave of a traction.
+const ROUNDING: f64 = 1e-11;
+
+/// Cosine of the angle between the tangents of two pairs beyond which there is a corner between them: 30°.
+const NO_CORNER: f64 = 0.866;
 
 /// What a pair with friction may do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +34,7 @@ pub enum Motion {
     Slides(f64),
 }
 
-/// The motion of each pair, one interface after the other; none without friction.
+/// The motion of each pair, one interface after the other; none without friction, or where both senses may be.
 #[derive(Debug, Clone, Default)]
 pub struct Sliding(Vec<Option<Motion>>);
 
@@ -49,21 +55,40 @@ impl Sliding {
         }
         let mut all = Vec::new();
         for interface in &problem.interfaces {
-            let tractions: Vec<Vec<f64>> =
-                interface.pairs.iter().map(|pair| contact_tractions(problem, stress, pair)[1].clone()).collect();
-            let own: Vec<Option<Motion>> = (interface.pairs.iter().zip(&tractions))
-                .map(|(pair, t)| Some(motion(problem, moments, pair, &pair.friction?, t)))
+            let pairs = &interface.pairs;
+            let tractions: Vec<Vec<f64>> = pairs
+                .iter()
+                .map(|pair| {
+                    let [_, t] = contact_tractions(problem, stress, pair);
+                    t
+                })
                 .collect();
-            for (k, pair) in interface.pairs.iter().enumerate() {
-                let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten().filter_map(|n| {
-                    let joined = interface.pairs.get(n)?.first.iter().any(|v| pair.first.contains(v));
-                    own.get(n).copied().flatten().filter(|_| joined)
-                });
-                let against = |sense: f64| sense * tractions[k].iter().sum::<f64>() < 0.0;
-                let with_neighbour = beside.into_iter().find(|m| matches!(m, Motion::Slides(sense) if against(*sense)));
+            let mean = |pair: &ContactPair| pair.friction.map_or(0.0, |f| mean_sliding(problem, moments, pair, &f));
+            let means: Vec<f64> = pairs.iter().map(mean).collect();
+            let rounding = |pair: &ContactPair| {
+                let t = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]);
+                ROUNDING * t.map_or(0.0, |t| largest(stress.block(t).as_flattened()))
+            };
+            let of = |k: usize| Some(motion(&pairs[k].friction?, means[k], &tractions[k], rounding(&pairs[k])));
+            let own: Vec<Option<Motion>> = (0..pairs.len()).map(of).collect();
+            for k in 0..pairs.len() {
+                let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+                let beside = beside.filter(|n| pairs.get(*n).is_some_and(|pair| goes_on(pair, &pairs[k])));
+                let neighbours = || beside.clone().filter_map(|n| Some((n, own[n]?)));
                 all.push(match own[k] {
-                    Some(Motion::Sticks) => with_neighbour.or(own[k]),
-                    other => other,
+                    Some(Motion::Sticks) => {
+                        let against = |sense: f64| sense * tractions[k].iter().sum::<f64>() < 0.0;
+                        let slides = |(_, motion): &(usize, Motion)| matches!(motion, Motion::Slides(s) if against(*s));
+                        neighbours().find(slides).map(|(_, motion)| motion).or(own[k])
+                    }
+                    // Where the sense changes it does so within the pair that slides less.
+                    Some(Motion::Slides(sense)) => {
+                        let turns = |(n, motion): (usize, Motion)| {
+                            motion == Motion::Slides(-sense) && means[k].abs() <= means[n].abs()
+                        };
+                        own[k].filter(|_| !neighbours().any(turns))
+                    }
+                    None => None,
                 });
             }
         }
@@ -152,20 +177,20 @@ impl Sliding {
     }
 }
 
-/// What a pair does with the coefficients `t` of its tangential traction.
-fn motion(
-    problem: &Problem,
-    moments: &SideValues<[f64; 2]>,
-    pair: &ContactPair,
-    friction: &Friction,
-    t: &[f64],
-) -> Motion {
+/// Whether two pairs have a vertex in common, and no corner there.
+fn goes_on(one: &ContactPair, other: &ContactPair) -> bool {
+    let joined = one.first.iter().any(|v| other.first.contains(v));
+    let tangents = one.friction.zip(other.friction).map(|(a, b)| dot(a.tangent.at(0.5), b.tangent.at(0.5)));
+    joined && tangents.is_some_and(|cosine| cosine > NO_CORNER)
+}
+
+/// What a pair does with the coefficients `t` of its tangential traction, known up to `rounding`, and the mean of its sliding.
+fn motion(friction: &Friction, mean: f64, t: &[f64], rounding: f64) -> Motion {
     let bounds = friction.coefficients(t.len().max(1) - 1);
-    let at_bound = |(t, bound): (&f64, &f64)| t.abs() >= AT_BOUND * bound;
+    let at_bound = |(t, bound): (&f64, &f64)| t.abs() + rounding >= AT_BOUND * bound;
     if !t.iter().zip(&bounds).any(at_bound) {
         return Motion::Sticks;
     }
-    let mean = mean_sliding(problem, moments, pair, friction);
     let sense = if mean == 0.0 { -t.iter().sum::<f64>() } else { mean };
     if sense == 0.0 { Motion::Sticks } else { Motion::Slides(sense.signum()) }
 }

@@ -34,12 +34,16 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
     let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
     let (work, meaning) = match energy.compliance {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
+        None if energy.friction_work.is_some() => (
+            "enclosed work",
+            "encloses the work of the loads less that of friction and of the reactions on prescribed displacements and gaps",
+        ),
         None => (
             "enclosed work",
             "encloses the work of the loads less that of the reactions on prescribed displacements and gaps",
         ),
     };
-    let rows = [
+    let mut rows = vec![
         ("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"),
         ("upper bound", significant(energy.upper, digits), upper.as_str()),
         ("gap", significant(energy.gap, 6), "upper − lower"),
@@ -50,6 +54,11 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
             "of (λ_h + σ(v))/2, the stress half-way between the two bounds, in the energy norm",
         ),
         (work, interval(energy.enclosed_work), meaning),
+        (
+            "work of friction",
+            optional(energy.friction_work, digits),
+            "∫ τ̄ |v_t' − v_t''| of the upper bound, which nothing stores",
+        ),
         ("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"),
         (
             "gap of the free bound, local",
