@@ -107,7 +107,7 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
     alone = [(row, by_friction[row.column] * row.weight / constraints.weight[row.column]) for row in constraints.slips]
     for row, size in alone + list(zip(constraints.coupled.rows, -solution.coupled)):
         force = size * row.vector
-        along = float(force @ row.tangent)
+        along = float(force @ row.tangent) / float(row.tangent @ row.tangent)
         if row.vertex >= 0:
             rubbing[row.contact][place[row.contact][row.vertex]] += along
         else:
