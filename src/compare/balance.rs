@@ -20,8 +20,8 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use super::slides::{EndSlide, at_ends};
 use super::revolved;
+use super::slides::{EndSlide, at_ends};
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};

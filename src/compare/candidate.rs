@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
-use super::slides;
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::revolved;
+use super::slides;
 use super::solution::Numbering;
 use crate::bounds::energy::initial_energy;
 use crate::bounds::{

@@ -56,7 +56,9 @@ pub fn at_ends(problem: &Problem, degree: usize) -> Vec<EndSlide> {
     let mut found: BTreeMap<(usize, usize, Option<usize>), Vec<EndSlide>> = BTreeMap::new();
     for (interface, contact) in problem.interfaces.iter().enumerate() {
         for pair in &contact.pairs {
-            let (Some(friction), limits) = (pair.friction, limits(problem, pair, degree_along(pair, degree))) else { continue };
+            let (Some(friction), limits) = (pair.friction, limits(problem, pair, degree_along(pair, degree))) else {
+                continue;
+            };
             for (end, limit) in [(0, limits.first()), (1, limits.last())] {
                 let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
                 let (tangent, limit) = (friction.tangent.ends[end], limit.copied().unwrap_or(0.0));

@@ -136,11 +136,7 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
 
 /// What is left of a load by forces ≥ 0 on the unit rows `pushing` and forces within their limits on those `sticking`, as little as
 /// can be: coordinate by coordinate, since rows of several contacts may say the same.
-pub(super) fn least(
-    load: &DVector<f64>,
-    pushing: &[DVector<f64>],
-    sticking: &[(DVector<f64>, f64)],
-) -> DVector<f64> {
+pub(super) fn least(load: &DVector<f64>, pushing: &[DVector<f64>], sticking: &[(DVector<f64>, f64)]) -> DVector<f64> {
     let bounded = sticking.iter().map(|(row, limit)| (row, [-limit, *limit]));
     let rows: Vec<(&DVector<f64>, [f64; 2])> =
         pushing.iter().map(|row| (row, [0.0, f64::INFINITY])).chain(bounded).collect();

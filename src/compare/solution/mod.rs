@@ -14,7 +14,7 @@ mod sites;
 mod weak;
 
 pub use nonmatching::Nonmatching;
-pub use rubbing::Rubbed;
+pub use rubbing::{Ask, Rubbed};
 pub use sites::{Site, Sites, Span};
 pub use weak::{Law, Shape, Station, Weak};
 

@@ -26,8 +26,10 @@ pub struct Rubbed {
 
 /// How a method asks for the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Ask {
+pub enum Ask {
+    /// Of every node with its share of τ̄.
     AtNodes,
+    /// Of Bernstein coefficients.
     InCoefficients,
 }
 
@@ -47,7 +49,8 @@ impl Solution<'_> {
         if missed(&nodes) <= missed(&coefficients) { nodes } else { coefficients }
     }
 
-    fn rubbed_as(&self, interface: usize, ask: Ask) -> Vec<Rubbed> {
+    /// What friction does along contact `interface`, held to the law as one way of methods asks for it.
+    pub fn rubbed_as(&self, interface: usize, ask: Ask) -> Vec<Rubbed> {
         let (mut force, mut slip) = (self.rubbing.clone(), self.slip.clone());
         if ask == Ask::InCoefficients {
             (force, slip) = self.sites.in_coefficients(&self.rubbing, &self.slip);
@@ -81,7 +84,7 @@ impl Solution<'_> {
     }
 
     /// What friction carries at most at the places of a pair, thickness included.
-    fn shares(&self, span: &Span, pair: &ContactPair, ask: Ask) -> Vec<(usize, f64)> {
+    pub fn shares(&self, span: &Span, pair: &ContactPair, ask: Ask) -> Vec<(usize, f64)> {
         let degree = if span.middle.is_some() { 2 } else { 1 };
         let mut shares = limits(self.problem, pair, degree);
         if let ([a, m, b], Ask::AtNodes) = (&mut shares[..], ask) {

@@ -3,10 +3,10 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::super::Finding;
-use super::super::words::{factor, near, number};
+use super::super::words::{near, number};
 use super::Along;
-use crate::compare::solution::{Rubbed, Shape};
-use crate::element::side;
+use crate::compare::solution::{Ask, Rubbed, Shape};
+use crate::problem::{ContactPair, Friction};
 use crate::scene::counted;
 
 /// How well forces have to follow a law, relative to all of them.
@@ -96,13 +96,14 @@ impl Along<'_> {
             );
             return Some(self.found("sticks", Some(most), Some(1.0), sentence));
         }
-        self.other_bound(&rubbed, &sliding, sticks)
-            .or_else(|| self.turned_bound(&sliding))
-            .or_else(|| {
-                let fit = self.smooth(&rubbed)?;
-                Some(self.told(&fit, &rubbed))
-            })
-            .or_else(|| Some(self.unlike(&rubbed)))
+        let ways = [Ask::AtNodes, Ask::InCoefficients];
+        let bound =
+            ways.into_iter().find_map(|ask| self.other_bound(ask, sticks).or_else(|| self.turned_bound(ask, sticks)));
+        let smooth = || {
+            let nodes = self.solution.rubbed_as(self.interface, Ask::AtNodes);
+            self.smooth(&nodes).map(|fit| self.told(&fit, &nodes))
+        };
+        bound.or_else(smooth).or_else(|| Some(self.unlike(&rubbed)))
     }
 
     fn found(&self, what: &str, value: Option<f64>, expected: Option<f64>, sentence: String) -> Finding {
@@ -110,7 +111,9 @@ impl Along<'_> {
     }
 
     /// Forces against the slip, or along it, that are one number times the bound wherever the sides slide, and no larger where they stick.
-    fn other_bound(&self, rubbed: &[Rubbed], sliding: &[&Rubbed], sticks: f64) -> Option<Finding> {
+    fn other_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
+        let rubbed = self.solution.rubbed_as(self.interface, ask);
+        let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
         let against = |r: &Rubbed| r.limit * r.slip.signum();
         let (product, square) =
             sliding.iter().fold((0.0, 0.0), |(p, s), r| (p - r.force * against(r), s + r.limit * r.limit));
@@ -130,17 +133,23 @@ impl Along<'_> {
             );
             return Some(self.found("friction-sign", Some(times), Some(1.0), sentence));
         }
-        let half = if near(times, 2.0) || near(times, 0.5) {
-            ", as if one of the two sides counted twice or half"
-        } else {
-            ""
+        let thousands = times.abs().log10() / 3.0;
+        let how = match () {
+            () if near(times, 2.0) || near(times, 0.5) => ", as if one of the two sides counted twice or half",
+            () if thousands.round() != 0.0 && (thousands - thousands.round()).abs() < ABOVE => {
+                ", which is another unit"
+            }
+            () => "",
         };
-        let sentence = format!("{}{half}", factor(&format!("the friction bound of contact {}", self.name), times));
+        let sentence =
+            format!("the friction bound of contact {} is {} times what the scene says{how}", self.name, number(times));
         Some(self.found("friction-bound", Some(times), Some(1.0), sentence))
     }
 
     /// The bound of the scene counted from the other end of the contact.
-    fn turned_bound(&self, sliding: &[&Rubbed]) -> Option<Finding> {
+    fn turned_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
+        let rubbed = self.solution.rubbed_as(self.interface, ask);
+        let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
         let pairs = &self.solution.problem.interfaces[self.interface].pairs;
         let (begin, end) = (pairs.first()?.arc[0], pairs.last()?.arc[1]);
         let bound = |s: f64| {
@@ -152,11 +161,10 @@ impl Along<'_> {
         let mut limit = vec![0.0; self.solution.sites.list.len()];
         for span in self.solution.sites.edges.iter().filter(|span| span.interface == self.interface) {
             let pair = &pairs[span.pair];
-            let ends = pair.arc.map(|s| bound(begin + end - s).unwrap_or(0.0));
-            let degree = if span.middle.is_some() { 2 } else { 1 };
-            let whole = self.solution.problem.scene.thickness * pair.length;
-            let sites = [Some(span.ends[0]), span.middle, Some(span.ends[1])].into_iter().flatten();
-            sites.zip(side::moments(&ends, degree)).for_each(|(site, moment)| limit[site] += whole * moment);
+            let bound = pair.arc.map(|s| bound(begin + end - s).unwrap_or(0.0));
+            let friction = pair.friction.map(|friction| Friction { bound, ..friction });
+            let turned = ContactPair { friction, ..pair.clone() };
+            self.solution.shares(span, &turned, ask).into_iter().for_each(|(site, share)| limit[site] += share);
         }
         let miss: f64 = sliding.iter().map(|r| (r.force + limit[r.site] * r.slip.signum()).powi(2)).sum();
         let size: f64 = sliding.iter().map(|r| r.force * r.force).sum();
