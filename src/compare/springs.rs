@@ -1,7 +1,7 @@
 //! Forces of springs and elastic layers at the nodes of a displacement model.
 
 use super::forces::NodalForces;
-use crate::element::side;
+use crate::element::{positive, side};
 use crate::problem::Problem;
 use crate::vector::dot;
 
@@ -21,6 +21,26 @@ impl Functions {
         match (self, degree) {
             (Functions::Values, 2) => QUADRATIC[i][j] / 30.0,
             _ => side::product(degree, i, degree, j),
+        }
+    }
+
+    /// Bernstein coefficients of the jump with these values less the gap with those coefficients.
+    fn beyond(self, jump: &[f64], gap: &[f64]) -> Vec<f64> {
+        let own = match (self, jump) {
+            (Functions::Values, [a, middle, b]) => vec![*a, 2.0 * middle - 0.5 * (a + b), *b],
+            _ => jump.to_vec(),
+        };
+        let degree = own.len().max(gap.len()) - 1;
+        let [own, gap] = [&own, gap].map(|f| side::elevate(f, degree));
+        own.iter().zip(&gap).map(|(j, g)| j - g).collect()
+    }
+
+    /// ∫ d₊ φ_i on an edge of length one, for all functions of degree `degree`.
+    fn forces(self, beyond: &[f64], degree: usize) -> Vec<f64> {
+        let moments = positive::moments(beyond, degree);
+        match (self, &moments[..]) {
+            (Functions::Values, [a, middle, b]) => vec![a - 0.5 * middle, 2.0 * middle, b - 0.5 * middle],
+            _ => moments,
         }
     }
 }
@@ -51,11 +71,18 @@ impl NodalForces {
                 let jump: Vec<f64> = first.iter().enumerate().map(|(i, node)| own(node) - other(i)).collect();
                 let size: Vec<f64> = first.iter().enumerate().map(|(i, n)| own(n).abs() + other(i).abs()).collect();
                 let whole = problem.scene.thickness * k * pair.length;
+                // Elastic contact resists what the jump exceeds the gap by.
+                let beyond = pair.contact.map(|contact| functions.beyond(&jump, &contact.gap()));
+                let forces = beyond.as_ref().map(|d| functions.forces(d, degree));
+                energy += beyond.map_or(0.0, |d| 0.5 * whole * positive::square(&d));
                 for i in 0..=degree {
                     let weight = |j: usize| whole * functions.product(degree, i, j);
-                    let force: f64 = (0..=degree).map(|j| weight(j) * jump[j]).sum();
+                    let force: f64 = match &forces {
+                        Some(forces) => whole * forces[i],
+                        None => (0..=degree).map(|j| weight(j) * jump[j]).sum(),
+                    };
                     let spread: f64 = (0..=degree).map(|j| weight(j).abs() * size[j]).sum();
-                    energy += 0.5 * force * jump[i];
+                    energy += if forces.is_none() { 0.5 * force * jump[i] } else { 0.0 };
                     for (node, sign) in [(first.get(i), 1.0), (second.get(i), -1.0)] {
                         let Some(&node) = node else { continue };
                         (0..2).for_each(|c| self.left[node][c] += sign * force * axis[c]);
