@@ -15,7 +15,7 @@ import numpy as np
 from hypercircle_process import Failure, log
 
 from .constraints import Constraints
-from .exchange import Problem
+from .exchange import Problem, Springs
 from .lattice import Lattice, bernstein
 from .model import Mesh, Model, distributed
 from .solve import Solution, minimise
@@ -30,12 +30,15 @@ SETTLED = 1e-13
 HALVINGS = 40
 """How often a step is halved until it lowers the energy."""
 
+FARTHER = 30.0
+"""By what stiff contact grows stiffer from one minimum to the next."""
+
 
 class Touching:
     """Elastic contact for displacements of one degree, given as arrays (n, 2) over the nodes of the exchange file."""
 
-    def __init__(self, problem: Problem, degree: int):
-        self.problem, self.degree, self.springs = problem, degree, problem.touching
+    def __init__(self, problem: Problem, degree: int, springs: Springs):
+        self.problem, self.degree, self.springs = problem, degree, springs
         self.first, self.second, self.length = sides(problem, self.springs, degree)
         self.weight = problem.thickness * self.length * self.springs.stiffness[:, 0]
         self.back = np.linalg.inv(bernstein(degree))
@@ -109,8 +112,32 @@ def _powers(coefficients: np.ndarray, count: int) -> np.ndarray:
 
 
 def minimise_touching(comm, mesh: Mesh, model: Model, constraints: Constraints, degree: int, extent: float) -> Solution:
-    """The minimum where some contact is elastic; :class:`Failure` says why no solution can be trusted."""
-    touching = Touching(mesh.problem, degree)
+    """The minimum where some contact is elastic; :class:`Failure` says why no solution can be trusted.
+
+    Stiff contact follows softer one, where it is closed is known then but for a little."""
+    problem = mesh.problem
+    springs, solution, steps = problem.touching, None, 0
+    for limit in _limits(problem, springs):
+        softer = replace(springs, stiffness=np.minimum(springs.stiffness, limit))
+        begin = None if solution is None else solution.displacement.reshape(-1, 2)
+        solution = _minimum(comm, mesh, model, constraints, Touching(problem, degree, softer), begin, extent)
+        steps += solution.iterations
+    return replace(solution, iterations=steps)
+
+
+def _limits(problem: Problem, springs: Springs) -> list[float]:
+    """Stiffnesses that contact has at most, one after the other, from that of the bodies on."""
+    ends = problem.points[problem.edges[springs.edges]]
+    shortest = float(np.min(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+    limit, stiffest, out = min(body.young for body in problem.bodies) / shortest, float(np.max(springs.stiffness)), []
+    while limit < stiffest:
+        out.append(limit)
+        limit *= FARTHER
+    return [*out, stiffest]
+
+
+def _minimum(comm, mesh, model, constraints, touching: Touching, begin: np.ndarray | None, extent: float) -> Solution:
+    """The minimum, from the displacement ``begin`` or, without one, from contact that is closed everywhere."""
 
     def evaluated(solution: Solution) -> tuple[np.ndarray, float]:
         return solution.displacement.reshape(-1, 2), touching.energy(solution.displacement.reshape(-1, 2))
@@ -127,34 +154,29 @@ def minimise_touching(comm, mesh: Mesh, model: Model, constraints: Constraints, 
         gradient.axpy(-1.0, model.load)
         return gradient.dot(along)
 
-    solution, steps = step(None), 1
+    solution = step(begin)
+    steps = solution.iterations
     at, stored = evaluated(solution)
     rest = solution.energy
-    while True:
+    for count in range(STEPS):
         found = step(at)
         steps += found.iterations
         ahead, stored_ahead = evaluated(found)
         change = ahead - at
         slope = slope_at(at, change)
         curved = found.energy - rest - slope
+        allowed = SETTLED * max(found.strain_energy, stored_ahead)
         part, energy = 1.0, rest + stored
         for _ in range(HALVINGS):
-            trial = at + part * change
-            there = touching.energy(trial) if part < 1.0 else stored_ahead
+            there = touching.energy(at + part * change) if part < 1.0 else stored_ahead
             lower = rest + part * slope + part * part * curved + there
-            if lower <= energy + SETTLED * max(found.strain_energy, stored_ahead):
+            if lower <= energy + allowed:
                 break
             part *= 0.5
-        log(comm, f"elastic contact, step {steps}: energy {lower!r}")
-        settled = abs(energy - lower) <= SETTLED * max(found.strain_energy, stored_ahead)
+        log(comm, f"elastic contact, step {count}: energy {lower!r}")
+        if abs(energy - lower) <= allowed and part == 1.0:
+            # The last step, along which next to nothing changes.
+            stored = found.strain_energy + stored_ahead
+            return replace(found, energy=found.energy + stored_ahead, strain_energy=stored, iterations=steps)
         at, stored, rest = at + part * change, there, rest + part * slope + part * part * curved
-        if settled and part == 1.0:
-            # The last step, from where next to nothing changes.
-            return replace(
-                found,
-                energy=found.energy + stored_ahead,
-                strain_energy=found.strain_energy + stored_ahead,
-                iterations=steps,
-            )
-        if steps > STEPS:
-            raise Failure(f"elastic contact has not settled after {STEPS} steps")
+    raise Failure(f"elastic contact has not settled after {STEPS} steps")

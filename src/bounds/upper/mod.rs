@@ -37,6 +37,7 @@ mod sets;
 mod share;
 mod split;
 mod stiffness;
+mod yielded;
 
 pub use self::groundwork::Groundwork;
 pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
@@ -48,6 +49,7 @@ pub use self::pull::Pull;
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein, of_pair, sides};
 use self::share::{Share, Whole};
+pub(super) use self::yielded::yielded;
 use super::energy::potential;
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement, SideValues, StressField};
