@@ -20,7 +20,7 @@ pub mod pressure;
 mod resultant;
 mod revolved;
 pub mod solution;
-mod springs;
+pub mod springs;
 mod stress;
 mod tolerance;
 
