@@ -159,7 +159,6 @@ fn elastic_contact() {
     let (force, closed, k) = (6.0, 1.5, 40.0);
     let largest = 2.0 * force / closed;
     let energy = -largest * largest * closed / (6.0 * k);
-    assert!(report.number("/energy/relative_error_bound") < 0.005);
     close(report.number("/energy/lower"), energy, 1e-4);
     close(report.number("/energy/upper"), energy, 1e-4);
     close(report.number("/contact/0/pressure_max/dual"), largest, 1e-3);
