@@ -29,9 +29,12 @@ pub struct ContactEdge {
     pub slide: Option<usize>,
     /// First of the moments along the direction on the second side, where that is a body; those along t̂ follow.
     pub second: Option<usize>,
+    /// First stretch of an elastic contact, on its first side: the jump is what is numbered as one and this, see
+    /// [`crate::problem::Problem::softened`].
+    pub stretch: Option<usize>,
     /// 0 on the first side, 1 on the second.
     pub side: usize,
-    degree: usize,
+    pub(super) degree: usize,
     /// Whether the pair runs against the edge.
     reversed: bool,
     axes: Axes,
@@ -80,7 +83,7 @@ impl ContactEdge {
             let (dual, rest) = dual_and_rest(&columns);
             Axes::Turning { columns, dual, rest }
         };
-        ContactEdge { across, jump, slide, second, side, degree, reversed, axes }
+        ContactEdge { across, jump, slide, second, stretch: None, side, degree, reversed, axes }
     }
 
     /// The first unknowns of all blocks that its moments are made of.
@@ -111,9 +114,18 @@ impl ContactEdge {
         match &self.axes {
             Axes::Constant { along, tangent, shares: [c, d] } => {
                 // Of what follows the jump of column i, c m' = j − d m'': outward directions point against each other.
-                let joined = |axis: [f64; 2], i: usize| match (self.side, self.second) {
-                    (0, Some(second)) => Component::sum(axis, &[(self.jump_of(i), 1.0 / c), (second + i, -d / c)], 0),
-                    (1, Some(second)) => Component::sum(axis, &[(second + i, 1.0)], 1),
+                let joined = |axis: [f64; 2], i: usize| match (self.side, self.second, self.stretch) {
+                    (0, Some(second), Some(stretch)) => {
+                        let terms = [(stretch + i, 1.0 / c), (self.jump_of(i), 1.0 / c), (second + i, -d / c)];
+                        Component::sum(axis, &terms, 1)
+                    }
+                    (0, None, Some(stretch)) => {
+                        Component::sum(axis, &[(stretch + i, 1.0 / c), (self.jump_of(i), 1.0 / c)], 2)
+                    }
+                    (0, Some(second), None) => {
+                        Component::sum(axis, &[(self.jump_of(i), 1.0 / c), (second + i, -d / c)], 0)
+                    }
+                    (1, Some(second), _) => Component::sum(axis, &[(second + i, 1.0)], 1),
                     _ => Component::sum(axis, &[(self.jump_of(i), 1.0 / c)], 1),
                 };
                 let across = match self.slide {
@@ -246,6 +258,7 @@ mod tests {
             arc: [0.0, 1.0],
             gap: [0.0; 2],
             bow: Bow::default(),
+            stiffness: None,
             friction: rubs.then_some(Friction { bound: [1.0; 2], tangent }),
         }
     }

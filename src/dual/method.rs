@@ -10,7 +10,7 @@ use faer::Par;
 use super::{Divided, Factorised, Motion, Phases, Size};
 use crate::budget::Budget;
 use crate::element::{Block, Elements, SideValues, StressField};
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
 ///
@@ -66,14 +66,16 @@ pub trait DualMethod: Sync {
 /// # Errors
 /// [`DualError::NotExpressible`].
 pub(super) fn contact_alone(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    let with = |has: fn(&ContactPair) -> bool| problem.interfaces.iter().find(|contact| contact.pairs.iter().any(has));
+    let (elastic, rubbing) = (with(|pair| pair.stiffness.is_some()), with(|pair| pair.friction.is_some()));
+    let what = match (problem.beds.first(), elastic, rubbing) {
+        (Some(bed), ..) if bed.is_layer() => format!("the elastic layer {}", bed.name),
+        (Some(bed), ..) => format!("the springs on {}", bed.name),
+        (None, Some(contact), _) => format!("the stiffness of contact {}", contact.name),
+        (None, None, Some(contact)) => format!("the friction of contact {}", contact.name),
+        (None, None, None) => return Ok(()),
+    };
     let remedy = "use --method condensed or active-set, without --engine";
-    if let Some(interface) = problem.interfaces.iter().find(|i| i.pairs.iter().any(|pair| pair.friction.is_some())) {
-        let what = format!("the friction of contact {}", interface.name);
-        return Err(DualError::NotExpressible { method, what, remedy });
-    }
-    let Some(bed) = problem.beds.first() else { return Ok(()) };
-    let what =
-        if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
     Err(DualError::NotExpressible { method, what, remedy })
 }
 

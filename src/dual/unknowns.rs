@@ -137,9 +137,11 @@ impl Unknowns {
                 Condition::Clamped(_) | Condition::Axis => {}
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
-                    let jumps = columns_along(matched, of_pair(matched)).iter().sum();
-                    if 2 * coefficients > jumps {
-                        first_block[e] = push(2 * coefficients - jumps);
+                    let jumps: usize = columns_along(matched, of_pair(matched)).iter().sum();
+                    // Stretches of an elastic contact follow the moments of its first side.
+                    let stretches = if side == 0 && matched.stiffness.is_some() { jumps } else { 0 };
+                    if 2 * coefficients + stretches > jumps {
+                        first_block[e] = push(2 * coefficients - jumps + stretches);
                     }
                     if side == 1 {
                         second[interface][pair] = Some(push(jumps));
@@ -188,7 +190,11 @@ impl Unknowns {
                         slide: slide_blocks[interface][pair].map(start),
                         second: second[interface][pair].map(start),
                     };
-                    EdgeMoments::Contact(Box::new(ContactEdge::new(matched, degree[e].into(), side, reversed, contact)))
+                    let mut edge = ContactEdge::new(matched, degree[e].into(), side, reversed, contact);
+                    let coefficients = usize::from(degree[e]) + 1;
+                    let is_elastic = side == 0 && matched.stiffness.is_some();
+                    edge.stretch = is_elastic.then(|| contact.across + coefficients);
+                    EdgeMoments::Contact(Box::new(edge))
                 }
             })
             .collect();

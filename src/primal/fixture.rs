@@ -37,6 +37,7 @@ pub(crate) fn pressed_square() -> Problem {
         gap: [0.0, 0.0],
         bow: Bow::default(),
         friction: None,
+        stiffness: None,
     };
     Problem {
         scene: Scene::unchecked(Draft {

@@ -30,6 +30,7 @@ const PACKAGE: Package = Package {
         ("solve.py", include_str!("../../reference/hypercircle_reference/solve.py")),
         ("friction.py", include_str!("../../reference/hypercircle_reference/friction.py")),
         ("springs.py", include_str!("../../reference/hypercircle_reference/springs.py")),
+        ("touching.py", include_str!("../../reference/hypercircle_reference/touching.py")),
     ],
 };
 

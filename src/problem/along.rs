@@ -81,6 +81,7 @@ pub(super) fn pair_along(
             gap,
             bow: Bow::of(&contact.gap, link.arc),
             friction: None,
+            stiffness: contact.stiffness,
         });
     }
     if pairs.is_empty() {

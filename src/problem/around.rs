@@ -80,6 +80,7 @@ pub(super) fn pair_around(
             gap,
             bow: Bow::of(&contact.gap, link.arc),
             friction: None,
+            stiffness: contact.stiffness,
         });
         faced.push(*link);
     }

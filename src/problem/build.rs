@@ -8,7 +8,7 @@ use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::friction::resist;
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, rubs};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, rubs, softened};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
@@ -159,6 +159,7 @@ impl Problem {
                     }
                 }
             }
+            softened::refuse(contact, &matched, section, &mesh, !scene.quantities.is_empty())?;
             interfaces.push(matched);
         }
         let beds = beds(&scene, &mesh)?;
@@ -204,7 +205,9 @@ impl Problem {
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) + ∫ τ̄ |u_t' − u_t''| = L(u), the
     /// integral over contacts with friction.
     pub fn is_cone(&self) -> bool {
-        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none());
+        let elastic = self.bed_pairs().filter_map(|(pair, _)| pair.contact);
+        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none())
+            && elastic.into_iter().all(|contact| contact.gap().iter().all(|g| *g == 0.0));
         no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 

@@ -93,6 +93,7 @@ pub(super) fn pair_up(
             gap,
             bow: Bow::of(&contact.gap, link.arc.map(on_break)),
             friction: None,
+            stiffness: contact.stiffness,
         });
     }
     if let Some(e) = facing.values().min() {

@@ -12,11 +12,12 @@ mod error;
 mod friction;
 mod normals;
 mod scales;
+mod softened;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bed::facing_vertices;
-pub use bed::{Bed, BedPair};
+pub use bed::{Bed, BedPair, OneSided};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -235,6 +236,8 @@ pub struct ContactPair {
     pub bow: Bow,
     /// What resists sliding, where something does.
     pub friction: Option<Friction>,
+    /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
+    pub stiffness: Option<f64>,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

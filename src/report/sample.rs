@@ -240,6 +240,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         gap: [0.0; 2],
         bow: Bow::default(),
         friction: None,
+        stiffness: None,
     }
 }
 

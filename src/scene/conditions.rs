@@ -13,7 +13,7 @@ use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
 use super::source::{Source, counted};
-use super::springs::{no_stiffness, spring};
+use super::springs::{no_stiffness, spring, stiffness_of};
 use super::table::table_of;
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
@@ -230,8 +230,20 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     };
     let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    let (normals, friction) = (normals(contact, table, source)?, friction(contact, table, source)?);
-    Ok(Contact { normals, direction, obstacle, friction, ..Contact::new(sides, gap) })
+    let (stiffness, friction) = (stiffness_of(contact, table, source)?, friction(contact, table, source)?);
+    if let (Some(raw), Some(_), Some(_)) = (&contact.friction, &friction, stiffness) {
+        let remedy = "delete one of the two: elastic contact slides freely";
+        let (table, other) = (table.to_owned(), "`stiffness`, elastic contact");
+        return Err(source.error(raw.span(), Fault::Misplaced { key: "friction", table, other, remedy }));
+    }
+    Ok(Contact {
+        normals: normals(contact, table, source)?,
+        direction,
+        obstacle,
+        stiffness,
+        friction,
+        ..Contact::new(sides, gap)
+    })
 }
 
 /// A unit vector for a contact between two sides.

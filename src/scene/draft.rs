@@ -394,7 +394,7 @@ fn traction(Traction { on, load }: &Traction) -> String {
 }
 
 fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<String>) -> String {
-    let Contact { sides, gap, normals, direction, obstacle, friction } = contact;
+    let Contact { sides, gap, normals, direction, obstacle, stiffness, friction } = contact;
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
@@ -410,6 +410,9 @@ fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<Stri
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    let stiffness = stiffness
+        .map(|k| format!(", stiffness = {}", range(Ranged::Contact).unwrap_or_else(|| number(k))))
+        .unwrap_or_default();
     let friction = friction.as_ref().map_or_else(String::new, |bound| {
         let bound = match bound {
             FrictionBound::Constant(bound) => range(Ranged::Friction).unwrap_or_else(|| number(*bound)),
@@ -425,9 +428,9 @@ fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<Stri
                 format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
             }
         };
-        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{friction}", list(moved));
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{stiffness}{friction}", list(moved));
     }
-    format!("{sides}, gap = {gap}{normals}{direction}{friction}")
+    format!("{sides}, gap = {gap}{normals}{direction}{stiffness}{friction}")
 }
 
 fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {

@@ -240,6 +240,8 @@ pub struct Contact {
     pub obstacle: Option<Obstacle>,
     /// Bound of the tangential traction; `None` without friction.
     pub friction: Option<FrictionBound>,
+    /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
+    pub stiffness: Option<f64>,
 }
 
 /// Where the directions of contact come from.
@@ -264,7 +266,8 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None, friction: None }
+        let (normals, direction, obstacle) = (Normals::default(), None, None);
+        Contact { sides, gap, normals, direction, obstacle, stiffness: None, friction: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.

@@ -501,6 +501,9 @@ pub(super) struct RawContact {
     pub moved: Option<Pair>,
     /// What resists sliding; nothing where it is missing.
     pub friction: Option<At<Table<RawFriction>>>,
+    /// Elastic contact: force per area and penetration beyond the gap, or the two ends of a range; rigid where it is missing.
+    #[schemars(with = "Option<RawNumber>")]
+    pub stiffness: Option<At<RawNumber>>,
 }
 
 /// Friction of a contact, with a given `bound` of the tangential traction. A `coefficient`, Coulomb's, is not solved yet.

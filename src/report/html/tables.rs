@@ -54,11 +54,6 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
             "of (λ_h + σ(v))/2, the stress half-way between the two bounds, in the energy norm",
         ),
         (work, interval(energy.enclosed_work), meaning),
-        (
-            "work of friction",
-            optional(energy.friction_work, digits),
-            "∫ τ̄ |v_t' − v_t''| of the upper bound, which nothing stores",
-        ),
         ("free upper bound", optional(energy.free_upper, digits), "from the dual solve alone"),
         (
             "gap of the free bound, local",
@@ -73,6 +68,10 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
         ("guarantee", clean(&energy.guarantee.words), "on whose word the bracket holds for the scene as written"),
     ];
+    if energy.friction_work.is_some() {
+        let meaning = "∫ τ̄ |v_t' − v_t''| of the upper bound, which nothing stores";
+        rows.insert(7, ("work of friction", optional(energy.friction_work, digits), meaning));
+    }
     let across = report.data_range.as_ref().map(|range| {
         let digits = range.upper.map_or(6, |upper| digits_to_tell(range.lower, upper).max(6));
         let upper = range.upper.map_or("∞".to_string(), |upper| significant(upper, digits));

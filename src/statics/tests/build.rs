@@ -207,6 +207,7 @@ impl Build {
                         gap: [0.0; 2],
                         bow: Bow::default(),
                         friction: None,
+                        stiffness: None,
                     }
                 })
                 .collect();

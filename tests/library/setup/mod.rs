@@ -213,6 +213,7 @@ impl Setup {
                     gap: [gap(arc), gap(arc + length)],
                     bow: Bow::default(),
                     friction: None,
+                    stiffness: None,
                 });
                 arc += length;
             }

@@ -267,6 +267,7 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
             bow: Bow::from_numbers(bow)?,
             // Ranks share no scene that has friction.
             friction: None,
+            stiffness: None,
         })
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();
