@@ -18,7 +18,11 @@ pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
     let path = scene.path.display();
     if !COMMANDS.contains(&command) {
         let what = format!("{path}: `{command}` does not take contacts with friction");
-        return Err(CliError::stopped(Exit::BadInput, what, "leave `friction` out of the scene, or use `solve`"));
+        return Err(CliError::stopped(
+            Exit::BadInput,
+            what,
+            "leave `friction` out of the scene, or use `solve`, `verify` or `certify`",
+        ));
     }
     if let Some(quantity) = scene.quantities.first() {
         let what = format!("{path}: quantity `{}` of a scene with friction has no interval yet", quantity.name);
