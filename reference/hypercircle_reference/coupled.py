@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from hypercircle_process import Failure, log
@@ -111,6 +112,7 @@ class CoupledDescent:
         wide = self._joined(np.broadcast_to(near, it.b.shape), infinite) / scale
         forces = np.zeros(len(rows.weight)) if forces is None else forces
         start, steps, best = None, 0, np.inf
+        load = self.comm.allreduce(float(np.abs(it.terms).max(initial=0.0)), MPI.MAX)
         for _ in range(ROUNDS):
             right = self._joined(it.b, 0.0 * forces) - (self.stretch.T @ forces)[self.mine]
             terms = self._joined(it.terms, 0.0 * forces) + (abs(self.stretch).T @ np.abs(forces))[self.mine]
@@ -123,8 +125,9 @@ class CoupledDescent:
             size = max(np.abs(rows.kink).max(initial=0.0), np.abs(x[self.slack]).max(initial=0.0), self._size(x))
             worst = np.abs(stretched).max(initial=0.0)
             log(self.comm, f"coupled friction: stretched by {worst:.1e} of {size:.1e}")
-            # Rounding ends what is gained from round to round.
-            if worst <= STRETCHED * size or (worst >= best and worst <= 1e4 * STRETCHED * size):
+            # Rounding ends what is gained from round to round, and so does that of what the loads do on the unit diagonal.
+            hidden = worst <= EPSILON * load
+            if hidden or worst <= STRETCHED * size or (worst >= best and worst <= 1e4 * STRETCHED * size):
                 return self._found(found, forces, steps), forces / rows.length
             if worst > SLOW * best and self.stiff < STIFFEST:
                 return CoupledDescent(it, rows, STIFFER * self.stiff).minimise(near, forces)
