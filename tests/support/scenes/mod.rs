@@ -75,7 +75,7 @@ const LATER: [(&str, f64, Family); 8] = [
     ("obstacles", 0.16, obstacles::obstacles),
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
-    ("rough", 0.15, rough::rough),
+    ("rough", 0.12, rough::rough),
 ];
 
 /// The scene of a seed.
