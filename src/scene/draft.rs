@@ -429,9 +429,10 @@ fn contact(contact: &Contact, [range, stiff]: [Option<String>; 2]) -> String {
     format!("{sides}, gap = {gap}{normals}{direction}{stiffness}")
 }
 
-fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
+fn bond(Bond { sides: [a, b], stiffness, direction }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
     let stiffness = stiffness.map(|k| format!(", stiffness = {}", both(&k, range))).unwrap_or_default();
-    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
+    let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}{direction}", quoted(a), quoted(b))
 }
 
 fn component_of(component: &Component) -> String {
