@@ -182,17 +182,16 @@ fn sides_that_do_not_coincide_are_matched_along_a_direction() {
             .replace("between = [\"head\", \"sole\"]\n", &format!("between = [\"head\", \"sole\"]\n{law}"));
         let [lower, upper] = ends(&solved(problem(&exact)));
         let mut found = Vec::new();
-        for off in [1e-2, 1e-5, 1e-9] {
+        for off in [1e-2, 1e-4, 1e-6] {
             let near = problem(&apart(off, &format!("{law}direction = [0.0, 1.0]")).text());
-            // What is round-off is snapped without a word.
-            assert!(off < 1e-8 || near.notes.iter().any(|note| note.text.contains("moved by up to")), "{off}");
+            assert!(near.notes.iter().any(|note| note.text.contains("moved by up to")), "{off}");
             let [below, above] = ends(&solved(near));
             assert!(below < upper && lower < above, "{off}: {below} {above} and {lower} {upper}");
             found.push([below, above]);
         }
         // The bounds follow the geometry.
         let change = |i: usize| (found[i][0] - found[2][0]).abs() / found[2][0].abs();
-        assert!(change(1) < 1e-3 * change(0).max(1e-2) && change(1) < 1e-4, "{} {}", change(0), change(1));
+        assert!(change(1) < 0.05 * change(0) && change(1) < 1e-3, "{} {}", change(0), change(1));
     }
     let far = Problem::load(scene(&apart(0.3, "direction = [0.0, 1.0]").text())).expect_err("no problem").to_string();
     assert!(far.contains("two meshes of one curve"), "{far}");
