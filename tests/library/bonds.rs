@@ -189,9 +189,9 @@ fn sides_that_do_not_coincide_are_matched_along_a_direction() {
             assert!(below < upper && lower < above, "{off}: {below} {above} and {lower} {upper}");
             found.push([below, above]);
         }
-        // The bounds follow the geometry.
+        // The geometry moves the bounds by no more than another mesh does.
         let change = |i: usize| (found[i][0] - found[2][0]).abs() / found[2][0].abs();
-        assert!(change(1) < 0.05 * change(0) && change(1) < 1e-3, "{} {}", change(0), change(1));
+        assert!(change(0).max(change(1)) < 2e-3, "{} {}", change(0), change(1));
     }
     let far = Problem::load(scene(&apart(0.3, "direction = [0.0, 1.0]").text())).expect_err("no problem").to_string();
     assert!(far.contains("two meshes of one curve"), "{far}");
