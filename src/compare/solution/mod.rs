@@ -164,7 +164,7 @@ impl<'a> Solution<'a> {
             strain,
             largest: candidate.largest(),
             reference: candidate.largest(),
-            on_gaps: 0.0,
+            on_gaps: forces.on_gaps,
             of_the_rule: 0.0,
             larger: 1.0,
             ceiling: f64::INFINITY,
