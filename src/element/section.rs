@@ -154,6 +154,17 @@ impl Section {
         [given.value[0] + given.gradient[0][0] * axis, given.gradient[0][0] + turning]
     }
 
+    /// A body force at a point.
+    pub fn force(self, force: &BodyForce, point: [f64; 2]) -> [f64; 2] {
+        match self {
+            Section::Slice => force.at(point),
+            Section::Revolved { .. } => {
+                let ([a, b], [_, axial]) = (self.radial(force), self.forces(force));
+                [a + b * self.weight(point), axial]
+            }
+        }
+    }
+
     /// Whether a body force is one that a body of revolution can have: F_r depends on r alone, and F_z on nothing.
     pub fn carries(self, force: &BodyForce) -> bool {
         let [[_, across], along] = force.given().gradient;

@@ -1,6 +1,7 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
+use crate::compare::turned::Rule;
 use crate::compare::{
     ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells,
 };
@@ -93,6 +94,14 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     let energies = energies(problem, judged);
     let own = diagnose(solution, energies);
     let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
+    if problem.section().is_revolved() && !is_explained(&own) {
+        let others = Rule::all(&judged.candidate).into_iter().filter(|rule| Some(*rule) != solution.rule);
+        let by = |rule| {
+            let other = Solution::turned(problem, &judged.candidate, rule).ok()?.within(Extent::of(problem, bracket));
+            diagnose(&other, energies).map(Some).filter(is_explained)
+        };
+        return others.into_iter().find_map(by).unwrap_or(own);
+    }
     if is_explained(&own) {
         return own;
     }
@@ -125,10 +134,6 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
 /// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
 /// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
 pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
-    if problem.section().is_revolved() {
-        // Mistakes are looked for in the plane.
-        return Vec::new();
-    }
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());
