@@ -116,6 +116,19 @@ impl Section {
         }
     }
 
+    /// Nodal stresses of an orthonormal basis of the fields of the element without traction.
+    pub fn unloaded(
+        self,
+        element: &dyn EquilibriumElement,
+        corners: Corners,
+        material: &Material,
+    ) -> Vec<Vec<[f64; 3]>> {
+        match self {
+            Section::Slice => element.unloaded(corners, material),
+            Section::Revolved { axis } => Ring::new(element.degree(), axis, corners).unloaded(&material.revolved()),
+        }
+    }
+
     /// Nodal stresses of mode parameters, as [`EquilibriumElement::stresses`] has them.
     pub fn stresses(
         self,
