@@ -100,6 +100,25 @@ class Revolution:
 
 
 @dataclass(frozen=True)
+class Springs:
+    """Springs on edges (m,), each against the edge ``opposite`` (m,) or, where that is −1, the ground; ``axes`` (m, 2, 2) are unit
+    vectors, ``stiffness`` (m, 2) along them. Those of elastic contact have the Bernstein coefficients of their ``gaps``, and resist
+    along the first axis alone what exceeds it."""
+
+    edges: np.ndarray
+    opposite: np.ndarray
+    axes: np.ndarray
+    stiffness: np.ndarray
+    gaps: list[np.ndarray | None]
+
+    def part(self, touching: bool) -> "Springs":
+        """Those of elastic contact, or the others."""
+        which = np.array([i for i, gap in enumerate(self.gaps) if (gap is not None) == touching], dtype=np.int64)
+        arrays = (self.edges[which], self.opposite[which], self.axes[which], self.stiffness[which])
+        return Springs(*arrays, [self.gaps[i] for i in which])
+
+
+@dataclass(frozen=True)
 class Problem:
     """What ``problem.json`` says, checked; index arrays are int64, everything else float64.
 
@@ -126,10 +145,8 @@ class Problem:
     traction_edges: np.ndarray
     traction_values: np.ndarray
     contacts: list[Contact]
-    spring_edges: np.ndarray
-    spring_opposite: np.ndarray
-    spring_axes: np.ndarray
-    spring_stiffness: np.ndarray
+    springs: Springs
+    touching: Springs
     pin_vertices: np.ndarray
     pin_directions: np.ndarray
 
@@ -178,14 +195,7 @@ def parse_problem(data: dict) -> Problem:
     roller = _records(data, "roller")
     tractions = _records(data, "tractions")
     pins = _records(data, "pins")
-    springs = _records(data, "springs") if "springs" in data else []
-    alone = [{**entry, "opposite": -1} if entry.get("opposite") is None else entry for entry in springs]
-    axes = _column(springs, "springs", "axes", (2, 2))
-    for axis in range(2):
-        _check_unit(axes[:, axis], "springs", "axes")
-    stiffness = _column(springs, "springs", "stiffness", (2,))
-    if np.any(stiffness < 0.0):
-        raise BadExchange(f"springs[{np.argmin(stiffness.min(axis=1))}].stiffness is negative")
+    springs = _springs(_records(data, "springs") if "springs" in data else [], len(edges))
     along = _column(roller, "roller", "normal", (2,))
     _check_unit(along, "roller", "normal")
     directions = _column(pins, "pins", "direction", (2,))
@@ -212,12 +222,32 @@ def parse_problem(data: dict) -> Problem:
         contacts=[
             _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(_records(data, "contacts"))
         ],
-        spring_edges=_index_column(springs, "springs", "edge", (), len(edges)),
-        spring_opposite=_index_column(alone, "springs", "opposite", (), len(edges), lowest=-1),
-        spring_axes=axes,
-        spring_stiffness=stiffness,
+        springs=springs.part(touching=False),
+        touching=springs.part(touching=True),
         pin_vertices=_index_column(pins, "pins", "vertex", (), len(points)),
         pin_directions=directions,
+    )
+
+
+def _springs(entries: list[dict], edges: int) -> Springs:
+    alone = [{**entry, "opposite": -1} if entry.get("opposite") is None else entry for entry in entries]
+    axes = _column(entries, "springs", "axes", (2, 2))
+    for axis in range(2):
+        _check_unit(axes[:, axis], "springs", "axes")
+    stiffness = _column(entries, "springs", "stiffness", (2,))
+    if np.any(stiffness < 0.0):
+        raise BadExchange(f"springs[{np.argmin(stiffness.min(axis=1))}].stiffness is negative")
+    gap = lambda i, entry: None if entry.get("gap") is None else _array(entry, "gap", f"springs[{i}]", (-1,))
+    gaps = [gap(i, entry) for i, entry in enumerate(entries)]
+    for i, found in enumerate(gaps):
+        if found is not None and len(found) == 0:
+            raise BadExchange(f"springs[{i}].gap has no coefficient")
+    return Springs(
+        edges=_index_column(entries, "springs", "edge", (), edges),
+        opposite=_index_column(alone, "springs", "opposite", (), edges, lowest=-1),
+        axes=axes,
+        stiffness=stiffness,
+        gaps=gaps,
     )
 
 

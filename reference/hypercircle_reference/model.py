@@ -235,10 +235,15 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
 
 def _springs(mesh: Mesh, degree: int, numbering: Numbering):
     """The stiffness of springs in FEniCSx's numbering; None where there are none."""
-    problem, rank = mesh.problem, mesh.comm.rank
-    if len(problem.spring_edges) == 0:
+    problem = mesh.problem
+    if len(problem.springs.edges) == 0:
         return None
-    of_nodes = spring_stiffness(problem, degree).tocoo()
+    return distributed(mesh, spring_stiffness(problem, degree), numbering)
+
+
+def distributed(mesh: Mesh, of_nodes: sp.csr_matrix, numbering: Numbering):
+    """A matrix for the nodes of the exchange file as a PETSc matrix in FEniCSx's numbering."""
+    of_nodes, rank = of_nodes.tocoo(), mesh.comm.rank
     number = (2 * numbering.nodes[:, None] + np.arange(2)).reshape(-1)
     rows, columns = number[of_nodes.row], number[of_nodes.col]
     begin, end = 2 * numbering.ranges[rank]

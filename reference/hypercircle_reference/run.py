@@ -14,6 +14,7 @@ from .exchange import Problem
 from .lattice import Lattice
 from .model import GAUSS_POINTS, Mesh, QuadrilateralMesh, build as build_model
 from .solve import Solution, minimise, without_strongest_row
+from .touching import minimise_touching
 
 
 MESHES = {"P": Mesh, "Q": QuadrilateralMesh}
@@ -38,10 +39,16 @@ def solve_all(comm, problem: Problem, spaces, nodal_contact=False, sabotage=None
         seconds_constraints = perf_counter() - start
         model = build_model(mesh, degree, flip_sign=sabotage == "flip-sign")
         start = perf_counter()
-        solution = minimise(comm, model, constraints, extent)
+
+        def minimum(under: Constraints) -> Solution:
+            if len(problem.touching.edges) == 0:
+                return minimise(comm, model, under, extent)
+            return minimise_touching(comm, mesh, model, under, degree, extent)
+
+        solution = minimum(constraints)
         if sabotage == "drop-row":
             constraints = without_strongest_row(constraints, solution)
-            solution = minimise(comm, model, constraints, extent)
+            solution = minimum(constraints)
         phases = {
             "import": seconds_import,
             "mesh": seconds_mesh,

@@ -11,7 +11,7 @@ from math import comb
 import numpy as np
 import scipy.sparse as sp
 
-from .exchange import Problem
+from .exchange import Problem, Springs
 from .lattice import Lattice, bernstein
 
 
@@ -23,21 +23,31 @@ def mass(degree: int) -> np.ndarray:
     return back.T @ np.array(gram) @ back
 
 
-def stiffness(problem: Problem, degree: int) -> sp.csr_matrix:
-    """The matrix (2n, 2n) of the springs for the two components of every node; of no entries where there are none."""
+def sides(problem: Problem, springs: Springs, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The nodes (m, k + 1) of each edge and of the one opposite it, both along the first, and the lengths (m,)."""
     lattice = Lattice.of(problem, degree)
-    size = 2 * lattice.ends[2]
-    edges, opposite = problem.spring_edges, problem.spring_opposite
+    edges, opposite = springs.edges, springs.opposite
     ends = problem.edges[edges]
     first = np.concatenate([ends[:, :1], lattice.inside_edges(edges), ends[:, 1:]], axis=1)
     # An edge and the one opposite it run against each other.
     across = problem.edges[opposite]
     second = np.concatenate([across[:, :1], lattice.inside_edges(opposite), across[:, 1:]], axis=1)[:, ::-1]
-    length = np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)
-    axes = problem.spring_axes
+    return first, second, np.linalg.norm(problem.points[ends[:, 1]] - problem.points[ends[:, 0]], axis=1)
+
+
+def stiffness(problem: Problem, degree: int) -> sp.csr_matrix:
+    """The matrix (2n, 2n) of the springs for the two components of every node; of no entries where there are none."""
+    return assembled(problem, problem.springs, degree, np.broadcast_to(mass(degree), (len(problem.springs.edges), degree + 1, degree + 1)))
+
+
+def assembled(problem: Problem, springs: Springs, degree: int, weights: np.ndarray) -> sp.csr_matrix:
+    """The matrix of springs with the integrals ``weights`` (m, k + 1, k + 1) of products of shape functions over edges of length one."""
+    size = 2 * Lattice.of(problem, degree).ends[2]
+    edges, opposite, axes = springs.edges, springs.opposite, springs.axes
+    first, second, length = sides(problem, springs, degree)
     # (m, 2, 2): Σ k d dᵀ over both directions.
-    law = np.einsum("mk,mki,mkj->mij", problem.spring_stiffness, axes, axes)
-    local = problem.thickness * length[:, None, None, None, None] * np.einsum("ab,mij->maibj", mass(degree), law)
+    law = np.einsum("mk,mki,mkj->mij", springs.stiffness, axes, axes)
+    local = problem.thickness * length[:, None, None, None, None] * np.einsum("mab,mij->maibj", weights, law)
     rows, columns, values = [], [], []
     for own, sign in ((first, 1.0), (second, -1.0)):
         for other, with_sign in ((first, 1.0), (second, -1.0)):

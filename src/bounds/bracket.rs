@@ -1,11 +1,13 @@
 //! The two-sided bracket that a dual solution gives without any help, widened by what rounding can have cost ([`super::rounding`]).
 
+use std::borrow::Cow;
+
 use super::counted::Counted;
 use super::energy::{Complementary, Potential};
 use super::gap::LocalGap;
 use super::jump::side_coefficients;
 use super::terms::{LowerTerms, UpperTerms};
-use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on};
+use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on, yielded};
 use crate::dual::{DualSolution, Equilibrium};
 use crate::element::{Displacement, side};
 use crate::problem::{Problem, Scales};
@@ -80,7 +82,13 @@ impl Bracket {
         keep: bool,
     ) -> Self {
         let lower = LowerTerms::new(problem, &dual.stress, &dual.moments, Counted::ALL);
-        let made = ground.and_then(|g| admissible_on(g, problem, dual, lower.complementary.lower(), start, keep));
+        let (floor, (wider, stored)) = (lower.complementary.lower(), yielded(problem, dual));
+        let ground = match &wider {
+            Cow::Borrowed(_) => ground,
+            Cow::Owned(wider) => Groundwork::new(wider, dual.moments.iter().map(|moments| moments.len() - 1)),
+        };
+        let floor = floor - problem.scene.thickness * stored;
+        let made = ground.and_then(|g| admissible_on(g, &wider, dual, floor, start, keep));
         let free = made.map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
         Self::of_terms(problem, dual, lower, free)
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::counted::Counted;
 use super::jump::openings;
-use super::springs::spring_error;
+use super::springs::{elastic_contact_error, spring_error};
 use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::sub_area;
@@ -46,11 +46,14 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
     LocalGap::of(problem, triangles, contact, spring_error(problem, stress, v, Counted::ALL))
 }
 
-/// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, thickness included; zero where it is not counted.
+/// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, the part of an elastic one in its place, thickness included; zero where it is not counted.
 pub fn contact_error(problem: &Problem, stress: &StressField, v: &Displacement, counted: Counted<'_>) -> Vec<f64> {
     let of = |(p, pair): (usize, &ContactPair)| {
         if !counted.pair(p) {
             return 0.0;
+        }
+        if pair.stiffness.is_some() {
+            return elastic_contact_error(problem, stress, v, pair);
         }
         let t = contact_traction(problem, stress, pair);
         -problem.scene.thickness * pair.length * side::integral(&t, &openings(problem, v, pair))

@@ -2,12 +2,15 @@
 //!
 //! With the traction t = T(λ)·d on the first side and the jump j = (v' − v'')·d along each direction d of stiffness k, their potential
 //! energy is ½ ∫ k j², their complementary energy ∫ t²/2k, and their part of the gap ½ ∫ (k j + t)²/k, which is never negative.
+//!
+//! Elastic contact resists what the jump exceeds the gap g by: with d = j − g these are ½ ∫ k d₊², ∫ t²/2k − ∫ t g, and
+//! ½ ∫ (k d₊ + t)²/k + ∫ (−t)(d₊ − d).
 
 use super::counted::Counted;
 use super::jump::side_coefficients;
 use super::sum::Sum;
-use crate::element::{Displacement, StressField, side};
-use crate::problem::{BedPair, Problem};
+use crate::element::{Displacement, StressField, positive, side};
+use crate::problem::{BedPair, ContactPair, OneSided, Problem};
 use crate::vector::dot;
 
 /// An energy of springs, thickness included.
@@ -19,20 +22,34 @@ pub struct SpringEnergy {
     pub sensitivity: f64,
 }
 
-/// Σ ∫ t²/2k.
+/// Σ ∫ t²/2k, with what elastic contact has of it; −∫ t g of that is among the works of gaps where it is a contact.
 pub fn complementary_of_springs(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> SpringEnergy {
-    let of = |pair: &BedPair, stiffness: [f64; 2]| {
+    let of = |pair: &BedPair, stiffness: [f64; 2], is_contact: bool| {
         let forces = spring_tractions(problem, stress, pair);
         let along = forces.iter().zip(stiffness).filter(|(_, k)| *k > 0.0);
-        along.map(|(t, k)| pair.length * side::integral(t, t) / (2.0 * k)).map(|e| [e, 2.0 * e]).collect()
+        let on_gap = |t: &[f64]| match &pair.contact {
+            Some(contact) if !is_contact => -pair.length * side::integral(t, &contact.gap()),
+            _ => 0.0,
+        };
+        let energy = |(t, k): (&Vec<f64>, f64)| {
+            let (stored, on_gap) = (pair.length * side::integral(t, t) / (2.0 * k), on_gap(t));
+            [stored + on_gap, 2.0 * stored + on_gap.abs()]
+        };
+        along.map(energy).collect()
     };
     summed(problem, counted, of)
 }
 
 /// Σ ½ ∫ k j².
 pub fn potential_of_springs(problem: &Problem, v: &Displacement, counted: Counted<'_>) -> SpringEnergy {
-    let of = |pair: &BedPair, stiffness: [f64; 2]| {
+    let of = |pair: &BedPair, stiffness: [f64; 2], _: bool| {
         let (jump, size) = spring_jumps(problem, v, pair);
+        if let Some(contact) = &pair.contact {
+            let (beyond, k) = (penetration(&jump[0], contact), stiffness[0]);
+            let mut moved = 0.0;
+            positive::points(&beyond, beyond.len() - 1, |_, d, weight| moved += weight * d);
+            return vec![[0.5 * pair.length * k * positive::square(&beyond), pair.length * k * size[0] * moved]];
+        }
         let along = jump.iter().zip(size).zip(stiffness).filter(|(_, k)| *k > 0.0);
         along
             .map(|((j, size), k)| {
@@ -52,6 +69,10 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
             return 0.0;
         }
         let (forces, (jump, _)) = (spring_tractions(problem, stress, pair), spring_jumps(problem, v, pair));
+        if let Some(contact) = &pair.contact {
+            return problem.scene.thickness
+                * one_sided_error(pair, &forces[0], &penetration(&jump[0], contact), stiffness[0]);
+        }
         let along = forces.iter().zip(&jump).zip(stiffness).filter(|(_, k)| *k > 0.0);
         let term = |((t, j), k): ((&Vec<f64>, &Vec<f64>), f64)| {
             let degree = t.len().max(j.len()) - 1;
@@ -64,10 +85,42 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
     problem.bed_pairs().map(of).collect()
 }
 
-fn summed(problem: &Problem, counted: Counted<'_>, of: impl Fn(&BedPair, [f64; 2]) -> Vec<[f64; 2]>) -> SpringEnergy {
+/// The Fenchel gap of an elastic contact along its edge; zero on a pair of another kind.
+pub fn elastic_contact_error(problem: &Problem, stress: &StressField, v: &Displacement, pair: &ContactPair) -> f64 {
+    let Some((pair, [k, _])) = BedPair::of_contact(pair, &problem.mesh) else { return 0.0 };
+    let Some(contact) = &pair.contact else { return 0.0 };
+    let ([t, _], ([jump, _], _)) = (spring_tractions(problem, stress, &pair), spring_jumps(problem, v, &pair));
+    problem.scene.thickness * one_sided_error(&pair, &t, &penetration(&jump, contact), k)
+}
+
+/// By how much a jump exceeds the gap of an elastic contact.
+fn penetration(jump: &[f64], contact: &OneSided) -> Vec<f64> {
+    let gap = contact.gap();
+    let degree = jump.len().max(gap.len()) - 1;
+    let [jump, gap] = [jump, &gap].map(|f| side::elevate(f, degree));
+    jump.iter().zip(&gap).map(|(jump, gap)| jump - gap).collect()
+}
+
+fn one_sided_error(pair: &BedPair, t: &[f64], beyond: &[f64], k: f64) -> f64 {
+    let mut sum = 0.0;
+    positive::points(beyond, 2 * (t.len().max(beyond.len()) - 1), |at, d, weight| {
+        let (t, open) = (side::value(t, at), d - side::value(beyond, at));
+        sum += weight * (0.5 * (k * d + t).powi(2) / k - t * open.max(0.0));
+    });
+    pair.length * sum
+}
+
+fn summed(
+    problem: &Problem,
+    counted: Counted<'_>,
+    of: impl Fn(&BedPair, [f64; 2], bool) -> Vec<[f64; 2]>,
+) -> SpringEnergy {
     let (mut value, mut sensitivity) = (Sum::default(), 0.0);
-    for (pair, stiffness) in problem.bed_pairs().filter(|(pair, _)| counted.boundary_edge(&problem.mesh, pair.edge)) {
-        for [energy, moved] in of(pair, stiffness) {
+    let own = problem.bed_pairs().map(|(pair, k)| (*pair, k, false));
+    let elastic = problem.pairs().filter_map(|pair| BedPair::of_contact(pair, &problem.mesh));
+    let all = own.chain(elastic.map(|(pair, k)| (pair, k, true)));
+    for (pair, stiffness, is_contact) in all.filter(|(pair, ..)| counted.boundary_edge(&problem.mesh, pair.edge)) {
+        for [energy, moved] in of(&pair, stiffness, is_contact) {
             value.add(energy);
             sensitivity += moved;
         }

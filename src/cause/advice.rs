@@ -39,7 +39,7 @@ impl Kind {
     /// The kind of a finding of a diagnosis, by its name.
     pub fn of_finding(name: &str) -> Self {
         match name.split('/').next().unwrap_or(name) {
-            "contact" => Kind::Contact,
+            "contact" | "bond" => Kind::Contact,
             "support" => Kind::Support,
             "load" | "loads" => Kind::Load,
             "body" | "bodies"
@@ -102,6 +102,11 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Contact holds in the mean and not at the nodes, which is no mistake of a method that asks for no more; where it begins or ends, its \
              integration rule or an unfinished iteration leaves the rest.",
             "Hand the field in with `--contact weak`, and let that program iterate until its contact forces no longer change.",
+        ],
+        (Kind::Contact | Kind::Support, "stiffness" | "normal" | "tangential") => [
+            "The springs are not those of the scene: another stiffness, another direction, or integrated in another way.",
+            "Their stiffness is force per area and displacement, not per node. Compare it in both directions, and its unit; ∫ k j φ of a linear edge has \
+             1/3 and 1/6 of its length.",
         ],
         (Kind::Contact, "glued" | "pulling") => [
             "The constraint is an equation where it should be an inequality.",

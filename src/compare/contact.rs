@@ -75,6 +75,8 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        // Of elastic contact no displacement moves the pressure alone.
+        let bounded = !problem.section().is_revolved() && !is_elastic(interface);
         let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
         ContactSummary {
             name: interface.name.clone(),
@@ -82,7 +84,7 @@ impl Sides<'_> {
             moment: TwoSides { dual: about_zero(problem, moment, force), primal: None },
             pressure_max: TwoSides { dual: largest, primal: None },
             pressure_max_at: TwoSides { dual: problem.scene.as_written(at), primal: None },
-            pressure_mean: if problem.section().is_revolved() { None } else { around() },
+            pressure_mean: if bounded { around() } else { None },
             open_fraction: open / length,
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
@@ -95,7 +97,8 @@ impl Sides<'_> {
     /// Pressure curves of a displacement solution: from its reactions, and from its stresses.
     fn profiles(&self, index: usize, interface: &Interface, judged: &Judged) -> Vec<Profile> {
         let name = &judged.candidate.name;
-        let reactions = judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| !has_tip(interface));
+        let reactions =
+            judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| has_reactions(interface));
         let reactions = reactions.map(|reactions| {
             let pieces = reaction_pressure(self.problem, interface, reactions);
             Profile { model: format!("{name} reactions"), points: profile(interface, &pieces) }
@@ -113,7 +116,8 @@ impl Sides<'_> {
         summary: &mut ContactSummary,
     ) -> Vec<Check> {
         let problem = self.problem;
-        let reactions = best.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| !has_tip(interface));
+        let reactions =
+            best.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| has_reactions(interface));
         let pieces = match reactions {
             Some(reactions) => reaction_pressure(problem, interface, reactions),
             None => trace_pressure(problem, interface, best),
@@ -135,7 +139,7 @@ impl Sides<'_> {
 
         let mut checks = Vec::new();
         // A field that solves nothing promises no pressure; its trace is shown, and judged by the energy alone.
-        if !best.candidate.is_solution {
+        if !best.candidate.is_solution || is_elastic(interface) {
             return checks;
         }
         // Elsewhere than on parallelograms the integrals of the solution are those of its own rule: no identity, and no bound.
@@ -290,6 +294,15 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
 fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     let [x, y] = problem.scene.origin;
     if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
+}
+
+/// Whether reactions of a contact can be compared: those of elastic contact are springs'.
+fn has_reactions(interface: &Interface) -> bool {
+    !has_tip(interface) && !is_elastic(interface)
+}
+
+fn is_elastic(interface: &Interface) -> bool {
+    interface.pairs.iter().any(|pair| pair.stiffness.is_some())
 }
 
 /// Whether both sides end in one vertex: at the tip of a crack no reaction is seen, it holds itself.

@@ -20,7 +20,7 @@ pub mod pressure;
 mod resultant;
 mod revolved;
 pub mod solution;
-mod springs;
+pub mod springs;
 mod stress;
 mod tolerance;
 pub mod turned;
@@ -98,13 +98,15 @@ pub fn compare(
     candidates: Vec<Candidate>,
     allow: &Allowances,
 ) -> Comparison {
+    // To displacements elastic contact is springs that do not pull.
+    let soft = &*problem.softened();
     let scales = Scales::new(problem).from_closed_contacts(problem);
     let ceilings = Ceilings::new(problem, &scales, (dual, bracket));
     let mut refused = Vec::new();
     let mut judged = Vec::new();
     for candidate in candidates {
         let name = candidate.name.clone();
-        match Judged::new(problem, dual, candidate, ceilings.extent) {
+        match Judged::new(soft, dual, candidate, ceilings.extent) {
             Ok(j) => judged.push(j),
             Err(reason) => refused.push(Check::not_made(
                 &format!("admissible/{name}"),
@@ -124,9 +126,9 @@ pub fn compare(
     comparison.checks = energy::dual_checks(problem, &scales, (dual, bracket), upper);
     comparison.checks.extend(refused);
     for judged in &comparison.judged {
-        comparison.checks.extend(energy::primal_checks(problem, (&scales, &ceilings), (dual, bracket), judged));
+        comparison.checks.extend(energy::primal_checks(soft, (&scales, &ceilings), (dual, bracket), judged));
     }
-    comparison.checks.extend(energy::degree_order(problem, (&scales, &ceilings), &comparison.judged, bracket));
+    comparison.checks.extend(energy::degree_order(soft, (&scales, &ceilings), &comparison.judged, bracket));
     let best = comparison.best.map(|b| &comparison.judged[b]);
     let gap = (upper - bracket.lower()).max(0.0);
     let sides = contact::Sides { problem, scales: &scales, ceilings: &ceilings, dual, gap, best };

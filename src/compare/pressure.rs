@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::candidate::{Judged, Reactions};
 pub use super::piece::{Piece, variation};
 use super::revolved::stress_at;
+use crate::bounds::openings;
 use crate::dual::DualSolution;
 use crate::element::displacement::through;
 use crate::element::{Strains, elastic_degree, side};
@@ -99,6 +100,9 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let trace = |pair: &ContactPair| {
+        if let Some(k) = pair.stiffness {
+            return spring_pressure(&openings(problem, &judged.field.displacement, pair), k);
+        }
         let Some(e) = pair.edges[0] else { return Piece::polynomial(vec![0.0]) };
         let t = mesh.edges[e].triangles[0].unwrap_or(0);
         let sub = mesh.triangle_edges[t].iter().position(|&x| x == e).unwrap_or(0);
@@ -130,6 +134,21 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         Piece::polynomial(pressures)
     };
     interface.pairs.iter().map(trace).collect()
+}
+
+/// Parts of an edge on which the pressure of an elastic contact that ends there is drawn as linear.
+const PARTS: usize = 32;
+
+/// k times what a jump exceeds the gap by, from the coefficients of the opening.
+fn spring_pressure(opening: &[f64], k: f64) -> Piece {
+    let pressed: Vec<f64> = opening.iter().map(|open| -k * open).collect();
+    if pressed.iter().all(|p| *p >= 0.0) {
+        return Piece::polynomial(pressed);
+    }
+    if pressed.iter().all(|p| *p <= 0.0) {
+        return Piece::polynomial(vec![0.0]);
+    }
+    Piece::broken((0..=PARTS).map(|i| side::value(&pressed, i as f64 / PARTS as f64).max(0.0)).collect())
 }
 
 /// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included.

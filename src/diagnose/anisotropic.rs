@@ -21,6 +21,9 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         for Mistake { name, law, sentence } in mistakes(&bodies[b].elasticity) {
             let finding = format!("body/{}/{name}", bodies[b].name);
             let sentence = format!("{sentence} of {}", bodies[b].name);
+            if !bodies[b].initial.is_none() {
+                trials.push(with_own_initial(space, (b, &law), &finding, &sentence));
+            }
             trials.push(trial(space, |at| (at == b).then_some(law), finding, sentence));
         }
     }
@@ -44,6 +47,17 @@ fn trial(space: &Space<'_>, law: impl Fn(usize) -> Option<Elasticity>, name: Str
         let (law, kinematics) = (law(b)?, scene.kinematics);
         Some(Material::new(kinematics, &law).with_initial(kinematics, &law, &scene.bodies[b].initial))
     });
+    Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
+}
+
+/// The same of one body whose initial strain stays what it is.
+fn with_own_initial(space: &Space<'_>, (body, law): (usize, &Elasticity), name: &str, sentence: &str) -> Trial {
+    let kinematics = space.problem().scene.kinematics;
+    let change = space.stiffness(|b| {
+        let own = Moduli::of_law(kinematics, &space.problem().scene.bodies[b].elasticity);
+        (b == body).then(|| Moduli::of_law(kinematics, law).less(own))
+    });
+    let sentence = format!("{sentence}, and its initial strain is that of the scene");
     Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
 }
 

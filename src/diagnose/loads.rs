@@ -1,12 +1,13 @@
 //! Wrong loads.
 
-use super::Finding;
 use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
+use super::{Finding, Trial};
 use crate::compare::cells;
 use crate::load::{Affine, BodyForce};
 use crate::problem::Condition;
+use crate::scene::Body;
 
 /// Coefficients of components that are smaller than this are none.
 const NONE: f64 = 5e-3;
@@ -102,6 +103,22 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             vec![Finding::new(name.clone(), Some(found[0].hypot(found[1])), Some(wanted[0].hypot(wanted[1])), sentence)]
         });
     }
+}
+
+/// Body forces with rows and columns of their gradient exchanged.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let of_body = |(b, body): (usize, &Body)| {
+        let [[_, xy], [yx, _]] = body.body_force.given().gradient;
+        if xy == yx {
+            return None;
+        }
+        let more = BodyForce::affine(Affine { value: [0.0; 2], gradient: [[0.0, yx - xy], [xy - yx, 0.0]] });
+        let change = space.column(of_body(space, b, &more).iter().map(|f| f.map(|x| -x)).collect());
+        let sentence = format!("rows and columns of the gradient of the body force of {} are exchanged", body.name);
+        let finding = Finding::new(format!("body/{}/gradient/body_force", body.name), None, None, sentence);
+        Some(Trial { rank: 1, left: space.left_with(&change), findings: vec![finding] })
+    };
+    space.problem().scene.bodies.iter().enumerate().filter_map(of_body).collect()
 }
 
 /// The parts of a force that is not the same everywhere, each with a factor of its own, where there are several.

@@ -21,6 +21,7 @@ mod moved;
 mod physical;
 mod single;
 mod space;
+mod springs;
 mod supports;
 mod turned;
 mod values;
@@ -203,6 +204,7 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     material::terms(space, terms);
     initial::terms(space, terms);
     loads::terms(space, terms);
+    springs::terms(space, terms);
     let mut trials = values::trials(space);
     trials.extend(material::trials(space));
     trials.extend(anisotropic::trials(space));
@@ -212,6 +214,8 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     trials.extend(local::trials(space));
     trials.extend(integration::trials(space));
     trials.extend(contact::trials(space));
+    trials.extend(springs::trials(space));
+    trials.extend(loads::trials(space));
     trials
 }
 

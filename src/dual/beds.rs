@@ -74,8 +74,10 @@ impl BedEdge {
 /// One direction of one pair.
 #[derive(Debug, Clone, Copy)]
 struct Spring {
-    /// First unknown of its jump; the others follow every second place.
+    /// First unknown of its jump, or of the stretch of an elastic contact.
     first: usize,
+    /// Places from one of these unknowns to the next.
+    step: usize,
     degree: usize,
     /// k/l.
     stiffness: f64,
@@ -99,12 +101,21 @@ impl Springs {
             for (c, k) in stiffness.into_iter().enumerate().filter(|(_, k)| *k > 0.0) {
                 springs.all.push(Spring {
                     first: edge.first() + c,
+                    step: 2,
                     degree: edge.degree,
                     stiffness: k / pair.length,
                     parameter: springs.parameters,
                 });
                 springs.parameters += edge.degree + 1;
             }
+        }
+        for pair in problem.pairs() {
+            let (Some(k), Some(e)) = (pair.stiffness, pair.edges[0]) else { continue };
+            let EdgeMoments::Contact(edge) = &unknowns.edges[e] else { continue };
+            let Some(stretch) = edge.stretch else { continue };
+            let (parameter, stiffness) = (springs.parameters, k / pair.length);
+            springs.all.push(Spring { first: stretch, step: 1, degree: edge.degree, stiffness, parameter });
+            springs.parameters += edge.degree + 1;
         }
         springs
     }
@@ -152,7 +163,7 @@ impl Springs {
 
 impl Spring {
     fn at(&self, k: usize) -> usize {
-        self.first + 2 * k
+        self.first + self.step * k
     }
 }
 
@@ -175,8 +186,10 @@ mod tests {
         for p in 1..MOST {
             let jump: Vec<f64> = (0..=p).map(|k| ((3 * k + 1) as f64).cos()).collect();
             let moments = side::moments(&jump, p);
-            let springs =
-                Springs { all: vec![Spring { first: 0, degree: p, stiffness: 4.0, parameter: 0 }], parameters: p + 1 };
+            let springs = Springs {
+                all: vec![Spring { first: 0, step: 2, degree: p, stiffness: 4.0, parameter: 0 }],
+                parameters: p + 1,
+            };
             let x: Vec<f64> = moments.iter().flat_map(|m| [*m, 7.0]).collect();
             let mut s = vec![0.0; p + 1];
             springs.parameters_from(&x, &mut s);

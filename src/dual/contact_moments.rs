@@ -23,9 +23,12 @@ pub struct ContactEdge {
     pub jump: usize,
     /// First of the moments along the direction on the second side, where that is a body.
     pub second: Option<usize>,
+    /// First stretch of an elastic contact, on its first side: the jump is what is numbered as one and this, see
+    /// [`crate::problem::Problem::softened`].
+    pub stretch: Option<usize>,
     /// 0 on the first side, 1 on the second.
     pub side: usize,
-    degree: usize,
+    pub(super) degree: usize,
     /// Whether the pair runs against the edge.
     reversed: bool,
     axes: Axes,
@@ -67,7 +70,7 @@ impl ContactEdge {
             let (dual, rest) = dual_and_rest(&columns);
             Axes::Turning { columns, dual, rest }
         };
-        ContactEdge { across, jump, second, side, degree, reversed, axes }
+        ContactEdge { across, jump, second, stretch: None, side, degree, reversed, axes }
     }
 
     /// Moment `k` of the edge along two axes at right angles.
@@ -77,6 +80,15 @@ impl ContactEdge {
             Axes::Constant { along, shares: [c, d] } => {
                 let across = Component::sum([-along[1], along[0]], &[(self.across + k, 1.0)], 1);
                 let along = match (self.side, self.second) {
+                    (0, Some(second)) if self.stretch.is_some() => {
+                        let stretch = self.stretch.map_or(0, |first| first + at);
+                        let terms = [(stretch, 1.0 / c), (self.jump + at, 1.0 / c), (second + at, -d / c)];
+                        Component::sum(*along, &terms, 1)
+                    }
+                    (0, None) if self.stretch.is_some() => {
+                        let stretch = self.stretch.map_or(0, |first| first + at);
+                        Component::sum(*along, &[(stretch, 1.0 / c), (self.jump + at, 1.0 / c)], 2)
+                    }
                     // c m_n' = j − d m_n'': outward directions point against each other.
                     (0, Some(second)) => Component::sum(*along, &[(self.jump + at, 1.0 / c), (second + at, -d / c)], 0),
                     (1, Some(second)) => Component::sum(*along, &[(second + at, 1.0)], 1),

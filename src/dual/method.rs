@@ -66,9 +66,13 @@ pub trait DualMethod: Sync {
 /// # Errors
 /// [`DualError::NotExpressible`].
 pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
-    let Some(bed) = problem.beds.first() else { return Ok(()) };
-    let what =
-        if bed.is_layer() { format!("the elastic layer {}", bed.name) } else { format!("the springs on {}", bed.name) };
+    let elastic = problem.interfaces.iter().find(|contact| contact.pairs.iter().any(|pair| pair.stiffness.is_some()));
+    let what = match (problem.beds.first(), elastic) {
+        (Some(bed), _) if bed.is_layer() => format!("the elastic layer {}", bed.name),
+        (Some(bed), _) => format!("the springs on {}", bed.name),
+        (None, Some(contact)) => format!("the stiffness of contact {}", contact.name),
+        (None, None) => return Ok(()),
+    };
     let remedy = "use --method condensed or active-set, without --engine";
     Err(DualError::NotExpressible { method, what, remedy })
 }

@@ -136,7 +136,9 @@ impl Unknowns {
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let jumps = matched.direction.columns(of_pair(matched));
-                    first_block[e] = push(2 * coefficients - jumps);
+                    // Stretches of an elastic contact follow the moments of its first side.
+                    let stretches = if side == 0 && matched.stiffness.is_some() { jumps } else { 0 };
+                    first_block[e] = push(2 * coefficients - jumps + stretches);
                     if side == 1 {
                         second[interface][pair] = Some(push(jumps));
                     }
@@ -171,15 +173,20 @@ impl Unknowns {
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let own = if side == 0 { matched.first } else { matched.second.unwrap_or(matched.first) };
-                    EdgeMoments::Contact(Box::new(ContactEdge::new(
+                    let across = blocks[first_block[e]].start;
+                    let mut edge = ContactEdge::new(
                         &matched.direction,
                         degree[e].into(),
                         side,
                         own[0] != problem.mesh.edges[e].vertices[0],
-                        blocks[first_block[e]].start,
+                        across,
                         blocks[jump_blocks[interface][pair]].start,
                         second[interface][pair].map(|b| blocks[b].start),
-                    )))
+                    );
+                    let coefficients = usize::from(degree[e]) + 1;
+                    let is_elastic = side == 0 && matched.stiffness.is_some();
+                    edge.stretch = is_elastic.then_some(across + coefficients);
+                    EdgeMoments::Contact(Box::new(edge))
                 }
             })
             .collect();

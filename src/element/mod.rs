@@ -21,6 +21,7 @@ mod interpolate;
 mod material;
 pub mod on_quadrilaterals;
 pub mod plain;
+pub mod positive;
 pub mod quadrature;
 pub mod quadrilateral;
 pub mod revolved;

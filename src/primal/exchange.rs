@@ -192,6 +192,8 @@ struct SpringEntry {
     opposite: Option<usize>,
     axes: [[f64; 2]; 2],
     stiffness: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<Vec<f64>>,
 }
 
 #[derive(Serialize)]
@@ -298,6 +300,7 @@ impl<'a> ProblemFile<'a> {
                     opposite: pair.opposite,
                     axes: pair.axes,
                     stiffness,
+                    gap: pair.contact.map(|contact| contact.gap()),
                 })
                 .collect(),
             pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),

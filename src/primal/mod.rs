@@ -261,6 +261,7 @@ pub struct PrimalContact {
 /// Everything that keeps the results from being complete is a [`PrimalError`]; the call ends at the latest a few
 /// seconds after [`Options::timeout`].
 pub fn run(problem: &Problem, pins: &[Pin], options: &Options) -> Result<Vec<PrimalSolution>, PrimalError> {
+    let problem = &*problem.softened();
     let degrees_fit = options.degrees.iter().all(|d| (1..=HIGHEST_DEGREE).contains(d)) && !options.degrees.is_empty();
     if !degrees_fit || options.ranks == Some(0) {
         return Err(PrimalError::BadOptions { degrees: options.degrees.clone(), ranks: options.ranks });

@@ -28,6 +28,7 @@ const PACKAGE: Package = Package {
         ("run.py", include_str!("../../reference/hypercircle_reference/run.py")),
         ("solve.py", include_str!("../../reference/hypercircle_reference/solve.py")),
         ("springs.py", include_str!("../../reference/hypercircle_reference/springs.py")),
+        ("touching.py", include_str!("../../reference/hypercircle_reference/touching.py")),
     ],
 };
 

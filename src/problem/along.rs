@@ -80,6 +80,7 @@ pub(super) fn pair_along(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc),
+            stiffness: contact.stiffness,
         });
     }
     if pairs.is_empty() {

@@ -79,6 +79,7 @@ pub(super) fn pair_around(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc),
+            stiffness: contact.stiffness,
         });
         faced.push(*link);
     }

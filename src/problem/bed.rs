@@ -4,7 +4,7 @@
 //! of the second, or of the ground: the traction on the first side is −k j. Its conjugate φ*(q) = q²/2k is what the complementary
 //! energy has of it, with q = −t, and φ(j) + φ*(q) − q j = (k j − q)²/2k is what it adds to the gap.
 
-use super::ProblemError;
+use super::{ContactPair, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::bonded::opposite;
 use crate::scene::{Bond, Scene, Support, SupportKind};
@@ -31,12 +31,46 @@ pub struct BedPair {
     pub axes: [[f64; 2]; 2],
     /// Length of the edge.
     pub length: f64,
+    /// The elastic contact that it is, which resists along the first of the axes where the jump exceeds the gap, and pulls nowhere.
+    pub contact: Option<OneSided>,
+}
+
+/// The gap of an elastic contact along its edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneSided {
+    pair: ContactPair,
+    reversed: bool,
+}
+
+impl OneSided {
+    /// Bernstein coefficients of the gap, from the first vertex of the edge to its second.
+    pub fn gap(&self) -> Vec<f64> {
+        self.along_edge(self.pair.gap_polynomial())
+    }
+
+    /// Coefficients along the pair as those along the edge.
+    fn along_edge(&self, mut coefficients: Vec<f64>) -> Vec<f64> {
+        if self.reversed {
+            coefficients.reverse();
+        }
+        coefficients
+    }
 }
 
 impl BedPair {
     fn new(mesh: &Triangulation, edge: usize, opposite: Option<usize>) -> Self {
         let (length, [x, y]) = mesh.edge_frame(edge);
-        BedPair { edge, opposite, axes: [[x, y], [-y, x]], length }
+        BedPair { edge, opposite, axes: [[x, y], [-y, x]], length, contact: None }
+    }
+
+    /// The springs that an elastic contact is where it is closed, and their stiffness; `None` of a rigid one.
+    pub fn of_contact(pair: &ContactPair, mesh: &Triangulation) -> Option<(Self, [f64; 2])> {
+        let (k, edge) = (pair.stiffness?, pair.edges[0]?);
+        let [x, y] = pair.direction.unit(0);
+        let reversed = mesh.edges[edge].vertices[0] != pair.first[0];
+        let contact = Some(OneSided { pair: *pair, reversed });
+        let own = BedPair { axes: [[x, y], [-y, x]], contact, ..BedPair::new(mesh, edge, pair.edges[1]) };
+        Some((own, [k, 0.0]))
     }
 
     /// The edges with the side that each is on.

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::contact::pair_up;
 use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, softened};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::bisect::{RefinementEdges, bisect};
@@ -157,6 +157,7 @@ impl Problem {
                     }
                 }
             }
+            softened::refuse(contact, &matched, section, &mesh, !scene.quantities.is_empty())?;
             interfaces.push(matched);
         }
         let beds = beds(&scene, &mesh)?;
@@ -201,7 +202,9 @@ impl Problem {
 
     /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
     pub fn is_cone(&self) -> bool {
-        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none());
+        let elastic = self.bed_pairs().filter_map(|(pair, _)| pair.contact);
+        let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none())
+            && elastic.into_iter().all(|contact| contact.gap().iter().all(|g| *g == 0.0));
         no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 
@@ -313,8 +316,9 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
         }
     }
     let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
-    if springs || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
-        let what = "a body of revolution has springs or an elastic layer".to_string();
+    let elastic = scene.contacts.iter().any(|contact| contact.stiffness.is_some());
+    if springs || elastic || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
+        let what = "a body of revolution has springs, an elastic layer or elastic contact".to_string();
         return refused(what, "leave `stiffness` out of axisymmetric scenes");
     }
     Ok(())

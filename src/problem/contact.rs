@@ -92,6 +92,7 @@ pub(super) fn pair_up(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc.map(on_break)),
+            stiffness: contact.stiffness,
         });
     }
     if let Some(e) = facing.values().min() {

@@ -11,11 +11,12 @@ mod direction;
 mod error;
 mod normals;
 mod scales;
+mod softened;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bed::facing_vertices;
-pub use bed::{Bed, BedPair};
+pub use bed::{Bed, BedPair, OneSided};
 pub use bow::Bow;
 pub use direction::Direction;
 pub use error::ProblemError;
@@ -236,6 +237,8 @@ pub struct ContactPair {
     pub gap: [f64; 2],
     /// How far it lies below its chord between them.
     pub bow: Bow,
+    /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
+    pub stiffness: Option<f64>,
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

@@ -121,6 +121,9 @@ fn interface_entry<'py>(py: Python<'py>, interface: &Interface) -> PyResult<Boun
         entry.set_item("direction", pair.direction.ends)?;
         entry.set_item("length", pair.length)?;
         entry.set_item("gap", pair.gap)?;
+        if let Some(k) = pair.stiffness {
+            entry.set_item("stiffness", k)?;
+        }
         if !pair.bow.is_none() {
             entry.set_item("gap_polynomial", pair.gap_polynomial())?;
         }

@@ -12,7 +12,7 @@ use super::raw::{
     At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
 };
 use super::source::{Source, counted};
-use super::springs::{no_stiffness, spring};
+use super::springs::{no_stiffness, spring, stiffness_of};
 use super::{
     Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
 };
@@ -228,7 +228,14 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     };
     let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    Ok(Contact { normals: normals(contact, table, source)?, direction, obstacle, ..Contact::new(sides, gap) })
+    let stiffness = stiffness_of(contact, table, source)?;
+    Ok(Contact {
+        normals: normals(contact, table, source)?,
+        direction,
+        obstacle,
+        stiffness,
+        ..Contact::new(sides, gap)
+    })
 }
 
 /// A unit vector for a contact between two sides.

@@ -138,7 +138,11 @@ impl Draft {
             ("tractions", self.tractions.iter().map(traction).collect()),
             (
                 "contacts",
-                self.contacts.iter().enumerate().map(|(i, c)| contact(c, self.range_of(Ranged::Gap(i)))).collect(),
+                self.contacts
+                    .iter()
+                    .enumerate()
+                    .map(|(i, c)| contact(c, [Ranged::Gap(i), Ranged::Contact(i)].map(|of| self.range_of(of))))
+                    .collect(),
             ),
             (
                 "bonds",
@@ -393,7 +397,8 @@ fn traction(Traction { on, load }: &Traction) -> String {
     }
 }
 
-fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range: Option<String>) -> String {
+fn contact(contact: &Contact, [range, stiff]: [Option<String>; 2]) -> String {
+    let Contact { sides, gap, normals, direction, obstacle, stiffness } = contact;
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
@@ -409,6 +414,8 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    let stiffness =
+        stiffness.map(|k| format!(", stiffness = {}", stiff.unwrap_or_else(|| number(k)))).unwrap_or_default();
     if let Some(Obstacle { shape, moved }) = obstacle {
         let shape = match shape {
             Shape::Line(ends) => format!("line = {}", rows(ends)),
@@ -417,9 +424,9 @@ fn contact(Contact { sides, gap, normals, direction, obstacle }: &Contact, range
                 format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
             }
         };
-        return format!("{sides}, obstacle = {{ {shape} }}, move = {}", list(moved));
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{stiffness}", list(moved));
     }
-    format!("{sides}, gap = {gap}{normals}{direction}")
+    format!("{sides}, gap = {gap}{normals}{direction}{stiffness}")
 }
 
 fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {

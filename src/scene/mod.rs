@@ -235,6 +235,8 @@ pub struct Contact {
     pub direction: Option<[f64; 2]>,
     /// A rigid obstacle that is not of the shape of the boundary.
     pub obstacle: Option<Obstacle>,
+    /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
+    pub stiffness: Option<f64>,
 }
 
 /// Where the directions of contact come from.
@@ -259,7 +261,7 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None }
+        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None, stiffness: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.

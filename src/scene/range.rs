@@ -41,6 +41,8 @@ pub enum Ranged {
     Spring(usize, usize),
     /// That of the elastic layer of a bond.
     Layer(usize, usize),
+    /// The stiffness of an elastic contact.
+    Contact(usize),
 }
 
 impl DataRange {
@@ -48,7 +50,7 @@ impl DataRange {
     pub fn softest(&self) -> f64 {
         match self.of {
             Ranged::Gap(_) => self.high,
-            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) => self.low,
+            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => self.low,
         }
     }
 
@@ -56,7 +58,7 @@ impl DataRange {
     pub fn stiffest(&self) -> f64 {
         match self.of {
             Ranged::Gap(_) => self.low,
-            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) => self.high,
+            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => self.high,
         }
     }
 }
@@ -67,6 +69,7 @@ impl Scene {
         match range.of {
             Ranged::Young(body) => format!("Young's modulus of {}", self.bodies[body].name),
             Ranged::Gap(contact) => format!("the gap of {}", self.contacts[contact].name()),
+            Ranged::Contact(contact) => format!("the stiffness of {}", self.contacts[contact].name()),
             Ranged::Spring(support, c) => {
                 format!("the {} stiffness of the springs on {}", DIRECTIONS[c], self.supports[support].on)
             }
@@ -91,6 +94,7 @@ impl Scene {
                     }
                 }
                 Ranged::Gap(contact) => scene.draft.contacts[contact].gap = Gap::Constant(range.stiffest()),
+                Ranged::Contact(contact) => scene.draft.contacts[contact].stiffness = Some(range.stiffest()),
                 Ranged::Spring(support, c) => {
                     if let SupportKind::Spring { stiffness } = &mut scene.draft.supports[support].kind {
                         stiffness[c] = range.stiffest();
@@ -236,6 +240,10 @@ pub(super) fn ranges(raw: &RawScene, bodies: &[Body]) -> Vec<DataRange> {
         RawGap::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Gap(i), low, high }),
         _ => None,
     };
+    let stiffness = |(i, contact): (usize, &At<Table<RawContact>>)| match &contact.value.0.stiffness.as_ref()?.value {
+        RawNumber::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Contact(i), low, high }),
+        RawNumber::One(_) => None,
+    };
     let of_components = |both: &[RawNumber], of: &dyn Fn(usize) -> Ranged| -> Vec<DataRange> {
         let ranged = |(c, component): (usize, &RawNumber)| match component {
             RawNumber::Range(ends) => two(ends).map(|[low, high]| DataRange { of: of(c), low, high }),
@@ -245,6 +253,7 @@ pub(super) fn ranges(raw: &RawScene, bodies: &[Body]) -> Vec<DataRange> {
     };
     let mut all: Vec<DataRange> = bodies.iter().enumerate().filter_map(young).collect();
     all.extend(raw.contacts.iter().enumerate().filter_map(gap));
+    all.extend(raw.contacts.iter().enumerate().filter_map(stiffness));
     for (i, support) in raw.supports.iter().enumerate() {
         if let Some(At { value: RawStiffness::Both(both), .. }) = &support.value.0.stiffness {
             all.extend(of_components(both, &|c| Ranged::Spring(i, c)));

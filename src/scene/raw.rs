@@ -499,6 +499,9 @@ pub(super) struct RawContact {
     #[serde(rename = "move")]
     #[schemars(with = "Option<[f64; 2]>")]
     pub moved: Option<Pair>,
+    /// Elastic contact: force per area and penetration beyond the gap, or the two ends of a range; rigid where it is missing.
+    #[schemars(with = "Option<RawNumber>")]
+    pub stiffness: Option<At<RawNumber>>,
 }
 
 /// Two boundaries that are glued to each other. Their vertices need not be the same.

@@ -1,8 +1,8 @@
 //! The stiffness of springs and elastic layers.
 
 use super::error::{Fault, SceneError};
-use super::range::{RawNumber, components};
-use super::raw::{At, RawStiffness, RawSupport, Table};
+use super::range::{RawNumber, components, ends};
+use super::raw::{At, RawContact, RawStiffness, RawSupport, Table};
 use super::source::Source;
 
 const NEGATIVE: (&str, &str) =
@@ -14,6 +14,11 @@ const NONE: (&str, &str) = (
 const SLACK: (&str, &str) = (
     "an elastic layer resists in both directions",
     "write two positive numbers [normal, tangential]; for sides that slide freely write a [[contacts]]",
+);
+
+const NO_CONTACT: (&str, &str) = (
+    "an elastic contact resists where it is closed",
+    "write a positive stiffness, or delete the key: nothing penetrates then",
 );
 
 /// The stiffness of a support that is a spring, normal and tangential.
@@ -59,6 +64,22 @@ pub(super) fn layer(stiffness: &At<Vec<RawNumber>>, table: &str, source: &Source
         source.positive(&At { value, start: stiffness.start, end: stiffness.end }, (table, "stiffness"), SLACK)?;
     }
     Ok(ends.map(|[low, _]| low))
+}
+
+/// The stiffness of an elastic contact, its lower end where it is known as a range.
+pub(super) fn stiffness_of(contact: &RawContact, table: &str, source: &Source) -> Result<Option<f64>, SceneError> {
+    let Some(raw) = &contact.stiffness else { return Ok(None) };
+    if let Some(direction) = &contact.direction {
+        let remedy =
+            "delete one of the two: the penetration of an elastic contact is measured along the normal of its sides";
+        let (key, table, other) = ("direction", table.to_owned(), "`stiffness`, an elastic contact");
+        let fault = Fault::Misplaced { key, table, other, remedy };
+        return Err(source.error(direction.span(), fault).with_related(raw.span(), "the stiffness"));
+    }
+    let (low, high) = ends(raw, (table, "stiffness"), source)?;
+    let low = source.positive(&low, (table, "stiffness"), NO_CONTACT)?;
+    high.map(|high| source.positive(&high, (table, "stiffness"), NO_CONTACT)).transpose()?;
+    Ok(Some(low))
 }
 
 /// Refuses a stiffness beside a support that is rigid.

@@ -23,6 +23,7 @@ mod drafts;
 mod dual_limits;
 mod dual_methods;
 mod effectivity;
+mod elastic_contact;
 mod element_formulas;
 mod element_properties;
 mod equilibrium;

@@ -6,7 +6,7 @@
 use super::nodes::{NodalValues, Nodes};
 use crate::bounds::springs::{OnSprings, spring_tractions};
 use crate::element::StressField;
-use crate::element::side::product;
+use crate::element::side::{self, product};
 use crate::problem::{BedPair, Problem};
 use crate::vector::dot;
 
@@ -21,6 +21,10 @@ pub struct BedEnergy {
     /// What pulls at the nodes of the first side, and at those of the second the other way.
     load: Vec<[f64; 2]>,
     length: f64,
+    /// The gap of an elastic contact.
+    gap: Option<Vec<f64>>,
+    /// The energy that is counted beside all this.
+    constant: f64,
 }
 
 /// Those of all pairs, one bed after the other.
@@ -33,6 +37,8 @@ pub fn energies(problem: &Problem, nodes: &Nodes) -> Vec<BedEnergy> {
         stiffness: stiffness.map(|k| k * pair.length),
         load: Vec::new(),
         length: pair.length,
+        gap: pair.contact.map(|contact| contact.gap()),
+        constant: 0.0,
     };
     problem.bed_pairs().map(of).collect()
 }
@@ -118,6 +124,22 @@ impl BedEnergy {
         0.5 * self.form(values, values) - self.work(values)
     }
 
+    /// Of an elastic contact, puts springs in its place that resist d = j − g less its negative part w at `values`: their energy
+    /// ½ k (d − w)² is nowhere below ½ k d₊², and the same at these values but where d changes its sign. Gives what they store beside
+    /// the energy that is counted.
+    pub fn touch(&mut self, values: &[[f64; 2]]) -> f64 {
+        let Some(gap) = &self.gap else { return 0.0 };
+        let along: Vec<f64> = self.jump(|node| values[node]).iter().map(|j| dot(*j, self.axes[0])).collect();
+        let degree = along.len().max(gap.len()) - 1;
+        let [jump, gap] = [&along, gap].map(|f| side::elevate(f, degree));
+        // g + w = min(j, g).
+        let rest: Vec<f64> = jump.iter().zip(&gap).map(|(j, g)| j.min(*g)).collect();
+        let k = self.stiffness[0] / self.length;
+        self.reload(Some(&[rest.iter().map(|w| k * w).collect(), Vec::new()]));
+        self.constant = 0.5 * self.stiffness[0] * side::integral(&rest, &rest);
+        self.constant
+    }
+
     /// The work of what pulls.
     pub fn work(&self, values: &[[f64; 2]]) -> f64 {
         if self.load.is_empty() {
@@ -151,10 +173,16 @@ pub fn draw(problem: &Problem, stress: &StressField, field: &mut NodalValues) {
             }
             let [a, b] = mesh.edges[pair.edge].vertices;
             let opposite = pair.opposite.map(|e| mesh.edges[e].vertices);
+            let gap = pair.contact.map(|contact| contact.gap());
             for (end, v, t) in [(0, a, t[0]), (1, b, t[t.len() - 1])] {
                 let other = opposite.map(|ends| ends[1 - end]).filter(|w| *w != v);
                 let now = dot(vertex[v], *axis) - other.map_or(0.0, |w| dot(vertex[w], *axis));
-                let off = -t / k - now;
+                // Where nothing presses on an elastic contact it is anywhere within its gap.
+                let off = match gap.as_ref().map(|gap| gap[end * (gap.len() - 1)]) {
+                    None => -t / k - now,
+                    Some(gap) if t < 0.0 => gap - t / k - now,
+                    Some(gap) => (gap - now).min(0.0),
+                };
                 let part = if other.is_some() { 0.5 } else { 1.0 };
                 (0..2).for_each(|c| vertex[v][c] += part * off * axis[c]);
                 if let Some(w) = other {

@@ -25,6 +25,7 @@ impl Groundwork {
     /// # Errors
     /// [`NoUpperBound::SupportsDisagree`].
     pub fn new(problem: &Problem, degrees: impl IntoIterator<Item = usize>) -> Result<Self, NoUpperBound> {
+        let problem = &*problem.softened();
         let holds = holds(problem)?;
         let nodes = Nodes::new(
             problem.mesh.points.len(),

@@ -178,6 +178,8 @@ pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]
 /// # Errors
 /// [`NoUpperBound`] names the place.
 pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
+    // Nothing is too deep for an elastic contact.
+    let problem = &*problem.softened();
     let holds = holds(problem)?.vertices;
     let held = |v: usize, n: [f64; 2]| {
         let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];

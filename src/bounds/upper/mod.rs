@@ -37,6 +37,7 @@ mod sets;
 mod share;
 mod split;
 mod stiffness;
+mod yielded;
 
 pub use self::groundwork::Groundwork;
 pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
@@ -48,6 +49,7 @@ pub use self::pull::{Beside, Pull};
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein, of_pair, sides};
 use self::share::{Share, Whole};
+pub(super) use self::yielded::yielded;
 use super::energy::potential;
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement, SideValues, StressField};
@@ -107,6 +109,7 @@ pub fn admissible_on(
     keep: bool,
 ) -> Result<(Displacement, Prepared), NoUpperBound> {
     let mut ground = ground;
+    let problem = &*problem.softened();
     let relaxed = relaxed(&mut ground, problem, (&dual.stress, &dual.moments), floor, start, &Whole)?;
     let Groundwork { holds, rows, made, .. } = ground;
     let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed, &Whole)?.0, &made.model);
@@ -161,9 +164,32 @@ fn relaxed(
     if let Some(start) = start {
         candidates.push(restricted(problem, holds, rows, start.on(mesh, nodes), share)?.0);
     }
-    let until = Until::Near(floor / problem.scene.thickness);
-    relax::relax(problem, &made.model, &mut made.patches, until, candidates, at_rest, share)
+    let floor = floor / problem.scene.thickness;
+    let stored = made.model.touch(&candidates[0].values);
+    let near = |stored| Until::Near(floor - stored);
+    let mut relaxed = relax::relax(problem, &made.model, &mut made.patches, near(stored), candidates, at_rest, share)?;
+    if problem.beds.iter().flat_map(|bed| &bed.pairs).all(|pair| pair.contact.is_none()) {
+        return Ok(relaxed);
+    }
+    let mut energy = made.model.energy(&relaxed.values, share) + stored;
+    for _ in 0..TOUCHES {
+        let stored = made.model.touch(&relaxed.values);
+        let again = vec![relaxed.clone()];
+        let next = relax::relax(problem, &made.model, &mut made.patches, near(stored), again, at_rest, share)?;
+        let lower = made.model.energy(&next.values, share) + stored;
+        relaxed = next;
+        if energy - lower <= WORTH_A_TOUCH * (lower - floor).abs() {
+            break;
+        }
+        energy = lower;
+    }
+    Ok(relaxed)
 }
+
+/// How often springs take the place of an elastic contact anew at most, and the part of the gap between the bounds that makes once more
+/// worth it.
+const TOUCHES: usize = 12;
+const WORTH_A_TOUCH: f64 = 0.01;
 
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
 fn restricted(

@@ -84,6 +84,12 @@ impl Model {
         self.rows = groups.iter().flatten().cloned().collect();
     }
 
+    /// Takes every elastic contact for the springs that it is at `values`, and gives the energy that these store beside the one that is
+    /// counted.
+    pub fn touch(&mut self, values: &[[f64; 2]]) -> f64 {
+        self.beds.iter_mut().map(|bed| bed.touch(values)).sum()
+    }
+
     /// Whether nodes may move in the same directions where `holds` hold them.
     pub fn is_free_as(&self, holds: &Holds, nodes: &Nodes) -> bool {
         self.free == directions(holds, nodes)

@@ -141,6 +141,7 @@ fn contacts(problem: &Problem) -> Markup {
                 Gap::Parabola(touching) => { "of a parabola of radius " (significant(touching.radius, 5)) }
             }
             @if contact.direction.is_some() { ", matched along a direction" }
+            @if let Some(k) = contact.stiffness { ", elastic with the stiffness " (significant(k, 5)) }
         } } }
     }
 }

@@ -151,6 +151,27 @@ fn springs() {
     }
 }
 
+/// Not exact: that of a rigid block, which this one is to five digits.
+#[test]
+fn elastic_contact() {
+    let report = sound("elastic_contact");
+    // Pressure from 0 to 2 N/c over the closed length c: the springs store ∫ p²/2k = (2 N/c)² c/6k, and the block as good as nothing.
+    let (force, closed, k) = (6.0, 1.5, 40.0);
+    let largest = 2.0 * force / closed;
+    let energy = -largest * largest * closed / (6.0 * k);
+    close(report.number("/energy/lower"), energy, 1e-4);
+    close(report.number("/energy/upper"), energy, 1e-4);
+    close(report.number("/contact/0/pressure_max/dual"), largest, 1e-3);
+    close(report.number("/contact/0/open_fraction"), 0.25, 1e-9);
+    close(report.number("/contact/0/resultant/dual/1"), force, 1e-9);
+    close(report.number("/contact/0/moment/dual"), 0.5 * force, 1e-9);
+    if with_reference() {
+        close(report.number("/contact/0/resultant/primal/1"), force, 1e-3);
+        close(report.number("/contact/0/pressure_max/primal"), largest, 1e-3);
+        close(report.number("/primal/1/energy"), energy, 1e-4);
+    }
+}
+
 #[test]
 fn bonded() {
     let report = sound("bonded");

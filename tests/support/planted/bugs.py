@@ -3,19 +3,29 @@
 from places import no_place, pick
 
 
+def isotropic(problem):
+    return [body for body in problem["bodies"] if "young" in body]
+
+
+def constant(problem):
+    """Bodies with a body force that is the same everywhere."""
+    return [body for body in problem["bodies"] if isinstance(body["body_force"], list) and any(body["body_force"])]
+
+
 def poisson_sign(problem, rng):
-    for body in problem["bodies"]:
+    own = isotropic(problem)
+    for body in own:
         body["poisson"] = -body["poisson"]
-    if not any(body["poisson"] for body in problem["bodies"]):
+    if not any(body["poisson"] for body in own):
         no_place()
 
 
 def modulus(problem, rng):
-    pick(rng, problem["bodies"])["young"] *= 1.05
+    pick(rng, isotropic(problem))["young"] *= 1.05
 
 
 def poisson(problem, rng):
-    body = pick(rng, problem["bodies"])
+    body = pick(rng, isotropic(problem))
     body["poisson"] *= 0.95
     if body["poisson"] == 0:
         no_place()
@@ -30,11 +40,11 @@ def kinematics(problem, rng):
 
 
 def weight_missing(problem, rng):
-    pick(rng, [body for body in problem["bodies"] if any(body["body_force"])])["body_force"] = [0.0, 0.0]
+    pick(rng, constant(problem))["body_force"] = [0.0, 0.0]
 
 
 def weight_sideways(problem, rng):
-    body = pick(rng, [body for body in problem["bodies"] if any(body["body_force"])])
+    body = pick(rng, constant(problem))
     x, y = body["body_force"]
     body["body_force"] = [y, -x]
 
@@ -134,8 +144,9 @@ def materials_swapped(problem, rng):
     if len(problem["bodies"]) < 2:
         no_place()
     first, second = problem["bodies"][:2]
-    for key in ("young", "poisson"):
-        first[key], second[key] = second[key], first[key]
+    for key in ("young", "poisson", "stiffness"):
+        for body, value in ((first, second.get(key)), (second, first.get(key))):
+            body.pop(key, None) if value is None else body.update({key: value})
 
 
 def contact_at_one_node(problem, rng):
@@ -169,10 +180,144 @@ def vertex_moved(problem, rng):
     problem["points"][vertex] = [x + 0.1 * (q - p) for x, p, q in zip(problem["points"][vertex], a, b)]
 
 
+def springs(problem, layer=None, touching=False):
+    found = [s for s in problem.get("springs", []) if ("gap" in s) == touching]
+    found = [s for s in found if layer is None or (s.get("opposite") is not None) == layer]
+    return found or no_place()
+
+
+def springs_softer(problem, rng):
+    own = springs(problem, layer=False)
+    for spring in [s for s in own if s["stiffness"] == own[0]["stiffness"]]:
+        spring["stiffness"] = [0.8 * k for k in spring["stiffness"]]
+
+
+def springs_missing_along(problem, rng):
+    """The tangential ones, where there are both."""
+    own = [s for s in springs(problem, layer=False) if all(s["stiffness"])] or no_place()
+    for spring in own:
+        spring["stiffness"][1] = 0.0
+
+
+def springs_both_ways(problem, rng):
+    """A normal foundation that holds along the boundary too."""
+    own = [s for s in springs(problem, layer=False) if s["stiffness"][1] == 0.0] or no_place()
+    for spring in own:
+        spring["stiffness"][1] = spring["stiffness"][0]
+
+
+def layer_stiffer(problem, rng):
+    for spring in springs(problem, layer=True):
+        spring["stiffness"] = [1000.0 * k for k in spring["stiffness"]]
+
+
+def layer_swapped(problem, rng):
+    for spring in springs(problem, layer=True):
+        spring["stiffness"].reverse()
+
+
+def layer_slides(problem, rng):
+    for spring in springs(problem, layer=True):
+        spring["stiffness"][1] = 0.0
+
+
+def elastic_contact_stiffer(problem, rng):
+    for spring in springs(problem, touching=True):
+        spring["stiffness"] = [1.5 * k for k in spring["stiffness"]]
+
+
+def elastic_contact_pulls(problem, rng):
+    """Springs in the place of elastic contact without a gap."""
+    for spring in [s for s in springs(problem, touching=True) if not any(s["gap"])] or no_place():
+        del spring["gap"]
+
+
+def elastic_contact_gap_ignored(problem, rng):
+    own = springs(problem, touching=True)
+    if not any(any(spring["gap"]) for spring in own):
+        no_place()
+    for spring in own:
+        spring["gap"] = [0.0 for _ in spring["gap"]]
+
+
+def warm(problem):
+    return [body for body in problem["bodies"] if "initial_strain" in body] or no_place()
+
+
+def temperature_missing(problem, rng):
+    del pick(rng, warm(problem))["initial_strain"]
+
+
+def temperature_of_other_sign(problem, rng):
+    body = pick(rng, warm(problem))
+    body["initial_strain"] = [[-x for x in row] for row in body["initial_strain"]]
+
+
+def temperature_larger(problem, rng):
+    for body in warm(problem):
+        body["initial_strain"] = [[1.08 * x for x in row] for row in body["initial_strain"]]
+
+
+def stiff(problem):
+    return [body for body in problem["bodies"] if "stiffness" in body] or no_place()
+
+
+def axes_swapped(problem, rng):
+    """x and y of the material."""
+    for body in stiff(problem):
+        c, of = body["stiffness"], (1, 0, 2)
+        sign = lambda i, j: -1.0 if (i == 2) != (j == 2) else 1.0
+        body["stiffness"] = [[sign(i, j) * c[of[i]][of[j]] for j in range(3)] for i in range(3)]
+
+
+def law_mirrored(problem, rng):
+    """The angle of the material of the other sign."""
+    for body in stiff(problem):
+        c = body["stiffness"]
+        if not (c[0][2] or c[1][2]):
+            no_place()
+        body["stiffness"] = [[-x if (i == 2) != (j == 2) else x for j, x in enumerate(row)] for i, row in enumerate(c)]
+
+
+def law_stiffer(problem, rng):
+    for body in stiff(problem):
+        body["stiffness"] = [[1.2 * x for x in row] for row in body["stiffness"]]
+
+
+def forces_that_vary(problem):
+    return [body for body in problem["bodies"] if isinstance(body["body_force"], dict)] or no_place()
+
+
+def slope_missing(problem, rng):
+    """A body force that varies is taken for its value at the origin."""
+    for body in forces_that_vary(problem):
+        body["body_force"] = body["body_force"]["value"]
+
+
+def slope_transposed(problem, rng):
+    for body in forces_that_vary(problem):
+        (a, b), (c, d) = body["body_force"]["gradient"]
+        if b == c:
+            no_place()
+        body["body_force"]["gradient"] = [[a, c], [b, d]]
+
+
+def varying_force_larger(problem, rng):
+    for body in forces_that_vary(problem):
+        force = body["body_force"]
+        body["body_force"] = {
+            "value": [1.1 * x for x in force["value"]],
+            "gradient": [[1.1 * x for x in row] for row in force["gradient"]],
+        }
+
+
 BUGS = [
     poisson_sign, modulus, poisson, thickness, kinematics, weight_missing, weight_sideways, load_larger,
     load_missing_on_an_edge, load_constant_on_an_edge, clamp_missing_on_an_edge, roller_missing_on_an_edge,
     roller_turned, clamp_for_roller, displacement_larger, pair_missing, gap_larger, gap_swapped, contact_glued,
     triangle_of_another_body, vertex_moved, gap_ignored, rollers_missing, thickness_ignored, materials_swapped,
-    contact_at_one_node,
+    contact_at_one_node, springs_softer, springs_missing_along, springs_both_ways, layer_stiffer, layer_swapped,
+    layer_slides, elastic_contact_stiffer, elastic_contact_pulls, elastic_contact_gap_ignored, temperature_missing,
+    temperature_of_other_sign, temperature_larger, axes_swapped, law_mirrored, law_stiffer, slope_missing,
+    slope_transposed, varying_force_larger,
 ]  # fmt: skip

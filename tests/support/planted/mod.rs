@@ -80,6 +80,8 @@ pub struct Planted {
     /// `None` where nothing was handed over that could be compared.
     pub effect: Option<Effect>,
     pub fate: Fate,
+    /// Names of what the diagnosis found.
+    pub findings: Vec<String>,
 }
 
 /// A scene solved honestly, into which faults can be planted.
@@ -144,7 +146,10 @@ impl<'a> Soil<'a> {
             },
             code => Fate::Caught(vec![format!("exit {code}: {}", ended.message())]),
         };
-        Planted { kind: kind.clone(), seed, effect, fate }
+        let diagnoses = ended.report.iter().filter_map(|r| r["diagnosis"].as_array()).flatten();
+        let findings = diagnoses.filter_map(|d| d["findings"].as_array()).flatten();
+        let findings = findings.filter_map(|f| f["name"].as_str().map(String::from)).collect();
+        Planted { kind: kind.clone(), seed, effect, fate, findings }
     }
 
     /// The larger effect of the two degrees; `None` where lengths differ or a file is missing.

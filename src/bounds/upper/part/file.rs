@@ -265,6 +265,7 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
             arc: [begin, end],
             gap: [g, h],
             bow: Bow::from_numbers(bow)?,
+            stiffness: None,
         })
     };
     let pairs: Option<Vec<ContactPair>> = places.into_iter().zip(numbers).map(of).collect();
