@@ -107,13 +107,19 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     let energies = energies(problem, judged);
     let own = diagnose(solution, energies);
     let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
-    if problem.section().is_revolved() && !is_explained(&own) {
+    if problem.section().is_revolved() {
+        // The rule with which a wrong field fits best need not be that of its program, with which one mistake explains all.
         let others = Rule::all(&judged.candidate).into_iter().filter(|rule| Some(*rule) != solution.rule);
         let by = |rule| {
             let other = Solution::turned(problem, &judged.candidate, rule).ok()?.within(Extent::of(problem, bracket));
-            diagnose(&other, energies).map(Some).filter(is_explained)
+            diagnose(&other, energies)
         };
-        return others.into_iter().find_map(by).unwrap_or(own);
+        let share = |found: &Diagnosis| found.explained.unwrap_or(0.0);
+        let best = others.filter_map(by).max_by(|a, b| share(a).total_cmp(&share(b)));
+        return match (own, best) {
+            (Some(own), Some(best)) if share(&best) > share(&own) => Some(best),
+            (own, _) => own,
+        };
     }
     if is_explained(&own) {
         return own;
