@@ -23,6 +23,7 @@ pub mod solution;
 pub mod springs;
 mod stress;
 mod tolerance;
+pub mod turned;
 
 pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};

@@ -116,6 +116,19 @@ impl Section {
         }
     }
 
+    /// Nodal stresses of an orthonormal basis of the fields of the element without traction.
+    pub fn unloaded(
+        self,
+        element: &dyn EquilibriumElement,
+        corners: Corners,
+        material: &Material,
+    ) -> Vec<Vec<[f64; 3]>> {
+        match self {
+            Section::Slice => element.unloaded(corners, material),
+            Section::Revolved { axis } => Ring::new(element.degree(), axis, corners).unloaded(&material.revolved()),
+        }
+    }
+
     /// Nodal stresses of mode parameters, as [`EquilibriumElement::stresses`] has them.
     pub fn stresses(
         self,
@@ -152,6 +165,17 @@ impl Section {
         let Section::Revolved { axis } = self else { return [0.0; 2] };
         let (given, turning) = (force.given(), force.rotation().map_or(0.0, |rotation| rotation.stiffness()));
         [given.value[0] + given.gradient[0][0] * axis, given.gradient[0][0] + turning]
+    }
+
+    /// A body force at a point.
+    pub fn force(self, force: &BodyForce, point: [f64; 2]) -> [f64; 2] {
+        match self {
+            Section::Slice => force.at(point),
+            Section::Revolved { .. } => {
+                let ([a, b], [_, axial]) = (self.radial(force), self.forces(force));
+                [a + b * self.weight(point), axial]
+            }
+        }
     }
 
     /// Whether a body force is one that a body of revolution can have: F_r depends on r alone, and F_z on nothing.

@@ -28,7 +28,7 @@ use crate::element::{Material, Section};
 use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
-use crate::scene::Scene;
+use crate::scene::{Extent, Scene, Target};
 
 /// A scene and a mesh that fit together.
 #[derive(Debug, Clone)]
@@ -88,8 +88,13 @@ impl Problem {
             Condition::Traction(ends) => self.weighted(*e, ends).len() - 1,
             _ => 1,
         };
+        // A mean displacement of the body along the axis has such a weight as its own load.
+        let own = self.mesh.body[t];
+        let asked = self.scene.quantities.iter().any(|quantity| {
+            matches!(quantity.target, Target::Displacement { of: Extent::Body(body), direction } if body == own && direction[1] != 0.0)
+        });
         let of_edges = self.mesh.triangle_edges[t].iter().map(of_edge).max().unwrap_or(1);
-        of_edges.max(if axial == 0.0 { 1 } else { 2 })
+        of_edges.max(if axial == 0.0 && !asked { 1 } else { 2 })
     }
 
     /// What the plane figure stands for.

@@ -12,7 +12,7 @@
 use super::end::End;
 use super::functional::Functional;
 use super::pass::{strained, uncancelled};
-use super::revolved;
+use super::revolved::{self, Of};
 use super::search::Search;
 use super::springs::{middle_of, square_of, uncancelled_of};
 use super::value::{displaced, value_of};
@@ -327,7 +327,10 @@ impl<'a> Known<'a> {
     fn value(&self, functional: &Functional) -> f64 {
         let stress = &self.dual.stress;
         let mut sum = functional.constant
-            + strained(self.problem, functional, |t| stress.degree(t), |t, s, l| stress.at(t, s, l));
+            + match self.problem.section().revolved() {
+                Some(of) => revolved::strained(self.problem, of, functional, Of::Stress(stress)),
+                None => strained(self.problem, functional, |t| stress.degree(t), |t, s, l| stress.at(t, s, l)),
+            };
         let pressures = self.dual.contact_traction.iter().flat_map(|of| of.iter());
         for ((pair, weights), t) in self.problem.pairs().zip(&functional.load.weights).zip(pressures) {
             sum += pair.length * side::integral(weights, t);

@@ -85,7 +85,11 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
         .into_par_iter()
         .with_min_len(128)
         .map(|t| match problem.section().revolved() {
-            Some(revolved) => revolved::triangle(problem, revolved, &materials[mesh.body[t]], t, fields),
+            Some(revolved) => {
+                let strain = functional.turned_on(t);
+                let of_load = (strain, &functional.load.force[mesh.body[t]]);
+                revolved::triangle(problem, revolved, &materials[mesh.body[t]], t, (fields, of_load))
+            }
             None => triangle(problem, &materials[mesh.body[t]], t, strain[t], fields),
         })
         .collect();

@@ -38,6 +38,7 @@ mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
+mod revolved_fields;
 mod schemas;
 mod spoiled;
 mod stability;

@@ -27,7 +27,7 @@ pub struct Site {
     pub normal: [f64; 2],
     /// Gap there.
     pub gap: f64,
-    /// ∫φ ds of the node's shape function along the contact.
+    /// ∫φ ds of the node's shape function along the contact, ∫φ r ds of a body of revolution.
     pub weight: f64,
     /// Where the direction turns along the edge, the other direction of a midpoint.
     turned: Option<[f64; 2]>,
@@ -90,19 +90,24 @@ impl Sites {
             let mut known: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
             for (number, pair) in contact.pairs.iter().enumerate() {
                 let part = pair.length / if degree > 1 { 6.0 } else { 2.0 };
+                // ∫ φ r ds of bodies of revolution.
+                let [from, to] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+                let mean = 0.5 * (from + to);
+                let at_end = |own: f64| if degree > 1 { own } else { (own + 2.0 * mean) / 3.0 };
                 let mut at_ends = [0; 2];
                 for (end, at) in at_ends.iter_mut().enumerate() {
                     let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
+                    let weight = part * at_end([from, to][end]);
                     let normal = pair.direction.ends[end];
                     let same = known.entry((first, second)).or_default();
                     let found = same.iter().copied().find(|s| cross(sites.list[*s].normal, normal).abs() < PARALLEL);
                     *at = found.unwrap_or(sites.list.len());
                     match found {
-                        Some(s) => sites.list[s].weight += part,
+                        Some(s) => sites.list[s].weight += weight,
                         None => {
                             same.push(sites.list.len());
                             let gap = pair.gap[end];
-                            sites.list.push(Site { interface, first, second, normal, gap, weight: part, turned: None });
+                            sites.list.push(Site { interface, first, second, normal, gap, weight, turned: None });
                         }
                     }
                 }
@@ -122,7 +127,7 @@ impl Sites {
                     second: pair.edges[1].map(|e| vertices + e),
                     normal: pair.direction.at(0.5),
                     gap: pair.gap_at(0.5),
-                    weight: 4.0 * part,
+                    weight: 4.0 * part * mean,
                     turned,
                 });
             }

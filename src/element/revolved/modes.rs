@@ -104,6 +104,22 @@ impl Ring {
         }
     }
 
+    /// Nodal values of an orthonormal basis of the fields without traction.
+    pub fn unloaded(&self, law: &Law) -> Vec<Vec<[f64; 3]>> {
+        let raw = Raw::new(self);
+        let fields = Fields::new(self, &raw, &self.tractions(&raw));
+        let triangle = self.triangle(law, &raw, &fields.columns, None);
+        let count = fields.columns.ncols();
+        let field = |k: usize| {
+            let mut x = vec![0.0; count];
+            x[k] = law.unit().sqrt();
+            backward(&triangle, &mut x, k + 1);
+            let nodal = &raw.nodal * (&fields.columns * DMatrix::from_vec(count, 1, x));
+            nodal.as_slice().as_chunks::<3>().0.to_vec()
+        };
+        (1..=fields.free).map(field).collect()
+    }
+
     /// Nodal values `particular` · Σ̄ + Σ s_k Σ_k of the modes that were computed.
     pub fn stresses(modes: &Modes<'_>, s: &[f64], particular: f64, out: &mut [[f64; 3]]) {
         let size = 3 * out.len();
