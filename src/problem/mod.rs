@@ -24,6 +24,7 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
+use crate::element::revolved::vanishes;
 use crate::element::{Material, Section};
 use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
@@ -109,8 +110,7 @@ impl Problem {
 
     /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
     pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
-        let [a, b] = self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v]));
-        a && (b || k == 0) || b && k == degree
+        vanishes(self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v])), k, degree)
     }
 
     /// Largest weight of the ends of edge `e`.

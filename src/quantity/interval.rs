@@ -165,17 +165,17 @@ impl<'a> Known<'a> {
             let found = openings_within(problem, &upper.displacement, pair, count.max(1) - 1);
             found.unwrap_or_else(|| vec![0.0; count.max(1)]).into_iter().map(|o| o.max(0.0)).collect()
         };
-        let (middle, in_bodies) = match problem.section().revolved() {
+        let (middle, in_bodies, uncancelled) = match problem.section().revolved() {
             None => {
                 let middle = mid_field(problem, &dual.stress, &upper.displacement);
                 let middle = middle.ok_or("λ and v are on different meshes")?;
                 let square = square(problem, &middle);
-                (middle, square)
+                (middle, square, uncancelled(problem, &dual.stress, &upper.displacement))
             }
             // λ stands for m where that only guides.
             Some(of) => {
-                let both = revolved::squares(problem, of, &dual.stress, &upper.displacement, true);
-                (dual.stress.clone(), 0.5 * both)
+                let [both, uncancelled] = revolved::squares(problem, of, &dual.stress, &upper.displacement);
+                (dual.stress.clone(), 0.5 * both, uncancelled)
             }
         };
         let springs = middle_of(problem, &dual.stress, &upper.displacement);
@@ -190,8 +190,7 @@ impl<'a> Known<'a> {
             nearest,
             size: (in_bodies + square_of(problem, &springs)).sqrt(),
             springs,
-            uncancelled: uncancelled(problem, &dual.stress, &upper.displacement)
-                + uncancelled_of(problem, &dual.stress, &upper.displacement),
+            uncancelled: uncancelled + uncancelled_of(problem, &dual.stress, &upper.displacement),
             middle,
             pressure: pressing(dual),
         })

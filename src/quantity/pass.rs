@@ -197,9 +197,6 @@ fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>
 
 /// The square of the norm that m would have if nothing cancelled in it.
 pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displacement) -> f64 {
-    if let Some(revolved) = problem.section().revolved() {
-        return revolved::squares(problem, revolved, stress, displacement, false);
-    }
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let of = |t: usize| {

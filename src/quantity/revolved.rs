@@ -5,7 +5,7 @@ use super::pass::{BALANCED, Fields, PAIR, TERMS};
 use super::region::{Cut, Piece};
 use crate::bounds::Sum;
 use crate::bounds::energy::shape;
-use crate::element::revolved::{Sampled, Strained, Tensor};
+use crate::element::revolved::{Sampled, Strained, Tensor, work};
 use crate::element::{Displacement, Material, Revolved, StressField};
 use crate::load::BodyForce;
 use crate::problem::Problem;
@@ -89,7 +89,7 @@ pub fn strained(problem: &Problem, revolved: Revolved, functional: &Functional, 
         let mut add = |chi: Tensor, at: Sampled| {
             let stress = match (&own, of) {
                 (Some(own), _) => own[at.sub].stress(&at.point).0,
-                (None, Of::Displacement(v)) => law.stress(of_v.at(v, t, corners, &at).0),
+                (None, Of::Displacement(v)) => law.stress(of_v.strain(v, t, corners, &at)),
                 (None, Of::Stress(_)) => [0.0; 4],
             };
             sum.add(at.by * work(chi, stress));
@@ -129,22 +129,22 @@ pub fn triangle(
         let (sigma, spread) = balanced[at.sub].stress(&at.point);
         let (z, spread_of_z) = of_z.at(lifted, t, corners, &at);
         let lambda = own_stress[at.sub].stress(&at.point).0;
-        let of_displacement = law.stress(of_v.at(displacement, t, corners, &at).0);
+        let of_displacement = law.stress(of_v.strain(displacement, t, corners, &at));
         let middle = [0, 1, 2, 3].map(|c| 0.5 * (lambda[c] + of_displacement[c]));
         // What 1/r is in: the majorant adds to its square.
         let [rr, zz, _, rz] = sigma;
         let singular = law.strain([rr, zz, 0.0, rz]);
+        let of_sigma = law.strain(sigma);
+        let strain = [0, 1, 2, 3].map(|c| of_sigma[c] + whole[c]);
+        let size: f64 = sigma.iter().map(|s| s.abs()).sum::<f64>() + spread + of_whole;
+        let strains: f64 = strain.iter().map(|e| e.abs()).sum();
         let by = at.by;
         for (first, factor) in [(PAIR, factor), (PAIR + 3, 0.0)] {
-            let a_sigma = law.strain(sigma);
-            let strain = [0, 1, 2, 3].map(|c| a_sigma[c] + whole[c]);
             let off = [0, 1, 2, 3].map(|c| strain[c] - factor * z[c]);
             let mut over = singular;
             over[2] -= factor * z[2];
             out[first] += by * (law.strain_product(off, off) + at.point.excess * law.strain_product(over, over));
             out[first + 1] += by * work(off, middle);
-            let size: f64 = sigma.iter().map(|s| s.abs()).sum::<f64>() + spread + of_whole;
-            let strains: f64 = strain.iter().map(|e| e.abs()).sum();
             out[first + 2] += by * (size * strains + modulus * (factor * spread_of_z).powi(2));
         }
         out[BALANCED] += by * law.product(sigma, sigma);
@@ -154,9 +154,9 @@ pub fn triangle(
         let own = law.strain_product(chi, chi);
         for at in pieces.iter().flat_map(|piece| points(revolved, corners, piece, 2 * degree)) {
             let a_sigma = law.strain(balanced[at.sub].stress(&at.point).0);
-            let z = of_z.at(lifted, t, corners, &at).0;
+            let z = of_z.strain(lifted, t, corners, &at);
             let lambda = own_stress[at.sub].stress(&at.point).0;
-            let of_displacement = law.stress(of_v.at(displacement, t, corners, &at).0);
+            let of_displacement = law.stress(of_v.strain(displacement, t, corners, &at));
             let middle = [0, 1, 2, 3].map(|c| 0.5 * (lambda[c] + of_displacement[c]));
             for (first, factor) in [(PAIR, factor), (PAIR + 3, 0.0)] {
                 let off = [0, 1, 2, 3].map(|c| a_sigma[c] - factor * z[c]);
@@ -173,28 +173,18 @@ pub fn triangle(
 /// A strain of one along r.
 const ALONG: Tensor = [1.0, 0.0, 0.0, 0.0];
 
-/// σ : e.
-fn work(e: Tensor, s: Tensor) -> f64 {
-    e[0] * s[0] + e[1] * s[1] + e[2] * s[2] + 2.0 * e[3] * s[3]
-}
-
-/// The squares of the norms of λ and of σ(v), on all triangles: those of the fields, or if nothing cancelled in them.
-pub fn squares(
-    problem: &Problem,
-    revolved: Revolved,
-    stress: &StressField,
-    displacement: &Displacement,
-    cancelling: bool,
-) -> f64 {
+/// The squares of the norms of λ and of σ(v) together, on all triangles: of the fields, and if nothing cancelled in them.
+pub fn squares(problem: &Problem, revolved: Revolved, stress: &StressField, displacement: &Displacement) -> [f64; 2] {
     let materials = problem.materials();
-    let mut sum = Sum::default();
+    let mut sums = [Sum::default(), Sum::default()];
     for t in 0..problem.mesh.triangles.len() {
         let (corners, material) = (problem.mesh.corners(t), &materials[problem.mesh.body[t]]);
         let [of_stress, first] = revolved.square(stress, t, corners, material, problem.body_force(t));
         let [half, second] = revolved.strain_energy(displacement, t, corners, material);
-        sum.add(if cancelling { of_stress + 2.0 * half } else { shape(corners) * (first + second) });
+        sums[0].add(of_stress + 2.0 * half);
+        sums[1].add(shape(corners) * (first + second));
     }
-    sum.value()
+    sums.map(|sum| sum.value())
 }
 
 /// ∫ σ(v) : e(w) r.
@@ -205,7 +195,7 @@ pub fn product(problem: &Problem, revolved: Revolved, v: &Displacement, w: &Disp
         let (corners, law) = (problem.mesh.corners(t), materials[problem.mesh.body[t]].revolved());
         let (mut of_v, mut of_w) = (Strained::default(), Strained::default());
         for at in revolved.points(corners, 2 * v.degree(t).max(w.degree(t))) {
-            let [e, d] = [of_v.at(v, t, corners, &at).0, of_w.at(w, t, corners, &at).0];
+            let [e, d] = [of_v.strain(v, t, corners, &at), of_w.strain(w, t, corners, &at)];
             sum.add(at.by * law.strain_product(e, d));
         }
     }

@@ -54,7 +54,7 @@ impl Ring {
     /// Whether coefficient `k` of the traction on a side belongs to the axis.
     fn vanishes(&self, side: usize, k: usize) -> bool {
         let ends = [self.radii[(side + 1) % 3] == 0.0, self.radii[(side + 2) % 3] == 0.0];
-        ends[0] && (ends[1] || k == 0) || ends[1] && k == self.degree
+        super::vanishes(ends, k, self.degree)
     }
 
     /// Computes tractions, particular field and nodal values of Σ.

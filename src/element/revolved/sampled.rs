@@ -83,12 +83,18 @@ impl Strained {
     /// The strain of `v` on its triangle `t` at a point off the axis, and the size of what it is a sum of.
     pub fn at(&mut self, v: &Displacement, t: usize, corners: [[f64; 2]; 3], at: &Sampled) -> (Tensor, f64) {
         let Sampled { sub, point, .. } = *at;
+        let strain = self.strain(v, t, corners, at);
+        let spread = self.strains.spread_at(point.bary) + Revolved::size(v, t, sub, point.bary) / point.radius;
+        (strain, spread)
+    }
+
+    /// The strain alone.
+    pub fn strain(&mut self, v: &Displacement, t: usize, corners: [[f64; 2]; 3], at: &Sampled) -> Tensor {
+        let Sampled { sub, point, .. } = *at;
         if self.on.replace((t, sub)) != Some((t, sub)) {
             self.strains.on(corners, v, t, sub);
         }
         let [rr, zz, rz] = self.strains.at(point.bary);
-        let hoop = Revolved::radial_of(v, t, sub, point.bary) / point.radius;
-        let spread = self.strains.spread_at(point.bary) + Revolved::size(v, t, sub, point.bary) / point.radius;
-        ([rr, zz, hoop, rz], spread)
+        [rr, zz, Revolved::radial_of(v, t, sub, point.bary) / point.radius, rz]
     }
 }
