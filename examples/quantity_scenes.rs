@@ -3,6 +3,8 @@
 //! prints a table of `docs/quantities.md`.
 //!
 //! `cargo run --release --example quantity_scenes -- 200 7000`
+//!
+//! The name of a family behind the first seed asks for scenes of it alone, prints, and writes nothing.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -18,7 +20,7 @@ use hypercircle::study::{Answer, StudyError, answers, certify_divided};
 use serde_json::json;
 use support::asked::{ask, everything, of_degree};
 use support::random::Random;
-use support::scenes::sample;
+use support::scenes::{sample, sample_of};
 
 /// Larger meshes take too long when there are hundreds.
 const MOST_TRIANGLES: usize = 600;
@@ -43,12 +45,13 @@ struct Seen {
 fn main() -> ExitCode {
     let number = |n: usize, usual: u64| std::env::args().nth(n).map_or(usual, |n| n.parse().expect("a number"));
     let (wanted, first) = (number(1, 200), number(2, 7000));
+    let family = std::env::args().nth(3);
     let mut kinds: BTreeMap<&str, Seen> = BTreeMap::new();
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let (mut met, mut seed) = (0, first);
     while met < wanted {
         seed += 1;
-        let Some([coarse, fine]) = both(seed) else { continue };
+        let Some([coarse, fine]) = both(seed, family.as_deref()) else { continue };
         met += 1;
         for (coarse, fine) in coarse.iter().zip(&fine) {
             kinds.entry(coarse.kind.name()).or_default().add(seed, coarse, fine);
@@ -80,6 +83,9 @@ fn main() -> ExitCode {
     reasons.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
     reasons.iter().for_each(|(reason, count)| println!("| {reason} | {count} |"));
 
+    if family.is_some() {
+        return ExitCode::from(u8::from(kinds.values().any(|seen| seen.outside > 0)));
+    }
     let command = format!("cargo run --release --example quantity_scenes -- {wanted} {first}");
     let data =
         json!({ "command": command, "scenes": met, "seeds": [first + 1, seed], "kinds": rows, "reasons": reasons });
@@ -93,12 +99,17 @@ fn main() -> ExitCode {
 
 /// The answers of linear stresses on the mesh of a scene and of cubic ones on a finer mesh, where the scene has an equilibrium
 /// and no curves.
-fn both(seed: u64) -> Option<[Vec<Answer>; 2]> {
+fn both(seed: u64, family: Option<&str>) -> Option<[Vec<Answer>; 2]> {
     let folder = tempfile::tempdir().expect("a folder");
-    let file = sample(seed).write(folder.path());
+    let sample = family.map_or_else(|| Some(sample(seed)), |family| sample_of(family, seed))?;
+    let file = sample.write(folder.path());
     let mut problem = Problem::load(Scene::read(&file).ok()?).ok()?;
     // A finer mesh of a curve is another problem.
-    if problem.contact_turns() || problem.follows_curves() || problem.mesh.triangles.len() > MOST_TRIANGLES {
+    if problem.has_elastic_contact()
+        || problem.contact_turns()
+        || problem.follows_curves()
+        || problem.mesh.triangles.len() > MOST_TRIANGLES
+    {
         return None;
     }
     let quantities = everything(&problem, &mut Random::new(seed));

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use clap::Parser;
-use support::scenes::sample;
+use support::scenes::{sample, sample_of};
 use support::trial::table::{groups, head, row};
 use support::trial::{Program, Trial};
 
@@ -22,6 +22,9 @@ struct Args {
     /// The seed of the first scene; the others follow
     #[arg(default_value_t = 1)]
     seed: u64,
+    /// Scenes of this family alone
+    #[arg(long)]
+    family: Option<String>,
     /// Leave FEniCSx out
     #[arg(long)]
     solve_only: bool,
@@ -46,6 +49,10 @@ fn main() -> ExitCode {
     let args = Args::parse();
     std::fs::create_dir_all(&args.out).expect("a folder to write to");
     let seeds = args.seed..args.seed + args.scenes;
+    let sample = |seed: u64| match &args.family {
+        None => sample(seed),
+        Some(family) => sample_of(family, seed).unwrap_or_else(|| panic!("no family is called {family}")),
+    };
     if args.write_only {
         for seed in seeds {
             sample(seed).write(&args.out);

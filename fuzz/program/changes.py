@@ -13,6 +13,27 @@ NAMES = [
     '"é\\u0301漢字🙂"', '"@user #1 http://x.y `code` | * _"', '"' + "x" * 3000 + '"', "'''\nlines\n'''", "0", "[]",
 ]
 TOKENS = [b"[", b"]", b"[[", b"{", b"}", b"=", b'"', b"#", b"\n", b"\r\n", b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\xe2\x80\xae", b"..", b","]
+KEYS = {
+    "[bodies": [
+        "orthotropic = { young = [2.0, 1.0, 1.5], poisson = [0.3, 0.2, 0.25], shear = 0.5, angle = 30.0 }", "angle = 45.0",
+        "stiffness = [[2.0, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 0.4]]", "compliance = [[1.0, -0.3, 0.0], [-0.3, 1.0, 0.0], [0.0, 0.0, 3.0]]",
+        "expansion = 0.01", "expansion = [0.01, 0.02, 0.0]", "temperature = 2.0", "temperature = { value = 1.0, gradient = [0.5, -1.0] }",
+        "initial_stress = [0.1, -0.2, 0.05]", "initial_stress = [0.1, 0.0, 0.0, 0.3]", "young = [1.0, 2.0]",
+        "body_force = { value = [0.0, -1.0], gradient = [[0.1, 0.0], [0.3, 0.2]] }", "rotation = { density = 1.0, omega = 0.5, about = [0.5, 0.0] }",
+    ],
+    "[[supports]]": [
+        'type = "spring"', "stiffness = 10.0", "stiffness = [10.0, 3.0]", "stiffness = [[1.0, 2.0], 3.0]", "direction = [1.0, 0.0]",
+        "displacement = -0.01", "displacement = { value = [0.0, 0.0], gradient = [[0.01, 0.0], [0.0, 0.0]] }",
+    ],
+    "[[bonds]]": ["stiffness = [10.0, 3.0]", "stiffness = [[1.0, 2.0], [3.0, 4.0]]", "direction = [0.0, -1.0]"],
+    "[[contacts]]": [
+        "stiffness = 10.0", "stiffness = 1e-6", "stiffness = 1e9", "stiffness = [1.0, 2.0]", "gap = [0.0, 0.1]", "gap = -0.01",
+        "gap = { parabola = 2.0, at = 0.5 }", "direction = [1.0, 0.0]", 'normals = "facets"', "move = [0.0, 0.02]",
+        "obstacle = { line = [[-1.0, 0.0], [1.0, 0.0]] }",
+    ],
+    "[model]": ['kinematics = "axisymmetric"', 'kinematics = "plane-stress"', "thickness = 0.5"],
+}
+"""Keys of each kind of table, as somebody adds them."""
 NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
 STRING = re.compile(r'"[^"\n]*"')
 
@@ -104,9 +125,21 @@ def scene(data, random, other):
             data = in_bytes(data, random, other)
             continue
         text, more = data.decode(errors="replace"), other.decode(errors="replace")
-        text = in_text(text, random) if kind < 0.85 else in_lines(text, random, more)
+        text = in_text(text, random) if kind < 0.7 else with_key(text, random) if kind < 0.85 else in_lines(text, random, more)
         data = text.encode(errors="replace")
     return data
+
+
+def with_key(text, random):
+    """A key more in one of the tables that have it; in the place of the one of that name where there is one."""
+    places = [(start, m) for start in KEYS for m in re.finditer(r"(?m)^" + re.escape(start) + r".*\n(?:(?!\[).*\n)*", text)]
+    if not places:
+        return text
+    start, table = random.choice(places)
+    line = random.choice(KEYS[start])
+    name = line.split(" = ")[0]
+    body, count = re.subn(r"(?m)^" + name + r" = .*$", lambda _: line, table.group())
+    return text[:table.start()] + (body if count else table.group().rstrip("\n") + "\n" + line + "\n\n") + text[table.end():]
 
 
 def file(data, random, other):

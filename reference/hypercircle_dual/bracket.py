@@ -11,6 +11,7 @@ little-endian numbers of eight bytes behind a letter:
 
 from __future__ import annotations
 
+import signal
 import subprocess
 from pathlib import Path
 
@@ -25,13 +26,18 @@ COUNT, NUMBER = np.dtype("<i8"), np.dtype("<f8")
 
 def relay(comm, program: Path, folder: Path) -> None:
     """Run ``program`` on the part of this rank until it is done."""
+    # PETSc ends the process at a broken pipe; here it says that the program is gone.
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
     command = [program, "part", folder / f"part-{comm.rank}", folder / f"found-{comm.rank}"]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
-        try:
-            _serve(comm, child)
-        except BaseException:
-            child.kill()
-            raise
+    try:
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
+            try:
+                _serve(comm, child)
+            except BaseException:
+                child.kill()
+                raise
+    except (EOFError, BrokenPipeError):
+        raise Failure(f"the bracket of rank {comm.rank} ended before it was done") from None
     if child.returncode != 0:
         raise Failure(f"the bracket of rank {comm.rank} ended with code {child.returncode}")
     comm.barrier()
@@ -41,7 +47,7 @@ def _serve(comm, child) -> None:
     requests = {b"E": _exchange, b"G": _gather}
     while (kind := child.stdout.read(1)) != b"D":
         if kind not in requests:
-            raise Failure(f"the bracket of rank {comm.rank} ended before it was done")
+            raise EOFError
         answer = requests[kind](comm, child.stdout)
         child.stdin.write(answer)
         child.stdin.flush()
@@ -79,5 +85,5 @@ def _numbers(requests) -> np.ndarray:
 def _read(requests, count: int, kind: np.dtype) -> np.ndarray:
     text = requests.read(count * kind.itemsize)
     if len(text) != count * kind.itemsize:
-        raise Failure("the bracket of a rank ended in the middle of a request")
+        raise EOFError
     return np.frombuffer(text, kind)

@@ -238,3 +238,17 @@ def test_a_missing_package_is_named(tmp_path):
     )  # fmt: skip
     assert done.returncode == 4
     assert done.stderr == "hypercircle-dual: not installed: petsc4py cannot be imported (no petsc4py here)\n"
+
+
+@pytest.mark.parametrize("said", [[], [b"G", 5], [b"G", 1 << 16, *[0] * (1 << 16)]], ids=["nothing", "half", "no-ear"])
+def test_part_that_ends_too_early_is_told(tmp_path, said):
+    """A program that says nothing more, ends in the middle of a request, or before it has read a long answer."""
+    text = b"".join(word if isinstance(word, bytes) else word.to_bytes(8, "little") for word in said)
+    (tmp_path / "said").write_bytes(text)
+    program = tmp_path / "part"
+    program.write_text(f"#!/bin/sh\nexec 0<&-\ncat {tmp_path}/said\n")
+    program.chmod(0o700)
+    script = "import sys; from pathlib import Path; from hypercircle_dual.compat import MPI, PETSc;"
+    script += "from hypercircle_dual.bracket import relay; relay(MPI.COMM_SELF, Path(sys.argv[1]), Path(sys.argv[2]))"
+    ran = subprocess.run([sys.executable, "-c", script, program, tmp_path], cwd=ROOT, capture_output=True, text=True)
+    assert ran.stderr.rstrip().endswith("the bracket of rank 0 ended before it was done"), ran.stderr

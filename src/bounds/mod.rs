@@ -33,7 +33,7 @@ pub use rounding::ROUNDING_PER_TERM;
 pub use springs::{OnSprings, spring_jumps, spring_tractions};
 pub use sum::Sum;
 pub use upper::{
-    Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until, Violation,
-    admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,
+    Beside, Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until,
+    Violation, admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,
     supports_agree,
 };

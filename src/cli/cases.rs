@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
-
 use super::conclude::Particulars;
 use super::options::{MemoryOptions, positive};
 use super::progress::Progress;
 use super::session::Session;
 use super::solve::{Solved, solved};
-use super::{Cli, CliError, Command, Exit, say, threads};
+use super::{CliError, Exit, options_of, say, threads};
 use crate::published::{Case, Row, Verdict, cases, listed, markdown, text};
 use crate::report::folder::{self, replace_file};
 use crate::scene::{Scene, counted};
@@ -67,7 +65,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     }
     drop(progress);
     let table = args.out.join(TABLE);
-    replace_file(&table, markdown(&rows).into_bytes()).map_err(|e| unwritable(&table, &e))?;
+    replace_file(&table, markdown(&rows).into_bytes()).map_err(|e| CliError::unwritable(&table, &e))?;
     let disagreeing = rows.iter().filter(|row| !row.verdict.agrees()).count();
     if !args.quiet {
         text(&rows).iter().for_each(|line| say::line(line));
@@ -112,25 +110,21 @@ fn ran<'a>(case: &'a Case, args: &Args, threads: usize) -> Result<Vec<Row<'a>>, 
         };
         case.values.iter().filter_map(row).collect()
     };
-    std::fs::create_dir_all(&args.out).map_err(|e| unwritable(&args.out, &e))?;
-    replace_file(&file, case.scene().as_bytes().to_vec()).map_err(|e| unwritable(&file, &e))?;
+    std::fs::create_dir_all(&args.out).map_err(|e| CliError::unwritable(&args.out, &e))?;
+    replace_file(&file, case.scene().as_bytes().to_vec()).map_err(|e| CliError::unwritable(&file, &e))?;
     session.conclude(&run, &comparison, Particulars { answers, ..Particulars::default() }, &report)?;
     Ok(rows)
 }
 
 /// The options of `hypercircle solve` that a case is run with.
 fn options(case: &Case, args: &Args, file: &Path) -> Result<super::solve::Args, CliError> {
-    let mut words = vec!["hypercircle".to_string(), "solve".to_string()];
-    words.extend(case.refine.iter().map(|(name, part)| format!("--tolerance-of={name}={part:?}")));
+    let refine = case.refine.iter();
+    let mut words: Vec<String> = refine.map(|(name, part)| format!("--tolerance-of={name}={part:?}")).collect();
     words.push(format!("--max-seconds={:?}", args.max_seconds));
     words.push(format!("--threads={}", args.threads));
     words.extend(args.memory.max_memory.map(|bytes| format!("--max-memory={bytes}")));
     let words = words.into_iter().map(Into::into).chain(["--".into(), file.as_os_str().to_owned()]);
-    match Cli::try_parse_from(words).map(|cli| cli.command) {
-        Ok(Command::Solve(options)) => Ok(options),
-        Ok(_) => Err(CliError::stopped(Exit::Failed, format!("case '{}' is no solve", case.name), "")),
-        Err(error) => Err(CliError::stopped(Exit::BadInput, error.to_string(), "")),
-    }
+    options_of(words).map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))
 }
 
 /// What came of all of it.
@@ -141,8 +135,4 @@ fn sentence(rows: &[Row<'_>], disagreeing: usize) -> String {
         0 => format!("{numbers} judged: all agree within their accuracy."),
         _ => format!("{numbers} judged: {} agree within their accuracy, {disagreeing} do not.", judged - disagreeing),
     }
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> CliError {
-    CliError::stopped(Exit::Failed, format!("{} cannot be written: {error}", path.display()), "choose another place")
 }

@@ -9,6 +9,7 @@ use super::conclude::Particulars;
 use super::given::Given;
 use super::job::{self, JobOptions, Order, Own};
 use super::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions};
+use super::revolved::{Claims, refuse_claims};
 use super::session::{DualRun, Session, refuse_unknown};
 use super::values::ValueOptions;
 use super::{CliError, Exit};
@@ -155,6 +156,11 @@ fn held(
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
     let before = if args.solution { before_contact(&certified.problem, &candidate, field)? } else { None };
+    let is_of_calculix = args.solution && field.is_of_calculix();
+    refuse_claims(
+        &certified.problem,
+        Claims { weak: args.contact.is_some(), is_cut: before.is_some(), is_of_calculix },
+    )?;
     session.progress.phase("comparing");
     let allow = args.judge.allowances();
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, vec![candidate], &allow);

@@ -1,6 +1,7 @@
 //! Why a command gave no answer.
 
 use std::fmt;
+use std::path::Path;
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 
@@ -30,6 +31,15 @@ impl CliError {
     /// An error that is not about the text of a scene.
     pub fn stopped(exit: Exit, message: impl Into<String>, remedy: impl Into<String>) -> Self {
         CliError::Stopped { message: message.into(), remedy: remedy.into(), exit }
+    }
+
+    /// A result that finds no place.
+    pub fn unwritable(path: &Path, error: &dyn fmt::Display) -> Self {
+        CliError::stopped(
+            Exit::Failed,
+            format!("{} cannot be written: {error}", path.display()),
+            "choose another place",
+        )
     }
 
     /// The exit code that belongs to it.

@@ -64,13 +64,10 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
             "",
         )
     })?;
-    let failed = |path: &Path, e: &dyn std::fmt::Display| {
-        CliError::stopped(Exit::Failed, format!("{} cannot be written: {e}", path.display()), "choose another place")
-    };
     folder::replace(&dir, &[(PAGE, page(&inventory, &scene).into_bytes())], &[])
-        .map_err(|e| failed(&dir.join(PAGE), &e))?;
+        .map_err(|e| CliError::unwritable(&dir.join(PAGE), &e))?;
     if let Some(path) = &args.scene {
-        replace_file(path, scene.into_bytes()).map_err(|e| failed(path, &e))?;
+        replace_file(path, scene.into_bytes()).map_err(|e| CliError::unwritable(path, &e))?;
     }
     if !args.run.quiet {
         text(&inventory).iter().for_each(|line| say::line(line));

@@ -20,8 +20,8 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use super::revolved;
 use super::slides::{EndSlide, at_ends};
+use super::turned::{self, Rule};
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
@@ -79,7 +79,7 @@ impl Balance {
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &Problem, candidate: &Candidate, strain: f64) -> Result<Self, NoUpperBound> {
         let forces = match (&candidate.on_quadrilaterals, &candidate.higher) {
-            _ if problem.section().is_revolved() => revolved::forces(problem, candidate).0,
+            _ if problem.section().is_revolved() => turned::forces(problem, candidate, Rule::OWN).0,
             (Some(own), _) => own.forces(problem).0,
             (None, Some(field)) => NodalForces::of_coefficients(problem, field),
             (None, None) => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
 use super::on_quadrilaterals::QuadrilateralSolution;
-use super::revolved;
 use super::slides;
 use super::solution::Numbering;
+use super::turned::{self, Rule};
 use crate::bounds::energy::initial_energy;
 use crate::bounds::{
     Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,
@@ -172,7 +172,9 @@ impl Judged {
         let mut own = match &candidate.on_quadrilaterals {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             // Integrals over a body of revolution are rational, and a model's those of its rule.
-            _ if problem.section().is_revolved() && candidate.is_solution => revolved::forces(problem, &candidate).1,
+            _ if problem.section().is_revolved() && candidate.is_solution => {
+                turned::forces(problem, &candidate, Rule::OWN).1
+            }
             _ => field.potential,
         };
         if candidate.is_solution && problem.has_friction() {

@@ -1,6 +1,6 @@
 //! Contact checks, interface by interface.
 
-use super::candidate::Judged;
+use super::candidate::{Judged, Reactions};
 use super::ceiling::{Allowance, Ceilings};
 use super::friction::on_contact;
 use super::mean;
@@ -16,7 +16,7 @@ use super::slides::{friction_resultant, reported_moment, trace_friction};
 use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::dual::DualSolution;
-use crate::problem::{Interface, Problem, Scales};
+use crate::problem::{ContactPair, Interface, Problem, Scales};
 
 /// Pressures below this fraction of the largest count as none.
 const NO_PRESSURE: f64 = 1e-9;
@@ -103,9 +103,7 @@ impl Sides<'_> {
     /// Pressure curves of a displacement solution: from its reactions, and from its stresses.
     fn profiles(&self, index: usize, interface: &Interface, judged: &Judged) -> Vec<Profile> {
         let name = &judged.candidate.name;
-        let reactions =
-            judged.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| has_reactions(interface));
-        let reactions = reactions.map(|reactions| {
+        let reactions = reactions_on(judged, (index, interface)).map(|reactions| {
             let pieces = reaction_pressure(self.problem, interface, reactions);
             Profile { model: format!("{name} reactions"), points: profile(interface, &pieces) }
         });
@@ -122,8 +120,7 @@ impl Sides<'_> {
         summary: &mut ContactSummary,
     ) -> Vec<Check> {
         let problem = self.problem;
-        let reactions =
-            best.candidate.reactions.as_ref().and_then(|r| r.get(index)).filter(|_| has_reactions(interface));
+        let reactions = reactions_on(best, (index, interface));
         let pieces = match reactions {
             Some(reactions) => reaction_pressure(problem, interface, reactions),
             None => trace_pressure(problem, interface, best),
@@ -309,16 +306,14 @@ fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
 }
 
-/// Whether reactions of a contact can be compared: those of elastic contact are springs'.
-fn has_reactions(interface: &Interface) -> bool {
-    !has_tip(interface) && !is_elastic(interface)
-}
-
 fn is_elastic(interface: &Interface) -> bool {
     interface.pairs.iter().any(|pair| pair.stiffness.is_some())
 }
 
-/// Whether both sides end in one vertex: at the tip of a crack no reaction is seen, it holds itself.
-fn has_tip(interface: &Interface) -> bool {
-    interface.pairs.iter().any(|pair| pair.second.is_some_and(|second| (0..2).any(|k| second[k] == pair.first[k])))
+/// The reactions of a solution on a contact, where they are all seen and can be compared: at the tip of a crack both sides end in
+/// one vertex, which holds itself, and those of elastic contact are springs'.
+fn reactions_on<'a>(judged: &'a Judged, (index, interface): (usize, &Interface)) -> Option<&'a Reactions> {
+    let at_tip = |pair: &ContactPair| pair.second.is_some_and(|second| (0..2).any(|k| second[k] == pair.first[k]));
+    let all = judged.candidate.reactions.as_ref()?;
+    all.get(index).filter(|_| !is_elastic(interface) && !interface.pairs.iter().any(at_tip))
 }

@@ -22,6 +22,8 @@ pub struct NodalForces {
     pub stiffness: Vec<f64>,
     /// The triangle that contributes most to the stiffness, to name the body of a node.
     pub triangle: Vec<usize>,
+    /// ∫ k (j − g)₊ g of elastic contact: what its pressures do on its gaps.
+    pub on_gaps: f64,
 }
 
 impl NodalForces {
@@ -43,6 +45,7 @@ impl NodalForces {
             size: vec![0.0; count],
             stiffness: vec![0.0; count],
             triangle: vec![0; count],
+            on_gaps: 0.0,
         }
     }
 

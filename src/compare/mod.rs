@@ -25,6 +25,7 @@ pub mod solution;
 pub mod springs;
 mod stress;
 mod tolerance;
+pub mod turned;
 
 pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, FrictionForces, Judged, Reactions};

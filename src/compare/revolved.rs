@@ -1,115 +1,12 @@
-//! Displacement solutions of bodies of revolution: forces and energy by the rule that they are integrated with, stresses, differences.
-//!
-//! Integrals of v_r/r are rational. A displacement model integrates them by a rule, the one that it was given
-//! ([`crate::element::quadrature::even_rule`]), and minimises the energy that this rule gives: its identities hold with the same rule, and
-//! bounds with enclosed integrals, as of every field.
+//! Displacements of bodies of revolution: stresses, and their differences.
 
-use super::candidate::{Candidate, Judged};
-use super::forces::NodalForces;
+use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use super::stress::{von_mises_of, von_mises_of_means};
-use crate::bounds::Potential;
 use crate::dual::DualSolution;
-use crate::element::geometry::gradients;
-use crate::element::quadrature::{even_rule, segment_rule, triangle_rule};
-use crate::element::{Displacement, Revolved, side};
+use crate::element::quadrature::triangle_rule;
+use crate::element::{Displacement, Revolved};
 use crate::problem::Problem;
-
-/// Shape functions of degree 1 or 2 at a point of a triangle, with their gradients: corners, then the midpoints opposite them.
-fn shapes(degree: usize, l: [f64; 3], g: &[[f64; 2]; 3]) -> Vec<(f64, [f64; 2])> {
-    if degree != 2 {
-        return (0..3).map(|i| (l[i], g[i])).collect();
-    }
-    let corner = |i: usize| (l[i] * (2.0 * l[i] - 1.0), g[i].map(|d| (4.0 * l[i] - 1.0) * d));
-    let middle = |i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        (4.0 * l[j] * l[k], [0, 1].map(|c| 4.0 * (l[j] * g[k][c] + l[k] * g[j][c])))
-    };
-    (0..3).map(corner).chain((0..3).map(middle)).collect()
-}
-
-/// The forces at the nodes of a displacement of degree 1 or 2, and its energy, by the rule of the model.
-pub fn forces(problem: &Problem, candidate: &Candidate) -> (NodalForces, Potential) {
-    let (mesh, section, degree) = (&problem.mesh, problem.section(), candidate.degree);
-    let vertices = mesh.points.len();
-    let count = vertices + if degree == 2 { mesh.edges.len() } else { 0 };
-    let mut forces = NodalForces::zeros(count);
-    let mut stiffest = vec![0.0; count];
-    let materials = problem.materials();
-    let (rule, thickness) = (even_rule(), problem.scene.thickness);
-    let (mut strain, mut rounded) = (0.0, 0.0);
-    for (t, corners) in mesh.triangles.iter().enumerate() {
-        let (material, law) = (&materials[mesh.body[t]], materials[mesh.body[t]].revolved());
-        let modulus = material.stiffest();
-        let g = gradients(mesh.corners(t));
-        let radii = mesh.corners(t).map(|p| section.weight(p));
-        let middles = mesh.triangle_edges[t].map(|e| vertices + e);
-        let nodes: Vec<usize> = corners.iter().copied().chain(middles.into_iter().filter(|_| degree == 2)).collect();
-        let u: Vec<[f64; 2]> = nodes.iter().map(|&node| candidate.value(node)).collect();
-        let ([a, b], [_, axial]) = (section.radial(problem.body_force(t)), section.forces(problem.body_force(t)));
-        for (l, weight) in &rule {
-            let radius: f64 = (0..3).map(|i| l[i] * radii[i]).sum();
-            let weight = weight * thickness * mesh.area(t) * radius;
-            let force = [a + b * radius, axial];
-            let shape = shapes(degree, *l, &g);
-            let (mut e, mut spread) = ([0.0; 4], 0.0);
-            for ((value, d), u0) in shape.iter().zip(&u) {
-                // A translation along the axis leaves no trace.
-                let (r, z) = (u0[0], u0[1] - u[0][1]);
-                e[0] += d[0] * r;
-                e[1] += d[1] * z;
-                e[2] += value / radius * r;
-                e[3] += 0.5 * (d[1] * r + d[0] * z);
-                spread += (d[0].hypot(d[1]) + (value / radius).abs()) * u0[0].hypot(u0[1]);
-            }
-            let s = law.stress(e);
-            strain += 0.5 * weight * law.strain_product(e, e);
-            for (&node, (value, d)) in nodes.iter().zip(&shape) {
-                let (long, hoop) = (d[0].hypot(d[1]), value / radius);
-                forces.left[node][0] += weight * (d[0] * s[0] + d[1] * s[3] + hoop * s[2]);
-                forces.left[node][1] += weight * (d[0] * s[3] + d[1] * s[1]);
-                forces.size[node] += weight * modulus * (long + hoop.abs()) * spread;
-                let part = weight * modulus * long * long;
-                forces.stiffness[node] += part;
-                if part > stiffest[node] {
-                    (stiffest[node], forces.triangle[node]) = (part, t);
-                }
-                (0..2).for_each(|c| forces.load[node][c] += weight * value * force[c]);
-            }
-        }
-    }
-    for (e, ends) in problem.tractions() {
-        let own = problem.weighted(e, ends);
-        let [a, b] = mesh.edges[e].vertices;
-        let (length, _) = mesh.edge_frame(e);
-        let at = |s: f64| [0, 1].map(|c| side::value(&own.iter().map(|t| t[c]).collect::<Vec<_>>(), s));
-        for &(s, weight) in segment_rule(4) {
-            let (weight, traction) = (weight * thickness * length, at(s));
-            let along = match degree {
-                2 => vec![
-                    (a, (1.0 - s) * (1.0 - 2.0 * s)),
-                    (b, s * (2.0 * s - 1.0)),
-                    (vertices + e, 4.0 * s * (1.0 - s)),
-                ],
-                _ => vec![(a, 1.0 - s), (b, s)],
-            };
-            for (node, value) in along {
-                (0..2).for_each(|c| forces.load[node][c] += weight * value * traction[c]);
-            }
-        }
-    }
-    forces.take_loads();
-    let mut work = 0.0;
-    for (node, load) in forces.load.iter().enumerate() {
-        let u = candidate.value(node);
-        for c in 0..2 {
-            work += load[c] * u[c];
-            rounded += (load[c] * u[c]).abs();
-        }
-    }
-    let magnitude = strain + rounded;
-    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0, friction: 0.0 })
-}
 
 /// σ(v) at a point of a subtriangle: (rr, zz, tt, rz).
 pub fn stress_at(

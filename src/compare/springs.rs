@@ -74,7 +74,13 @@ impl NodalForces {
                 // Elastic contact resists what the jump exceeds the gap by.
                 let beyond = pair.contact.map(|contact| functions.beyond(&jump, &contact.gap()));
                 let forces = beyond.as_ref().map(|d| functions.forces(d, degree));
-                energy += beyond.map_or(0.0, |d| 0.5 * whole * positive::square(&d));
+                if let Some((beyond, contact)) = beyond.zip(pair.contact) {
+                    energy += 0.5 * whole * positive::square(&beyond);
+                    let gap = contact.gap();
+                    let on_gap =
+                        |at: f64, d: f64, weight: f64| self.on_gaps += whole * weight * d * side::value(&gap, at);
+                    positive::points(&beyond, beyond.len() + gap.len() - 2, on_gap);
+                }
                 for i in 0..=degree {
                     let weight = |j: usize| whole * functions.product(degree, i, j);
                     let force: f64 = match &forces {

@@ -91,7 +91,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 /// Pairs of bodies whose materials may be exchanged: more are not tried.
 const MOST_PAIRS: usize = 200;
 /// Bodies of their own in least squares: more are not tried.
-const MOST_BODIES: usize = 64;
+pub const MOST_BODIES: usize = 64;
 const NONE: Moduli = Moduli::NONE;
 
 /// Constants that are off by a number.
@@ -136,24 +136,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         }
         terms.push(2, vec![of_lambda, of_mu], move |x| {
             let [young, poisson] = Moduli::engineering(scene.kinematics, lambda + x[0], mu + x[1]);
-            let mut findings = Vec::new();
-            if !near(young, given_young) {
-                let sentence =
-                    format!("Young's modulus of {} is {} in place of {}", body.name, number(young), given_young);
-                findings.push(Finding::new(
-                    format!("body/{}/young", body.name),
-                    Some(young),
-                    Some(given_young),
-                    sentence,
-                ));
-            }
-            if !near(poisson, given_poisson) || findings.is_empty() {
-                let sentence =
-                    format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), given_poisson);
-                let name = format!("body/{}/poisson", body.name);
-                findings.push(Finding::new(name, Some(poisson), Some(given_poisson), sentence));
-            }
-            findings
+            told(body, [young, poisson], [given_young, given_poisson])
         });
     }
     if bodies.len() > 1 {
@@ -179,6 +162,21 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             });
         }
     }
+}
+
+/// What two constants of a body are in place of what the scene gives.
+pub fn told(body: &Body, [young, poisson]: [f64; 2], [given_young, given_poisson]: [f64; 2]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if !near(young, given_young) {
+        let sentence = format!("Young's modulus of {} is {} in place of {}", body.name, number(young), given_young);
+        findings.push(Finding::new(format!("body/{}/young", body.name), Some(young), Some(given_young), sentence));
+    }
+    if !near(poisson, given_poisson) || findings.is_empty() {
+        let sentence = format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), given_poisson);
+        let name = format!("body/{}/poisson", body.name);
+        findings.push(Finding::new(name, Some(poisson), Some(given_poisson), sentence));
+    }
+    findings
 }
 
 /// One factor on all moduli of a body that is not isotropic.

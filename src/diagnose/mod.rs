@@ -23,6 +23,7 @@ mod single;
 mod space;
 mod springs;
 mod supports;
+mod turned;
 mod values;
 mod words;
 
@@ -154,22 +155,8 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
     let mut nearest = None;
     if solution.residual() > solution.allowed() {
         let space = Space::new(solution);
-        let mut trials = values::trials(&space);
-        trials.extend(material::trials(&space));
-        trials.extend(anisotropic::trials(&space));
-        trials.extend(layer::trials(&space));
-        trials.extend(moved::trial(&space));
-        trials.extend(lumped::trials(&space));
-        trials.extend(local::trials(&space));
-        trials.extend(integration::trials(&space));
-        trials.extend(contact::trials(&space));
-        trials.extend(springs::trials(&space));
-        trials.extend(loads::trials(&space));
         let mut terms = Terms::new(&space);
-        material::terms(&space, &mut terms);
-        initial::terms(&space, &mut terms);
-        loads::terms(&space, &mut terms);
-        springs::terms(&space, &mut terms);
+        let mut trials = hypotheses(&space, &mut terms);
         trials.extend(terms.alone());
         diagnosis.tried = trials.len();
         trials.retain(Trial::is_possible);
@@ -206,6 +193,30 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
     }
     diagnosis.sentence = sentence(&diagnosis, nearest.as_ref());
     Some(diagnosis)
+}
+
+/// All that is held against the residual, with terms to be fitted put into `terms`.
+fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
+    if space.problem().section().is_revolved() {
+        turned::terms(space, terms);
+        return turned::trials(space).into_iter().chain(contact::trials(space)).collect();
+    }
+    material::terms(space, terms);
+    initial::terms(space, terms);
+    loads::terms(space, terms);
+    springs::terms(space, terms);
+    let mut trials = values::trials(space);
+    trials.extend(material::trials(space));
+    trials.extend(anisotropic::trials(space));
+    trials.extend(layer::trials(space));
+    trials.extend(moved::trial(space));
+    trials.extend(lumped::trials(space));
+    trials.extend(local::trials(space));
+    trials.extend(integration::trials(space));
+    trials.extend(contact::trials(space));
+    trials.extend(springs::trials(space));
+    trials.extend(loads::trials(space));
+    trials
 }
 
 /// The simplest of the trials that leave next to nothing, or all of them where none does; `floor` is what a solver leaves.

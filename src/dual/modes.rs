@@ -131,7 +131,7 @@ impl ModeTable {
 
     /// Nodal stresses of an orthonormal basis of the fields without traction on triangle `t`.
     pub fn unloaded(&self, problem: &Problem, t: usize) -> Vec<Vec<[f64; 3]>> {
-        self.elements.of(t).unloaded(problem.mesh.corners(t), &self.materials[problem.mesh.body[t]])
+        problem.section().unloaded(self.elements.of(t), problem.mesh.corners(t), &self.materials[problem.mesh.body[t]])
     }
 
     /// Material of each body.

@@ -17,6 +17,7 @@ use super::rigid::unsupported;
 use super::schur::Schur;
 use super::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
 use super::{DualError, Options};
+use crate::element::revolved::Tensor;
 use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, side, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
@@ -73,6 +74,8 @@ pub struct Load {
     pub strains: Vec<(usize, [f64; 3])>,
     /// Initial strains of any shape, beside the constant ones.
     pub shaped: Vec<ShapedStrain>,
+    /// Initial strains (rr, zz, tt, rz) of a body of revolution, constant on the triangles that have one.
+    pub turned: Vec<(usize, Tensor)>,
     /// Tractions along edges of any kind, interior ones too, by their Bernstein coefficients in the degree of the edge.
     pub edges: Vec<(usize, Vec<[f64; 2]>)>,
     /// The Bernstein coefficients of φ on every contact pair, one interface after the other, empty where it vanishes: closed
@@ -134,7 +137,9 @@ impl Responses<'_> {
         add_edge_loads(&system.unknowns, &load.edges, &mut external);
         let mut system = System { modes, rhs: Vec::new(), external, initial: [].into(), ..system.clone() };
         let mut start = system.strained(&problem, &load.strains);
-        let unloaded = system.shaped(&problem, &load.shaped, &mut start);
+        let of_turned = system.turned(&problem, &load.turned, &mut start);
+        let mut unloaded = system.shaped(&problem, &load.shaped, &mut start);
+        unloaded.extend(of_turned);
         let r = residual(&problem, &system, &start);
         system.rhs.clone_from(&r);
         let (y, c) = reduced.condense(&r);
@@ -167,6 +172,33 @@ impl System {
             self.modes.of(*t).parameters_from_moments(&moments, &mut out[self.modes.parameters_of(*t)]);
         }
         out
+    }
+
+    /// Adds the mode parameters −∫ N_k : χ r of constant strains of a body of revolution to `s`, and gives what fields without traction add,
+    /// as [`Self::shaped`] does: with a hoop a constant strain is not that of any displacement.
+    fn turned(&self, problem: &Problem, strains: &[(usize, Tensor)], s: &mut [f64]) -> Vec<(usize, Vec<[f64; 3]>)> {
+        let Some(revolved) = problem.section().revolved() else { return Vec::new() };
+        let parts: Vec<(Vec<f64>, Vec<[f64; 3]>)> = strains
+            .par_iter()
+            .with_min_len(16)
+            .map(|(t, chi)| {
+                let (p, corners) = (self.modes.degree(*t), problem.mesh.corners(*t));
+                let work = |nodal: &Vec<[f64; 3]>| revolved.strained(p, nodal, corners, *chi);
+                let of_modes = self.modes.mode_stresses(problem, *t).iter().map(work).collect();
+                let mut own = vec![[0.0; 3]; 3 * lattice_len(p)];
+                for field in self.modes.unloaded(problem, *t) {
+                    let work = work(&field);
+                    own.iter_mut().zip(&field).for_each(|(o, f)| (0..3).for_each(|c| o[c] -= work * f[c]));
+                }
+                (of_modes, own)
+            })
+            .collect();
+        let mut unloaded = Vec::new();
+        for ((t, _), (of_modes, own)) in strains.iter().zip(parts) {
+            s[self.modes.parameters_of(*t)].iter_mut().zip(of_modes).for_each(|(s, work)| *s -= work);
+            unloaded.push((*t, own));
+        }
+        unloaded
     }
 
     /// Adds the mode parameters −∫ N_k : χ of initial strains of any shape to `s`; fields without traction balance nothing, and their

@@ -34,6 +34,7 @@ mod split;
 pub mod strain;
 pub mod subdivision;
 pub mod subtriangle;
+pub mod symmetric_rules;
 mod traction;
 pub mod triangle;
 

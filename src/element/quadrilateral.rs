@@ -175,6 +175,11 @@ impl Quadrilateral {
         own(self.nodes, &shapes(at).map(|w| [w, 0.0])).into_iter().map(|w| w[0]).collect()
     }
 
+    /// The values at the nine nodes of which it is a polynomial.
+    pub fn nine(&self) -> &[[f64; 2]; 9] {
+        &self.values
+    }
+
     /// The values at its own nodes.
     pub fn values(&self) -> &[[f64; 2]] {
         &self.values[..self.nodes]

@@ -8,7 +8,7 @@
 use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
 use super::quadrature::triangle_rule;
-use super::revolved::{NEAR, Ring, Tensor, Weighted, rule};
+use super::revolved::{Ring, Tensor, Weighted, rule, work};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
     lattice_len, triangle,
@@ -116,6 +116,19 @@ impl Section {
         }
     }
 
+    /// Nodal stresses of an orthonormal basis of the fields of the element without traction.
+    pub fn unloaded(
+        self,
+        element: &dyn EquilibriumElement,
+        corners: Corners,
+        material: &Material,
+    ) -> Vec<Vec<[f64; 3]>> {
+        match self {
+            Section::Slice => element.unloaded(corners, material),
+            Section::Revolved { axis } => Ring::new(element.degree(), axis, corners).unloaded(&material.revolved()),
+        }
+    }
+
     /// Nodal stresses of mode parameters, as [`EquilibriumElement::stresses`] has them.
     pub fn stresses(
         self,
@@ -152,6 +165,17 @@ impl Section {
         let Section::Revolved { axis } = self else { return [0.0; 2] };
         let (given, turning) = (force.given(), force.rotation().map_or(0.0, |rotation| rotation.stiffness()));
         [given.value[0] + given.gradient[0][0] * axis, given.gradient[0][0] + turning]
+    }
+
+    /// A body force at a point.
+    pub fn force(self, force: &BodyForce, point: [f64; 2]) -> [f64; 2] {
+        match self {
+            Section::Slice => force.at(point),
+            Section::Revolved { .. } => {
+                let ([a, b], [_, axial]) = (self.radial(force), self.forces(force));
+                [a + b * self.weight(point), axial]
+            }
+        }
     }
 
     /// Whether a body force is one that a body of revolution can have: F_r depends on r alone, and F_z on nothing.
@@ -213,76 +237,6 @@ impl Revolved {
     pub(super) fn weighted(stress: &StressField, t: usize, sub: usize, corners: Corners, force: [f64; 2]) -> Weighted {
         let (degree, n) = (stress.degree(t), lattice_len(stress.degree(t)));
         Weighted::new(degree, &stress.block(t)[n * sub..][..n], &sub_gradients(corners, sub), force)
-    }
-
-    /// ∫ aλ:λ r on triangle `t` from above, and what a relative error of one in every number could change of its half. `force` is F_r.
-    pub fn square(
-        self,
-        stress: &StressField,
-        t: usize,
-        corners: Corners,
-        material: &Material,
-        force: &BodyForce,
-    ) -> [f64; 2] {
-        let (law, degree) = (material.revolved(), stress.degree(t));
-        let (mut sum, mut sensitivity) = (0.0, 0.0);
-        for sub in 0..3 {
-            let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
-            for point in rule(self.radii(corners, sub), 2 * degree.max(3), NEAR) {
-                let (l, spread) = weighted.stress(&point);
-                let weight = point.weight * sub_area(corners) * point.radius;
-                let plane = [l[0], l[1], 0.0, l[3]];
-                sum += weight * (law.product(l, l) + point.excess * law.product(plane, plane));
-                sensitivity += weight * (absolute(l) + spread) * absolute(law.strain(l));
-            }
-        }
-        [sum, sensitivity]
-    }
-
-    /// ½∫ c e:e r of what `v` has as its triangle `own` from above, and what a relative error of one in every number could change.
-    pub fn strain_energy(self, v: &Displacement, own: usize, corners: Corners, material: &Material) -> [f64; 2] {
-        let (law, k) = (material.revolved(), v.degree(own));
-        let hoop = law.strain_product([0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]);
-        let (mut energy, mut sensitivity) = (0.0, 0.0);
-        let mut strains = Strains::default();
-        for sub in 0..3 {
-            strains.on(corners, v, own, sub);
-            for point in rule(self.radii(corners, sub), 2 * k, NEAR) {
-                let radial = Self::radial_of(v, own, sub, point.bary);
-                let e = tensor(strains.at(point.bary), radial / point.radius);
-                let weight = point.weight * sub_area(corners) * point.radius;
-                energy += 0.5 * weight * (law.strain_product(e, e) + point.excess * hoop * e[2] * e[2]);
-                let spread = strains.spread_at(point.bary) + Self::size(v, own, sub, point.bary) / point.radius;
-                sensitivity += weight * absolute(law.stress(e)) * spread;
-            }
-        }
-        [energy, sensitivity]
-    }
-
-    /// ½‖c e(v) − λ‖²_a r on triangle `t`. `force` is F_r.
-    pub fn constitutive_error(
-        self,
-        stress: &StressField,
-        v: &Displacement,
-        t: usize,
-        corners: Corners,
-        material: &Material,
-        force: &BodyForce,
-    ) -> f64 {
-        let law = material.revolved();
-        let mut sum = 0.0;
-        let mut strains = Strains::default();
-        for sub in 0..3 {
-            let weighted = Self::weighted(stress, t, sub, corners, self.radial(force));
-            strains.on(corners, v, t, sub);
-            for point in rule(self.radii(corners, sub), 2 * v.degree(t).max(stress.degree(t)).max(3), NEAR) {
-                let e = tensor(strains.at(point.bary), Self::radial_of(v, t, sub, point.bary) / point.radius);
-                let of_stress = law.strain(weighted.stress(&point).0);
-                let d = [0, 1, 2, 3].map(|c| e[c] - of_stress[c]);
-                sum += 0.5 * point.weight * sub_area(corners) * point.radius * law.strain_product(d, d);
-            }
-        }
-        sum
     }
 
     /// v_r at a point of a subtriangle.
@@ -380,15 +334,11 @@ impl Revolved {
             for a in 0..n {
                 let stress = strains[a].map(|e| law.stress(e).map(|s| weight * s));
                 for b in 0..=a {
-                    let work = |p: usize, q: usize| {
-                        let ([rr, zz, tt, rz], e) = (stress[p], strains[b][q]);
-                        rr * e[0] + zz * e[1] + tt * e[2] + 2.0 * rz * e[3]
-                    };
                     let entry = &mut sum[a * n + b];
-                    entry[0] += work(0, 0);
-                    entry[1] += work(0, 1);
-                    entry[2] += work(1, 0);
-                    entry[3] += work(1, 1);
+                    entry[0] += work(strains[b][0], stress[0]);
+                    entry[1] += work(strains[b][1], stress[0]);
+                    entry[2] += work(strains[b][0], stress[1]);
+                    entry[3] += work(strains[b][1], stress[1]);
                 }
             }
         }
@@ -418,8 +368,4 @@ impl Revolved {
 
 fn tensor([rr, zz, rz]: [f64; 3], tt: f64) -> Tensor {
     [rr, zz, tt, rz]
-}
-
-fn absolute(s: Tensor) -> f64 {
-    s.iter().map(|s| s.abs()).sum()
 }

@@ -16,6 +16,15 @@ const GRAZING: f64 = 0.05;
 /// Part of an interval within which two positions across the direction are one.
 const CLOSE: f64 = 1e-8;
 
+/// Part of an interval within which its ends are those of another one.
+const MATCHED: f64 = 1e-6;
+
+/// Of the longest edge of a side, what its vertices may be moved by: two meshes of one curve lie no farther apart.
+const NEAR: f64 = 0.25;
+
+/// Triangles that a side which is moved leaves with less than this part of their area are no longer those of the body.
+const SQUEEZED: f64 = 0.1;
+
 /// An edge that faces the other side.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facing {
@@ -137,4 +146,79 @@ pub(crate) fn turned(side: Vec<Facing>) -> Vec<Facing> {
     let turn =
         |f: Facing| Facing { edge: f.edge, vertices: [f.vertices[1], f.vertices[0]], span: [-f.span[1], -f.span[0]] };
     side.into_iter().rev().map(turn).collect()
+}
+
+/// The edge of the other side that covers the same interval.
+pub(crate) fn opposite(own: &Facing, side: &[Facing]) -> Option<Facing> {
+    let close = MATCHED * (own.span[1] - own.span[0]);
+    let from = side.partition_point(|f| f.span[0] < own.span[0] - close);
+    let near = |f: &&Facing| (0..2).all(|k| (f.span[k] - own.span[k]).abs() <= close);
+    side[from..].iter().take(2).find(near).copied()
+}
+
+/// The edges of the first side of a joint, each with that of the second that covers the same interval along `given`.
+fn matched(mesh: &Triangulation, names: &[String; 2], given: [f64; 2]) -> Vec<[Facing; 2]> {
+    let d = outward(mesh, [&names[0], &names[1]], given);
+    let second = turned(facing(mesh, &names[1], d.map(|x| -x)));
+    let first = facing(mesh, &names[0], d).into_iter();
+    first.filter_map(|own| Some([own, opposite(&own, &second)?])).collect()
+}
+
+/// Moves the vertices of the second side of a bond onto those of the first that they face along `given`, where both sides have
+/// vertices at the same positions.
+///
+/// # Errors
+/// [`MeshError::Contact`] where the triangles beside the second side cannot follow.
+pub(super) fn move_onto(
+    mut mesh: Triangulation,
+    scene: &Scene,
+    joint: Joint,
+    given: [f64; 2],
+    record: &mut Record,
+) -> Result<Triangulation, MeshError> {
+    let pairs = matched(&mesh, joint.sides, given);
+    let before: Vec<f64> = (0..mesh.triangles.len()).map(|t| mesh.area(t)).collect();
+    let fault = |what: String| {
+        let remedy =
+            "draw the sides closer, mesh the second one more coarsely, or fill the space between them with a body";
+        Err(MeshError::contact(scene, joint.quoted(), what, remedy))
+    };
+    let (mut farthest, mut moved) = (0.0_f64, vec![false; mesh.points.len()]);
+    let length = pairs.iter().map(|[_, other]| mesh.edge_frame(other.edge).0).fold(0.0, f64::max);
+    for [own, other] in &pairs {
+        let apart = |k: usize| {
+            let [[x, y], [a, b]] = [own.vertices[k], other.vertices[k]].map(|v| mesh.points[v]);
+            if moved[other.vertices[k]] { 0.0 } else { (x - a).hypot(y - b) }
+        };
+        if let Some(k) = [0, 1].into_iter().find(|k| apart(*k) > NEAR * length) {
+            let [p, q] = [own.vertices[k], other.vertices[k]].map(|v| at(scene, mesh.points[v]));
+            return fault(format!(
+                "{q} lies {:.3e} from {p}, more than two meshes of one curve with edges of {length:.3e} do",
+                apart(k)
+            ));
+        }
+        for (v, w) in own.vertices.into_iter().zip(other.vertices) {
+            let ([x, y], [a, b]) = (mesh.points[v], mesh.points[w]);
+            farthest = farthest.max((x - a).hypot(y - b));
+            mesh.points[w] = [x, y];
+            moved[w] = true;
+        }
+    }
+    let flat = |t: &usize| mesh.triangles[*t].iter().any(|v| moved[*v]) && mesh.area(*t) < SQUEEZED * before[*t];
+    if let Some(t) = (0..mesh.triangles.len()).find(flat) {
+        return fault(format!(
+            "the sides lie up to {farthest:.3e} apart, and the triangle at {} cannot follow where they are drawn together",
+            at(scene, mesh.points[mesh.triangles[t][0]])
+        ));
+    }
+    if farthest > 0.0 {
+        let text = format!(
+            "{}: vertices of '{}' were moved by up to {farthest:.3e} onto '{}'; the bounds are for the bodies so drawn",
+            joint.name(),
+            joint.sides[1],
+            joint.sides[0]
+        );
+        record.notes.push(Note { weakens_guarantee: false, text });
+    }
+    Ok(mesh)
 }

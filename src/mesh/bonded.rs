@@ -76,10 +76,12 @@ pub(crate) fn opposite(mesh: &Triangulation, scene: &Scene, joint: Joint) -> Res
                 let what = format!("both bodies lie on the same side of the edge {} to {}", at(scene, a), at(scene, b));
                 return Err(fault(what, "the bodies of a bond face each other and do not overlap"));
             }
+            // What has nothing opposite along a direction is free.
+            None if joint.direction.is_some() => {}
             None => return Err(lone(e, second)),
         }
     }
-    match facing.values().min() {
+    match facing.values().min().filter(|_| joint.direction.is_none()) {
         Some(e) => Err(lone(*e, first)),
         None => Ok(pairs),
     }

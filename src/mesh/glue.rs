@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::along::match_along;
+use super::along::{match_along, move_onto};
 use super::bonded::bond;
 use super::boxes::{BoxTree, around};
 use super::bulge::Curvatures;
@@ -51,7 +51,13 @@ pub fn glue(before: Triangulation, scene: &Scene) -> Result<Glued, MeshError> {
     snap(&mut mesh, scene, &mut record.notes);
     for joint in scene.joints() {
         mesh = match (joint.direction, concentric(&mesh, joint)) {
-            (Some(direction), _) => match_along(mesh, scene, joint, direction, &mut record)?,
+            (Some(direction), _) => {
+                let matched = match_along(mesh, scene, joint, direction, &mut record)?;
+                match joint.is_bond() {
+                    true => move_onto(matched, scene, joint, direction, &mut record)?,
+                    false => matched,
+                }
+            }
             (None, Some(circles)) => match_around(mesh, scene, joint, circles, &mut record)?,
             (None, None) => match_vertices(mesh, scene, joint, &mut record)?,
         };

@@ -1,10 +1,13 @@
 //! From cells and named segments to a [`Triangulation`]: edges, names, and vertices of their own wherever two cells
 //! are not bonded.
 
+use std::collections::HashSet;
+
 use super::cells::{self, Cells};
 use super::error::{MeshError, at};
 use super::halves::HalfEdges;
 use super::labels::{self, Labels, Pair, pair};
+use super::polyline::key;
 use super::sets::DisjointSets;
 use super::{Edge, FileCells, Map, RawMesh, Triangulation, hanging, overlap};
 use crate::scene::Note;
@@ -27,7 +30,9 @@ impl Triangulation {
         check_edges(&raw, &cells, &halves, scene)?;
         let labels = labels::assign(&raw, &cells, &halves, scene, &mut notes)?;
         let quadrilaterals = FileCells::find(&raw.quadrilaterals, &cells.triangles);
+        let cut = labels.cut.clone();
         let mut mesh = split(&raw, cells, &halves, labels);
+        check_cuts(&raw, &mesh, &cut, scene)?;
         mesh.cells = quadrilaterals;
         mesh.drop_parted_cells();
         overlap::check(&mesh, scene)?;
@@ -116,6 +121,29 @@ fn check_edges(raw: &RawMesh, cells: &Cells, halves: &HalfEdges, scene: &Scene) 
             let what = format!("two triangles overlap: both lie on the same side of the edge {}", place());
             let remedy = "remove one of them, or give the two bodies their own vertices";
             return Err(MeshError::cells(scene, what, remedy));
+        }
+    }
+    Ok(())
+}
+
+/// Every cut parts its two sides: one of a single edge inside a body does not, both of its ends belong to both.
+fn check_cuts(raw: &RawMesh, mesh: &Triangulation, cut: &HashSet<Pair>, scene: &Scene) -> Result<(), MeshError> {
+    let mut whole: Vec<[[u64; 2]; 2]> = cut.iter().map(|ends| ends.map(|v| key(raw.points[v]))).collect();
+    // What is glued again need not part.
+    if whole.is_empty() || !scene.bonds.is_empty() {
+        return Ok(());
+    }
+    whole.iter_mut().for_each(|ends| ends.sort_unstable());
+    whole.sort_unstable();
+    for edge in mesh.edges.iter().filter(|edge| !edge.is_boundary()) {
+        let mut ends = edge.vertices.map(|v| key(mesh.points[v]));
+        ends.sort_unstable();
+        if whole.binary_search(&ends).is_ok() {
+            let [a, b] = edge.vertices.map(|v| at(scene, mesh.points[v]));
+            let what = format!(
+                "the cut {a} to {b} inside a body is one edge long, and parts nothing: both sides share both of its ends"
+            );
+            return Err(MeshError::cells(scene, what, "divide this edge at least once"));
         }
     }
     Ok(())

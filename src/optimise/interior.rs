@@ -21,10 +21,14 @@ const NEARLY: f64 = 1e-7;
 /// The minimum to about as many digits as the factor has; nothing where it does not come near one. It ends where the mean product of
 /// room and force, for data of size one, is `enough`, or where it comes no further.
 pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
-    let size = program.size();
-    let n = program.load.len();
-    let load: Vec<f64> = program.load.iter().map(|b| b / size).collect();
-    let laws: Vec<Law> = program.laws.iter().map(|law| law.scaled(size)).collect();
+    // From where friction holds: y = x − c has laws without a centre, and the load b − Ac.
+    let origin: Vec<f64> = program.laws.iter().map(|law| law.centre()).collect();
+    let laws: Vec<Law> = program.laws.iter().map(|law| law.centred()).collect();
+    let load: Vec<f64> = program.form.gradient(program.load, &origin).iter().map(|force| -force).collect();
+    let size = Program { load: &load, laws: &laws, ..*program }.size();
+    let n = load.len();
+    let load: Vec<f64> = load.iter().map(|b| b / size).collect();
+    let laws: Vec<Law> = laws.iter().map(|law| law.scaled(size)).collect();
     let mut owner = Vec::new();
     let mut all: Vec<Barrier> = Vec::new();
     for (i, law) in laws.iter().enumerate() {
@@ -92,7 +96,7 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
             states[*i] = state;
         }
     }
-    let x: Vec<f64> = x.into_iter().map(|x| x * size).collect();
+    let x = x.into_iter().zip(origin).map(|(x, from)| from + x * size).collect();
     Some(Solution { x, states, steps, settled: false })
 }
 
@@ -102,6 +106,19 @@ impl Law {
         match self {
             Law::Between { .. } => State::Between,
             _ => State::Below,
+        }
+    }
+
+    /// Where friction holds; zero for every other law.
+    fn centre(self) -> f64 {
+        if let Law::Friction { centre, .. } = self { centre } else { 0.0 }
+    }
+
+    /// The law of the distance from [`Law::centre`].
+    fn centred(self) -> Self {
+        match self {
+            Law::Friction { threshold, .. } => Law::Friction { threshold, centre: 0.0 },
+            _ => self,
         }
     }
 

@@ -6,13 +6,11 @@ use std::f64::consts::FRAC_PI_2;
 use super::contact::unresolved_gap;
 use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
-use crate::mesh::along::{Facing, facing, outward, turned};
+use crate::mesh::along::{Facing, facing, opposite, outward, turned};
 use crate::mesh::error::at;
 use crate::mesh::polyline::{Link, chain};
 use crate::scene::{Contact, Gap, Scene};
 
-/// Part of an interval within which its ends are those of another one.
-const MATCHED: f64 = 1e-6;
 /// Radians by which the normals of a straight side may differ …
 const STRAIGHT: f64 = 1e-6;
 /// … and beyond which a direction is another one than the normal: a tangential part of a tenth.
@@ -114,12 +112,4 @@ fn oblique(contact: &Contact, pairs: &[ContactPair], d: [f64; 2]) -> Option<Note
             most.abs().tan()
         ),
     })
-}
-
-/// The edge of the other side that covers the same interval.
-fn opposite(own: &Facing, side: &[Facing]) -> Option<Facing> {
-    let close = MATCHED * (own.span[1] - own.span[0]);
-    let from = side.partition_point(|f| f.span[0] < own.span[0] - close);
-    let near = |f: &&Facing| (0..2).all(|k| (f.span[k] - own.span[k]).abs() <= close);
-    side[from..].iter().take(2).find(near).copied()
 }

@@ -323,8 +323,9 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
         return refused(what, "leave `friction` out of axisymmetric scenes");
     }
     let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
-    if springs || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
-        let what = "a body of revolution has springs or an elastic layer".to_string();
+    let elastic = scene.contacts.iter().any(|contact| contact.stiffness.is_some());
+    if springs || elastic || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
+        let what = "a body of revolution has springs, an elastic layer or elastic contact".to_string();
         return refused(what, "leave `stiffness` out of axisymmetric scenes");
     }
     Ok(())

@@ -26,11 +26,12 @@ pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
 
+use crate::element::revolved::vanishes;
 use crate::element::{Material, Section};
 use crate::load::{BodyForce, OnTriangle};
 use crate::mesh::{Triangulation, Uncut};
 pub use crate::scene::Note;
-use crate::scene::Scene;
+use crate::scene::{Extent, Scene, Target};
 
 /// A scene and a mesh that fit together.
 #[derive(Debug, Clone)]
@@ -90,8 +91,13 @@ impl Problem {
             Condition::Traction(ends) => self.weighted(*e, ends).len() - 1,
             _ => 1,
         };
+        // A mean displacement of the body along the axis has such a weight as its own load.
+        let own = self.mesh.body[t];
+        let asked = self.scene.quantities.iter().any(|quantity| {
+            matches!(quantity.target, Target::Displacement { of: Extent::Body(body), direction } if body == own && direction[1] != 0.0)
+        });
         let of_edges = self.mesh.triangle_edges[t].iter().map(of_edge).max().unwrap_or(1);
-        of_edges.max(if axial == 0.0 { 1 } else { 2 })
+        of_edges.max(if axial == 0.0 && !asked { 1 } else { 2 })
     }
 
     /// What the plane figure stands for.
@@ -106,8 +112,7 @@ impl Problem {
 
     /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
     pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
-        let [a, b] = self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v]));
-        a && (b || k == 0) || b && k == degree
+        vanishes(self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v])), k, degree)
     }
 
     /// Largest weight of the ends of edge `e`.

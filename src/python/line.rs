@@ -4,13 +4,13 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::path::Path;
 
+use clap::Args;
 use clap::error::{ContextKind, ContextValue};
-use clap::{Args, Command};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::errors::raised;
-use crate::cli::Exit;
+use crate::cli::{Exit, options_of};
 
 /// The words of one command.
 #[derive(Default)]
@@ -58,10 +58,8 @@ impl Line {
     /// # Errors
     /// `InputError` for what the command line refuses.
     pub fn parsed<A: Args>(self) -> PyResult<A> {
-        let command = A::augment_args(Command::new("hypercircle").no_binary_name(true));
         let ends = ["--quiet", "--", "scene.toml"].map(OsString::from);
-        let matches = command.try_get_matches_from(self.words.into_iter().chain(ends)).map_err(refused)?;
-        A::from_arg_matches(&matches).map_err(refused)
+        options_of(self.words.into_iter().chain(ends)).map_err(refused)
     }
 }
 

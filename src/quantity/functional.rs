@@ -13,13 +13,15 @@ use super::lift::lift;
 use super::local::Local;
 use super::point::{Point, Wanted};
 use super::region::{Cut, cut, twice_area};
+use super::revolved;
 use super::tip::{NoTip, Tip};
 use crate::bounds::{holds_at, jumps, work};
 use crate::dual::Load;
 use crate::element::Displacement;
+use crate::element::revolved::Tensor;
 use crate::load::BodyForce;
 use crate::problem::{Condition, ContactPair, Problem, Sizes};
-use crate::scene::{Extent, Holder, PointValue, Quantity, Region, SupportKind, Target};
+use crate::scene::{Component, Extent, Holder, PointValue, Quantity, Region, SupportKind, Target};
 
 /// What a quantity is, for the words of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +137,8 @@ pub enum NotBounded {
     },
     /// What has no interval in bodies of revolution.
     #[error(
-        "a body of revolution has no interval for {what}; ask for the force of a contact or the mean displacement of a boundary"
+        "a body of revolution has no interval for {what}; ask for the force of a contact, the axial force of a support, or a mean displacement or \
+         stress"
     )]
     Revolved {
         /// In words.
@@ -158,6 +161,10 @@ pub struct Functional {
     pub load: Load,
     /// χ of a region, constant in it; the load has it too.
     pub region: Option<([f64; 3], Vec<Cut>)>,
+    /// χ (rr, zz, tt, rz) of a region of a body of revolution.
+    pub turned: Option<(Tensor, Vec<Cut>)>,
+    /// c χ on the triangles that the load has χ on.
+    pub beside: Vec<(usize, Tensor)>,
     /// A value at a point or a stress intensity. The load has it once it is [`Self::loaded`].
     pub local: Option<Box<Local>>,
     /// ∫ c(χ − Πχ):(χ − Πχ) for each of the shaped strains Πχ of the load.
@@ -186,7 +193,7 @@ impl Functional {
         match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
             Target::Displacement { of: Extent::Body(body), direction } => on_body(problem, *body, *direction),
-            Target::Stress { body, region, component } => mean_stress(problem, *body, region, component.factors()),
+            Target::Stress { body, region, component } => mean_stress(problem, *body, region, *component),
             Target::Point { body, at, value, smoothness } => {
                 let wanted = match value {
                     PointValue::Displacement(direction) => Wanted::Displacement(*direction),
@@ -276,6 +283,7 @@ impl Functional {
         self.local.is_none()
             && load.tractions.is_empty()
             && load.strains.is_empty()
+            && load.turned.is_empty()
             && load.shaped.is_empty()
             && load.edges.is_empty()
             && load.force.iter().all(BodyForce::is_none)
@@ -289,11 +297,14 @@ impl Functional {
                 force: vec![BodyForce::NONE; problem.scene.bodies.len()],
                 tractions: Vec::new(),
                 strains: Vec::new(),
+                turned: Vec::new(),
                 shaped: Vec::new(),
                 edges: Vec::new(),
                 weights: vec![Vec::new(); pairs],
             },
             region: None,
+            turned: None,
+            beside: Vec::new(),
             local: None,
             rests: Vec::new(),
             oscillation: Vec::new(),
@@ -305,15 +316,27 @@ impl Functional {
     }
 }
 
+impl Functional {
+    /// With the stresses of the strains of its load in a body of revolution.
+    fn beside(mut self, problem: &Problem) -> Self {
+        let materials = problem.materials();
+        let stress = |(t, chi): &(usize, Tensor)| (*t, materials[problem.mesh.body[*t]].revolved().stress(*chi));
+        self.beside = self.load.turned.iter().map(stress).collect();
+        self
+    }
+}
+
+/// What a force has that is not along the axis.
+const RADIAL: &str = "a force of a support that is not along the axis";
+
 /// Refuses what has no interval in bodies of revolution.
 fn refuse_in_revolved(target: &Target) -> Result<(), NotBounded> {
     let what = match target {
-        Target::Displacement { of: Extent::Boundary(_), .. } | Target::ContactForce { .. } => return Ok(()),
-        Target::Displacement { of: Extent::Body(_), .. } => "the mean displacement of a body",
-        Target::Stress { .. } => "mean stresses",
+        Target::Displacement { .. } | Target::ContactForce { .. } | Target::Stress { .. } => return Ok(()),
+        Target::SupportForce { direction: [across, _], .. } if *across == 0.0 => return Ok(()),
         Target::Point { .. } => "values at points",
         Target::StressIntensity { .. } => "stress intensities",
-        Target::SupportForce { .. } => "forces of supports",
+        Target::SupportForce { .. } => RADIAL,
         Target::Moment { .. } => "moments",
     };
     Err(NotBounded::Revolved { what })
@@ -371,18 +394,20 @@ fn on_boundary(problem: &Problem, name: &str, d: [f64; 2]) -> Result<Functional,
 }
 
 fn on_body(problem: &Problem, body: usize, d: [f64; 2]) -> Result<Functional, NotBounded> {
-    let area = area(problem, body)?;
+    let volume = volume(problem, body)?;
     let mut functional = Functional::empty(problem, Kind::Displacement);
-    functional.load.force[body] = d.map(|d| d / area).into();
+    functional.load.force[body] = d.map(|d| d / volume).into();
     Ok(functional)
 }
 
-/// The area of a body.
-fn area(problem: &Problem, body: usize) -> Result<f64, NotBounded> {
+/// The area of a body, with the weight of its section.
+fn volume(problem: &Problem, body: usize) -> Result<f64, NotBounded> {
     let mesh = &problem.mesh;
     let own = (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == body);
-    let area: f64 = own.map(|t| mesh.area(t)).sum();
-    if area > 0.0 { Ok(area) } else { Err(NotBounded::Empty { name: problem.scene.bodies[body].name.clone() }) }
+    let section = problem.section();
+    let of = |t: usize| if section.is_revolved() { section.volume(mesh.corners(t)) } else { mesh.area(t) };
+    let volume: f64 = own.map(of).sum();
+    if volume > 0.0 { Ok(volume) } else { Err(NotBounded::Empty { name: problem.scene.bodies[body].name.clone() }) }
 }
 
 /// Parts of a region outside its body, relative to its area, that are rounding.
@@ -392,14 +417,14 @@ fn mean_stress(
     problem: &Problem,
     body: usize,
     region: &Region,
-    [xx, yy, xy]: [f64; 3],
+    component: Component,
 ) -> Result<Functional, NotBounded> {
     let mesh = &problem.mesh;
     let whole = |t: usize| Cut { triangle: t, pieces: Vec::new(), part: 1.0 };
     let (cuts, area) = match region {
         Region::Whole => {
             let own = (0..mesh.triangles.len()).filter(|&t| mesh.body[t] == body);
-            (own.map(whole).collect(), area(problem, body)?)
+            (own.map(whole).collect(), volume(problem, body)?)
         }
         Region::Polygon(points) => {
             let (cuts, inside) = cut(problem, body, points);
@@ -412,6 +437,14 @@ fn mean_stress(
         }
     };
     let mut functional = Functional::empty(problem, Kind::Stress);
+    let [xx, yy, xy] = component.factors();
+    if let Some(revolved) = problem.section().revolved() {
+        let volume = revolved::volume(problem, revolved, &cuts);
+        let chi = [xx, yy, component.hoop(), 0.5 * xy].map(|c| c / volume);
+        functional.load.turned = cuts.iter().map(|cut| (cut.triangle, chi.map(|c| cut.part * c))).collect();
+        functional.turned = Some((chi, cuts));
+        return Ok(functional.beside(problem));
+    }
     let chi = [xx / area, yy / area, 0.5 * xy / area];
     let mean = |cut: &Cut| (cut.triangle, chi.map(|c| cut.part * c));
     functional.load.strains = cuts.iter().map(mean).collect();
@@ -508,6 +541,9 @@ fn on_support(
     for v in own.iter().flat_map(|&e| mesh.edges[e].vertices) {
         vertex[v] = holds.vertices[v].impose([0.0; 2]);
     }
+    if problem.section().is_revolved() && vertex.iter().any(|u| u[0] != 0.0) {
+        return Err(NotBounded::Revolved { what: RADIAL });
+    }
     let moved = Displacement::from_p1(mesh, &vertex);
     let mut functional = Functional::empty(problem, kind);
     pull_springs(problem, &mut functional, |_, v| vertex[v]);
@@ -521,6 +557,12 @@ fn on_support(
         let g = crate::element::geometry::gradients(mesh.corners(t));
         let d = |c: usize, x: usize| (0..3).map(|i| (u[i][c] - u[0][c]) * g[i][x]).sum::<f64>();
         let e = [d(0, 0), d(1, 1), 0.5 * (d(0, 1) + d(1, 0))];
+        if problem.section().is_revolved() {
+            let volume = problem.section().volume(mesh.corners(t));
+            functional.load.turned.push((t, [0.0, -e[1], 0.0, -e[2]]));
+            functional.natural += young[mesh.body[t]] * volume * (e[1] * e[1] + e[2] * e[2]);
+            continue;
+        }
         functional.load.strains.push((t, e.map(|e| -e)));
         functional.natural += young[mesh.body[t]] * mesh.area(t) * e.iter().map(|e| e * e).sum::<f64>();
     }
@@ -531,5 +573,5 @@ fn on_support(
             *weights = along;
         }
     }
-    Ok(functional)
+    Ok(functional.beside(problem))
 }

@@ -12,7 +12,7 @@
 use super::end::End;
 use super::functional::Functional;
 use super::pass::{strained, uncancelled};
-use super::revolved;
+use super::revolved::{self, Of};
 use super::search::Search;
 use super::springs::{middle_of, square_of, uncancelled_of};
 use super::value::{displaced, value_of};
@@ -165,17 +165,17 @@ impl<'a> Known<'a> {
             let found = openings_within(problem, &upper.displacement, pair, count.max(1) - 1);
             found.unwrap_or_else(|| vec![0.0; count.max(1)]).into_iter().map(|o| o.max(0.0)).collect()
         };
-        let (middle, in_bodies) = match problem.section().revolved() {
+        let (middle, in_bodies, uncancelled) = match problem.section().revolved() {
             None => {
                 let middle = mid_field(problem, &dual.stress, &upper.displacement);
                 let middle = middle.ok_or("λ and v are on different meshes")?;
                 let square = square(problem, &middle);
-                (middle, square)
+                (middle, square, uncancelled(problem, &dual.stress, &upper.displacement))
             }
             // λ stands for m where that only guides.
             Some(of) => {
-                let both = revolved::squares(problem, of, &dual.stress, &upper.displacement, true);
-                (dual.stress.clone(), 0.5 * both)
+                let [both, uncancelled] = revolved::squares(problem, of, &dual.stress, &upper.displacement);
+                (dual.stress.clone(), 0.5 * both, uncancelled)
             }
         };
         let springs = middle_of(problem, &dual.stress, &upper.displacement);
@@ -190,8 +190,7 @@ impl<'a> Known<'a> {
             nearest,
             size: (in_bodies + square_of(problem, &springs)).sqrt(),
             springs,
-            uncancelled: uncancelled(problem, &dual.stress, &upper.displacement)
-                + uncancelled_of(problem, &dual.stress, &upper.displacement),
+            uncancelled: uncancelled + uncancelled_of(problem, &dual.stress, &upper.displacement),
             middle,
             pressure: pressing(dual),
         })
@@ -327,7 +326,10 @@ impl<'a> Known<'a> {
     fn value(&self, functional: &Functional) -> f64 {
         let stress = &self.dual.stress;
         let mut sum = functional.constant
-            + strained(self.problem, functional, |t| stress.degree(t), |t, s, l| stress.at(t, s, l));
+            + match self.problem.section().revolved() {
+                Some(of) => revolved::strained(self.problem, of, functional, Of::Stress(stress)),
+                None => strained(self.problem, functional, |t| stress.degree(t), |t, s, l| stress.at(t, s, l)),
+            };
         let pressures = self.dual.contact_traction.iter().flat_map(|of| of.iter());
         for ((pair, weights), t) in self.problem.pairs().zip(&functional.load.weights).zip(pressures) {
             sum += pair.length * side::integral(weights, t);

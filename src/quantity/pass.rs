@@ -85,7 +85,11 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
         .into_par_iter()
         .with_min_len(128)
         .map(|t| match problem.section().revolved() {
-            Some(revolved) => revolved::triangle(problem, revolved, &materials[mesh.body[t]], t, fields),
+            Some(revolved) => {
+                let strain = functional.turned_on(t);
+                let of_load = (strain, &functional.load.force[mesh.body[t]]);
+                revolved::triangle(problem, revolved, &materials[mesh.body[t]], t, (fields, of_load))
+            }
             None => triangle(problem, &materials[mesh.body[t]], t, strain[t], fields),
         })
         .collect();
@@ -193,9 +197,6 @@ fn triangle(problem: &Problem, material: &Material, t: usize, strain: Strain<'_>
 
 /// The square of the norm that m would have if nothing cancelled in it.
 pub fn uncancelled(problem: &Problem, stress: &StressField, displacement: &Displacement) -> f64 {
-    if let Some(revolved) = problem.section().revolved() {
-        return revolved::squares(problem, revolved, stress, displacement, false);
-    }
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let of = |t: usize| {

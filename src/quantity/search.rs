@@ -8,7 +8,7 @@ use super::interval::{Known, in_degree};
 use super::springs::{adjoint_of, combined, square_of};
 use super::tried::Tried;
 use crate::bounds::energy::square;
-use crate::bounds::{NoUpperBound, NodalValues, OnSprings, Pull, Until};
+use crate::bounds::{Beside, NoUpperBound, NodalValues, OnSprings, Pull, Until};
 use crate::dual::{Load, Loaded, Response, ShapedStrain};
 use crate::element::StressField;
 use crate::problem::Problem;
@@ -79,12 +79,15 @@ impl Search<'_, '_> {
         let balanced = square(problem, &neutral.stress) + of_springs;
         let load = &self.functional.load;
         let strained = !load.strains.is_empty() || !load.shaped.is_empty();
+        let beside = self.beside(1.0);
         let rests: f64 = self.functional.rests.iter().sum();
         let square = if strained { square(problem, &sigma) + of_springs + rests } else { balanced };
         // D² = ‖σ_z‖² + 2 (½‖σ(z)‖² − ∫ σ_z : e(z)).
-        let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: Some(&springs) };
+        let pull = Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: Some(&springs), beside };
+        let square = square + self.functional.turned_square(problem);
         let rest = square + 2.0 * nearest.energy(&nodes, pull);
-        let distance = if rest > CANCELLED * square {
+        // In a body of revolution no products of σ̂ with what is beside it are at hand.
+        let distance = if rest > CANCELLED * square && beside.is_none() {
             rest.sqrt()
         } else {
             self.measured(&neutral, (&nearest.filled(&nodes, pull), 1.0), 1.0).distance
@@ -158,12 +161,22 @@ impl Search<'_, '_> {
             return false;
         }
         let sigma = self.stress(&begun.response.stress);
-        let filled =
-            nearest.filled(&begun.nodes, Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: None });
+        let filled = nearest.filled(
+            &begun.nodes,
+            Pull { scene: 0.0, initial: false, stress: Some(&sigma), springs: None, beside: self.beside(1.0) },
+        );
         let pair = self.measured(&begun.response, (&filled, 1.0), 1.0);
         pair.pass.balanced <= NO_STRESS * natural
             && pair.pass.pair.square <= NO_STRAIN * natural
             && pair.beyond <= NO_JUMP
+    }
+
+    /// What σ_z has in a body of revolution beside the weighted form of σ̂: the radial load in its hoop stress, and cχ.
+    fn beside(&self, factor: f64) -> Option<Beside<'_>> {
+        let Functional { load: Load { force, .. }, beside, .. } = self.functional;
+        let is_there = !beside.is_empty() || force.iter().any(|force| !force.is_none());
+        let is_there = is_there && self.known.problem.section().is_revolved();
+        is_there.then_some(Beside { factor, forces: force, stresses: beside })
     }
 
     /// σ̂ + cχ, χ by its mean where a triangle is cut.
@@ -227,7 +240,8 @@ impl Search<'_, '_> {
         let less =
             |(q, m): (&[Vec<f64>; 2], &[Vec<f64>; 2])| [0, 1].map(|c| combined(sign, &q[c], -2.0 * weight, &m[c]));
         let springs: OnSprings = adjoint.iter().zip(&known.springs).map(less).collect();
-        let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs) };
+        let beside = self.beside(sign);
+        let pull = Pull { scene: 2.0 * weight, initial: false, stress: Some(&stress), springs: Some(&springs), beside };
         let until = Until::Gains { least: WORTH_A_SWEEP * 4.0 * weight * weight * known.square, relaxed };
         let (z, nodes) = known.nearest.to(pull, &bounds, start, until).map_err(|error| match error {
             NoUpperBound::ForcedPenetration { x, y, .. } if is_tip(known.problem, [x, y]) => format!(

@@ -2,7 +2,7 @@
 
 use super::functional::Functional;
 use super::pass::strained;
-use super::revolved;
+use super::revolved::{self, Of};
 use super::springs::product_of;
 use crate::bounds::{Sum, work, work_of, work_on_edges};
 use crate::element::Displacement;
@@ -34,7 +34,10 @@ pub fn value_of(problem: &Problem, functional: &Functional, v: &Displacement) ->
     };
     let degree = |t: usize| elastic_degree(v.degree(t), &materials[problem.mesh.body[t]]);
     let mut sum = functional.constant + displaced(problem, functional, v);
-    sum += strained(problem, functional, degree, at);
+    sum += match problem.section().revolved() {
+        Some(of) => revolved::strained(problem, of, functional, Of::Displacement(v)),
+        None => strained(problem, functional, degree, at),
+    };
     if functional.load.weights.iter().any(|w| !w.is_empty()) {
         // ∫ φ t = −∫ t j(w̃) = F(w̃) − ∫ σ(v) : e(w̃).
         let lift = functional.lift.as_ref()?;

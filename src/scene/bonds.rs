@@ -15,6 +15,8 @@ pub struct Bond {
     /// Force per area and relative displacement, normal and tangential and both positive, of an elastic layer between them; `None`
     /// where they move as one.
     pub stiffness: Option<[f64; 2]>,
+    /// Unit vector along which sides that need not coincide are matched: the second is moved onto the first.
+    pub direction: Option<[f64; 2]>,
 }
 
 impl Bond {
@@ -44,6 +46,11 @@ impl Joint<'_> {
         format!("{kind} {first}|{second}")
     }
 
+    /// Whether its sides are those of a bond.
+    pub fn is_bond(&self) -> bool {
+        self.kind == "bond"
+    }
+
     /// The same with the name quoted, as errors have it.
     pub fn quoted(&self) -> String {
         let Joint { kind, sides: [first, second], .. } = self;
@@ -70,7 +77,7 @@ impl Scene {
 impl Bond {
     /// The bond as two boundaries that are made to match.
     pub(crate) fn joint(&self) -> Joint<'_> {
-        Joint { kind: "bond", sides: &self.sides, direction: None, turns: false }
+        Joint { kind: "bond", sides: &self.sides, direction: self.direction, turns: false }
     }
 }
 
@@ -79,7 +86,9 @@ pub(super) fn bond(raw: &At<Table<RawBond>>, table: &str, taken: &mut Taken) -> 
     let Table(bond) = &raw.value;
     let remedy = "name the two boundaries that are glued to each other";
     let stiffness = bond.stiffness.as_ref().map(|k| layer(k, table, taken.source)).transpose()?;
-    Ok(Bond { sides: taken.between(&bond.between, table, remedy)?, stiffness })
+    let along = "write the direction from the first side to the second, like [0.0, -1.0]";
+    let direction = bond.direction.as_ref().map(|d| taken.source.unit(d, (table, "direction"), along)).transpose()?;
+    Ok(Bond { sides: taken.between(&bond.between, table, remedy)?, stiffness, direction })
 }
 
 impl Taken<'_> {

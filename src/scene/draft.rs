@@ -205,7 +205,7 @@ impl Draft {
                     Region::Whole => String::new(),
                     Region::Polygon(points) => format!(", polygon = {}", rows(points)),
                 };
-                format!("stress = {}{region}, {}", body(*of), component_of(component))
+                format!("stress = {}{region}, {}", body(*of), component_of(component, self.kinematics))
             }
             Target::StressIntensity { mode, tip } => {
                 format!("stress_intensity = {:?}, tip = {}", mode.word(), list(tip))
@@ -213,7 +213,7 @@ impl Draft {
             Target::Point { body: of, at, value, smoothness } => {
                 let (key, value) = match value {
                     PointValue::Displacement(direction) => ("displacement", format!("direction = {}", list(direction))),
-                    PointValue::Stress(component) => ("stress", component_of(component)),
+                    PointValue::Stress(component) => ("stress", component_of(component, self.kinematics)),
                     PointValue::Invariant(invariant) => ("stress", format!("component = {:?}", invariant.word())),
                 };
                 format!("{key} = {}, point = {}, {value}, smoothness = {smoothness}", body(*of), list(at))
@@ -433,14 +433,14 @@ fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<Stri
     format!("{sides}, gap = {gap}{normals}{direction}{stiffness}{friction}")
 }
 
-fn bond(Bond { sides: [a, b], stiffness }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
+fn bond(Bond { sides: [a, b], stiffness, direction }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {
     let stiffness = stiffness.map(|k| format!(", stiffness = {}", both(&k, range))).unwrap_or_default();
-    format!("between = [{}, {}]{stiffness}", quoted(a), quoted(b))
+    let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
+    format!("between = [{}, {}]{stiffness}{direction}", quoted(a), quoted(b))
 }
 
-fn component_of(component: &Component) -> String {
-    let name = ["xx", "yy", "xy"].into_iter().zip([Component::XX, Component::YY, Component::XY]);
-    match name.into_iter().find(|(_, known)| known == component) {
+fn component_of(component: &Component, kinematics: Kinematics) -> String {
+    match Component::words(kinematics).iter().find(|(_, known)| known == component) {
         Some((name, _)) => format!("component = {name:?}"),
         None => {
             let [xx, yy, xy] = component.factors();

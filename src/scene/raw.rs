@@ -574,13 +574,16 @@ fn rows_or_ends<'de, A: SeqAccess<'de>>(mut rows: A) -> Result<(Vec<Pair>, Vec<f
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Bond")]
 pub(super) struct RawBond {
-    /// Two boundaries that coincide as polylines.
+    /// Two boundaries that coincide as polylines, or face each other along `direction`.
     #[schemars(with = "[String; 2]")]
     pub between: At<Vec<At<String>>>,
     /// An elastic layer in place of a rigid bond: force per area and relative displacement, [normal, tangential], each a number or
     /// the two ends of a range.
     #[schemars(with = "Option<[RawNumber; 2]>")]
     pub stiffness: Option<At<Vec<RawNumber>>>,
+    /// The sides need not coincide: those of the second that face the first along this direction are moved onto it.
+    #[schemars(with = "Option<[f64; 2]>")]
+    pub direction: Option<Pair>,
 }
 
 /// A rigid obstacle: a straight line or a circle.

@@ -81,6 +81,9 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
     let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
+        if problem.has_elastic_contact() {
+            return Answer::unknown(name, Kind::Force, "the scene has elastic contact");
+        }
         match (Form::new(problem, quantity), &known) {
             (Ok(form), _) if motions.iter().any(|motion| changes(problem, &form, motion)) => {
                 let reason = "a motion that neither supports nor closed contacts resist changes it";

@@ -1,6 +1,7 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
+use crate::compare::turned::Rule;
 use crate::compare::{
     ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells,
 };
@@ -106,6 +107,20 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     let energies = energies(problem, judged);
     let own = diagnose(solution, energies);
     let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
+    if problem.section().is_revolved() {
+        // The rule with which a wrong field fits best need not be that of its program, with which one mistake explains all.
+        let others = Rule::all(&judged.candidate).into_iter().filter(|rule| Some(*rule) != solution.rule);
+        let by = |rule| {
+            let other = Solution::turned(problem, &judged.candidate, rule).ok()?.within(Extent::of(problem, bracket));
+            diagnose(&other, energies)
+        };
+        let share = |found: &Diagnosis| found.explained.unwrap_or(0.0);
+        let best = others.filter_map(by).max_by(|a, b| share(a).total_cmp(&share(b)));
+        return match (own, best) {
+            (Some(own), Some(best)) if share(&best) > share(&own) => Some(best),
+            (own, _) => own,
+        };
+    }
     if is_explained(&own) {
         return own;
     }
@@ -139,10 +154,6 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
 /// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
 pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
     let problem = &*problem.softened();
-    if problem.section().is_revolved() {
-        // Mistakes are looked for in the plane.
-        return Vec::new();
-    }
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
         let own = |check: &&Check| check.name.ends_with(name.as_str());

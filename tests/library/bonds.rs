@@ -153,3 +153,46 @@ fn what_cannot_be_bonded_is_refused_with_its_place() {
         refused("[[bonds]]", "[[quantities]]\nname = \"q\"\ndisplacement = \"face\"\ndirection = [1, 0]\n[[bonds]]");
     assert!(asked.contains("bond"), "{asked}");
 }
+
+/// A block on another one whose top is a line of its own, `off` below it where a `direction` is given.
+fn apart(off: f64, more: &str) -> Toml {
+    let sole = [[0.3, 1.0 + off], [0.9, 1.0 + 2.0 * off], [1.7, 1.0 + off], [1.7, 2.0], [0.3, 2.0]];
+    let seat = if more.is_empty() {
+        vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.7, 1.0], [0.3, 1.0], [0.0, 1.0]]
+    } else {
+        vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+    };
+    let names = if more.is_empty() { vec!["foot", "", "", "head", "", ""] } else { vec!["foot", "", "head", ""] };
+    Toml::default()
+        .size(0.3)
+        .outline("a", &seat, &names)
+        .outline("b", &sole, &["sole", "sole", "", "top", ""])
+        .material("b", 2.0, 0.2)
+        .clamp("foot")
+        .traction("top", [0.1, -0.2])
+        .table(&format!("[[bonds]]\nbetween = [\"head\", \"sole\"]\n{more}"))
+}
+
+/// Sides that lie apart by less than a mesh tells are drawn together along their direction; what has nothing opposite is free.
+#[test]
+fn sides_that_do_not_coincide_are_matched_along_a_direction() {
+    for law in ["", "stiffness = [5.0, 2.0]\n"] {
+        let exact = apart(0.0, "")
+            .text()
+            .replace("between = [\"head\", \"sole\"]\n", &format!("between = [\"head\", \"sole\"]\n{law}"));
+        let [lower, upper] = ends(&solved(problem(&exact)));
+        let mut found = Vec::new();
+        for off in [1e-2, 1e-4, 1e-6] {
+            let near = problem(&apart(off, &format!("{law}direction = [0.0, 1.0]")).text());
+            assert!(near.notes.iter().any(|note| note.text.contains("moved by up to")), "{off}");
+            let [below, above] = ends(&solved(near));
+            assert!(below < upper && lower < above, "{off}: {below} {above} and {lower} {upper}");
+            found.push([below, above]);
+        }
+        // The geometry moves the bounds by no more than another mesh does.
+        let change = |i: usize| (found[i][0] - found[2][0]).abs() / found[2][0].abs();
+        assert!(change(0).max(change(1)) < 2e-3, "{} {}", change(0), change(1));
+    }
+    let far = Problem::load(scene(&apart(0.3, "direction = [0.0, 1.0]").text())).expect_err("no problem").to_string();
+    assert!(far.contains("two meshes of one curve"), "{far}");
+}

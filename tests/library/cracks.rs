@@ -89,3 +89,17 @@ fn a_crack_that_closes_in_part_is_bracketed() {
     let reason = found[0][2].interval.reasons[1].as_ref().expect("an infinite end");
     assert!(reason.contains("ends inside a body"), "{reason}");
 }
+
+/// A crack that is one edge long without a size opens as it does on finer meshes: its faces get a vertex between them.
+#[test]
+fn a_crack_of_one_edge_is_one() {
+    let pull = [0.05, 0.6];
+    let coarse = block(["low", "high"], pull).contact("low", "high").text().replace("size = 0.4\n", "");
+    let short = problem(&coarse);
+    assert!(short.pairs().count() == 2, "{} pairs", short.pairs().count());
+    let [lower, upper] = ends(&solved(short.refine_uniform(1).expect("a finer mesh")));
+    let [below, above] = ends(&solved(problem(&block(["low", "high"], pull).contact("low", "high").text())));
+    let [_, whole] = ends(&solved(problem(&block(["", ""], pull).text())));
+    assert!(lower < above && below < upper, "{lower} {upper} and {below} {above}");
+    assert!(above < whole - 0.5 * (above - below), "{above} {whole}");
+}

@@ -36,7 +36,11 @@ fn square() -> Draft {
             friction: Some(FrictionBound::Table(vec![[0.0, 0.5], [0.75, 0.0]])),
             ..Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))
         }],
-        bonds: vec![Bond { sides: ["left".into(), "right".into()], stiffness: Some([2.5, 0.1]) }],
+        bonds: vec![Bond {
+            sides: ["left".into(), "right".into()],
+            stiffness: Some([2.5, 0.1]),
+            direction: Some([0.6, 0.8]),
+        }],
         quantities: vec![
             quantity("side", side),
             quantity("all", Target::Displacement { of: Extent::Body(0), direction: [0.0, 1.0] }),

@@ -209,6 +209,51 @@ fn intervals_of_the_full_turn_hold_the_values_of_lame() {
 }
 
 #[test]
+fn means_of_bodies_and_regions_hold_the_values_of_lame() {
+    let region = "polygon = [[1.1, 0.1], [1.83, 0.2], [1.6, 0.9], [1.2, 0.7]]";
+    let stress = |name: &str, of: &str| quantity(name, &format!("stress = \"tube\"\n{of}"));
+    let text = tube(0.3, 0.5)
+        + &stress("radial", "component = \"rr\"")
+        + &stress("hoop", "component = \"tt\"")
+        + &stress("axial", "component = \"zz\"")
+        + &stress("part", &format!("component = \"tt\"\n{region}"))
+        + &stress("shear", &format!("component = \"rz\"\n{region}"))
+        + &quantity("grown", "displacement = \"tube\"\ndirection = [1.0, 0.0]")
+        + &quantity("held", "force = \"tube_foot\"\ndirection = [0.0, 1.0]");
+    // σ = (1 ∓ 4/r²)/3, and 2ν/3 along the axis; ∫ over r from 1 to 2 of r and of 1/r are 3/2 and ln 2.
+    let two = std::f64::consts::LN_2;
+    let mean = |sign: f64| (1.5 + sign * 4.0 * two) / 3.0 / 1.5;
+    let grown = 1.3 / 3.0 * (0.4 * 7.0 / 3.0 + 4.0) / 1.5;
+    // The hoop stress over the region: ∫ (r + 4/r)/3 over ∫ r, by strips between its sides.
+    let corners = [[1.1, 0.1], [1.83, 0.2], [1.6, 0.9], [1.2, 0.7]];
+    let height = |r: f64| {
+        let cuts = (0..4).filter_map(|i| {
+            let ([a, y], [b, z]): ([f64; 2], [f64; 2]) = (corners[i], corners[(i + 1) % 4]);
+            ((a - r) * (b - r) < 0.0).then(|| y + (r - a) / (b - a) * (z - y))
+        });
+        let ends: Vec<f64> = cuts.collect();
+        if let [p, q] = ends[..] { (p - q).abs() } else { 0.0 }
+    };
+    let steps = 400_000;
+    let over = |of: &dyn Fn(f64) -> f64| {
+        (0..steps).map(|i| 1.1 + 0.73 * (i as f64 + 0.5) / steps as f64).map(|r| of(r) * height(r)).sum::<f64>()
+    };
+    let part = over(&|r| (r + 4.0 / r) / 3.0) / over(&|r| r);
+    // The foot pushes against σ_zz = 2ν/3: its force on the body is −σ_zz times the area.
+    let exact = [mean(-1.0), mean(1.0), 0.2, part, 0.0, grown, -0.2 * TAU * 1.5];
+    for (degree, wide) in [(2, 0.3), (3, 0.05)] {
+        for (k, ([lower, upper], exact)) in intervals(&text, degree).into_iter().zip(exact).enumerate() {
+            let rounding = 1e-8;
+            assert!(
+                lower <= exact + rounding && exact <= upper + rounding,
+                "{k}, degree {degree}: {lower} {exact} {upper}"
+            );
+            assert!(upper - lower < wide, "{k}, degree {degree}: {lower} {exact} {upper}");
+        }
+    }
+}
+
+#[test]
 fn intervals_of_all_degrees_hold_one_value() {
     let mut random = Random::new(48);
     for _ in 0..2 {
@@ -216,10 +261,14 @@ fn intervals_of_all_degrees_hold_one_value() {
         let asked = quantity("all", "force = \"low_top\"")
             + &quantity("part", &format!("force = \"low_top\"\nwindow = [0.0, {a:?}, {a:?}, {:?}]", a + b))
             + &quantity("top", "displacement = \"up_top\"\ndirection = [0.0, 1.0]")
-            + &quantity("side", "displacement = \"low_out\"\ndirection = [1.0, 0.0]");
+            + &quantity("side", "displacement = \"low_out\"\ndirection = [1.0, 0.0]")
+            + &quantity("sunk", "displacement = \"up\"\ndirection = [0.0, 1.0]")
+            + &quantity("hoop", "stress = \"low\"\ncomponent = \"tt\"")
+            + &quantity("along", "stress = \"up\"\ncomponent = \"zz\"")
+            + &quantity("held", "force = \"low_foot\"\ndirection = [0.0, 1.0]");
         let text = random_scene(&mut random) + &asked;
         let all = [1, 2, 3].map(|degree| intervals(&text, degree));
-        for k in 0..4 {
+        for k in 0..8 {
             let ends = all.each_ref().map(|of| of[k]);
             let lower = ends.iter().fold(f64::NEG_INFINITY, |m, e| m.max(e[0]));
             let upper = ends.iter().fold(f64::INFINITY, |m, e| m.min(e[1]));
@@ -273,10 +322,9 @@ fn what_cannot_be_beside_an_axis_is_refused() {
     let spring = "[[supports]]\non = \"rod_foot\"\ntype = \"spring\"\nstiffness = [1.0, 0.0]\n";
     assert!(refused(head("axisymmetric", 0.5) + &body(0.5) + spring).contains("springs"));
     for asked in [
-        "stress = \"rod\"\ncomponent = \"xx\"",
         "stress = \"rod\"\npoint = [0.7, 0.5]\ncomponent = \"von-mises\"",
-        "displacement = \"rod\"\ndirection = [0.0, 1.0]",
-        "force = \"rod_foot\"\ndirection = [0.0, 1.0]",
+        "displacement = \"rod\"\npoint = [0.7, 0.5]\ndirection = [0.0, 1.0]",
+        "force = \"rod_foot\"\ndirection = [1.0, 0.0]",
     ] {
         let text = head("axisymmetric", 0.5) + &body(0.5) + &rollers("rod_foot") + &quantity("a", asked);
         let error = refuse_quantities(&problem(&text)).expect_err(asked);

@@ -57,7 +57,7 @@ fn the_schema_knows_quantities() {
     let example = std::fs::read_to_string(path).expect("part of the repository");
     assert!(admitted(&example));
     for (good, bad) in [
-        ("component = \"xy\"", "component = \"zz\""),
+        ("component = \"xy\"", "component = \"zx\""),
         ("about = [2.0, 0.5]", "about = [2.0]"),
         ("about = [2.0, 0.5]", ""),
         ("window = [0.1, 0.2, 0.3, 0.4]", "window = [0.1, 0.2, 0.3]"),

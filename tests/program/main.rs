@@ -39,6 +39,7 @@ mod quantities;
 #[path = "../support/random.rs"]
 #[allow(dead_code)]
 mod random;
+mod revolved_fields;
 mod schemas;
 mod spoiled;
 mod stability;

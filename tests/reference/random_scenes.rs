@@ -95,13 +95,18 @@ fn every_random_scene_is_valid_and_every_kind_of_condition_occurs() {
         "side = \"inside\"",
         "move = ",
         "friction = { bound",
+        "type = \"spring\"",
+        "[[bonds]]",
+        "stiffness = [",
+        "_low\", \"",
+        "temperature",
         "# Random scene",
     ];
     for word in words {
         let count = samples.iter().filter(|s| has(&s.text, word)).count();
         assert!(count >= 6, "{word} in {count} scenes");
     }
-    for family in ["blocks", "shapes", "stack", "crowd"] {
+    for family in ["blocks", "shapes", "stack", "crowd", "mixed"] {
         let count = samples.iter().filter(|s| s.family == family).count();
         assert!(count >= 20, "{count} of {family}");
     }

@@ -13,9 +13,9 @@ use crate::element::quadrature::segment_rule;
 use crate::element::{Material, Quadrilateral};
 
 /// Numbers of points that are tried, and how often a part of the square is cut in two.
-const FEWEST: usize = 3;
-const MOST: usize = 16;
-const CUTS: usize = 80;
+pub(super) const FEWEST: usize = 3;
+pub(super) const MOST: usize = 16;
+pub(super) const CUTS: usize = 80;
 /// Part of the energy at which its error is small enough.
 const ENOUGH: f64 = 1e-15;
 /// Ellipses that are tried for each rule, up to a parameter beyond which nothing is gained.
@@ -34,7 +34,7 @@ pub struct Enclosed {
 }
 
 impl Enclosed {
-    fn and(self, other: Enclosed) -> Enclosed {
+    pub(super) fn and(self, other: Enclosed) -> Enclosed {
         Enclosed {
             value: self.value + other.value,
             error: self.error + other.error,
@@ -45,19 +45,19 @@ impl Enclosed {
 
 /// A part of the square: its centre and half its sides.
 #[derive(Clone, Copy)]
-struct Part {
-    centre: [f64; 2],
-    half: [f64; 2],
+pub(super) struct Part {
+    pub(super) centre: [f64; 2],
+    pub(super) half: [f64; 2],
 }
 
-const WHOLE: Part = Part { centre: [0.0; 2], half: [1.0; 2] };
+pub(super) const WHOLE: Part = Part { centre: [0.0; 2], half: [1.0; 2] };
 
 impl Part {
-    fn at(&self, s: [f64; 2]) -> [f64; 2] {
+    pub(super) fn at(&self, s: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|c| self.centre[c] + self.half[c] * s[c])
     }
 
-    fn halves(&self, direction: usize) -> [Part; 2] {
+    pub(super) fn halves(&self, direction: usize) -> [Part; 2] {
         [-1.0, 1.0].map(|side| {
             let mut part = *self;
             part.half[direction] *= 0.5;
@@ -66,7 +66,7 @@ impl Part {
         })
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.half[0] * self.half[1]
     }
 }
@@ -154,45 +154,53 @@ impl Bound {
         usize::from(other > one)
     }
 
-    /// The least bound along one direction, over ellipses.
+    /// The least bound along one direction.
     fn along(&self, direction: usize, points: usize) -> f64 {
         let [d0, d1, d2] = self.determinant;
         let (own, other) = if direction == 0 { (d1.abs(), d2.abs()) } else { (d2.abs(), d1.abs()) };
-        let least = d0 - other;
-        if least <= own {
-            return f64::INFINITY;
-        }
-        // Where the determinant vanishes: half the larger axis of the largest ellipse.
-        let axis = if own > 0.0 { (least / own).min(LARGEST) } else { LARGEST };
-        let largest = axis + (axis * axis - 1.0).sqrt();
-        let of = |step: usize| {
-            let rho = largest.powf(step as f64 / ELLIPSES as f64);
-            let left = least - 0.5 * own * (rho + 1.0 / rho);
-            if left <= 0.0 {
-                return f64::INFINITY;
-            }
-            let largest = 0.5 * self.numerator(direction, rho) / left;
-            64.0 / 15.0 * largest * rho.powi(-2 * points as i32) / (1.0 - rho.powi(-2))
-        };
-        (1..ELLIPSES).map(of).fold(f64::INFINITY, f64::min)
+        least_along([[d0 - other, own]; 2], points, |rho| 0.5 * self.numerator(direction, rho))
     }
 
     /// No value of N on the ellipse is larger.
     fn numerator(&self, direction: usize, rho: f64) -> f64 {
-        let grown = [0, 1, 2].map(|k| 0.5 * (rho.powi(k) + rho.powi(-k)));
-        let size = |component: usize| {
-            let own = |k: usize, l: usize| {
-                if direction == 0 { self.strain[component][k][l] } else { self.strain[component][l][k] }
-            };
-            (0..3).map(|k| grown[k] * (0..3).map(|l| own(k, l)).sum::<f64>()).sum::<f64>()
-        };
+        let size = |component: usize| sizes_on(&self.strain[component], direction, rho);
         let sizes = [0, 1, 2].map(size);
         (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| self.moduli[i][j] * sizes[i] * sizes[j]).sum()
     }
 }
 
+/// The least bound of what a rule with so many points errs by along one direction, over ellipses: `numerator` is no smaller than that of the
+/// function on the ellipse of a parameter, and the real denominator, linear along the direction, has at the two ends of the other one its
+/// `middle` value and changes by `own` to either end.
+pub(super) fn least_along(ends: [[f64; 2]; 2], points: usize, numerator: impl Fn(f64) -> f64) -> f64 {
+    if ends.iter().any(|[middle, own]| middle <= own) {
+        return f64::INFINITY;
+    }
+    // Where the denominator vanishes: half the larger axis of the largest ellipse.
+    let axis = ends.iter().map(|[middle, own]| if *own > 0.0 { (middle / own).min(LARGEST) } else { LARGEST });
+    let axis = axis.fold(LARGEST, f64::min);
+    let largest = axis + (axis * axis - 1.0).sqrt();
+    let of = |step: usize| {
+        let rho = largest.powf(step as f64 / ELLIPSES as f64);
+        let left =
+            ends.iter().map(|[middle, own]| middle - 0.5 * own * (rho + 1.0 / rho)).fold(f64::INFINITY, f64::min);
+        if left <= 0.0 {
+            return f64::INFINITY;
+        }
+        64.0 / 15.0 * (numerator(rho) / left) * rho.powi(-2 * points as i32) / (1.0 - rho.powi(-2))
+    };
+    (1..ELLIPSES).map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// No value of a polynomial with these Chebyshev coefficients, in size, is larger on the ellipse of parameter `rho` along `direction`.
+pub(super) fn sizes_on(coefficients: &[[f64; 3]; 3], direction: usize, rho: f64) -> f64 {
+    let grown = [0, 1, 2].map(|k| 0.5 * (rho.powi(k) + rho.powi(-k)));
+    let own = |k: usize, l: usize| if direction == 0 { coefficients[k][l] } else { coefficients[l][k] };
+    (0..3).map(|k| grown[k] * (0..3).map(|l| own(k, l)).sum::<f64>()).sum()
+}
+
 /// The Chebyshev coefficients of the quadratic polynomial with these values at −1, 0 and 1.
-fn chebyshev([left, middle, right]: [f64; 3]) -> [f64; 3] {
+pub(super) fn chebyshev([left, middle, right]: [f64; 3]) -> [f64; 3] {
     let square = 0.25 * (left + right) - 0.5 * middle;
     [middle + square, 0.5 * (right - left), square]
 }

@@ -11,6 +11,7 @@
 //! same values along the sides, the one of lower energy is the bound.
 
 mod enclosure;
+mod turned;
 
 use rayon::prelude::*;
 
@@ -21,7 +22,7 @@ use super::rounding::ROUNDING_PER_TERM;
 use super::terms::UpperTerms;
 use crate::dual::DualSolution;
 use crate::element::quadrature::segment_rule;
-use crate::element::{Displacement, Material, Quadrilateral, contraction};
+use crate::element::{Displacement, Material, Quadrilateral, Section, contraction};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 
@@ -63,7 +64,11 @@ impl Correction {
         let data = &problem.scene.bodies[body];
         let thickness = problem.scene.thickness;
         let material = problem.material(body);
-        let own = strain_energy(&cell.field, &material);
+        let section = problem.section();
+        let own = match section.axis() {
+            None => strain_energy(&cell.field, &material),
+            Some(axis) => turned::strain_energy(&cell.field, &material, axis),
+        };
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
         let [initial, size] = if material.initial().is_none() { [0.0; 2] } else { of_initial(&cell.field, &material) };
         let homogeneous = match material.initial().is_none() {
@@ -73,9 +78,13 @@ impl Correction {
         let force = &data.body_force;
         let mut work = 0.0;
         if !force.is_none() {
-            work += work_on(force, &cell.field);
+            work += work_on(section, force, &cell.field);
             for &t in &cell.triangles {
-                work -= work_inside(force, mesh.corners(t), polynomial, t).iter().sum::<f64>();
+                let own = match section.revolved() {
+                    None => work_inside(force, mesh.corners(t), polynomial, t),
+                    Some(revolved) => revolved.work_inside(force, mesh.corners(t), polynomial, t),
+                };
+                work -= own.iter().sum::<f64>();
             }
         }
         Correction {
@@ -111,16 +120,17 @@ fn of_initial(cell: &Quadrilateral, material: &Material) -> [f64; 2] {
     sum
 }
 
-/// ∫ f · v over a quadrilateral: a polynomial of degree 4 along ξ and η.
-fn work_on(force: &BodyForce, cell: &Quadrilateral) -> f64 {
-    let rule = crate::element::quadrature::segment_rule(4);
+/// ∫ f · v over a quadrilateral, with the weight of its section: a polynomial of degree 5 at most along ξ and η.
+fn work_on(section: Section, force: &BodyForce, cell: &Quadrilateral) -> f64 {
+    let rule = segment_rule(5);
     let [d0, d1, d2] = cell.determinant();
     let mut sum = 0.0;
     for (s, v) in rule {
         for (t, w) in rule {
             let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
-            let (u, f) = (cell.value(at), force.at(cell.point(at)));
-            sum += 4.0 * v * w * (d0 + d1 * at[0] + d2 * at[1]) * (f[0] * u[0] + f[1] * u[1]);
+            let (u, weight) = (cell.value(at), section.weight(cell.point(at)));
+            let f = section.force(force, cell.point(at));
+            sum += 4.0 * v * w * weight * (d0 + d1 * at[0] + d2 * at[1]) * (f[0] * u[0] + f[1] * u[1]);
         }
     }
     sum

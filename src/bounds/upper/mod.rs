@@ -46,7 +46,7 @@ pub use self::nearest::Nearest;
 pub use self::nodes::{NodalValues, Nodes};
 pub use self::part::{Division, Found, Part};
 pub use self::prepared::Prepared;
-pub use self::pull::Pull;
+pub use self::pull::{Beside, Pull};
 pub use self::relax::Until;
 pub use self::rows::{Row, bernstein, of_pair, sides};
 use self::share::{Share, Whole};

@@ -4,7 +4,8 @@ use super::split::{self, load};
 use crate::bounds::springs::OnSprings;
 use crate::element::StressField;
 use crate::element::geometry::sub_corners;
-use crate::load::BodyForce;
+use crate::element::revolved::Tensor;
+use crate::load::{Affine, BodyForce};
 use crate::problem::{Condition, Problem};
 
 /// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
@@ -19,11 +20,40 @@ pub struct Pull<'a> {
     pub stress: Option<&'a StressField>,
     /// Work ∫ f j(v) of forces on the jumps of springs.
     pub springs: Option<&'a OnSprings>,
+    /// In a body of revolution what a stress has beside its weighted form.
+    pub beside: Option<Beside<'a>>,
+}
+
+/// What a stress has in a body of revolution beside its weighted form, times a factor.
+#[derive(Debug, Clone, Copy)]
+pub struct Beside<'a> {
+    /// The factor.
+    pub factor: f64,
+    /// Body forces of which the radial part is in the hoop stress, by body.
+    pub forces: &'a [BodyForce],
+    /// Constant stresses (rr, zz, tt, rz) of triangles, in their order.
+    pub stresses: &'a [(usize, Tensor)],
+}
+
+impl Beside<'_> {
+    fn add(&self, problem: &Problem, t: usize, k: usize, forces: &mut [f64]) {
+        let (section, corners, factor) = (problem.section(), problem.mesh.corners(t), self.factor);
+        let [value, slope] = section.radial(&self.forces[problem.mesh.body[t]]);
+        if [value, slope] != [0.0; 2] {
+            let axis = section.axis().unwrap_or(0.0);
+            let value = [factor * (value - slope * axis), 0.0];
+            let radial = BodyForce::affine(Affine { value, gradient: [[factor * slope, 0.0], [0.0; 2]] });
+            forces.iter_mut().zip(load(section, k, corners, &radial)).for_each(|(f, own)| *f += own);
+        }
+        if let Ok(at) = self.stresses.binary_search_by_key(&t, |(t, _)| *t) {
+            split::pull_constant(section, k, corners, self.stresses[at].1.map(|s| factor * s), forces);
+        }
+    }
 }
 
 impl Pull<'_> {
     /// The scene alone: the energy is 𝓛.
-    pub const SCENE: Pull<'static> = Pull { scene: 1.0, initial: true, stress: None, springs: None };
+    pub const SCENE: Pull<'static> = Pull { scene: 1.0, initial: true, stress: None, springs: None, beside: None };
 
     /// The forces on all coefficients of triangle `t` in degree `k`, but for tractions.
     pub(super) fn forces(&self, problem: &Problem, t: usize, k: usize) -> Vec<f64> {
@@ -34,6 +64,9 @@ impl Pull<'_> {
             let axial = BodyForce::constant([0.0, self.scene * axial]);
             let mut forces = load(problem.section(), k, corners, &axial);
             split::pull_revolved(k, corners, &revolved.stresses_on(stress, t, corners, &BodyForce::NONE), &mut forces);
+            if let Some(beside) = &self.beside {
+                beside.add(problem, t, k, &mut forces);
+            }
             return forces;
         }
         let mut forces = load(problem.section(), k, corners, &problem.body_force(t).times(self.scene));

@@ -14,7 +14,7 @@ use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
 use crate::element::quadrature::triangle_rule;
-use crate::element::revolved::Weighted;
+use crate::element::revolved::{Tensor, Weighted};
 use crate::element::{Material, Samples, Section, StressField, triangle};
 use crate::load::BodyForce;
 
@@ -149,6 +149,29 @@ pub fn pull_revolved(k: usize, corners: [[f64; 2]; 3], stress: &[Weighted; 3], o
             // λ_θθ φ_r/r · r.
             for (node, b) in nodes.iter().zip(triangle::basis(k, l)) {
                 out[2 * node] += weight * b * hoop;
+            }
+        }
+    }
+}
+
+/// Adds to them the forces ∫ σ : e(φ) r of a constant stress (rr, zz, tt, rz) of a body of revolution.
+pub fn pull_constant(section: Section, k: usize, corners: [[f64; 2]; 3], [rr, zz, tt, rz]: Tensor, out: &mut [f64]) {
+    let area = sub_area(corners);
+    for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
+        let (g, places) = (sub_gradients(corners, sub), sub_corners(corners, sub));
+        for &(l, weight) in triangle_rule(k + 1) {
+            let radius: f64 = (0..3).map(|i| l[i] * section.weight(places[i])).sum();
+            let weight = area * weight;
+            for (beta, b) in triangle::indices(k - 1).zip(triangle::basis(k - 1, l)) {
+                for (i, [gr, gz]) in g.iter().enumerate() {
+                    let node = nodes[triangle::number(triangle::raised(beta, i))];
+                    let by = k as f64 * weight * b * radius;
+                    out[2 * node] += by * (rr * gr + rz * gz);
+                    out[2 * node + 1] += by * (rz * gr + zz * gz);
+                }
+            }
+            for (node, b) in nodes.iter().zip(triangle::basis(k, l)) {
+                out[2 * node] += weight * b * tt;
             }
         }
     }

@@ -22,6 +22,7 @@ use super::balance::Balance;
 use super::candidate::Candidate;
 use super::cells;
 use super::forces::NodalForces;
+use super::turned::{self, Rule};
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};
@@ -74,6 +75,8 @@ pub struct Solution<'a> {
     pub forces: NodalForces,
     /// Points in each direction of the rule on quadrilaterals, where there are such.
     pub points: Option<usize>,
+    /// On a body of revolution the rule of all cells.
+    pub rule: Option<Rule>,
     /// What supports and contacts cannot take of them, node by node.
     pub rest: Vec<[f64; 2]>,
     /// What supports hold at vertices, then at edge midpoints.
@@ -126,6 +129,12 @@ impl<'a> Solution<'a> {
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
+        if problem.section().is_revolved() {
+            let made = |rule| Self::turned(problem, candidate, rule);
+            let tried = Rule::all(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
+            let best = tried.into_iter().min_by(|a, b| a.residual().total_cmp(&b.residual()));
+            return best.map_or_else(|| made(Rule::OWN), Ok);
+        }
         let made = |points| Self::by_rule(problem, candidate, strain, points);
         let tried = cells::rules(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
         let best = tried.into_iter().min_by(|a, b| a.residual().total_cmp(&b.residual()));
@@ -142,14 +151,40 @@ impl<'a> Solution<'a> {
         strain: f64,
         points: Option<usize>,
     ) -> Result<Self, NoUpperBound> {
-        let holds = holds(problem)?;
-        let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
-        let nodes = Nodes::new(problem.mesh.points.len(), inside);
-        let sites = Sites::new(problem, candidate.degree, &holds);
         let forces = NodalForces::by_rule(problem, candidate, points);
         // ½a(u, u), whatever strains the bodies have without load.
         let initial = problem.scene.bodies.iter().any(|body| !body.initial.is_none());
         let strain = if points.is_some() || initial { 0.5 * forces.energy(candidate) } else { strain };
+        let mut solution = Self::made_of(problem, candidate, strain, (forces, points, None))?;
+        // These laws are read off the stresses of triangles.
+        if solution.points.is_none() {
+            solution.recognise();
+            solution.accept();
+        }
+        Ok(solution)
+    }
+
+    /// The same on a body of revolution, by one of the rules that the program may have used there.
+    ///
+    /// # Errors
+    /// [`NoUpperBound`] where supports contradict each other.
+    pub fn turned(problem: &'a Problem, candidate: &'a Candidate, rule: Rule) -> Result<Self, NoUpperBound> {
+        let forces = turned::forces(problem, candidate, rule).0;
+        let strain = 0.5 * forces.energy(candidate);
+        let points = (!candidate.cells.is_empty()).then_some(rule.points);
+        Self::made_of(problem, candidate, strain, (forces, points, Some(rule)))
+    }
+
+    fn made_of(
+        problem: &'a Problem,
+        candidate: &'a Candidate,
+        strain: f64,
+        (forces, points, rule): (NodalForces, Option<usize>, Option<Rule>),
+    ) -> Result<Self, NoUpperBound> {
+        let holds = holds(problem)?;
+        let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
+        let nodes = Nodes::new(problem.mesh.points.len(), inside);
+        let sites = Sites::new(problem, candidate.degree, &holds);
         let mut rest = forces.unsupported(&holds, &nodes);
         let unsupported = rest.clone();
         let (pressing, rubbing) = sites.acting(&rest);
@@ -160,7 +195,7 @@ impl<'a> Solution<'a> {
         let balance = Balance::of_forces(problem, candidate, strain, &forces)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
-        let mut solution = Solution {
+        Ok(Solution {
             problem,
             candidate,
             rest,
@@ -173,7 +208,7 @@ impl<'a> Solution<'a> {
             strain,
             largest: candidate.largest(),
             reference: candidate.largest(),
-            on_gaps: 0.0,
+            on_gaps: forces.on_gaps,
             of_the_rule: 0.0,
             larger: 1.0,
             ceiling: f64::INFINITY,
@@ -181,19 +216,14 @@ impl<'a> Solution<'a> {
             rounding: balance.rounding + written * forces.energy_size(|i| forces.size[i]),
             sites,
             points,
+            rule,
             forces,
             unsupported,
             materials: problem.materials(),
             weak: Vec::new(),
             claims_weak: false,
             beside: Vec::new(),
-        };
-        // These laws are read off the stresses of triangles.
-        if solution.points.is_none() {
-            solution.recognise();
-            solution.accept();
-        }
-        Ok(solution)
+        })
     }
 
     /// The residual of the whole field, relative to its scale.

@@ -28,7 +28,7 @@ pub struct Site {
     pub normal: [f64; 2],
     /// Gap there.
     pub gap: f64,
-    /// ∫φ ds of the node's shape function along the contact.
+    /// ∫φ ds of the node's shape function along the contact, ∫φ r ds of a body of revolution.
     pub weight: f64,
     /// Where the direction turns along the edge, the other direction of a midpoint.
     turned: Option<[f64; 2]>,
@@ -103,9 +103,14 @@ impl Sites {
             let mut known: BTreeMap<(usize, Option<usize>), Vec<usize>> = BTreeMap::new();
             for (number, pair) in contact.pairs.iter().enumerate() {
                 let part = pair.length / if degree > 1 { 6.0 } else { 2.0 };
+                // ∫ φ r ds of bodies of revolution.
+                let [from, to] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
+                let mean = 0.5 * (from + to);
+                let at_end = |own: f64| if degree > 1 { own } else { (own + 2.0 * mean) / 3.0 };
                 let mut at_ends = [0; 2];
                 for (end, at) in at_ends.iter_mut().enumerate() {
                     let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
+                    let weight = part * at_end([from, to][end]);
                     let normal = pair.direction.ends[end];
                     let tangent = pair.friction.map(|friction| friction.tangent.ends[end]);
                     let same = known.entry((first, second)).or_default();
@@ -113,12 +118,12 @@ impl Sites {
                     *at = found.unwrap_or(sites.list.len());
                     match found {
                         Some(s) => {
-                            sites.list[s].weight += part;
+                            sites.list[s].weight += weight;
                             sites.list[s].tangent = sites.list[s].tangent.or(tangent);
                         }
                         None => {
                             same.push(sites.list.len());
-                            let (gap, weight) = (pair.gap[end], part);
+                            let gap = pair.gap[end];
                             sites.list.push(Site {
                                 interface,
                                 first,
@@ -148,7 +153,7 @@ impl Sites {
                     second: pair.edges[1].map(|e| vertices + e),
                     normal: pair.direction.at(0.5),
                     gap: pair.gap_at(0.5),
-                    weight: 4.0 * part,
+                    weight: 4.0 * part * mean,
                     turned,
                     tangent: pair.friction.map(|friction| friction.tangent.at(0.5)),
                 });

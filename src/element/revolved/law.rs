@@ -14,6 +14,11 @@ pub struct Law {
 /// Components (rr, zz, tt, rz).
 pub type Tensor = [f64; 4];
 
+/// σ : e.
+pub fn work(e: Tensor, s: Tensor) -> f64 {
+    s[0] * e[0] + s[1] * e[1] + s[2] * e[2] + 2.0 * s[3] * e[3]
+}
+
 impl Law {
     /// No material: its numbers are none.
     pub const NONE: Self = Law { unit: f64::NAN, factor: [[f64::NAN; 4]; 4], inverse: [[f64::NAN; 4]; 4] };

@@ -15,6 +15,7 @@
 //! Energies are integrals of rational functions: by quadrature for the basis, which decides about nothing but the choice of the
 //! fields, and enclosed (`rule.rs`) for everything that is a bound.
 
+mod energies;
 mod householder;
 mod law;
 mod modes;
@@ -22,11 +23,17 @@ mod rule;
 mod sampled;
 mod stress;
 
-pub use law::{Law, Tensor};
+pub use law::{Law, Tensor, work};
 pub use modes::Ring;
 pub use rule::{Point, rule};
 pub use sampled::{Sampled, Strained};
 pub use stress::Weighted;
+
+/// Whether coefficient `k` of `degree` of the traction on a side belongs to a point of the axis, where there is none: `on_axis` says it of the
+/// ends of the side.
+pub fn vanishes([first, last]: [bool; 2], k: usize, degree: usize) -> bool {
+    first && (last || k == 0) || last && k == degree
+}
 
 /// By how much the majorant of 1/r may lie above it in what is a bound, relative to it.
 pub const NEAR: f64 = 4.0 * f64::EPSILON;

@@ -54,7 +54,7 @@ impl Ring {
     /// Whether coefficient `k` of the traction on a side belongs to the axis.
     fn vanishes(&self, side: usize, k: usize) -> bool {
         let ends = [self.radii[(side + 1) % 3] == 0.0, self.radii[(side + 2) % 3] == 0.0];
-        ends[0] && (ends[1] || k == 0) || ends[1] && k == self.degree
+        super::vanishes(ends, k, self.degree)
     }
 
     /// Computes tractions, particular field and nodal values of Σ.
@@ -102,6 +102,22 @@ impl Ring {
             }
             *out.particular_energy = (triangle[(count, count)] / unit).powi(2);
         }
+    }
+
+    /// Nodal values of an orthonormal basis of the fields without traction.
+    pub fn unloaded(&self, law: &Law) -> Vec<Vec<[f64; 3]>> {
+        let raw = Raw::new(self);
+        let fields = Fields::new(self, &raw, &self.tractions(&raw));
+        let triangle = self.triangle(law, &raw, &fields.columns, None);
+        let count = fields.columns.ncols();
+        let field = |k: usize| {
+            let mut x = vec![0.0; count];
+            x[k] = law.unit().sqrt();
+            backward(&triangle, &mut x, k + 1);
+            let nodal = &raw.nodal * (&fields.columns * DMatrix::from_vec(count, 1, x));
+            nodal.as_slice().as_chunks::<3>().0.to_vec()
+        };
+        (1..=fields.free).map(field).collect()
     }
 
     /// Nodal values `particular` · Σ̄ + Σ s_k Σ_k of the modes that were computed.

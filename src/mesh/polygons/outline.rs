@@ -1,5 +1,6 @@
 //! The divided boundaries of the polygons, equal bit for bit where two of them touch.
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use super::grade::grade;
@@ -52,7 +53,42 @@ pub(super) fn divide(scene: &Scene, polygons: &[Polygon], size: Option<f64>) -> 
     } else {
         grade(&mut outlines, scene, drawn);
     }
+    divide_short_cuts(&mut outlines, drawn);
     Ok(outlines)
+}
+
+/// Divides every cut inside a body that is one edge long: its sides share both ends, and without a vertex between them they would be one.
+fn divide_short_cuts(outlines: &mut [Vec<Piece>], polygons: &[Polygon]) {
+    type Key = [[u64; 2]; 2];
+    let mut all: HashMap<Key, (&str, bool)> = HashMap::new();
+    for (outline, polygon) in outlines.iter().zip(polygons) {
+        all.extend(outline.iter().map(|p| (p.ends.map(key), (polygon.body.as_str(), !p.name.is_empty()))));
+    }
+    // Edges that two polygons of one body name, and points of the outline of what all polygons cover.
+    let is_cut = |[a, b]: Key| match (all.get(&[a, b]), all.get(&[b, a])) {
+        (Some((body, named)), Some((other, also))) => body == other && *named && *also,
+        _ => false,
+    };
+    let mut ends: HashMap<[u64; 2], usize> = HashMap::new();
+    for [a, b] in all.keys().copied() {
+        let outside = !all.contains_key(&[b, a]);
+        for end in [a, b] {
+            *ends.entry(end).or_default() += if outside { 2 } else { usize::from(is_cut([a, b])) };
+        }
+    }
+    // Both sides of a cut count at each of its ends.
+    let alone = |ends_of: Key| is_cut(ends_of) && ends_of.iter().all(|end| ends.get(end) == Some(&2));
+    let short: Vec<Vec<(usize, [f64; 2])>> = outlines
+        .iter()
+        .map(|outline| {
+            let middle = |[a, b]: [[f64; 2]; 2]| [0, 1].map(|c| 0.5 * (a[c] + b[c]));
+            let of = outline.iter().enumerate().filter(|(_, piece)| alone(piece.ends.map(key)));
+            of.map(|(i, piece)| (i, middle(piece.ends))).collect()
+        })
+        .collect();
+    for (outline, points) in outlines.iter_mut().zip(short) {
+        insert(outline, points);
+    }
 }
 
 /// The polygon with facets in place of its arcs: equal ones, no longer than `size`, and three at least, which tell a contact its circle.

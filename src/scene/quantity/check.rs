@@ -11,10 +11,11 @@ use crate::scene::fault::names;
 use crate::scene::raw::{At, RawScene};
 use crate::scene::source::Source;
 use crate::scene::text::acts;
-use crate::scene::{Body, BoundaryUse};
+use crate::scene::{Body, BoundaryUse, Kinematics};
 
 /// What quantities may name.
 pub(super) struct Named<'a> {
+    pub kinematics: Kinematics,
     pub bodies: &'a [Body],
     pub conditions: &'a Conditions,
     /// Names of the polygon edges; `None` where only a mesh file knows them.
@@ -29,7 +30,8 @@ pub(in crate::scene) fn quantities(
     conditions: &Conditions,
     source: &Source,
 ) -> Result<Vec<Quantity>, SceneError> {
-    let named = Named { bodies, conditions, edges };
+    let kinematics = Kinematics::named(&raw.model.value.0.kinematics.value).unwrap_or(Kinematics::PlaneStrain);
+    let named = Named { kinematics, bodies, conditions, edges };
     let mut taken: HashMap<&str, (usize, Range<usize>)> = HashMap::new();
     let mut quantities = Vec::with_capacity(raw.quantities.len());
     for (i, raw) in raw.quantities.iter().enumerate() {

@@ -13,7 +13,7 @@ pub(super) use check::quantities;
 pub use fault::QuantityFault;
 pub(super) use raw::RawQuantity;
 
-use super::Scene;
+use super::{Kinematics, Scene};
 
 /// A number the scene is solved for.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,26 +182,45 @@ pub enum Region {
 }
 
 /// Factors of (σ_xx, σ_yy, σ_xy): [1, 0, 0], [0, 1, 0], [0, 0, 1], and [d0², d1², 2 d0 d1] for the normal stress d·σd
-/// along a unit vector d.
+/// along a unit vector d; of a body of revolution those of (σ_rr, σ_zz, σ_rz), with one of the hoop stress behind them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Component([f64; 3]);
+pub struct Component([f64; 4]);
 
 impl Component {
     /// σ_xx.
-    pub const XX: Component = Component([1.0, 0.0, 0.0]);
+    pub const XX: Component = Component([1.0, 0.0, 0.0, 0.0]);
     /// σ_yy.
-    pub const YY: Component = Component([0.0, 1.0, 0.0]);
+    pub const YY: Component = Component([0.0, 1.0, 0.0, 0.0]);
     /// σ_xy.
-    pub const XY: Component = Component([0.0, 0.0, 1.0]);
+    pub const XY: Component = Component([0.0, 0.0, 1.0, 0.0]);
+    /// The hoop stress of a body of revolution.
+    pub const HOOP: Component = Component([0.0, 0.0, 0.0, 1.0]);
 
-    /// The three factors.
+    /// The three factors in the plane.
     pub fn factors(self) -> [f64; 3] {
-        self.0
+        let [xx, yy, xy, _] = self.0;
+        [xx, yy, xy]
+    }
+
+    /// That of the hoop stress.
+    pub fn hoop(self) -> f64 {
+        self.0[3]
     }
 
     /// d·σd.
     pub fn along([x, y]: [f64; 2]) -> Self {
-        Component([x * x, y * y, 2.0 * x * y])
+        Component([x * x, y * y, 2.0 * x * y, 0.0])
+    }
+
+    /// The words for the components of a scene with the kinematics given.
+    pub fn words(kinematics: Kinematics) -> &'static [(&'static str, Component)] {
+        const PLANE: &[(&str, Component)] = &[("xx", Component::XX), ("yy", Component::YY), ("xy", Component::XY)];
+        const REVOLVED: &[(&str, Component)] =
+            &[("rr", Component::XX), ("zz", Component::YY), ("rz", Component::XY), ("tt", Component::HOOP)];
+        match kinematics {
+            Kinematics::Axisymmetric => REVOLVED,
+            Kinematics::PlaneStrain | Kinematics::PlaneStress => PLANE,
+        }
     }
 }
 

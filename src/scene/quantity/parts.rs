@@ -47,22 +47,20 @@ impl Context<'_> {
     }
 
     pub(super) fn component(&self, word: &At<String>) -> Result<Component, SceneError> {
-        match word.value.as_str() {
-            "xx" => Ok(Component::XX),
-            "yy" => Ok(Component::YY),
-            "xy" => Ok(Component::XY),
-            other => {
-                let mut known = ["xx", "yy", "xy"].map(String::from).to_vec();
-                if self.raw.point.is_some() {
-                    known.extend(Invariant::ALL.map(|invariant| invariant.word().to_owned()));
-                } else if let Some(invariant) = Invariant::ALL.into_iter().find(|known| known.word() == other) {
-                    let remedy = "add `point = [x, y]`: of a mean over a region only components are bounded";
-                    return self.misplaced(invariant.word(), word.span(), "a mean over a region", remedy);
-                }
-                let (table, found) = (self.table.to_owned(), other.to_owned());
-                self.fail(word.span(), Fault::UnknownWord { key: "component", table, found, known })
-            }
+        let words = Component::words(self.named.kinematics);
+        if let Some((_, component)) = words.iter().find(|(name, _)| *name == word.value) {
+            return Ok(*component);
         }
+        let other = word.value.as_str();
+        let mut known: Vec<String> = words.iter().map(|(name, _)| (*name).to_owned()).collect();
+        if self.raw.point.is_some() {
+            known.extend(Invariant::ALL.map(|invariant| invariant.word().to_owned()));
+        } else if let Some(invariant) = Invariant::ALL.into_iter().find(|known| known.word() == other) {
+            let remedy = "add `point = [x, y]`: of a mean over a region only components are bounded";
+            return self.misplaced(invariant.word(), word.span(), "a mean over a region", remedy);
+        }
+        let (table, found) = (self.table.to_owned(), other.to_owned());
+        self.fail(word.span(), Fault::UnknownWord { key: "component", table, found, known })
     }
 
     /// A weight that is 0 or 1 at every end of the side and continuous between: the mean of a pressure over a part with

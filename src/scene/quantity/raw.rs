@@ -59,8 +59,9 @@ pub(in crate::scene) struct RawQuantity {
     /// The corners of a region, in either orientation.
     #[schemars(with = "Option<Vec<[f64; 2]>>", length(min = 3))]
     pub polygon: Option<At<Vec<Pair>>>,
-    /// The component of the stress; at a point also von Mises' equivalent stress and the principal stresses in the plane.
-    #[schemars(extend("enum" = ["xx", "yy", "xy", "von-mises", "largest-principal", "smallest-principal"]))]
+    /// The component of the stress, of a body of revolution `rr`, `zz`, `rz` or `tt`; at a point also von Mises' equivalent stress and the
+    /// principal stresses in the plane.
+    #[schemars(extend("enum" = ["xx", "yy", "xy", "rr", "zz", "rz", "tt", "von-mises", "largest-principal", "smallest-principal"]))]
     pub component: Option<At<String>>,
     /// A point inside an isotropic body, away from its outline, at which a displacement or a stress is wanted.
     #[schemars(with = "Option<[f64; 2]>")]

@@ -12,8 +12,8 @@ use super::curved::Curved;
 use super::places::{AT_CORNER, Place, Places, barycentric, places, round_off, turned};
 use super::{FieldError, ForeignField};
 use crate::bounds::Cell;
-use crate::compare::Numbering;
 use crate::compare::solution::place;
+use crate::compare::{ADMISSIBLE, Numbering};
 use crate::element::{PlainDisplacement, Quadrilateral};
 use crate::mesh::error::at;
 use crate::problem::Problem;
@@ -237,10 +237,13 @@ impl Carried<'_> {
         Ok(())
     }
 
-    /// The displacement of a point of the file.
+    /// The displacement of a point of the file; none away from the axis of a body of revolution where it is so but for round-off.
     fn value(&self, node: usize) -> Result<[f64; 2], FieldError> {
         let field = self.field;
-        field.values[node].ok_or_else(|| {
+        let axis = self.problem.section().axis();
+        let on_axis = axis.is_some_and(|axis| (field.points[node][0] - axis).abs() <= AT_CORNER * field.far);
+        let stays = |u: &[f64; 2]| on_axis && u[0].abs() <= ADMISSIBLE * self.size;
+        field.values[node].map(|u| if stays(&u) { [0.0, u[1]] } else { u }).ok_or_else(|| {
             let place = at(&self.problem.scene, field.points[node]);
             let what = format!("there is no finite displacement at point {} {place}", node + 1);
             field.fault(what, "write a finite value at every point of a triangle")

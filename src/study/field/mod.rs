@@ -269,6 +269,12 @@ impl ForeignField {
         self.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" + ")
     }
 
+    /// Whether a file is a result of CalculiX.
+    pub fn is_of_calculix(&self) -> bool {
+        let ending = |name: &str| Path::new(name).extension().map(|ending| ending.to_ascii_lowercase());
+        self.files.iter().any(|(name, _)| ending(name).is_some_and(|ending| ending == "frd" || ending == "dat"))
+    }
+
     /// SHA-256 of the file.
     pub fn sha256(&self) -> &str {
         &self.sha256

@@ -5,6 +5,7 @@ mod causes;
 mod curved;
 mod degrees;
 mod discs;
+mod elastic_contact;
 mod exact;
 mod failures;
 mod half_planes;

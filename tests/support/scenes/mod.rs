@@ -10,6 +10,7 @@ mod frame;
 mod lattice;
 mod layout;
 mod matter;
+mod mixed;
 mod moved;
 mod msh;
 mod obstacles;
@@ -67,7 +68,7 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 8] = [
+const LATER: [(&str, f64, Family); 9] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
@@ -76,7 +77,16 @@ const LATER: [(&str, f64, Family); 8] = [
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
     ("rough", 0.12, rough::rough),
+    ("mixed", 0.2, mixed::mixed),
 ];
+
+/// The scene of a seed in one family.
+pub fn sample_of(wanted: &str, seed: u64) -> Option<Sample> {
+    let makers =
+        FAMILIES.iter().map(|(name, _, make)| (*name, *make)).chain(LATER.iter().map(|(name, _, make)| (*name, *make)));
+    let (family, make) = makers.into_iter().find(|(name, _)| *name == wanted)?;
+    Some(finished(seed, family, make(&mut Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d)))))
+}
 
 /// The scene of a seed.
 pub fn sample(seed: u64) -> Sample {
