@@ -14,12 +14,12 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
-use super::equilibrium::Equilibrium;
-use super::hybrid::{Motion, parameters, residual};
 use super::method::{plane_only, without_springs};
-use super::rows::Sides;
-use super::system::System;
-use super::{DualError, DualMethod, Found, Options, Phases, Size};
+use crate::dual::equilibrium::Equilibrium;
+use crate::dual::hybrid::{Motion, parameters, residual};
+use crate::dual::system::System;
+use crate::dual::system::rows::Sides;
+use crate::dual::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::{Problem, Scales};
 
 /// Interior point.

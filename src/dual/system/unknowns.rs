@@ -4,10 +4,10 @@
 //! polynomials of each edge, conjugate to the coefficients of its traction. An edge has the larger degree of its two
 //! triangles, a contact pair the larger one of both sides. Moments given by a support drop out; on Γ_K the moments of the
 //! first side along the direction of contact are replaced by the jumps j_k = ∫(v' − v'')·n̂ B_k ds (see
-//! [`super::contact_moments`]), and all jumps are numbered last.
+//! [`crate::dual::contact::moments`]), and all jumps are numbered last.
 
 use super::beds::BedEdge;
-use super::contact_moments::ContactEdge;
+use crate::dual::contact::moments::ContactEdge;
 use crate::element::{Elements, SideValues, side};
 use crate::problem::{Condition, ContactPair, Problem};
 
@@ -62,7 +62,7 @@ enum Terms {
 
 impl Component {
     /// Σ coefficient · x over `terms`, the first `own` of which belong to this edge alone.
-    pub(super) fn sum(direction: [f64; 2], terms: &[(usize, f64)], own: usize) -> Self {
+    pub(in crate::dual) fn sum(direction: [f64; 2], terms: &[(usize, f64)], own: usize) -> Self {
         let terms = match *terms {
             [] => Terms::Few([(0, 0.0); 2], 0),
             [a] => Terms::Few([a, (0, 0.0)], 1),

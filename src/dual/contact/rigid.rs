@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::unknowns::Unknowns;
+use crate::dual::system::unknowns::Unknowns;
 use crate::element::side;
 use crate::problem::{Condition, Problem};
 use crate::statics::Components;

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use faer::Par;
 
-use super::{Divided, Factorised, Motion, Phases, Size};
 use crate::budget::Budget;
+use crate::dual::{Divided, Factorised, Motion, Phases, Size};
 use crate::element::{Block, Elements, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -65,7 +65,7 @@ pub trait DualMethod: Sync {
 ///
 /// # Errors
 /// [`DualError::NotExpressible`].
-pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+pub(in crate::dual) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
     let elastic = problem.interfaces.iter().find(|contact| contact.pairs.iter().any(|pair| pair.stiffness.is_some()));
     let what = match (problem.beds.first(), elastic) {
         (Some(bed), _) if bed.is_layer() => format!("the elastic layer {}", bed.name),
@@ -82,9 +82,9 @@ pub(super) fn without_springs(problem: &Problem, method: &'static str) -> Result
 pub struct Found {
     /// λ_h.
     pub stress: StressField,
-    /// Edge moments, as in [`super::DualSolution::moments`].
+    /// Edge moments, as in [`crate::dual::DualSolution::moments`].
     pub moments: SideValues<[f64; 2]>,
-    /// Closed coefficients of contact, as in [`super::DualSolution::closed`].
+    /// Closed coefficients of contact, as in [`crate::dual::DualSolution::closed`].
     pub closed: SideValues<bool>,
     /// Number of unknowns.
     pub unknowns: usize,
@@ -126,7 +126,7 @@ pub type Progress = Arc<dyn Fn(usize, f64) + Send + Sync>;
 ///
 /// # Errors
 /// [`DualError::NotExpressible`].
-pub(super) fn plane_only(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+pub(in crate::dual) fn plane_only(problem: &Problem, method: &'static str) -> Result<(), DualError> {
     if !problem.section().is_revolved() {
         return Ok(());
     }
@@ -256,7 +256,7 @@ pub enum DualError {
 
 impl DualError {
     /// [`DualError::Infeasible`] from moments of any size and the work of the loads on them.
-    pub(super) fn infeasible(problem: &Problem, mut certificate: SideValues<[f64; 2]>, work: f64) -> Self {
+    pub(in crate::dual) fn infeasible(problem: &Problem, mut certificate: SideValues<[f64; 2]>, work: f64) -> Self {
         let mut largest = 0.0_f64;
         for (e, moments) in certificate.iter().enumerate() {
             let [x, y] = moments.iter().fold([0.0; 2], |sum, m| [sum[0] + m[0], sum[1] + m[1]]);

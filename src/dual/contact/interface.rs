@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::unknowns::{EdgeMoments, Unknowns};
+use crate::dual::system::unknowns::{EdgeMoments, Unknowns};
 use crate::optimise::Structure;
 use crate::problem::Problem;
 use crate::statics::Components;

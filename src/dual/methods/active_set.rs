@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use faer::sparse::SparseColMat;
 
-use super::ends::{Ends, GRAZING, next_state};
-use super::equilibrium::Equilibrium;
-use super::factor::Factor;
-use super::hybrid::{Motion, explain, held_unknowns};
-use super::refinement::{ROUND_OFF, Refined, Refinement};
-use super::system::{Structured, System, isolate};
-use super::{DualError, DualMethod, Found, Options, Phases, Size};
+use crate::dual::contact::ends::{Ends, GRAZING, next_state};
+use crate::dual::equilibrium::Equilibrium;
+use crate::dual::factor::Factor;
+use crate::dual::hybrid::{Motion, explain, held_unknowns};
+use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
+use crate::dual::system::{Structured, System, isolate};
+use crate::dual::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
 
 /// Active set with refactorisation, started from closed contact.
@@ -53,7 +53,7 @@ impl DualMethod for ActiveSet {
 impl ActiveSet {
     /// Solves where another method came to the state `closed` and no further, in a limited number of steps, none of which
     /// begins after the deadline of `options`.
-    pub(super) fn rescue(
+    pub(in crate::dual) fn rescue(
         &self,
         problem: &Problem,
         motions: &[Motion],

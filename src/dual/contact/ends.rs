@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::equilibrium::load_scale;
-use super::modes::ModeTable;
-use super::refinement::Refined;
-use super::system::System;
-use super::unknowns::{UnknownBlock, Unknowns};
+use crate::dual::equilibrium::load_scale;
+use crate::dual::modes::ModeTable;
+use crate::dual::refinement::Refined;
+use crate::dual::system::System;
+use crate::dual::system::unknowns::{UnknownBlock, Unknowns};
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Tension relative to the load, or to the largest pressure of its pair, and penetration relative to the largest jump,

@@ -9,14 +9,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::hybrid::{Motion, residual};
 use super::loaded::{Loaded, Start};
-use super::modes::ModeTable;
-use super::reduced::Reduced;
-use super::rigid::unsupported;
-use super::schur::Schur;
-use super::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
-use super::{DualError, Options};
+use crate::dual::contact::rigid::unsupported;
+use crate::dual::contact::schur::Schur;
+use crate::dual::hybrid::{Motion, residual};
+use crate::dual::modes::ModeTable;
+use crate::dual::system::reduced::Reduced;
+use crate::dual::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
+use crate::dual::{DualError, Options};
 use crate::element::revolved::Tensor;
 use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, side, weighed};
 use crate::load::BodyForce;
@@ -31,11 +31,11 @@ pub struct Factorised {
 
 impl Factorised {
     /// What a solve has at its end.
-    pub(super) fn of(system: System, reduced: Reduced) -> Self {
+    pub(in crate::dual) fn of(system: System, reduced: Reduced) -> Self {
         Factorised { system, reduced }
     }
 
-    /// Assembles and factorises; `motions` as in [`super::solve`].
+    /// Assembles and factorises; `motions` as in [`crate::dual::solve`].
     ///
     /// # Errors
     /// [`DualError::Factorisation`], [`DualError::TooLarge`].
@@ -97,9 +97,9 @@ pub struct ShapedStrain {
 pub struct Responses<'a> {
     problem: &'a Problem,
     factorised: &'a Factorised,
-    pub(super) contact: Schur<'a>,
+    pub(in crate::dual) contact: Schur<'a>,
     /// The displacement that remainders are weighed with.
-    pub(super) displaced: Vec<f64>,
+    pub(in crate::dual) displaced: Vec<f64>,
 }
 
 /// A stress in equilibrium with a load.
@@ -107,7 +107,7 @@ pub struct Responses<'a> {
 pub struct Response {
     /// σ̂, without cχ.
     pub stress: Arc<StressField>,
-    /// Moments of the displacement that belongs to it, as [`super::DualSolution::moments`].
+    /// Moments of the displacement that belongs to it, as [`crate::dual::DualSolution::moments`].
     pub moments: Arc<SideValues<[f64; 2]>>,
     /// The coefficients of s on every contact pair, one interface after the other.
     pub contact: SideValues<f64>,
@@ -117,7 +117,7 @@ pub struct Response {
 
 impl Responses<'_> {
     /// The factorised system.
-    pub(super) fn reduced(&self) -> &Reduced {
+    pub(in crate::dual) fn reduced(&self) -> &Reduced {
         &self.factorised.reduced
     }
 

@@ -11,7 +11,7 @@
 
 use nalgebra::DMatrix;
 
-use super::unknowns::Component;
+use crate::dual::system::unknowns::Component;
 use crate::problem::Direction;
 
 /// An edge on Γ_K.
@@ -28,7 +28,7 @@ pub struct ContactEdge {
     pub stretch: Option<usize>,
     /// 0 on the first side, 1 on the second.
     pub side: usize,
-    pub(super) degree: usize,
+    pub(in crate::dual) degree: usize,
     /// Whether the pair runs against the edge.
     reversed: bool,
     axes: Axes,

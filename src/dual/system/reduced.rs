@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::factor::{Breakdown, Factor, SymbolicFactor};
-use super::hybrid::{Motion, explain, held_unknowns};
-use super::system::{System, isolate};
-use super::{DualError, Options};
+use super::{System, isolate};
+use crate::dual::factor::{Breakdown, Factor, SymbolicFactor};
+use crate::dual::hybrid::{Motion, explain, held_unknowns};
+use crate::dual::{DualError, Options};
 use crate::problem::Problem;
 use crate::vector::long::largest;
 
@@ -13,14 +13,14 @@ use crate::vector::long::largest;
 const BROKEN: f64 = 1e-9;
 
 /// The factorised system, with the unknowns of its interfaces last: the jumps, and where many bodies touch the moments of
-/// second sides too, see [`super::interface`].
+/// second sides too, see [`crate::dual::contact::interface`].
 #[derive(Debug)]
 pub struct Reduced {
-    pub(super) factor: Factor,
+    pub(in crate::dual) factor: Factor,
     held: Vec<usize>,
     first_jump: usize,
     /// What was added to the diagonal of each jump.
-    pub(super) shift: Vec<f64>,
+    pub(in crate::dual) shift: Vec<f64>,
 }
 
 impl Reduced {

@@ -5,14 +5,14 @@
 //! and jumps tell, and the same S with the remainder for a load gives the change of state: an error of S in the hundredth
 //! part costs a step, and no accuracy.
 
-use super::DualError;
 use super::ends::{Ends, next_state};
-use super::equilibrium::{Equilibrium, load_scale};
-use super::hybrid::parameters;
-use super::reduced::Reduced;
-use super::refinement::{ROUND_OFF, Refined, Refinement};
 use super::schur::{ContactState, Schur};
-use super::system::System;
+use crate::dual::DualError;
+use crate::dual::equilibrium::{Equilibrium, load_scale};
+use crate::dual::hybrid::parameters;
+use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
+use crate::dual::system::System;
+use crate::dual::system::reduced::Reduced;
 use crate::element::{SideValues, StressField};
 use crate::problem::{Problem, Scales};
 

@@ -1,6 +1,6 @@
 //! The methods by their names.
 
-use super::{ActiveSet, Clarabel, Condensed, DualMethod, Uzawa};
+use crate::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Uzawa};
 
 /// How the dual problem is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

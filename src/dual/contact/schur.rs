@@ -9,12 +9,12 @@
 
 use faer::Mat;
 
-use super::DualError;
 use super::clearing::cleared;
-use super::factor::{Factor, power_of_two_near};
-use super::reduced::Reduced;
-use super::system::System;
 use crate::budget::Budget;
+use crate::dual::DualError;
+use crate::dual::factor::{Factor, power_of_two_near};
+use crate::dual::system::System;
+use crate::dual::system::reduced::Reduced;
 use crate::optimise::{self, Law, Program, Quadratic, SparseForm, State, conjugate_gradients};
 use crate::vector::long::largest;
 

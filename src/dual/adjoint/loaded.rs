@@ -8,11 +8,11 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::DualError;
-use super::hybrid::{parameters, residual};
-use super::refinement::{Refined, Refinement};
 use super::response::{Response, Responses};
-use super::system::System;
+use crate::dual::DualError;
+use crate::dual::hybrid::{parameters, residual};
+use crate::dual::refinement::{Refined, Refinement};
+use crate::dual::system::System;
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 
@@ -44,10 +44,10 @@ pub struct Loaded<'a> {
 }
 
 /// What all stresses that balance a load begin with.
-pub(super) struct Start {
+pub(in crate::dual) struct Start {
     /// Mode parameters without any displacement.
     pub s: Vec<f64>,
-    /// What [`Reduced::condense`](super::reduced::Reduced::condense) makes of their residual.
+    /// What [`Reduced::condense`](crate::dual::system::reduced::Reduced::condense) makes of their residual.
     pub y: Vec<f64>,
     pub c: Vec<f64>,
     /// Jumps of closed contact.
@@ -132,7 +132,12 @@ impl Left {
 }
 
 impl<'a> Loaded<'a> {
-    pub(super) fn new(responses: &'a Responses<'a>, problem: Cow<'a, Problem>, system: System, start: Start) -> Self {
+    pub(in crate::dual) fn new(
+        responses: &'a Responses<'a>,
+        problem: Cow<'a, Problem>,
+        system: System,
+        start: Start,
+    ) -> Self {
         Loaded { responses, problem, system, start, answers: Answers::default() }
     }
 

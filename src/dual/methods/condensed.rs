@@ -10,15 +10,15 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::ends::Ends;
-use super::hybrid::Motion;
-use super::reduced::Reduced;
-use super::refinement::Refined;
-use super::rigid::unsupported;
-use super::schur::{ContactState, Schur};
-use super::settling::Settling;
-use super::system::{Structured, System};
-use super::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
+use crate::dual::contact::ends::Ends;
+use crate::dual::contact::rigid::unsupported;
+use crate::dual::contact::schur::{ContactState, Schur};
+use crate::dual::contact::settling::Settling;
+use crate::dual::hybrid::Motion;
+use crate::dual::refinement::Refined;
+use crate::dual::system::reduced::Reduced;
+use crate::dual::system::{Structured, System};
+use crate::dual::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::problem::Problem;
 

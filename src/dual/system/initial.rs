@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::modes::ModeTable;
+use crate::dual::modes::ModeTable;
 use crate::elasticity::InitialStrain;
 use crate::element::side;
 use crate::problem::Problem;

@@ -5,6 +5,13 @@
 //! min ½ mᵀKm − fᵀm over moments m with jumps at most ∫ g B_k, K = Σ T Tᵀ, f = ∫P·(…) − T̄,
 //!
 //! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
+pub(super) mod beds;
+pub(super) mod dissection;
+pub(super) mod initial;
+pub(super) mod pattern;
+pub(super) mod reduced;
+pub(super) mod rows;
+pub(super) mod unknowns;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,18 +19,18 @@ use std::time::Instant;
 use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMatRef};
 use rayon::prelude::*;
 
-use super::beds::Springs;
 use super::factor::SymbolicFactor;
 use super::hybrid::structure;
-use super::initial::initial_parameters;
 use super::modes::ModeTable;
-use super::pattern::Pattern;
-use super::rows::Sides;
-use super::unknowns::{Component, UnknownBlock, Unknowns};
 use super::{DualError, Options};
 use crate::element::side;
 use crate::lanes::wide;
 use crate::problem::{ContactPair, Problem};
+use beds::Springs;
+use initial::initial_parameters;
+use pattern::Pattern;
+use rows::Sides;
+use unknowns::{Component, UnknownBlock, Unknowns};
 
 /// The assembled problem. Copies share what does not depend on the loads.
 #[derive(Debug, Clone)]
