@@ -7,7 +7,7 @@ use super::space::{Moduli, Space};
 use super::words::number;
 use super::{Finding, Trial};
 use crate::bounds::Cell;
-use crate::compare::cells;
+use crate::compare::forces::cells;
 use crate::element::Quadrilateral;
 use crate::scene::Kinematics;
 

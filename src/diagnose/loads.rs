@@ -4,7 +4,7 @@ use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
 use super::{Finding, Trial};
-use crate::compare::cells;
+use crate::compare::forces::cells;
 use crate::load::{Affine, BodyForce};
 use crate::problem::Condition;
 use crate::scene::Body;

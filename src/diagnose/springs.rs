@@ -4,7 +4,7 @@ use super::fit::Terms;
 use super::space::Space;
 use super::words::{factor, near, number};
 use super::{Finding, Trial};
-use crate::compare::springs::{Part, spring_forces};
+use crate::compare::forces::springs::{Part, spring_forces};
 use crate::problem::{Bed, OneSided};
 
 const DIRECTIONS: [&str; 2] = ["normal", "tangential"];

@@ -8,7 +8,8 @@ use super::space::{Moduli, Space};
 use super::words::{factor, near, number};
 use super::{Finding, material};
 use crate::bounds::Sum;
-use crate::compare::turned::{self, Rule, add_traction};
+use crate::compare::forces::turned;
+use crate::compare::forces::turned::{Rule, add_traction};
 use crate::problem::Problem;
 
 /// How a model counts points and the hoop.

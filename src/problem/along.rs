@@ -6,9 +6,9 @@ use std::f64::consts::FRAC_PI_2;
 use super::contact::unresolved_gap;
 use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
-use crate::mesh::along::{Facing, facing, opposite, outward, turned};
 use crate::mesh::error::at;
-use crate::mesh::polyline::{Link, chain};
+use crate::mesh::sides::along::{Facing, facing, opposite, outward, turned};
+use crate::mesh::sides::polyline::{Link, chain};
 use crate::scene::{Contact, Gap, Scene};
 
 /// Radians by which the normals of a straight side may differ …
@@ -18,7 +18,7 @@ const OBLIQUE: f64 = 0.1;
 /// Part of the size of the mesh by which sides may cross for round-off.
 const ROUND_OFF: f64 = 1e-10;
 
-/// Pairs the edges of both sides that cover the same interval across the direction; see [`crate::mesh::along`]. What has
+/// Pairs the edges of both sides that cover the same interval across the direction; see [`crate::mesh::sides::along`]. What has
 /// nothing opposite is free. The gap is the distance along the direction and that of the scene.
 pub(super) fn pair_along(
     contact: &Contact,

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 use super::contact::unresolved_gap;
 use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
-use crate::mesh::concentric::{Seen, seen};
 use crate::mesh::error::at;
-use crate::mesh::polyline::{Link, chain};
+use crate::mesh::sides::concentric::{Seen, seen};
+use crate::mesh::sides::polyline::{Link, chain};
 use crate::scene::{Contact, Gap, Scene};
 
 /// Part of an interval of angles within which its ends are those of another one.
@@ -16,7 +16,7 @@ const MATCHED: f64 = 1e-5;
 /// Part of the size of the mesh by which sides may cross for round-off.
 const ROUND_OFF: f64 = 1e-10;
 
-/// Pairs the edges of both sides that cover the same angles about `centre`; see [`crate::mesh::concentric`]. What has
+/// Pairs the edges of both sides that cover the same angles about `centre`; see [`crate::mesh::sides::concentric`]. What has
 /// nothing opposite is free. The gap is the distance along the rays and that of the scene.
 pub(super) fn pair_around(
     contact: &Contact,

@@ -7,13 +7,13 @@ use super::around::pair_around;
 use super::{Bow, ContactPair, Direction, Interface, Note, ProblemError};
 use crate::mesh::Triangulation;
 use crate::mesh::error::at;
-use crate::mesh::polyline::{Link, chain, key, same};
+use crate::mesh::sides::polyline::{Link, chain, key, same};
 use crate::scene::{Contact, ContactSides, Gap, Obstacle, Scene};
 
 /// Cosine of the angle between the direction to an obstacle and a normal below which an edge does not face it.
 const GRAZING: f64 = 0.05;
 
-/// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::glue`], unless they are matched along a
+/// Pairs the edges of `contact`; they must coincide bit for bit, see [`crate::mesh::sides::glue`], unless they are matched along a
 /// direction or along the rays of a `centre`.
 pub(super) fn pair_up(
     contact: &Contact,

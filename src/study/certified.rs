@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::admission::Admission;
+use super::adaptive::admission::Admission;
 use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, on_ranks, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;

@@ -16,8 +16,8 @@ use crate::compare::Basis;
 use crate::compare::candidate::Candidate;
 use crate::compare::{Allowances, Check};
 use crate::element::quadrature::segment_rule;
-use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Interface, Problem, Scales};
+use crate::sets::DisjointSets;
 use crate::statics::cone::balanced;
 use crate::vector::{distance, dot};
 

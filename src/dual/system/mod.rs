@@ -5,6 +5,7 @@
 //! min ½ mᵀKm − fᵀm over moments m with jumps at most ∫ g B_k, K = Σ T Tᵀ, f = ∫P·(…) − T̄,
 //!
 //! whose minimum, less ½ Σ ∫ a λ̄:λ̄, equals −Π(λ_h).
+
 pub(super) mod beds;
 pub(super) mod dissection;
 pub(super) mod initial;

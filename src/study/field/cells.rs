@@ -6,7 +6,7 @@ use super::places::Place;
 use super::{FieldError, ForeignField, Part};
 use crate::bounds::Cell;
 use crate::element::{PlainDisplacement, Quadrilateral, quadrilateral as shape, triangle};
-use crate::mesh::quadrilateral;
+use crate::mesh::cells::quadrilateral;
 use crate::problem::Problem;
 use crate::vector::distance;
 
