@@ -10,7 +10,8 @@ use super::system::dissection::nested_dissection;
 use super::system::rows::Sides;
 use super::system::unknowns::Unknowns;
 use super::{DualError, Options};
-use crate::element::{SideValues, side};
+use crate::element::SideValues;
+use crate::element::polynomial::side;
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.

@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use super::adaptive::admission::Admission;
-use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, on_ranks, supports_agree, without_stress};
+use crate::bounds::on_ranks;
+use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
 use crate::problem::{Note, Problem, ProblemError};

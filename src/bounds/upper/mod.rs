@@ -4,8 +4,8 @@
 //! From these: vertex values by a local fit ([`fit`]); the inside of every edge such that it has the moments of the dual
 //! solution, so that every triangle changes its volume as the dual solution says and nothing locks ([`edges`]); jumps on Γ_K
 //! restricted by their Bernstein coefficients, so that they are admissible between the nodes too ([`ends`], [`contact`]);
-//! relaxation, patch by patch ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles
-//! ([`interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
+//! relaxation, patch by patch ([`relaxation`]); and the inside of each triangle by minimising its energy on the three subtriangles
+//! ([`energy::interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
 //! keeps the bound uniform as ν → ½.
 
 mod admissible;

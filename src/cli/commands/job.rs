@@ -16,7 +16,7 @@ use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Sh
 use crate::process::limit;
 use crate::process::signals::LastWords;
 use crate::report;
-use crate::report::number::{percent, seconds};
+use crate::report::text::number::{percent, seconds};
 use crate::scene::{Scene, counted};
 use crate::study::{Accepted, Baseline, Signature};
 

@@ -10,7 +10,7 @@ use crate::cli::{CliError, Exit};
 use crate::dual::{LinearSolver, Solver};
 use crate::element::Elements;
 use crate::report;
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::scene::Scene;
 use crate::study::{Adapt, GivenValue, Wanted};
 

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::scene::text::acts;
+use crate::scene::reading::text::acts;
 
 /// Characters of a word that a terminal shows whole; paths are shorter, names need not be longer.
 const LONGEST_WORD: usize = 300;

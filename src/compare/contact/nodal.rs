@@ -21,7 +21,7 @@ use crate::compare::candidate::{Judged, Reactions};
 use crate::compare::on_quadrilaterals::hat_gradient;
 use crate::compare::stress::primal_means;
 use crate::dual::DualSolution;
-use crate::element::bilinear::Bilinear;
+use crate::element::displacement::bilinear::Bilinear;
 use crate::element::geometry::sub_corners;
 use crate::element::{Samples, Strains, contraction, elastic_degree};
 use crate::problem::{Condition, Interface, Problem};

@@ -1,7 +1,8 @@
 //! Pressure on one contact pair.
 
-use crate::element::side;
-use crate::element::subdivision::{self, part};
+use crate::element::polynomial::side;
+use crate::element::polynomial::subdivision;
+use crate::element::polynomial::subdivision::part;
 
 /// Pressure on one pair: polynomials on equal parts of it.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,7 +8,8 @@ use crate::compare::candidate::{Judged, Reactions};
 use crate::compare::revolved::stress_at;
 use crate::dual::DualSolution;
 use crate::element::displacement::through;
-use crate::element::{Strains, elastic_degree, side};
+use crate::element::polynomial::side;
+use crate::element::{Strains, elastic_degree};
 use crate::problem::{ContactPair, Interface, Problem};
 
 /// −t of the dual solution.

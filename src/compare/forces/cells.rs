@@ -9,7 +9,7 @@ use super::springs::Functions;
 use crate::bounds::Cell;
 use crate::compare::candidate::Candidate;
 use crate::element::Quadrilateral;
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::load::BodyForce;
 use crate::problem::Problem;
 

@@ -2,8 +2,10 @@
 
 use super::NodalForces;
 use super::springs::Functions;
+use crate::element::PlainDisplacement;
+use crate::element::displacement::plain;
 use crate::element::geometry::gradients;
-use crate::element::{PlainDisplacement, plain, triangle};
+use crate::element::polynomial::triangle;
 use crate::problem::{Condition, Problem};
 
 /// One polynomial and its partner in the gradient of another: ∇B_α = k Σ_i B_{α − e_i} ∇l_i.

@@ -7,9 +7,10 @@ use super::NodalForces;
 use super::springs::Functions;
 use crate::bounds::Potential;
 use crate::element::OnQuadrilaterals;
-use crate::element::bilinear::{self, Bilinear};
-use crate::element::on_quadrilaterals::nodes;
-use crate::element::quadrature::segment_rule;
+use crate::element::displacement::bilinear;
+use crate::element::displacement::bilinear::Bilinear;
+use crate::element::displacement::on_quadrilaterals::nodes;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::problem::Problem;
 
 impl NodalForces {

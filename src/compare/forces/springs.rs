@@ -1,7 +1,7 @@
 //! Forces of springs and elastic layers at the nodes of a displacement model.
 
 use super::NodalForces;
-use crate::element::{positive, side};
+use crate::element::polynomial::{positive, side};
 use crate::problem::{Bed, Problem};
 use crate::vector::dot;
 

@@ -9,10 +9,10 @@ use super::cells;
 use crate::bounds::Potential;
 use crate::compare::candidate::Candidate;
 use crate::element::geometry::gradients;
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
+use crate::element::polynomial::side;
+use crate::element::polynomial::symmetric_rules::symmetric_rules;
 use crate::element::revolved::{NEAR, rule};
-use crate::element::side;
-use crate::element::symmetric_rules::symmetric_rules;
 use crate::problem::Problem;
 
 /// The degree to which polynomials are integrated by the rule that is as good as exact.

@@ -15,7 +15,7 @@ use super::weak::{OF_THE_RULE, Point, Rows, Shape, Weak, longest, nitsche};
 use crate::compare::Basis;
 use crate::compare::candidate::Candidate;
 use crate::compare::{Allowances, Check};
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::problem::{ContactPair, Interface, Problem, Scales};
 use crate::sets::DisjointSets;
 use crate::statics::cone::balanced;

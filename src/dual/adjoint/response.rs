@@ -17,8 +17,9 @@ use crate::dual::modes::ModeTable;
 use crate::dual::system::reduced::Reduced;
 use crate::dual::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
 use crate::dual::{DualError, Options};
+use crate::element::polynomial::side;
 use crate::element::revolved::Tensor;
-use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, side, weighed};
+use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 

@@ -169,7 +169,7 @@ fn dual_and_rest(columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::side;
+    use crate::element::polynomial::side;
 
     #[test]
     fn columns_are_the_coefficients_of_t_times_a_linear_direction() {

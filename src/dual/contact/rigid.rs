@@ -6,7 +6,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::dual::system::unknowns::Unknowns;
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::problem::{Condition, Problem};
 use crate::statics::Components;
 

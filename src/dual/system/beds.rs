@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 use super::pattern::Pattern;
 use super::unknowns::{Component, EdgeMoments, Unknowns};
 use crate::element::displacement::MOST;
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::problem::{BedPair, Problem};
 
 /// An edge on springs or on a side of a layer.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::dual::modes::ModeTable;
 use crate::elasticity::InitialStrain;
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::problem::Problem;
 
 /// −∫ τ_k:ε0 of every mode of every triangle; empty where no body has an initial strain.

@@ -24,7 +24,7 @@ use super::factor::SymbolicFactor;
 use super::hybrid::structure;
 use super::modes::ModeTable;
 use super::{DualError, Options};
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::lanes::wide;
 use crate::problem::{ContactPair, Problem};
 use beds::Springs;

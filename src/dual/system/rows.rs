@@ -5,7 +5,7 @@
 //! own, and its second triangle runs along it the other way round.
 
 use super::unknowns::{Component, EdgeMoments, Unknowns};
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 
 /// The sides of a triangle with the degrees of their edges.

@@ -8,7 +8,8 @@
 
 use super::beds::BedEdge;
 use crate::dual::contact::moments::ContactEdge;
-use crate::element::{Elements, SideValues, side};
+use crate::element::polynomial::side;
+use crate::element::{Elements, SideValues};
 use crate::problem::{Condition, ContactPair, Problem};
 
 /// Unknowns that belong together: consecutive numbers that share one sparsity pattern.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::polygon::area;
+use crate::scene::keys::polygon::area;
 
 /// A point as a key: equal bits, and 0 equal to −0.
 pub(crate) type Key = [u64; 2];

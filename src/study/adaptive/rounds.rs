@@ -11,7 +11,7 @@ use super::{Adapt, Goal};
 use crate::dual::{Size, carrying};
 use crate::element::{Elements, block};
 use crate::problem::Problem;
-use crate::report::number::vector;
+use crate::report::text::number::vector;
 use crate::study::certified::StudyError;
 
 /// Unknowns of the next mesh per unknown of this one: the solves on meshes that grow by g cost g/(g − 1) times the last one,

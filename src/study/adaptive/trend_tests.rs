@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use super::forecast::Forecast;
 use super::indicators::Indicators;
 use super::trend::{Seen, Way, inherited, learnt, raised};
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::{Elements, MAX_DEGREE, block};
 use crate::mesh::Triangulation;
 use crate::mesh::refinement::bisect::{Bisected, RefinementEdges, bisect};

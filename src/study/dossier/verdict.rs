@@ -2,7 +2,7 @@
 
 use super::{Findings, in_numbers};
 use crate::cause::Cause;
-use crate::report::number::{digits_to_tell, percent, significant};
+use crate::report::text::number::{digits_to_tell, percent, significant};
 use crate::report::{Energy, Status};
 
 /// The verdict in one sentence.

@@ -8,7 +8,7 @@ use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, of_pair, sides};
 use crate::bounds::upper::relaxation::share::Share;
 use crate::element::SideValues;
-use crate::element::side::lower_moments;
+use crate::element::polynomial::side::lower_moments;
 use crate::problem::{ContactPair, Problem};
 use crate::vector::dot;
 

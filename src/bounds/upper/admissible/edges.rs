@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use nalgebra::DMatrix;
 
 use crate::element::displacement::MOST;
-use crate::element::side::{elevation, product};
+use crate::element::polynomial::side::{elevation, product};
 
 /// The p inner Bernstein coefficients of degree p + 1, from the p + 1 moments of degree p on an edge of the given length
 /// and the values at its ends.
@@ -54,7 +54,7 @@ fn inverse(p: usize) -> &'static DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::side;
+    use crate::element::polynomial::side;
 
     #[test]
     fn a_polynomial_comes_back_from_its_moments_and_ends() {

@@ -14,8 +14,9 @@ use rayon::prelude::*;
 
 use crate::element::displacement::MOST;
 use crate::element::geometry::{from_centroid, gradients, sub_corners};
-use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::{Material, Samples, SideValues, StressField, triangle, weighed};
+use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
+use crate::element::polynomial::triangle;
+use crate::element::{Material, Samples, SideValues, StressField, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 

@@ -1,10 +1,11 @@
 //! The nodes that make a continuous displacement: one at each vertex, and k − 1 inside each edge of degree k.
 //!
 //! The value of a node at a vertex is that of the displacement; the values inside an edge are its Bernstein coefficients
-//! from the first vertex to the second ([`crate::element::side`]). Each edge has a degree of its own, and a triangle the
+//! from the first vertex to the second ([`crate::element::polynomial::side`]). Each edge has a degree of its own, and a triangle the
 //! largest of its three: the coefficients of the others are elevated, so that different degrees meet without a gap.
 
-use crate::element::{displacement, side};
+use crate::element::displacement;
+use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 
 /// The numbers of the nodes: vertices, then edge by edge.

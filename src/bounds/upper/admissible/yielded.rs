@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use crate::bounds::springs::spring_tractions;
 use crate::dual::DualSolution;
-use crate::element::side;
+use crate::element::polynomial::side;
 use crate::problem::{BedPair, ContactPair, Problem};
 
 /// `problem` with rigid contacts that have yielded in the place of stiff elastic ones, and the energy ½ ∫ k s² of these, per unit

@@ -6,7 +6,8 @@
 use crate::bounds::springs::{OnSprings, spring_tractions};
 use crate::bounds::upper::admissible::nodes::{NodalValues, Nodes};
 use crate::element::StressField;
-use crate::element::side::{self, product};
+use crate::element::polynomial::side;
+use crate::element::polynomial::side::product;
 use crate::problem::{BedPair, Problem};
 use crate::vector::dot;
 

@@ -6,7 +6,7 @@ use super::pull::Pull;
 use super::split::Split;
 use super::stiffness::Stiffness;
 use crate::bounds::upper::admissible::nodes::Nodes;
-use crate::element::side::product;
+use crate::element::polynomial::side::product;
 use crate::element::{congruent, parts, starts};
 use crate::problem::Problem;
 

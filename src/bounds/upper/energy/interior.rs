@@ -5,8 +5,9 @@ use rayon::prelude::*;
 use super::energies::TriangleEnergy;
 use super::model::Model;
 use crate::bounds::upper::admissible::nodes::{NodalValues, elevated};
+use crate::element::Displacement;
 use crate::element::displacement::{SplitNodes, divided, inner_coefficient, side_nodes};
-use crate::element::{Displacement, side, triangle};
+use crate::element::polynomial::{side, triangle};
 use crate::problem::Problem;
 
 /// Completes values at the nodes to a displacement on the split triangles, with what `model` has eliminated. It is the same for

@@ -13,9 +13,10 @@ use std::sync::OnceLock;
 use super::cholesky::{column, packed};
 use crate::element::displacement::{MOST, SplitNodes, split_len};
 use crate::element::geometry::{sub_area, sub_corners, sub_gradients};
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
+use crate::element::polynomial::triangle;
 use crate::element::revolved::{Tensor, Weighted};
-use crate::element::{Material, Samples, Section, StressField, triangle};
+use crate::element::{Material, Samples, Section, StressField};
 use crate::load::BodyForce;
 
 /// K of the strain energy ½ uᵀKu, per unit thickness.

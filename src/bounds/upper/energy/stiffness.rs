@@ -4,7 +4,7 @@ use super::cholesky;
 use super::split::Split;
 #[cfg(test)]
 use crate::element::Material;
-use crate::element::side::elevation;
+use crate::element::polynomial::side::elevation;
 use crate::lanes::wide;
 
 /// K of ½ uᵀKu − fᵀu, u being x and y of the nodes on the boundary ([`crate::bounds::upper::Nodes::of_triangle`]), and what eliminates the

@@ -6,7 +6,7 @@ use super::cut::{Cut, place};
 use super::traffic::Traffic;
 use super::{Found, Part};
 use crate::bounds::UpperBound;
-use crate::bounds::terms::{LowerTerms, UpperTerms};
+use crate::bounds::rounding::terms::{LowerTerms, UpperTerms};
 use crate::bounds::upper::admissible::holds::{Holds, holds};
 use crate::bounds::upper::admissible::nodes::{NodalValues, Nodes};
 use crate::bounds::upper::admissible::rows::rows;

@@ -28,10 +28,10 @@ use super::relaxation::groups::Group;
 use super::relaxation::patches::Patches;
 use super::relaxation::share::Share;
 use super::{Groundwork, NoUpperBound, Pull, relaxed, restricted};
-use crate::bounds::counted::Counted;
 use crate::bounds::ranks::Ranks;
-use crate::bounds::sum::Sum;
-use crate::bounds::terms::{LowerTerms, UpperTerms};
+use crate::bounds::rounding::counted::Counted;
+use crate::bounds::rounding::sum::Sum;
+use crate::bounds::rounding::terms::{LowerTerms, UpperTerms};
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{Division, Found, Part};
 use crate::bounds::ranks::Ranks;
-use crate::bounds::terms::LowerTerms;
+use crate::bounds::rounding::terms::LowerTerms;
 use crate::bounds::upper::admissible;
 use crate::bounds::upper::admissible::nodes::Nodes;
 use crate::bounds::upper::relaxation::groups::Group;
