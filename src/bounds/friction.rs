@@ -4,12 +4,13 @@
 //! complementary energy nothing, and the gap ∫ (τ̄ |j| + t j), which is never negative. Where the jump changes its sign along a
 //! pair the integral of its absolute value is bounded from above, so that 𝓛(v) is no less than the energy.
 
-use super::counted::Counted;
 use super::jump::jumps_along;
+use super::rounding::counted::Counted;
+use super::rounding::sum::Sum;
 use super::springs::SpringEnergy;
-use super::sum::Sum;
 use crate::dual::equilibrium::contact_tractions;
-use crate::element::{Displacement, StressField, side};
+use crate::element::polynomial::side;
+use crate::element::{Displacement, StressField};
 use crate::problem::{ContactPair, Friction, Problem};
 
 /// Jumps up to this part of the displacements that they are the difference of are rounding: what they are worth is counted with that

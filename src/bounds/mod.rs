@@ -3,19 +3,14 @@
 mod at_rest;
 mod bracket;
 mod cells;
-mod counted;
 pub mod energy;
 mod friction;
 mod gap;
 mod jump;
 mod mid;
-mod on_ranks;
-mod pipe;
 mod ranks;
 mod rounding;
 mod springs;
-mod sum;
-mod terms;
 pub mod upper;
 
 pub use at_rest::without_stress;
@@ -28,10 +23,10 @@ pub use friction::{absolute, friction_error, slides};
 pub use gap::{LocalGap, local_gap};
 pub use jump::{jumps, jumps_along, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
-pub use on_ranks::{make_part, on_ranks};
+pub use ranks::on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;
+pub use rounding::sum::Sum;
 pub use springs::{OnSprings, spring_jumps, spring_tractions};
-pub use sum::Sum;
 pub use upper::{
     Beside, Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until,
     Violation, admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,

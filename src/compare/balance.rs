@@ -19,12 +19,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use nalgebra::DVector;
 
 use super::candidate::Candidate;
+use super::contact::slides::{EndSlide, at_ends};
 use super::forces::NodalForces;
-use super::slides::{EndSlide, at_ends};
-use super::turned::{self, Rule};
+use super::forces::turned;
+use super::forces::turned::Rule;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
+use crate::sets::DisjointSets;
 use crate::statics::cone::balanced;
 use crate::vector::dot;
 

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
+use super::contact::slides;
+use super::forces::turned;
+use super::forces::turned::Rule;
 use super::on_quadrilaterals::QuadrilateralSolution;
-use super::slides;
 use super::solution::Numbering;
-use super::turned::{self, Rule};
 use crate::bounds::energy::initial_energy;
 use crate::bounds::{
     Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,

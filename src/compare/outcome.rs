@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::friction::FrictionSummary;
-use super::mean::MeanPressure;
+use super::contact::friction::FrictionSummary;
+use super::contact::mean::MeanPressure;
 
 /// A pair of values, one from each side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::contact_moments::columns_of_pair;
+use super::contact::moments::columns_of_pair;
 use super::resultants::work_within;
 use super::system::applied;
 use crate::element::{SideValues, StressField};

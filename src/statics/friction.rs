@@ -10,8 +10,8 @@ use faer::Mat;
 use nalgebra::DVector;
 
 use super::balance::RANK;
+use super::cone::span::Span;
 use super::restraint::{Group, Part, Points};
-use super::span::Span;
 use crate::optimise::{Law, Program, solve};
 
 /// Forces of this many times the loads are as good as any: levers make no more of them.

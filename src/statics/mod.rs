@@ -13,18 +13,13 @@
 mod balance;
 mod components;
 pub(crate) mod cone;
-mod few;
 mod friction;
 mod gaps;
-mod interior;
 mod lasting;
 mod loads;
-mod many;
 mod pins;
 mod reach;
 mod restraint;
-mod span;
-mod sparse;
 mod words;
 
 #[cfg(test)]

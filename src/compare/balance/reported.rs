@@ -7,7 +7,7 @@ use super::higher::Asked;
 use super::{End, HELD, Solution, dot, inner_reactions};
 use crate::bounds::Hold;
 use crate::compare::candidate::Reactions;
-use crate::compare::slides::{Slide, inside};
+use crate::compare::contact::slides::{Slide, inside};
 use crate::problem::{ContactPair, Interface};
 
 impl Solution<'_> {

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use super::{Group, HELD, Solution, dot};
 use crate::bounds::{Hold, Holds};
-use crate::compare::slides::{EndSlide, inside};
+use crate::compare::contact::slides::{EndSlide, inside};
 use crate::problem::{Interface, Problem};
 use crate::vector::cross;
 

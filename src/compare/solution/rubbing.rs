@@ -6,7 +6,7 @@
 
 use super::{SOLVER, Solution, Span};
 use crate::compare::Check;
-use crate::compare::slides::limits;
+use crate::compare::contact::slides::limits;
 use crate::problem::ContactPair;
 
 /// What friction does at a place.

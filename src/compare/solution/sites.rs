@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DMatrix, DVector};
 
 use crate::bounds::{Hold, Holds};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
+use crate::sets::DisjointSets;
 use crate::statics::cone::balanced;
 use crate::vector::{cross, dot};
 
