@@ -16,6 +16,7 @@ pub mod gather;
 pub mod given;
 pub mod job;
 pub mod judge;
+pub mod mcp;
 pub mod measure;
 pub mod memory;
 pub mod mesh;
@@ -86,6 +87,8 @@ pub enum Command {
     Chart(chart::Args),
     /// Sweep the regimes where contact methods are known to fail
     Stability(stability::Args),
+    /// Serve as tools of an agent (Model Context Protocol), over standard input and output
+    Mcp(mcp::Args),
     /// One run for a chart or a matrix, printed as JSON
     #[command(hide = true)]
     Measure(measure::Args),
@@ -168,6 +171,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Cases(args) => cases::run(args),
         Command::Chart(args) => chart::run(args),
         Command::Stability(args) => stability::run(args),
+        Command::Mcp(args) => mcp::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Part(args) => part::run(args),
         Command::Schema(args) => schema::run(args),
