@@ -4,7 +4,7 @@ use super::choice::{Of, pareto, slope};
 use super::data::{Plot, Reference, SceneChart, Status};
 use crate::measure::Method;
 use crate::plot::{PlotError, Scale, Series, Sheet, draw};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 /// What an error costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::data::{Plot, Run, SceneChart};
 use crate::measure::Method;
 use crate::plot::{Bar, PlotError, bars};
-use crate::report::number::grouped;
+use crate::report::text::number::grouped;
 
 /// Phases in the order of a run; `contact` is the solution itself where a method has only one phase for it.
 const ORDER: [&str; 12] = [

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::session::{DualRun, Session};
-use super::{CliError, Exit, ci, say};
+use super::words::{ci, say};
+use super::{CliError, Exit};
 use crate::cause::{outcome, told};
 use crate::compare::Comparison;
 use crate::diagnose::{Diagnosis, Finding};

@@ -4,7 +4,7 @@ use super::memory::Watch;
 use super::record::{Answer, Asked, End, Measured, Seconds};
 use super::{Clock, Method, Settings};
 use crate::bounds::potential;
-use crate::compare::pressure::{maximum, reaction_pressure, variation};
+use crate::compare::contact::pressure::{maximum, reaction_pressure, variation};
 use crate::compare::{Candidate, Reactions};
 use crate::element::Displacement;
 use crate::primal::{self, PrimalError, PrimalSeconds};

@@ -5,7 +5,7 @@ use super::method::{Family, Method};
 use super::primal;
 use super::record::{Answer, Asked, End, Measured, Seconds};
 use super::{Clock, Settings};
-use crate::compare::pressure::{dual_pressure, maximum, resultant, variation};
+use crate::compare::contact::pressure::{dual_pressure, maximum, resultant, variation};
 use crate::dual::paper::{Iteration, Program};
 use crate::dual::{DualError, DualMethod, Options, Uzawa};
 use crate::element::{Elements, block};

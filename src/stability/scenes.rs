@@ -1,6 +1,7 @@
 //! Rectangular bodies on grids, put together in memory.
 
-use crate::mesh::glue::{self, Glued};
+use crate::mesh::sides::glue;
+use crate::mesh::sides::glue::Glued;
 use crate::mesh::{RawMesh, Triangulation};
 use crate::problem::Problem;
 use crate::scene::{
