@@ -41,7 +41,7 @@ pub fn why(report: &Report) -> Option<String> {
 
 /// The two ends, rounded outwards so that what is printed still encloses what is known.
 fn ends(energy: &Energy) -> [String; 2] {
-    let digits = digits_to_tell(energy.lower, energy.upper).max(6);
+    let digits = digits_to_tell(energy.lower, energy.upper).max(6) + 2;
     [outward(energy.lower, digits, false), outward(energy.upper, digits, true)]
 }
 
@@ -61,10 +61,10 @@ fn claim(report: &Report, energy: &Energy) -> Markup {
                     "The computed stress is therefore within " b { (percent(energy.relative_error_bound)) } " of the exact one, in the norm of the elastic energy, "
                     "without an estimate, a constant that nobody knows, or a finer mesh."
                 }
-                p { (clean(&energy.guarantee.words)) "." }
+                p { "On whose word: " (clean(&energy.guarantee.words)) "." }
             }
         }
-        figure { (PreEscaped(bracket(report))) }
+        figure.asked { (PreEscaped(bracket(report))) }
     }
 }
 
@@ -97,10 +97,10 @@ fn from_above(report: &Report, energy: &Energy) -> Markup {
             h2 { "2. A displacement without penetration gives a number that is not below" }
             p {
                 "The exact displacement has the least energy 𝓛(v) = ½∫ c e(v) : e(v) − ∫ F·v − ∫ P·v of all that keep the supports and do not penetrate. So 𝓛(u) ≤ 𝓛(v) for any of them, whoever made it. "
-                "That v respects supports and contact is seen to along whole edges and not at nodes alone."
+                "That v respects supports and contact holds along whole edges, and not at nodes alone."
             }
             p {
-                "The best one here comes from " b { (upper_from(&energy.upper_from)) } " and gives 𝓛(v) = " b { (ends(energy)[1]) } "."
+                "The best one here, " b { (upper_from(&energy.upper_from)) } ", gives 𝓛(v) = " b { (ends(energy)[1]) } "."
             }
             @for primal in others {
                 p {
@@ -158,7 +158,7 @@ fn check(report: &Report, energy: &Energy) -> Markup {
                 code { "proof.npz" } " beside this page holds the stress, the displacement and the scene. " code { "hypercircle-check" } " is a short Python program by itself, which shares nothing with the one that made this page. It finds, in rational "
                 "arithmetic, a stress exactly in equilibrium and a displacement exactly admissible beside those of the file, and encloses their energies in intervals:"
             }
-            pre { code { "pip install ./checker\nhypercircle-check proof.npz --scene " (scene) } }
+            div.scroll { pre { code { "pip install ./checker\nhypercircle-check proof.npz --scene " (scene) } } }
             p {
                 "Its exit code is 0 if the bracket holds, and it prints the two numbers that it proved. "
                 @match energy.guarantee.level {
@@ -218,7 +218,7 @@ fn again(report: &Report) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Note;
+    use crate::problem::Note;
     use crate::report::sample::{Sample, Verdict};
 
     #[test]
@@ -258,6 +258,8 @@ mod tests {
         let mut energy = sample.dossier().report.energy.expect("a bracket");
         (energy.lower, energy.upper) = (-1.797_262_459_67, -1.796_075_585_32);
         let [lower, upper] = ends(&energy).map(|end| end.replace('−', "-").parse::<f64>().expect("a number"));
-        assert!(lower <= energy.lower && upper >= energy.upper && upper - lower < 1.01 * (energy.upper - energy.lower));
+        assert!(
+            lower <= energy.lower && upper >= energy.upper && upper - lower < 1.001 * (energy.upper - energy.lower)
+        );
     }
 }
