@@ -82,6 +82,22 @@ class Scene:
         threads: int = 1,
         out: str | PathLike[str] | None = None,
     ) -> Certificate: ...
+    def verify(
+        self,
+        *,
+        primal_degree: Sequence[int] = ...,
+        allow: dict[str, float] | None = None,
+        method: _Method = "condensed",
+        degree: int | None = None,
+        refine: int = 0,
+        tolerance: float | None = None,
+        tolerance_of: dict[str, float] | None = None,
+        max_triangles: int | None = None,
+        max_seconds: float | None = None,
+        max_memory: str | None = None,
+        threads: int = 1,
+        out: str | PathLike[str] | None = None,
+    ) -> Certificate: ...
     def diagnose(
         self, points: ArrayLike, triangles: ArrayLike, displacement: ArrayLike
     ) -> dict[str, Any] | None: ...
@@ -138,6 +154,19 @@ class Solution:
     def unknowns(self) -> int: ...
     @property
     def iterations(self) -> int: ...
+    @property
+    def maps(self) -> dict[str, NDArray[np.float64]]: ...
+    def table(self, name: str) -> dict[str, list[Any]]: ...
+    def plot(
+        self,
+        value: str | ArrayLike | None = None,
+        *,
+        ax: Any = None,
+        deformed: float = 0.0,
+        colorbar: bool = True,
+        **options: Any,
+    ) -> Any: ...
+    def _repr_html_(self) -> str: ...
     def certify(
         self,
         points: ArrayLike | None = None,
@@ -221,6 +250,8 @@ class Certificate:
     def residual(self) -> NDArray[np.float64] | None: ...
     @property
     def report(self) -> dict[str, Any]: ...
+    def table(self, name: str) -> dict[str, list[Any]]: ...
+    def _repr_html_(self) -> str: ...
 
 _Formula = Callable[[NDArray[np.float64], float, float], ArrayLike]
 
@@ -254,3 +285,15 @@ def element(
 ) -> dict[str, Any]: ...
 def flexibility(corners: ArrayLike, constants: Sequence[float]) -> list[list[float]]: ...
 def side_map(a: Sequence[float], b: Sequence[float]) -> list[list[float]]: ...
+def field(
+    of: Any, values: ArrayLike | None = None, name: str | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]: ...
+def job(
+    scenes: str | PathLike[str] | Sequence[str | PathLike[str]],
+    command: Literal["verify", "solve", "certify"] = "verify",
+    *,
+    out: str | PathLike[str],
+    jobs: int = 1,
+    options: Sequence[str] = ...,
+) -> dict[str, Any]: ...
+def main() -> int: ...

@@ -79,6 +79,13 @@ impl Sketch {
         self
     }
 
+    /// Springs of this stiffness along the normal on `on`.
+    pub fn springs(mut self, on: &str, stiffness: f64) -> Self {
+        let kind = SupportKind::Spring { stiffness: [stiffness, 0.0] };
+        self.scene.supports.push(Support { on: on.into(), kind });
+        self
+    }
+
     /// P = (a + b y, 0) on `on`.
     pub fn push(mut self, on: &str, a: f64, b: f64) -> Self {
         let load = Load::Affine(Affine { value: [a, 0.0], gradient: [[0.0, b], [0.0, 0.0]] });

@@ -22,6 +22,7 @@ def arguments(function):
     kind = inspect.Parameter
     found = [(x.arg, kind.POSITIONAL_ONLY if x in a.posonlyargs else kind.POSITIONAL_OR_KEYWORD, d) for x, d in zip(usual, defaults)]
     found += [(x.arg, kind.KEYWORD_ONLY, required if d is None else d) for x, d in zip(a.kwonlyargs, a.kw_defaults)]
+    found += [(a.kwarg.arg, kind.VAR_KEYWORD, required)] if a.kwarg else []
     value = lambda d: d if d is required else ast.literal_eval(d)
     return [(name, kind, value(default)) for name, kind, default in found if name not in ("self", "cls")]
 
