@@ -7,6 +7,7 @@ pub mod diff;
 pub mod element;
 pub mod gather;
 pub mod job;
+pub mod mcp;
 pub mod measure;
 pub mod mesh;
 pub mod part;

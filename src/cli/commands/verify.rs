@@ -10,9 +10,9 @@ use crate::cli::conclude::Particulars;
 use crate::cli::given::Given;
 use crate::cli::given::options::{JudgeOptions, Limits, ProofOptions, RunOptions, SolveOptions, positive};
 use crate::cli::given::revolved::refuse_models;
-use crate::cli::session::Session;
+use crate::cli::session::{DualRun, Session};
 use crate::cli::{CliError, Exit};
-use crate::compare::compare;
+use crate::compare::{Comparison, compare};
 use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand, WantedCells};
 use crate::problem::Note;
 use crate::process::limit;
@@ -128,13 +128,46 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     args.refuse_unheard()?;
     let session = Session::open("verify", scene, &args.solve, args.run.quiet, &args.job)?;
     refuse_models(&session.scene, &args.degrees())?;
-    // There are none on quadrilaterals of a body of revolution.
-    let revolved = session.scene.kinematics == Kinematics::Axisymmetric;
-    let cells = if revolved { WantedCells::Triangles } else { args.primal_cells };
     args.proof.refuse_early(&session)?;
     let folder = args.run.report_folder(&session.scene)?;
     args.judge.refuse_early(&session.scene, args.fields(), &args.job)?;
-    let run = session.solve(&args.solve, &args.limits, Some(&folder))?;
+    let Verified { run, comparison, particulars, failure } = verified(args, &session, Some(&folder))?;
+    let exit = session.conclude(&run, &comparison, particulars, &folder)?;
+    args.judge.say_accepted(args.run.quiet, &args.job);
+    failure.map_or(Ok(exit), |error| Err(unanswered(&error)))
+}
+
+/// A scene solved twice, and compared.
+pub struct Verified {
+    /// Problem, solution and bracket of the stress side.
+    pub run: DualRun,
+    /// The checks.
+    pub comparison: Comparison,
+    /// What else the report has.
+    pub particulars: Particulars,
+    /// Why the displacement model gave no answer.
+    pub failure: Option<PrimalError>,
+}
+
+/// The error for a displacement model without an answer.
+pub fn unanswered(error: &PrimalError) -> CliError {
+    let exit = match error {
+        PrimalError::NotInstalled(_) | PrimalError::NotFound(_) => Exit::NotInstalled,
+        _ => Exit::Failed,
+    };
+    CliError::stopped(exit, error.to_string(), "")
+}
+
+/// Solves the scene of `session` twice and compares; one without equilibrium is reported into `folder`, where there is one.
+///
+/// # Errors
+/// Bad input, a solver of the stress side that failed, or no equilibrium.
+pub fn verified(args: &Args, session: &Session, folder: Option<&Path>) -> Result<Verified, CliError> {
+    refuse_models(&session.scene, &args.degrees())?;
+    // There are none on quadrilaterals of a body of revolution.
+    let revolved = session.scene.kinematics == Kinematics::Axisymmetric;
+    let cells = if revolved { WantedCells::Triangles } else { args.primal_cells };
+    let run = session.solve(&args.solve, &args.limits, folder)?;
     let certified = &run.certified;
     let in_stresses = session.start.elapsed().as_secs_f64();
 
@@ -205,16 +238,5 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
         is_to_prove: args.proof.proof,
         ..Particulars::default()
     };
-    let exit = session.conclude(&run, &comparison, particulars, &folder)?;
-    args.judge.say_accepted(args.run.quiet, &args.job);
-    match failure {
-        None => Ok(exit),
-        Some(error) => {
-            let exit = match error {
-                PrimalError::NotInstalled(_) | PrimalError::NotFound(_) => Exit::NotInstalled,
-                _ => Exit::Failed,
-            };
-            Err(CliError::stopped(exit, error.to_string(), ""))
-        }
-    }
+    Ok(Verified { run, comparison, particulars, failure })
 }

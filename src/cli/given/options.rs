@@ -289,7 +289,8 @@ pub(in crate::cli) fn tolerance(text: &str) -> Result<f64, String> {
     as_tolerance(number(text)?)
 }
 
-fn as_tolerance(value: f64) -> Result<f64, String> {
+/// A relative error that is a number already.
+pub(in crate::cli) fn as_tolerance(value: f64) -> Result<f64, String> {
     if value <= 0.0 {
         return Err(format!("{value} is not above zero"));
     }
