@@ -7,6 +7,7 @@ pub mod energy;
 mod gap;
 mod jump;
 mod mid;
+pub mod oscillation;
 mod ranks;
 mod rounding;
 mod springs;

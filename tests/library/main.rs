@@ -57,6 +57,7 @@ mod paper_rates;
 mod paper_reactions;
 mod paper_theorems;
 mod points;
+mod polynomial_tractions;
 mod prescribed;
 mod pressure_at_ends;
 mod published;
