@@ -22,7 +22,7 @@ pub fn turned(random: &mut Random) -> Made {
     let mut ends = [[inside, 0.0], [inside + random.between(0.8, 1.8), random.between(-0.1, 0.1)]];
     for k in 0..bodies {
         let name = NAMES[k];
-        let inner = if inside == 0.0 { 0.0 } else { inside * random.between(0.8, 1.2) };
+        let inner = inside + inside.min(1.0) * random.between(-0.1, 0.1);
         let above = [
             [inner, ends[0][1] + random.between(0.4, 0.9)],
             [ends[1][0] + random.between(-0.1, 0.1), ends[1][1] + random.between(0.4, 0.9)],
