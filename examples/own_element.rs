@@ -9,7 +9,7 @@ use std::path::Path;
 
 use hypercircle::bounds::complementary;
 use hypercircle::dual::{self, Condensed, DualError, DualSolution, Options};
-use hypercircle::element::quadrature::triangle_rule;
+use hypercircle::element::polynomial::quadrature::triangle_rule;
 use hypercircle::element::{Elements, EquilibriumElement, Material, Modes, ModesMut, block};
 use hypercircle::load::{BodyForce, balancing};
 use hypercircle::problem::Problem;

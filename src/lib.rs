@@ -85,6 +85,7 @@ mod python;
 pub mod quantity;
 pub mod report;
 pub mod scene;
+mod sets;
 pub mod stability;
 pub mod statics;
 pub mod study;

@@ -22,6 +22,7 @@ from .ball import BITS, ONE, Ball, ball_of, constants, fixed, of_fractions, root
 ROUNDING = 1e-7  # changes beyond this part of the largest traction are no rounding
 ROUNDINGS = 4096  # fixed-point operations an edge or triangle takes part in, at most
 NONE = [Q(0), Q(0)]
+FREE, ALONG = ("inside", "clamped", "spring"), ("roller", "slide")  # edges with any traction, and those with one along a direction
 
 
 @dataclass
@@ -40,6 +41,7 @@ def cross(x, y):
 class Stress:
     def __init__(self, mesh, data):
         self.mesh, self.extra, self.terms, self.pressed = mesh, 0.0, [], []
+        mesh.join_layers()
         counts, values = data["traction_counts"].astype(int), data["tractions"]
         pair_counts, pressures, degrees = data["pressure_counts"].astype(int), data["pressures"], data["stress_degrees"].astype(int)
         sizes = [len(x) for x in (counts, values, pair_counts, pressures, degrees)]
@@ -51,10 +53,11 @@ class Stress:
         self.tau = Ball(np.zeros((len(counts), self.most + 1, 2))).writable()
         self.exact = np.zeros((2, len(counts), 2), object)  # tau_0 and tau_1 in fixed point
         self._candidates(counts, values)
-        self._contacts(np.split(pressures, np.cumsum(pair_counts)[:-1]), max(np.abs(x).max(initial=0.0) for x in (values, pressures)))
+        self._contacts(np.split(pressures, np.cumsum(pair_counts)[:-1]), max(mesh.stress, *(np.abs(x).max(initial=0.0) for x in (values, pressures))))
         self._set_terms()
-        self.scale, size = float(np.abs(self.tau.mid).max()), 1 + float(np.abs(mesh.points).max())
-        largest = 1 + max(float(abs(x)) for body in mesh.scene.bodies.values() for x in body[2])
+        self.scale, size = max(float(np.abs(self.tau.mid).max()), mesh.resting), 1 + float(np.abs(mesh.points).max())
+        self.forces = mesh.forces()
+        largest = 1 + max(self.forces.max(), -self.forces.min()) / ONE
         residual = self._residuals()
         # What all roundings in fixed point can add up to, in any force or moment; where nothing acts there are none.
         self.error = ROUNDINGS * (len(mesh.edges) + len(mesh.triangles)) * size**2 * (1 + self.scale) * largest / 2.0**BITS
@@ -67,7 +70,8 @@ class Stress:
         # Any field with the tractions will do; it needs their degree.
         self.carries = (abs(self.tau.mid) + self.tau.rad).any(2)
         needed = np.where(self.carries.any(1), self.most - self.carries[:, ::-1].argmax(1), 0)
-        self.degrees = np.maximum(np.maximum(degrees, 1), needed[mesh.sides].max(1))
+        turns = np.array([any(map(any, mesh.scene.forces[name].gradient)) for name in mesh.body_names])
+        self.degrees = np.maximum(np.maximum(degrees, 1 + turns[mesh.bodies]), needed[mesh.sides].max(1))
 
     # 1. Tractions of edges.
 
@@ -75,13 +79,13 @@ class Stress:
         mesh, start = self.mesh, np.concatenate([[0], np.cumsum(counts)])
         lengths, kinds = np.hypot(*(mesh.points[mesh.edges[:, 1]] - mesh.points[mesh.edges[:, 0]]).T), mesh.kinds
         for n in np.unique(counts):
-            which = np.flatnonzero((counts == n) & np.isin(kinds, ("inside", "clamped", "roller")))
+            which = np.flatnonzero((counts == n) & np.isin(kinds, (*FREE, *ALONG)))
             own = values[start[which][:, None] + np.arange(n)] * lengths[which, None, None]
             matrix = np.array([[float(x) for x in row] for row in reference.to_legendre(n - 1)])
             self.tau.mid[which, :n] = np.einsum("ki,eic->ekc", matrix, own)
-        free = np.flatnonzero(np.isin(kinds, ("inside", "clamped")))
+        free = np.flatnonzero(np.isin(kinds, FREE))
         self.exact[:, free] = fixed(np.moveaxis(self.tau.mid[free, :2], 1, 0))
-        for e in np.flatnonzero(kinds == "roller").tolist():
+        for e in np.flatnonzero(np.isin(kinds, ALONG)).tolist():
             n = mesh.directions[e]
             unit = np.array([float(x) for x in n])
             for k, b in enumerate((self.tau.mid[e, : counts[e]] @ unit / (unit @ unit)).tolist()):
@@ -130,11 +134,13 @@ class Stress:
         mid, d = self._vectors(slice(None))
         force = np.stack([*first, (cross(mid, first) >> BITS) + (cross(d, second) >> BITS) // 6], 1)
         out = sum(mesh.signs[:, i, None].astype(object) * force[mesh.sides[:, i]] for i in range(3))
-        for b, name in enumerate(mesh.body_names):
-            f, own = fixed(np.array(mesh.scene.bodies[name][2], object)), np.flatnonzero(mesh.bodies == b)
-            if f.any():
-                moment = cross(mesh.fixed[mesh.triangles[own]].sum(1).T, f) >> BITS
-                out[own] += np.stack([*(times(mesh.det[own], x) >> 1 for x in f), times(mesh.det[own], moment) // 6], 1)
+        acted = np.flatnonzero((self.forces != 0).any((1, 2)))
+        if len(acted):
+            # By the middles of the sides: exact for quadratic functions.
+            x, f = (v + np.roll(v, 1, 1) for v in (mesh.fixed[mesh.triangles[acted]], self.forces[acted]))
+            moment = sum(cross(x[:, i].T, f[:, i].T) >> (BITS + 2) for i in range(3))
+            whole = np.stack([*(f.sum(1).T >> 1), moment], 1)
+            out[acted] += times(mesh.det[acted, None], whole) // 6
         return out
 
     def _forest(self):
@@ -142,9 +148,9 @@ class Stress:
         mesh, order, self.roots = self.mesh, [], []
         self.component, self.parent = np.full((2, len(mesh.triangles)), -1)
         other = np.where(mesh.signs > 0, mesh.owners[mesh.sides, 1], mesh.owners[mesh.sides, 0]).tolist()
-        # From all clamped edges at once, then from an outer edge of what they do not reach: best one that has nothing to do with others.
-        starts = [np.flatnonzero(mesh.kinds == "clamped").tolist()]
-        starts += [[e] for some in (("free", "load"), ("roller", "contact")) for e in np.flatnonzero(np.isin(mesh.kinds, some)).tolist()]
+        # From all edges that hold at once, then from an outer edge of what they do not reach: best one that has nothing to do with others.
+        starts = [np.flatnonzero(np.isin(mesh.kinds, FREE) & (mesh.owners[:, 1] < 0)).tolist()]
+        starts += [[e] for some in (("free", "load"), (*ALONG, "contact")) for e in np.flatnonzero(np.isin(mesh.kinds, some)).tolist()]
         for k, edges in enumerate(starts):
             begin = len(order)
             for t, e in ((int(mesh.owners[e, 0]), e) for e in edges):
@@ -250,7 +256,7 @@ class Stress:
             )
         for k, by in ((0, first), (1, second)):
             self.tau.put((which, k), self.tau[which, k] + by)
-        loaded = (mesh.kinds[which] != "clamped") & (mesh.owners[which, 1] < 0)
+        loaded = ~np.isin(mesh.kinds[which], FREE)
         if loaded.any():
             self.extra = float(sum((abs(by.mid[loaded]) + by.rad[loaded]).sum() for by in (first, second))) * (1 + 1e-9)
             mesh.premises.append(f"bodies that contacts and rollers alone hold balance but for {self.extra:.1e}, taken for an additional load")
@@ -259,20 +265,19 @@ class Stress:
 
     def bound(self):
         """A number that -Pi of an admissible stress is not below, thickness included."""
-        mesh, scene, total = self.mesh, self.mesh.scene, Q(0)
-        compliance, carries = mesh.by_body(scene.compliance), self.carries.any(1)
-        acted = carries[mesh.sides].any(1) | np.array([any(scene.bodies[name][2]) for name in mesh.body_names])[mesh.bodies]
+        mesh, scene, total, carries = self.mesh, self.mesh.scene, Q(0), self.carries.any(1)
+        acted = carries[mesh.sides].any(1) | (self.forces != 0).any((1, 2))
         for p in np.unique(self.degrees[acted]).tolist():
             own = np.flatnonzero((self.degrees == p) & acted)
             for which in np.array_split(own, max(1, len(own) * p * p // 20000)):
-                total -= Q(float(self._energies(which, p, [m[which] for m in compliance]).sum()[1]))
+                total -= Q(float(self._energies(which, p).sum()[1]))
         for e in np.flatnonzero((mesh.kinds == "clamped") & carries).tolist():
             ends = [mesh.conditions[e].data.at(mesh.written(v)) for v in mesh.edges[e].tolist()]
             u = of_fractions([x for a, b in zip(*ends) for x in ((a + b) / 2, (b - a) / 6)], (2, 2))
             total += Q(float((self.tau[e, :2] * Ball(u.mid.T, u.rad.T)).sum()[0]))
         for term in self.terms:
             for e, tau in () if term.presses else term.tractions.items():
-                u0, n = mesh.conditions[e].data, mesh.directions[e]
+                u0, n = mesh.conditions[e].data if mesh.kinds[e] == "roller" else 0, mesh.directions[e]
                 if u0 and len(tau) == 1:
                     total += min(term.value * u0 * length for length in root(n[0] ** 2 + n[1] ** 2)) - abs(u0) * Q(self.error) * 4
         for pair, b in zip(mesh.pairs, self.pressed):
@@ -281,36 +286,57 @@ class Stress:
                     work = term.value * (g + pair.excess) * reference.product(len(b) - 1, i, len(pair.gap) - 1, j)
                     total += min(work * length for length in pair.length)
             total -= Q(self.error) * 4 * max(abs(g) for g in pair.gap) * pair.length[1]
+            if pair.stiffness:
+                off = [abs(term.value) + 4 * Q(self.error) for term in b]
+                total -= pair.length[1] * square(off) / (2 * pair.stiffness)
+        for e, _, stiffness in mesh.springs:
+            n = mesh.normal(*mesh.edges[e])
+            for k, (x, y) in zip(stiffness, (n, [-n[1], n[0]])):
+                if k:
+                    # int (tau.n)^2 / (2 k l^3), n as long as the edge
+                    along = self.tau[e, :, 0] * of_fractions([x])[0] + self.tau[e, :, 1] * of_fractions([y])[0]
+                    weights = [1 / ((2 * j + 1) * 2 * k * root(x * x + y * y)[0] ** 3) for j in range(self.most + 1)]
+                    total -= Q(float((along.square() * of_fractions(weights)).sum()[1])) * (1 + Q(1, 10**60))
         return total * scene.thickness
 
-    def _energies(self, which, p, compliance):
+    def _energies(self, which, p):
         mesh, count, parts = self.mesh, len(which), []
-        (a, b), (c, d) = [[m[which] for m in row] for row in mesh.map]
+        law = mesh.by_body(lambda name: mesh.scene.bodies[name][0], which)
+        ((a, b), (c, d)), det = [[m[which] for m in row] for row in mesh.map], mesh.jacobian[which]
         pulled = lambda v: stack([d * v[0] - b * v[1], a * v[1] - c * v[0]])  # J B^-1 v
         for i in range(3):
             for k in range(p + 1):  # -tau(1 - s), from the right of an edge
                 turn = np.where(mesh.signs[which, i] > 0, 1.0, (-1.0) ** (k + 1))[:, None]
                 own = self.tau[mesh.sides[which, i], k]
                 parts.append(pulled(Ball((own.mid * turn).T, own.rad.T)))
-        parts.append(pulled([f[which] * mesh.jacobian[which] for f in mesh.by_body(lambda name: mesh.scene.bodies[name][2])]))
+        force = [[f * det for f in own] for own in mesh.corners(mesh.scene.forces, which)]
+        parts += [pulled(f) for f in zip(*force)][: 3 if p > 1 else 1]
         special, free, norms = reference.stresses(p)
         s = stack(parts).reshape(-1, count).times(special)
         if free is not None:
-            s = s + Ball(self._least(s.mid, free.mid, norms, [x.mid for x in (a, b, c, d)], [x.mid for x in compliance])).times(free)
+            s = s + Ball(self._least(s.mid, free.mid, norms, [x.mid for x in (a, b, c, d)], [x.mid for x in law])).times(free)
         s = s.reshape(3, 3, len(norms), count)
         xx, yy, xy = s[:, 0], s[:, 1], s[:, 2]
         one, two, three, four = a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy  # B s^
         xx, yy, xy = one * a + two * b, three * c + four * d, one * c + two * d  # B s^ B^T
-        density = (xx + yy).square() * compliance[0] + (xx - yy).square() * compliance[1] + xy.square() * compliance[2]
-        total, det = density.times(constants([norms]), 1)[:, 0], mesh.jacobian[which]
-        return (total[0] + total[1] + total[2]) * (det.square() * det).inverse() * constants([[Q(1, 6)]])[0, 0]
+        x = [xx + yy, xx - yy, xy]
+        total = form(law, x).times(constants([norms]), 1)[:, 0]
+        energy = (total[0] + total[1] + total[2]) * (det.square() * det).inverse() * constants([[Q(1, 6)]])[0, 0]
+        if not mesh.warm:
+            return energy
+        work, weights = 0, constants([norms[:3]])
+        for own, strain in zip(x, mesh.corners(mesh.scene.strains, which)):
+            for sub, e in enumerate(reference.on_split(strain)):
+                work = (own[sub, :3] * e).times(weights)[0] + work
+        return energy + work * det.inverse() * constants([[Q(1, 3)]])[0, 0]
 
     @staticmethod
-    def _least(s, free, norms, edges, compliance):
+    def _least(s, free, norms, edges, law):
         """Coefficients of the fields without traction that make the energy small; nothing is claimed of them."""
-        n, (a, b, c, d), (u, v, w) = len(norms), edges, compliance
+        n, (a, b, c, d) = len(norms), edges
         xx, yy, xy = np.array([[a * a, b * b, 2 * a * b], [c * c, d * d, 2 * c * d], [a * c, b * d, a * d + b * c]])  # B s^ B^T
-        form = u * (xx + yy)[:, None] * (xx + yy) + v * (xx - yy)[:, None] * (xx - yy) + w * xy[:, None] * xy
+        roots = [u * (xx + yy) + v * (xx - yy) + w * xy for u, v, w in (law[k + 1 : k + 4] for k in (0, 4, 8))]
+        form = sum(w * r[:, None] * r for w, r in zip(law[::4], roots))
         z, own = (x.reshape(3, 3, n, -1).swapaxes(0, 1).reshape(3, 3 * n, -1) for x in (free, s))
         left = z * np.tile([float(x) for x in norms], 3)[:, None]
         hessian = sum(form[i, j][:, None, None] * (left[i].T @ z[j]) for i in range(3) for j in range(3))
@@ -319,6 +345,24 @@ class Stress:
             return -np.linalg.solve(hessian, gradient[:, :, None])[:, :, 0].T
         except np.linalg.LinAlgError:
             return np.zeros(gradient.T.shape)
+
+
+def form(law, x):
+    """Sum of w (r . x)^2; the numbers of the law are those of triangles, the last axis of x."""
+    total = 0
+    for k in (0, 4, 8):
+        inner = 0
+        for r, own in zip(law[k + 1 : k + 4], x):
+            if r.mid.any() or r.rad.any():
+                inner = own * r + inner
+        total = inner.square() * law[k] + total
+    return total
+
+
+def square(b):
+    """int_0^1 of the square of a polynomial by its Bernstein coefficients."""
+    n = len(b) - 1
+    return sum(x * y * reference.product(n, i, n, j) for i, x in enumerate(b) for j, y in enumerate(b))
 
 
 def load(mesh, e):

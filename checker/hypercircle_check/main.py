@@ -72,7 +72,7 @@ class Proof:
         """The ends that are proved: those claimed, or farther out by next to nothing."""
         if self.lower > self.upper:
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
-        allowed = max((self.claim[1] - self.claim[0]) * PART, LEAST)
+        allowed = max((self.claim[1] - self.claim[0]) * PART, self.displacement.grain, LEAST)
         self.room = [self.lower - self.claim[0], self.claim[1] - self.upper]
         for end, room, found, claimed in zip(("lower", "upper"), self.room, (self.lower, self.upper), self.claim):
             if room < -allowed:

@@ -6,7 +6,7 @@ from fractions import Fraction as Q
 import numpy as np
 
 from . import Refused
-from .ball import Ball, ball_of, fixed, root, times
+from .ball import Ball, ball_of, fixed, of_fractions, root, times
 
 PARALLEL = 1e-9  # edges of one straight roller differ by rounding
 NEAR = 1e-9  # vertices and areas against polygons, relative to the size of the scene
@@ -23,6 +23,7 @@ class Pair:
     length: tuple  # two numbers that enclose it
     gap: list = None  # Bernstein coefficients of a polynomial that is no larger than the gap
     excess: Q = Q(0)  # by which the gap may be larger than it
+    stiffness: Q | None = None  # of a contact that is elastic
 
     def turns(self):
         return self.ends[0] != self.ends[1]
@@ -49,12 +50,25 @@ class Mesh:
         self.map = [[ball_of((p - a)[:, r], 1e-90) for p in (b, c)] for r in range(2)]  # B, by rows
         self.jacobian = ball_of(self.det, 1e-60)
         self.conditions = [scene.conditions.get(name) if name and right < 0 else None for name, right in zip(self.names, self.owners[:, 1])]
-        for name in set(scene.conditions) - set(self.names):
+        glued = {name for name, held in scene.conditions.items() if held.kind == "bond" and "stiffness" not in scene.bonds[held.data]}
+        for name in set(scene.conditions) - set(self.names) - glued:
             raise Refused(f"no edge of {self.what} is part of '{name}', on which the scene has a condition")
         self._rollers()
+        self._springs()
         self._pairs(get("pairs").tolist(), get("pair_data").tolist(), manifest["contacts"])
         kind = lambda condition, right: condition.kind if condition else "inside" if right >= 0 else "free"
-        self.kinds = np.array([kind(*of) for of in zip(self.conditions, self.owners[:, 1])])
+        self.kinds = np.array([kind(*of) for of in zip(self.conditions, self.owners[:, 1])], dtype="<U8")
+        for e, f, stiffness in self.springs:
+            self.kinds[[e, f] if f >= 0 else [e]] = "spring" if all(stiffness) else "slide"
+        # The stress and the force on an edge that initial strain makes where all is held.
+        self.warm = any(any(e.value) or any(map(any, e.gradient)) for e in scene.strains.values())
+        self.stress = self.resting = 0.0
+        if self.warm:
+            law, all_ = self.by_body(lambda name: scene.bodies[name][1], slice(None)), self.corners(scene.strains, slice(None))
+            held = [[w.mid * sum(r.mid * e[i].mid for r, e in zip(row, all_)) for i in range(3)] for w, *row in (law[k : k + 4] for k in (0, 4, 8))]
+            lengths = np.hypot(*(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]]).T)
+            self.stress = float(np.abs(held).max())
+            self.resting = float((np.abs(held).max((0, 1)) * lengths[self.sides].max(1)).max())
         if scene.polygons:
             self._against_polygons()
 
@@ -77,6 +91,14 @@ class Mesh:
         if (self.owners[:, 0] < 0).any():
             raise Refused(f"edge {int(np.argmin(self.owners[:, 0]))} of {self.what} has no triangle on its left: one is missing")
 
+    def join_layers(self):
+        """Makes one edge of the two sides of a layer: tractions on them are equal and opposite."""
+        for e, f, _ in self.springs:
+            if f >= 0:
+                t = self.owners[f, 0]
+                i = int(np.flatnonzero(self.sides[t] == f)[0])
+                self.sides[t, i], self.signs[t, i], self.owners[e, 1], self.kinds[f] = e, -1, t, "joined"
+
     def exact(self, vertex):
         return [Q(x) for x in self.points[vertex].tolist()]
 
@@ -88,10 +110,29 @@ class Mesh:
         (x, y), (u, v) = self.exact(a), self.exact(b)
         return [v - y, x - u]
 
-    def by_body(self, of):
-        """The fractions of(body) as Balls, a number for each triangle."""
-        mid = np.array([[float(x) for x in of(name)] for name in self.body_names])[self.bodies]
-        return [Ball(x, abs(x) * 2.0**-51) for x in mid.T]
+    def by_body(self, of, which):
+        """The fractions of(body) as Balls, a number for each of these triangles."""
+        table = [list(of(name)) for name in self.body_names]
+        ball = of_fractions([x for row in table for x in row], (len(table), -1))
+        return [ball[self.bodies[which], k] for k in range(len(table[0]))]
+
+    def corners(self, fields, which):
+        """Affine fields of bodies at the three corners of these triangles: Balls by component and corner."""
+        about = lambda f: [x for v, g in zip(f.at(self.origin), f.gradient) for x in (v, *g)]
+        numbers = self.by_body(lambda name: about(fields[name]), which)
+        points = [Ball(self.points[self.triangles[which, i]].T) for i in range(3)]
+        return [[v + gx * p[0] + gy * p[1] for p in points] for v, gx, gy in zip(*(numbers[k::3] for k in range(3)))]
+
+    def forces(self):
+        """The body force at the three corners of triangles, in fixed point."""
+        out = np.zeros((len(self.triangles), 3, 2), object)
+        for b, name in enumerate(self.body_names):
+            f, own = self.scene.forces[name], self.triangles[self.bodies == b]
+            for c, (v, g) in enumerate(zip(f.at(self.origin), f.gradient)):
+                if v or any(g):
+                    x, y = np.moveaxis(self.fixed[own], 2, 0)
+                    out[self.bodies == b, :, c] = int(fixed([v])[0]) + (times(int(fixed([g[0]])[0]), x) + times(int(fixed([g[1]])[0]), y) if any(g) else 0)
+        return out
 
     def _rollers(self):
         """Direction of every roller edge: as given, or the sum of the normals of all such edges that are parallel to it."""
@@ -110,6 +151,30 @@ class Mesh:
                 self.directions.update(dict.fromkeys(group, n))
                 if 0 not in n:
                     self.premises.append("a roller along a sloped side has one direction along all of it, that of the sum of its edges")
+
+    def _springs(self):
+        """Edges on springs: (edge, the one opposite or -1, stiffness along normal and edge); the two sides of a layer coincide."""
+        self.springs, outer = [], np.flatnonzero(self.owners[:, 1] < 0).tolist()
+        ends = {tuple(x for v in self.edges[e] for x in self.points[v].tolist()): e for e in outer if self.conditions[e] and self.conditions[e].kind == "bond"}
+        alone = set(ends.values())
+        for (a, b, c, d), e in ends.items():
+            name, side = self.scene.sides[self.names[e]]
+            f, bond = ends.get((c, d, a, b)), self.scene.bonds[name]
+            if "stiffness" in bond and all(bond["stiffness"]) and f is not None and self.scene.sides[self.names[f]] == (name, 1 - side):
+                alone -= {e, f}
+                if side == 0:
+                    self.springs.append((e, f, bond["stiffness"]))
+        for e in alone:
+            name = self.conditions[e].data
+            if "direction" not in self.scene.bonds[name]:
+                raise Refused(f"edge {e} of {self.what} is part of the bond {name}, and nothing is opposite")
+            self.conditions[e] = None
+            self.premises.append(f"bond {name}: edges that face nothing are free")
+        self.springs += [(e, -1, c.data) for e, c in enumerate(self.conditions) if c and c.kind == "spring"]
+        for e, _, stiffness in self.springs:
+            if not all(stiffness):  # along one direction only
+                n = self.normal(*self.edges[e])
+                self.directions[e] = n if stiffness[0] else [-n[1], n[0]]
 
     def _pairs(self, whole, real, contacts):
         self.pairs, paired = [], set()
@@ -137,6 +202,7 @@ class Mesh:
                 field = "its direction is the field of unit vectors in the proof, linear along every edge"
                 place = "its direction, matching and distance are those in the proof, linear along every edge"
                 self.premises.append(f"contact {name}: {field if straight else place}")
+            pair.stiffness = contact.get("stiffness")
             self._gap(pair, contact, name, data, straight)
             self.pairs.append(pair)
         for e, condition in enumerate(self.conditions):
@@ -150,6 +216,8 @@ class Mesh:
     def _gap(self, pair, contact, name, data, straight):
         gap, pair.gap, count = contact.get("gap", 0), [Q(x) for x in data[7:9]], int(data[18])
         if isinstance(gap, list):
+            if not all(isinstance(row, list) for row in gap):
+                raise Refused(f"the gap of contact {name} is known as a range: this checker does not know those")
             self.premises.append(f"contact {name}: the gap is linear between vertices, with the values in the proof")
         elif not isinstance(gap, dict) and straight and (pair.gap != [Q(gap)] * 2 or count):
             raise Refused(f"the gap of contact {name} in the proof is not that of the scene")
@@ -175,15 +243,30 @@ class Mesh:
         for b, body in enumerate(self.body_names):
             if body not in curved and abs(self.jacobian.mid[self.bodies == b].sum() / 2 - area.get(body, 0)) > NEAR * size * size:
                 raise Refused(f"the triangles of {self.what} in body '{body}' do not have the area of its polygons: some are missing, or moved")
-        for e in np.flatnonzero(self.owners[:, 1] < 0).tolist():
-            body, name = self.body_names[self.bodies[self.owners[e, 0]]], self.names[e]
-            found = sides.get((body, name), [])
-            near = any(s is None or max(_distance(self.points[v], *s) for v in self.edges[e]) <= NEAR * size for s in found)
-            if not near and not self.scene.raw.get("boundaries"):
-                what = f"named '{name}'" if name else "without a name"
-                raise Refused(f"edge {e} of {self.what}, on the outline of body '{body}', lies on no side of its polygon {what}")
+        if self.scene.raw.get("boundaries"):
+            return
+        outer, names, whose = self.owners[:, 1] < 0, np.array(self.names), np.array(self.body_names)[self.bodies]
+        lies = np.zeros(len(self.edges), bool)
+        glued = whose[self.owners[:, 0]] == whose[self.owners[:, 1]]
+        for (body, name), parts in sides.items():
+            near = np.zeros(len(self.edges), bool)
+            for part in parts:
+                near |= _distances(self.points, *part)[self.edges].max(1) <= NEAR * size if part else outer
+            own = whose[self.owners] == body
+            lies |= near & outer & own[:, 0] & (names == name)
+            held = self.scene.conditions.get(name)
+            inside = near & ~outer & own.any(1)
+            if held and held.kind == "bond":
+                glued |= inside
+            elif held:
+                glued &= ~inside
+        for e in np.flatnonzero(outer & ~lies)[:1].tolist():
+            what = f"named '{names[e]}'" if names[e] else "without a name"
+            raise Refused(f"edge {e} of {self.what}, on the outline of body '{whose[self.owners[e, 0]]}', lies on no side of its polygon {what}")
+        for e in np.flatnonzero(~outer & ~glued)[:1].tolist():
+            raise Refused(f"edge {e} of {self.what} joins what the scene does not bond")
 
 
-def _distance(p, a, b):
+def _distances(p, a, b):
     s = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-    return np.hypot(*(p - a - s * (b - a)))
+    return np.hypot(*(p - a - s[:, None] * (b - a)).T)

@@ -13,7 +13,7 @@ from math import comb, factorial, prod
 import numpy as np
 from flint import fmpq, fmpq_mat
 
-from .ball import EPS, Ball, constants
+from .ball import EPS, Ball, constants, stack
 
 CORNERS = [(Q(0), Q(0)), (Q(1), Q(0)), (Q(0), Q(1))]
 CENTRE = (Q(1, 3), Q(1, 3))
@@ -61,6 +61,11 @@ def orthogonal(p):
     return [list(column) for column in zip(*low)], d
 
 
+def _forces(p):
+    """How many values the body force has: that of a constant for p = 1, else those of an affine one at the three corners."""
+    return 2 if p == 1 else 6
+
+
 def _equations(p):
     """Rows (unknowns, data) of: div s^ + f^ = 0, equal tractions inside, tractions tau^ (Legendre coefficients) on the three sides. Polynomials
     agree where they agree at enough points."""
@@ -88,7 +93,9 @@ def _equations(p):
                 slopes = by_xi(x, y), by_eta(x, y)
                 dx = [(vy * s - uy * t) / det for s, t in zip(*slopes)]
                 dy = [(ux * t - vx * s) / det for s, t in zip(*slopes)]
-                row([(i, (0, 2)[c], 1, dx), (i, (2, 1)[c], 1, dy)], {6 * (p + 1) + c: Q(-1)})
+                rest = (1 - x - y) / 3
+                share = {(i + 1) % 3: x + rest, (i + 2) % 3: y + rest, i: rest} if p > 1 else {0: Q(1)}
+                row([(i, (0, 2)[c], 1, dx), (i, (2, 1)[c], 1, dy)], {6 * (p + 1) + 2 * k + c: -w for k, w in share.items()})
             for s in [Q(j, p) for j in range(p + 1)]:
                 inner = traction((i + 2) % 3, c, CENTRE, CORNERS[i], (s, 0)) + traction((i + 1) % 3, c, CENTRE, CORNERS[i], (0, s), -1)
                 row(inner, {})
@@ -98,6 +105,10 @@ def _equations(p):
 
 def rational(rows):
     return fmpq_mat(len(rows), len(rows[0]), [fmpq(*x.as_integer_ratio()) for row in rows for x in row])
+
+
+def inverse(rows):
+    return [[Q(int(x.p), int(x.q)) for x in row] for row in rational(rows).inv().table()]
 
 
 def floats(matrix):
@@ -116,7 +127,7 @@ def stresses(p):
     R is right for data in equilibrium. Which of the fields with the same tractions it gives, and the basis Z of those without, are chosen in
     floating point and then taken exactly.
     """
-    rows, data = _equations(p), 6 * (p + 1) + 2
+    rows, data = _equations(p), 6 * (p + 1) + _forces(p)
     unknowns = len(rows[0][0])
     reduced, rank = rational([row + [w.get(j, Q(0)) for j in range(data)] for row, w in rows]).rref()
     pivots = [(next(j for j, x in enumerate(row) if x != 0), row) for row in reduced.table()[:rank]]
@@ -144,10 +155,12 @@ def stresses(p):
 
 
 @cache
-def derivatives(k):
-    """(X, Y, d): orthogonal coefficients of degree k - 1 of the derivatives by xi and eta of a polynomial of Bernstein coefficients of degree k."""
-    transform, d = orthogonal(k - 1)
-    place, columns = {m: j for j, m in enumerate(monomials(k - 1))}, ([], [])
+def derivatives(k, affine=False):
+    """(X, Y, d): orthogonal coefficients of degree k - 1, at least 1 where they are to hold something affine too, of the derivatives by xi and
+    eta of a polynomial of Bernstein coefficients of degree k."""
+    low = max(k - 1, int(affine))
+    transform, d = orthogonal(low)
+    place, columns = {m: j for j, m in enumerate(monomials(low))}, ([], [])
     for a, b, c in bernstein_indices(k):
         slopes = [[Q(0)] * len(place) for _ in range(2)]
         for i, j in monomials(c):  # (1 - xi - eta)^c
@@ -158,6 +171,21 @@ def derivatives(k):
         for column, slope in zip(columns, slopes):
             column.append([sum(t * x for t, x in zip(row, slope)) for row in transform])
     return *(constants(list(zip(*column))) for column in columns), d
+
+
+def on_split(corners):
+    """Orthogonal coefficients of degree 1, on each subtriangle, of a function that is affine on a triangle, by its values at the corners."""
+    centre = (corners[0] + corners[1] + corners[2]) * constants([[Q(1, 3)]])[0, 0]
+    change, _ = orthogonal(1)
+    for sub in range(3):
+        first, second = corners[(sub + 1) % 3], corners[(sub + 2) % 3]
+        yield stack([centre, first - centre, second - centre]).times(constants(change))
+
+
+@cache
+def shares(k):
+    """Integrals over the unit triangle of Bernstein polynomials times the barycentric coordinates, by rows."""
+    return [[Q(m[i] + 1, (k + 1) * (k + 2) * (k + 3)) for m in bernstein_indices(k)] for i in range(3)]
 
 
 def bernstein_indices(k):

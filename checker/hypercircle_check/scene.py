@@ -4,18 +4,23 @@ import tomllib
 from dataclasses import dataclass
 from fractions import Fraction as Q
 
-from . import Refused
+from . import Refused, material
 
 KNOWN = {  # every key that has a meaning here, and the values of those that name a kind
-    "": "title model mesh geometry bodies boundaries supports tractions contacts quantities",
+    "": "title model mesh geometry bodies boundaries supports tractions contacts bonds quantities",
     "model": "kinematics thickness",
-    "bodies": "young poisson body_force tag set",
-    "supports": "on type displacement direction",
+    "bodies": "young poisson orthotropic stiffness compliance angle expansion temperature initial_stress body_force rotation tag set",
+    "orthotropic": "young poisson shear angle",
+    "temperature": "value gradient",
+    "body_force": "value gradient",
+    "rotation": "density omega about",
+    "supports": "on type displacement direction stiffness",
     "tractions": "on value gradient pressure",
-    "contacts": "between on gap normals direction obstacle move",
+    "contacts": "between on gap normals direction obstacle move stiffness",
+    "bonds": "between direction stiffness",
     "polygons": "body points edges arcs",
 }
-KINDS = {"kinematics": ("plane-strain", "plane-stress"), "type": ("clamped", "roller")}
+KINDS = {"kinematics": ("plane-strain", "plane-stress"), "type": ("clamped", "roller", "spring")}
 
 
 def known(place, table):
@@ -25,6 +30,14 @@ def known(place, table):
         if value not in KINDS.get(key, (value,)):
             raise Refused(f"this checker does not know `{key} = {value!r}`")
     return table
+
+
+def stiffnesses(given):
+    """Along the normal and along the edge."""
+    both = vector(given) if isinstance(given, list) else [Q(given), Q(0)]
+    if len(both) != 2 or min(both) < 0 or not any(both):
+        raise Refused(f"a stiffness is {given!r}")
+    return both
 
 
 def vector(values):
@@ -41,8 +54,13 @@ class Affine:
     gradient: list
 
     @staticmethod
-    def of(value, gradient):
+    def of(value=None, gradient=None):
         return Affine(vector(value or [0, 0]), [vector(row) for row in gradient or [[0, 0], [0, 0]]])
+
+    @staticmethod
+    def read(place, given):
+        """A constant, or a table of value and gradient."""
+        return Affine.of(**known(place, given)) if isinstance(given, dict) else Affine.of(given)
 
     def at(self, x):
         return [v + g[0] * x[0] + g[1] * x[1] for v, g in zip(self.value, self.gradient)]
@@ -50,7 +68,8 @@ class Affine:
 
 @dataclass
 class Condition:
-    """`clamped`: u = data(x). `roller`: u . direction = data, the outward normal where there is none. `load`: an Affine or a pressure."""
+    """`clamped`: u = data(x). `roller`: u . direction = data, the outward normal where there is none. `load`: an Affine or a pressure.
+    `spring`: data is the stiffness along the normal and along the edge, or their names where they are a layer's. `contact`, `bond`: a name."""
 
     kind: str
     data: object
@@ -65,40 +84,50 @@ class Scene:
         except (UnicodeDecodeError, KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
             raise Refused(f"the scene cannot be read: {error!r}") from None
 
-    def _read(self, model, bodies, supports=(), tractions=(), contacts=(), geometry=None, **_):
+    def _read(self, model, bodies, supports=(), tractions=(), contacts=(), bonds=(), geometry=None, **_):
         self.kinematics, self.thickness = known("model", model)["kinematics"], Q(model.get("thickness", 1))
-        self.bodies = {name: (Q(b["young"]), Q(b["poisson"]), vector(b.get("body_force", [0, 0]))) for name, b in bodies.items() if known("bodies", b)}
-        self.conditions, self.contacts, self.sides = {}, {}, {}
+        self.bodies, self.forces, self.strains = {}, {}, {}
+        for name, body in bodies.items():
+            self._body(name, known("bodies", body))
+        self.conditions, self.contacts, self.bonds, self.sides = {}, {}, {}, {}
         self.polygons = [known("polygons", polygon) for polygon in (geometry or {}).get("polygons", [])]
         for support in supports:
             u, direction = known("supports", support).get("displacement"), support.get("direction")
             if support["type"] == "clamped":
-                self._hold(support["on"], Condition("clamped", Affine.of(**{"value": None, "gradient": None, **u} if isinstance(u, dict) else {"value": u, "gradient": None})))
+                self._hold(support["on"], Condition("clamped", Affine.read("body_force", u)))
+            elif support["type"] == "spring":
+                self._hold(support["on"], Condition("spring", stiffnesses(support["stiffness"])))
             else:
                 self._hold(support["on"], Condition("roller", Q(u or 0), direction and vector(direction)))
         for load in tractions:
             pressed = "pressure" in known("tractions", load)
             self._hold(load["on"], Condition("load", Q(load["pressure"]) if pressed else Affine.of(load["value"], load.get("gradient"))))
-        for contact in contacts:
-            sides = known("contacts", contact).get("between") or [contact["on"]]
-            name = "|".join([*sides, "rigid"][:2])
-            self.contacts[name] = contact
-            for side, boundary in enumerate(sides):
-                self._hold(boundary, Condition("contact", name))
-                self.sides[boundary] = (name, side)
+        for place, joints, own in (("contacts", contacts, self.contacts), ("bonds", bonds, self.bonds)):
+            for joint in joints:
+                sides = known(place, joint).get("between") or [joint["on"]]
+                name = "|".join([*sides, "rigid"][:2])
+                of = stiffnesses if place == "bonds" else Q
+                own[name] = {key: of(value) if key == "stiffness" else value for key, value in joint.items()}
+                for side, boundary in enumerate(sides):
+                    self._hold(boundary, Condition(place[:-1], name))
+                    self.sides[boundary] = (name, side)
+
+    def _body(self, name, body):
+        self.bodies[name] = material.law(body, self.kinematics == "plane-strain")
+        *_, warm, cold = self.bodies[name]
+        known("orthotropic", body.get("orthotropic", {}))
+        heat, force = body.get("temperature", 0), Affine.read("body_force", body.get("body_force"))
+        heat = known("temperature", heat) if isinstance(heat, dict) else {"value": heat}
+        t, slope = Q(heat.get("value", 0)), vector(heat.get("gradient", [0, 0]))
+        self.strains[name] = Affine([w * t + c for w, c in zip(warm, cold)], [[w * g for g in slope] for w in warm])
+        if "rotation" in body:
+            turning, about = known("rotation", body["rotation"]), vector(body["rotation"]["about"])
+            by = Q(turning["density"]) * Q(turning["omega"]) ** 2
+            force.value = [v - by * c for v, c in zip(force.value, about)]
+            force.gradient = [[g + by * (i == j) for j, g in enumerate(row)] for i, row in enumerate(force.gradient)]
+        self.forces[name] = force
 
     def _hold(self, boundary, condition):
         if boundary in self.conditions:
             raise Refused(f"the boundary '{boundary}' has two conditions")
         self.conditions[boundary] = condition
-
-    def compliance(self, body):
-        """(s, d, t): a s:s = s (xx + yy)^2 + d (xx - yy)^2 + t xy^2."""
-        young, nu, _ = self.bodies[body]
-        first = (1 + nu) * (1 - 2 * nu) if self.kinematics == "plane-strain" else 1 - nu
-        return first / (2 * young), (1 + nu) / (2 * young), 2 * (1 + nu) / young
-
-    def stiffness(self, body):
-        """(s, d, t): c e:e likewise, with the tensor component e_xy."""
-        s, d, t = self.compliance(body)
-        return 1 / (4 * s), 1 / (4 * d), 4 / t

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import Refused, reference
 from .ball import EPS, Ball, constants, of_fractions, root, stack
-from .lower import load
+from .lower import form, load, square
 
 ROUNDING = 1e-7  # changes beyond this part of the largest displacement are no rounding
 SWEEPS = 200
@@ -25,6 +25,18 @@ def dot(a, b):
 def elevated(values, degree):
     low = len(values) - 1
     return values if low == degree else [sum(w * x for w, x in zip(row, values)) for row in reference.elevation(low, degree)]
+
+
+def positive_square(b, depth=40):
+    """At least int_0^1 max(0, x)^2 of a polynomial x by its Bernstein coefficients, and hardly more."""
+    if max(b) <= 0:
+        return Q(0)
+    if min(b) >= 0 or not depth:
+        return square([max(x, Q(0)) for x in b])
+    left, right, row = [], [], b
+    while row:
+        left, right, row = [*left, row[0]], [row[-1], *right], [(x + y) / 2 for x, y in zip(row, row[1:])]
+    return (positive_square(left, depth - 1) + positive_square(right, depth - 1)) / 2
 
 
 class Displacement:
@@ -42,6 +54,8 @@ class Displacement:
         if not all(np.isfinite(x).all() for x in values):
             raise Refused("a coefficient of the displacement is no number")
         self.scale = float(max(np.abs(x).max(initial=0.0) for x in values))
+        # The energy of displacements of the size of rounding.
+        self.grain = max(max(law[1][::4]) for law in mesh.scene.bodies.values()) * Q(self.scale) ** 2 / 2**90 * mesh.scene.thickness
         self.exact, self.free = {}, {}
         self._supports()
         self._contacts()
@@ -104,30 +118,41 @@ class Displacement:
 
     def _contacts(self):
         """Moves coefficients until no contact is penetrated."""
-        pairs = []
+        pairs, self.elastic = [], []
         for pair in self.mesh.pairs:
             sides = [self.nodes(e, ends[0]) if e >= 0 else [] for e, ends in zip(pair.edges, (pair.first, pair.second))]
             degree = max(map(len, sides)) - 1
             gap = [min(g * length for length in pair.length) for g in pair.gap]
-            pairs.append((pair, sides, degree, elevated(gap, max(degree + pair.turns(), len(gap) - 1))))
+            own = pairs if pair.stiffness is None else self.elastic
+            own.append((pair, sides, degree, elevated(gap, max(degree + pair.turns(), len(gap) - 1))))
         for _ in range(SWEEPS):
             if not any([self._separate(*pair) for pair in pairs]):
                 return
         raise Refused("a contact is penetrated, and no small change of the displacement opens it")
 
-    def _separate(self, pair, sides, degree, most):
-        """Pushes what penetrates apart; whether anything did."""
+    def _jump(self, sides):
+        """Bernstein coefficients of the displacement of the first side less that of the second."""
+        degree = max(map(len, sides)) - 1
         jump = [[Q(0)] * 2] * (degree + 1)
         for side, sign in zip(sides, (1, -1)):
             if side:
                 raised = zip(*(elevated([self.value(node)[c] for node in side], degree) for c in range(2)))
                 jump = [[j + sign * x for j, x in zip(one, two)] for one, two in zip(jump, raised)]
-        (m, n), k = pair.ends, degree + 1
+        return jump
+
+    def _along_pair(self, pair, sides, degree, most):
+        """The jump along the direction of a contact, times the length of the pair, in the degree of `most`."""
+        jump, (m, n), k = self._jump(sides), pair.ends, degree + 1
         if pair.turns():
             along = [((k - j) * (dot(jump[j], m) if j < k else 0) + j * (dot(jump[j - 1], n) if j else 0)) / Q(k) for j in range(k + 1)]
         else:
             along = [dot(x, m) for x in jump]
-        deep = [(j, x - y) for j, (x, y) in enumerate(zip(elevated(along, len(most) - 1), most)) if x > y]
+        return elevated(along, len(most) - 1)
+
+    def _separate(self, pair, sides, degree, most):
+        """Pushes what penetrates apart; whether anything did."""
+        m, n = pair.ends
+        deep = [(j, x - y) for j, (x, y) in enumerate(zip(self._along_pair(pair, sides, degree, most), most)) if x > y]
         for j, by in deep:
             towards = [a + (b - a) * Q(j, len(most) - 1) for a, b in zip(m, n)]
             # Of a side of this degree one coefficient, else all that may take part; the second side where the first cannot move.
@@ -160,11 +185,10 @@ class Displacement:
             changed = [i for of, i in self.exact if of == kind]
             if changed:
                 values[kind].put(changed, of_fractions([x for i in changed for x in self.exact[kind, i]], (len(changed), 2)))
-        stiffness = mesh.by_body(mesh.scene.stiffness)
         for k in np.unique(self.degrees).tolist():
             along, all_ = self._along(k, values), np.flatnonzero(self.degrees == k)
             for which in np.array_split(all_, max(1, len(all_) * k * k // 20000)):
-                total += Q(float(self._energies(which, k, self._gather(which, k, along), [m[which] for m in stiffness]).sum()[1]))
+                total += Q(float(self._energies(which, k, self._gather(which, k, along)).sum()[1]))
         for e in np.flatnonzero(mesh.kinds == "load").tolist():
             nodes = self.nodes(e, mesh.edges[e, 0])
             k = len(nodes) - 1
@@ -172,7 +196,22 @@ class Displacement:
                 # int B_j = 1 / (k + 1), int (2 s - 1) B_j = (2 j - k) / ((k + 1) (k + 2))
                 weights = [a / (k + 1) + b * Q(2 * j - k, (k + 1) * (k + 2)) for a, b in zip(*load(mesh, e))]
                 total -= Q(float((of_fractions(weights) * values[kind][i]).sum()[0])) if any(weights) else 0
+        total += self._springs()
         return total * mesh.scene.thickness
+
+    def _springs(self):
+        """The energies of springs, layers and elastic contacts."""
+        total = Q(0)
+        for e, f, stiffness in self.mesh.springs:
+            a, n = self.mesh.edges[e, 0], self.mesh.normal(*self.mesh.edges[e])
+            jump = self._jump([self.nodes(e, a), self.nodes(f, self.mesh.edges[f, 1]) if f >= 0 else []])
+            for k, d in zip(stiffness, (n, [-n[1], n[0]])):
+                if k:
+                    total += k * square([dot(j, d) for j in jump]) / (2 * root(dot(n, n))[0])
+        for pair, sides, degree, most in self.elastic:
+            beyond = [x - y for x, y in zip(self._along_pair(pair, sides, degree, most), most)]
+            total += pair.stiffness * positive_square(beyond) / (2 * pair.length[0])
+        return total
 
     def _along(self, k, values):
         """The coefficients of all edges of degree k or less, raised to k: an array (edges, k + 1, 2)."""
@@ -198,14 +237,18 @@ class Displacement:
         parts += [Ball(x) for x in np.moveaxis(inside, 1, 0)]
         return Ball(*(np.stack([getattr(part, name).T for part in parts]) for name in ("mid", "rad")))
 
-    def _energies(self, which, k, nodes, stiffness):
+    def _energies(self, which, k, nodes):
         mesh = self.mesh
-        by_xi, by_eta, norms = reference.derivatives(k)
-        weight, det = constants([norms]), mesh.jacobian[which]
+        law = mesh.by_body(lambda name: mesh.scene.bodies[name][1], which)
+        strains = [list(reference.on_split(e)) for e in mesh.corners(mesh.scene.strains, which)] if mesh.warm else None
+        force = [[f * mesh.jacobian[which] for f in own] for own in mesh.corners(mesh.scene.forces, which)]
+        shares = constants(reference.shares(k))
+        by_xi, by_eta, norms = reference.derivatives(k, bool(strains))
+        weight, det, third = constants([norms]), mesh.jacobian[which], constants([[Q(1, 3)]])[0, 0]
         (a, b), (c, d) = [[m[which] for m in row] for row in mesh.map]
         # Vectors from the centroid to the corners, times 3; the edges are (a, c) from corner 0 to 1 and (b, d) from 0 to 2.
         arms = [(-(a + b), -(c + d)), (a + a - b, c + c - d), (b + b - a, d + d - c)]
-        base, strain, moved = nodes[0], [], []
+        base, strain, work, half = nodes[0], [], 0, 0.5
         local = nodes - base
         for sub in range(3):
             own = local[reference.split_nodes(k)[sub]]
@@ -214,12 +257,18 @@ class Displacement:
             # Gradients times the determinant J / 3 of the subtriangle, times 3.
             ux, uy = xi[:, 0] * qy - eta[:, 0] * py, eta[:, 0] * px - xi[:, 0] * qx
             vx, vy = xi[:, 1] * qy - eta[:, 1] * py, eta[:, 1] * px - xi[:, 1] * qx
-            density = (ux + vy).square() * stiffness[0] + (ux - vy).square() * stiffness[1] + (uy + vx).square() * stiffness[2] * 0.25
-            strain.append(density.times(weight)[0])
-            moved.append(own.times(constants([[Q(1, own.mid.shape[0])] * own.mid.shape[0]]))[0])
-        # 1/2 (J / 3) sum / (J / 3)^2 / 9
+            e = [(ux + vy) * half, (ux - vy) * half, uy + vx]
+            if strains:
+                for x, initial in zip(e, strains):
+                    x.put(slice(3), x[:3] - initial[sub] * det)
+            strain.append(form(law, e).times(weight)[0])
+            corners = own.times(shares)  # int over the subtriangle of v times its barycentric coordinates, J / 3 apart
+            for c, (f0, f1, f2) in enumerate(force):
+                f = [f0, f1, f2]
+                centre = (f0 + f1 + f2) * third
+                first, second = f[(sub + 1) % 3], f[(sub + 2) % 3]
+                work = corners[0, c] * first + corners[1, c] * second + corners[2, c] * centre + work
+        # 1/2 (J / 3) sum / J^2
         energy = (strain[0] + strain[1] + strain[2]) * det.inverse() * constants([[Q(1, 6)]])[0, 0]
-        mean = (moved[0] + moved[1] + moved[2]) * constants([[Q(1, 3)]])[0, 0] + base
-        for c, f in enumerate(mesh.by_body(lambda name: mesh.scene.bodies[name][2])):
-            energy = energy - mean[c] * det * f[which] * 0.5
-        return energy
+        rest = [base[c] * (f[0] + f[1] + f[2]) * constants([[Q(1, 6)]])[0, 0] for c, f in enumerate(force)]
+        return energy - work * third - rest[0] - rest[1]

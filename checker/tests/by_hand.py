@@ -9,11 +9,11 @@ import numpy as np
 
 BLOCKS = """
 model = {{ kinematics = "plane-stress", thickness = {thickness} }}
-bodies.left = {{ young = 1.0, poisson = 0.0{force} }}
+bodies.left = {{ {left} }}
 bodies.right = {{ young = {young}, poisson = 0.0 }}
-supports = [{{ on = "wall", type = "clamped" }}]
+supports = [{{ on = "wall", {wall} }}]
 tractions = [{{ on = "pressed", pressure = 1.0 }}]
-contacts = [{{ between = ["face", "seat"], gap = {gap} }}]
+{joint}
 
 [[geometry.polygons]]
 body = "left"
@@ -27,10 +27,21 @@ edges = ["", "wall", "", "seat"]
 """
 
 
-def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
+ISOTROPIC = "young = 1.0, poisson = 0.0"
+
+
+def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wall=None, elastic=None, layer=None, grown=0.0):
     """Two unit blocks, pressed against each other by a unit pressure: stress xx = -1 everywhere. With E = 1 the energy is
-    -(1 + gap) times the thickness: half of the work of the pressure on the shortening 2, less its work on the way to the seat."""
-    text = BLOCKS.format(gap=gap, young=young, thickness=thickness, force="").encode()
+    -(1 + gap) times the thickness: half of the work of the pressure on the shortening 2, less its work on the way to the seat.
+
+    `left`: the material of the first, which without stress is longer by `grown` and has E = 1 along x. `wall`, `elastic`, `layer`: a spring
+    stiffness of the support, of the contact, or of a layer in its place; each is compressed by its inverse."""
+    joint = f'contacts = [{{ between = ["face", "seat"], gap = {gap}{f", stiffness = {elastic}" if elastic else ""} }}]'
+    joint = f'bonds = [{{ between = ["face", "seat"], stiffness = [{layer}, 3.0] }}]' if layer else joint
+    support = f'type = "spring", stiffness = [{wall}, 2.0]' if wall else 'type = "clamped"'
+    text = BLOCKS.format(young=young, thickness=thickness, left=left, wall=support, joint=joint).encode()
+    gap = 0.0 if layer else gap
+    sunk, pressed = 1 / wall if wall else 0.0, sum(1 / k for k in (elastic, layer) if k)
     points, triangles, bodies = [], [], []
     for body, x0 in enumerate((0, 1)):
         base = len(points)
@@ -60,14 +71,13 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
     face = sorted((e for e, r in enumerate(rows) if r[2] == 0), key=lambda e: points[rows[e][0], 1])
     seat = sorted((e for e, r in enumerate(rows) if r[2] == 2), key=lambda e: points[rows[e][1], 1])
     pairs, data = [], []
-    for e, f in zip(face, seat):
+    for e, f in () if layer else zip(face, seat):
         pairs.append((0, e, f, rows[e][0], rows[e][1], rows[f][1], rows[f][0]))
         data.append([1, 0, 1, 0, 1 / n, points[rows[e][0], 1], points[rows[e][1], 1], gap, gap] + [0] * 11)
     lengths = [np.hypot(*(points[b] - points[a])) for a, b, _ in rows]
     normals = [(points[b] - points[a])[::-1] * [1, -1] / l for (a, b, _), l in zip(rows, lengths)]
     stress = np.array([[-1.0, 0], [0, 0]])
-    if v is None:
-        v = lambda x, body: np.array([(2 - x[0] if body else 1 / young + 1 - x[0] + gap) if not body else (2 - x[0]) / young, 0.0])
+    v = lambda x, body: np.array([sunk + ((2 - x[0]) / young if body else 1 / young + gap + pressed + (1 - x[0]) * (1 - grown)), 0.0])
     whose = np.zeros(len(points), int)
     for t, corners in enumerate(triangles):
         whose[list(corners)] = bodies[t]
@@ -86,7 +96,7 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
         "pairs": np.array(pairs, np.int32).reshape(-1, 7),
         "pair_data": np.array(data, float).reshape(-1, 20),
     }
-    energy = -thickness * (0.5 + 0.5 / young + gap)
+    energy = -thickness * (0.5 + 0.5 / young + gap - grown + (sunk + pressed) / 2)
     manifest = {
         "format": 1,
         "program": "by hand",
@@ -94,7 +104,7 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
         "scene_sha256": hashlib.sha256(text).hexdigest(),
         "origin": [0.0, 0.0],
         "bodies": ["left", "right"],
-        "contacts": ["face|seat"],
+        "contacts": [] if layer else ["face|seat"],
         "claim": {"lower": energy - 1e-12, "upper": energy + 1e-12, "upper_from": "by hand"},
         "notes": [],
         "mesh_files": [],
@@ -105,8 +115,8 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, v=None):
     arrays["stress_degrees"] = np.full(len(triangles), degree, np.uint8)
     arrays["traction_counts"] = np.full(len(rows), count, np.uint8)
     arrays["tractions"] = np.repeat([stress @ n for n in normals], count, 0)
-    arrays["pressure_counts"] = np.full(n, count, np.uint8)
-    arrays["pressures"] = np.full(n * count, -1.0)
+    arrays["pressure_counts"] = np.full(len(pairs), count, np.uint8)
+    arrays["pressures"] = np.full(len(pairs) * count, -1.0)
     arrays |= {f"displacement_{k}": x.copy() for k, x in mesh.items()}
     arrays["displacement_degrees"] = np.full(len(triangles), 2, np.uint8)
     arrays["u_vertices"] = u

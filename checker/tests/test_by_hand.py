@@ -20,6 +20,37 @@ def test_patch(tmp_path, n, gap, young, thickness, degree):
     assert main([str(tmp_path)]) == 0
 
 
+ALONG = "orthotropic = { young = [1.0, 5.0, 3.0], poisson = [0, 0, 0.3], shear = 0.5 }"
+ACROSS = "orthotropic = { young = [5.0, 1.0, 3.0], poisson = [0, 0, 0.3], shear = 0.5, angle = 90.0 }"
+# Turned by 30 degrees, this one has 1/E = 1 along x, and neither contraction nor shear.
+TURNED = "compliance = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]], angle = 30.0"
+STIFFNESS = "stiffness = [[1.0, 0, 0, 0, 0, 0], [0, 2.0, 1.0, 0, 0, 0], [0, 1.0, 3.0, 0, 0, 0], [0, 0, 0, 4, 0, 0], [0, 0, 0, 0, 5, 0], [0, 0, 0, 0, 0, 6.0]]"
+WARM = f"{ALONG}, expansion = [0.01, 0.0, 0.0], temperature = 20.0"
+TENSE = f"{ALONG}, initial_stress = [-0.5, 0.0, 0.0]"
+OF_ALL_KINDS = [
+    {"left": ALONG},
+    {"left": ACROSS},
+    {"left": TURNED},
+    {"left": STIFFNESS, "degree": 2},
+    {"left": WARM, "grown": 0.2},
+    {"left": TENSE, "grown": 0.5, "degree": 2},
+    {"wall": 4.0},
+    {"elastic": 4.0, "young": 2.0},
+    {"layer": 8.0, "thickness": 0.5},
+    {"wall": 4.0, "layer": 8.0, "left": WARM, "grown": 0.2, "degree": 3},
+]
+
+
+@pytest.mark.parametrize("what", OF_ALL_KINDS, ids=lambda what: "-".join(what))
+def test_patch_of_every_law(tmp_path, what):
+    arrays = blocks(**what)
+    write(arrays, tmp_path / "proof.npz")
+    proof, claim = check(tmp_path), arrays["manifest"]["claim"]
+    energy = (claim["lower"] + claim["upper"]) / 2
+    assert float(proof.lower) == pytest.approx(energy, abs=1e-13)
+    assert float(proof.upper) == pytest.approx(energy, abs=1e-13)
+
+
 def test_admissible_but_worse_fields_prove_less(tmp_path):
     arrays = blocks()
     arrays["manifest"]["claim"]["upper"] += 1.0
@@ -103,6 +134,78 @@ def scene(a):
 
 def key(a):
     with_scene(a, lambda text: text.replace("poisson = 0.0 }", "poisson = 0.0, plasticity = 1 }"))
+
+
+def law(a):
+    with_scene(a, lambda text: text.replace("young = [1.0, 5.0, 3.0]", "young = [1.01, 5.0, 3.0]"))
+
+
+def angle(a):
+    with_scene(a, lambda text: text.replace("shear = 0.5", "shear = 0.5, angle = 1.0"))
+
+
+def temperature(a):
+    with_scene(a, lambda text: text.replace("temperature = 20.0", "temperature = 20.1"))
+
+
+def springs(a):
+    with_scene(a, lambda text: text.replace("stiffness = [4.0", "stiffness = [4.1"))
+
+
+def rigid(a):
+    with_scene(a, lambda text: text.replace("stiffness = [4.0, 2.0]", "").replace('"spring",', '"clamped"'))
+
+
+def layer(a):
+    with_scene(a, lambda text: text.replace("stiffness = [8.0", "stiffness = [7.9"))
+
+
+def glued(a):
+    with_scene(a, lambda text: text.replace(", stiffness = [8.0, 3.0]", ""))
+
+
+def apart(a):
+    edges = a["stress_edges"]
+    edges[np.flatnonzero(edges[:, 2] == 2)[0], 2] = -1
+
+
+def turning(a):
+    with_scene(a, lambda text: text.replace("temperature = 20.0", "temperature = 20.0, rotation = { density = 1.0, omega = 0.1, about = [0.5, 0.5] }"))
+
+
+def coupled(a):
+    with_scene(a, lambda text: text.replace("poisson = [0, 0, 0.3]", "poisson = [0, 0, 1.3]"))
+
+
+def ranged(a):
+    with_scene(a, lambda text: text.replace("stiffness = [8.0, 3.0]", "stiffness = [[7.0, 8.0], 3.0]"))
+
+
+ALL = {"wall": 4.0, "layer": 8.0, "left": WARM, "grown": 0.2}
+LAW_CHANGES = [
+    (law, "is claimed, and only"),
+    (angle, "is claimed, and only"),
+    (temperature, "is claimed, and only"),
+    (springs, "is claimed, and only"),
+    (rigid, "misses a support"),
+    (layer, "is claimed, and only"),
+    (glued, "part of the bond face.seat, and nothing is opposite"),
+    (apart, "part of the bond face.seat, and nothing is opposite"),
+    (turning, "not in equilibrium"),
+    (coupled, "those of no material"),
+    (ranged, "scene cannot be read"),
+]
+
+
+@pytest.mark.parametrize("change, why", LAW_CHANGES, ids=[change.__name__ for change, _ in LAW_CHANGES])
+def test_changes_of_laws_are_refused(tmp_path, change, why):
+    arrays = blocks(**ALL)
+    write(arrays, tmp_path / "proof.npz")
+    check(tmp_path)
+    change(arrays)
+    write(arrays, tmp_path / "proof.npz")
+    with pytest.raises(Refused, match=why):
+        check(tmp_path)
 
 
 def turned(a):

@@ -1,12 +1,15 @@
 """Proofs that hypercircle makes: scenes of all kinds are proved, as they were claimed. HYPERCIRCLE names the program."""
 
+import json
 import os
 import re
 import subprocess
 from pathlib import Path
 
 import pytest
-from hypercircle_check.main import check, main
+from by_hand import with_scene, write
+from hypercircle_check import Refused
+from hypercircle_check.main import check, main, read
 
 ROOT = Path(__file__).parents[2]
 NAMED = os.environ.get("HYPERCIRCLE")
@@ -23,6 +26,16 @@ RUNS = [
     ("cases/seal", []),
     ("cases/quadrilaterals", []),
     ("cases/sliding", ["--tolerance", "0.02"]),
+    ("cases/laminate", []),
+    ("cases/bimetal", ["--degree", "2"]),
+    ("cases/springs", []),
+    ("cases/bonded", ["--degree", "3"]),
+    ("cases/crack", []),
+    ("cases/elastic_contact", ["--degree", "2"]),
+    ("cases/compacted", []),
+    ("cases/rotor", []),
+    ("checker/tests/every_law", []),
+    ("checker/tests/every_law", ["--tolerance", "0.01"]),
     ("tests/scenes/standing_turned", []),
     ("tests/scenes/moved_rigidly", []),
     ("tests/scenes/soft_between_stiff", []),
@@ -37,6 +50,41 @@ def test_scene(tmp_path, scene, options):
     subprocess.run(line, check=True, timeout=300)
     proof = check(tmp_path, ROOT / f"{scene}.toml")
     assert proof.lower <= proof.upper
+
+
+BAR = """
+model = {{ kinematics = "plane-stress" }}
+geometry = {{ size = 0.5, polygons = [{{ body = "bar", points = [[0, 0], [1, 0], [1, 0.5], [0, 0.5]], edges = ["foot", "", "", "hub"] }}] }}
+bodies.bar = {{ young = 2.0, poisson = 0.0, {force} }}
+supports = [{{ on = "hub", type = "roller" }}, {{ on = "foot", type = "roller" }}]
+"""
+
+
+@needs_program
+@pytest.mark.parametrize("force", ["body_force = { value = [0, 0], gradient = [[3.0, 0], [0, 0]] }", "body_force = { value = [-3.0, 0.0], gradient = [[6.0, 0], [0, 0]] }"])
+def test_affine_force_against_a_bar(tmp_path, force):
+    """A bar under f = a + b x along it: s = a (1 - x) + b (1 - x^2) / 2, and the energy is -1/2 int s^2 / E over it."""
+    (tmp_path / "bar.toml").write_text(BAR.format(force=force))
+    subprocess.run([PROGRAM, "solve", "bar.toml", "--proof", "--quiet", "--out", "out"], check=True, timeout=300, cwd=tmp_path)
+    proof = check(tmp_path / "out")
+    a, b = (0, 3) if "[0, 0], g" in force else (-3, 6)
+    exact = -(a * a / 3 + a * b * 5 / 12 + b * b * 2 / 15) / 4 * 0.5
+    assert float(proof.lower) == pytest.approx(exact, abs=1e-12)
+    assert float(proof.upper) == pytest.approx(exact, abs=1e-12)
+
+
+@needs_program
+def test_bodies_that_the_scene_does_not_bond(tmp_path):
+    """One mesh of two bodies is no proof of a scene in which they are apart."""
+    line = [PROGRAM, "solve", ROOT / "cases/bonded.toml", "--proof", "--quiet", "--out", tmp_path]
+    subprocess.run(line, check=True, timeout=300)
+    arrays = read(tmp_path / "proof.npz")
+    arrays["manifest"] = json.loads(bytes(arrays["manifest"]))
+    del arrays["digest"]
+    with_scene(arrays, lambda text: text.replace('[[bonds]]\nbetween = ["left_face", "right_face"]', ""))
+    write(arrays, tmp_path / "proof.npz")
+    with pytest.raises(Refused, match="joins what the scene does not bond"):
+        check(tmp_path)
 
 
 @needs_program

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hypercircle::mesh::foreign;
+use hypercircle::mesh::files::foreign;
 use hypercircle::study::ForeignField;
 
 use super::msh::follow;

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use hypercircle::mesh::{RawMesh, Triangulation, glue, gmsh};
+use hypercircle::mesh::files::gmsh;
+use hypercircle::mesh::sides::glue;
+use hypercircle::mesh::{RawMesh, Triangulation};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 

@@ -2,14 +2,16 @@
 
 use std::borrow::Cow;
 
-use super::counted::Counted;
 use super::energy::{Complementary, Potential};
 use super::gap::LocalGap;
 use super::jump::side_coefficients;
-use super::terms::{LowerTerms, UpperTerms};
-use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on, yielded};
+use super::rounding::counted::Counted;
+use super::rounding::terms::{LowerTerms, UpperTerms};
+use super::upper::yielded;
+use super::upper::{Groundwork, NoUpperBound, NodalValues, Prepared, admissible_on};
 use crate::dual::{DualSolution, Equilibrium};
-use crate::element::{Displacement, side};
+use crate::element::Displacement;
+use crate::element::polynomial::side;
 use crate::problem::{Problem, Scales};
 
 /// Lower bound, free upper bound, and the gap between them in local terms.

@@ -2,14 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::counted::Counted;
 use super::jump::side_coefficients;
 use super::mid::stress_of;
+use super::rounding::counted::Counted;
+use super::rounding::sum::Sum;
 use super::springs::{complementary_of_springs, potential_of_springs};
-use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::{sub_area, sub_corners};
-use crate::element::{Displacement, Material, Samples, Section, StressField, contraction, side, triangle};
+use crate::element::polynomial::{side, triangle};
+use crate::element::{Displacement, Material, Samples, Section, StressField, contraction};
 use crate::element::{Strains, elastic_degree};
 use crate::load::BodyForce;
 use crate::problem::{ContactPair, Problem};

@@ -7,13 +7,14 @@
 
 use rayon::prelude::*;
 
-use super::counted::Counted;
 use super::jump::openings;
+use super::rounding::counted::Counted;
+use super::rounding::sum::Sum;
 use super::springs::{elastic_contact_error, spring_error};
-use super::sum::Sum;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::sub_area;
-use crate::element::{Displacement, Samples, Strains, StressField, elastic_degree, side};
+use crate::element::polynomial::side;
+use crate::element::{Displacement, Samples, Strains, StressField, elastic_degree};
 use crate::problem::{ContactPair, Problem};
 
 /// The gap between 𝓛(v) and −Π(λ), in local non-negative terms.

@@ -1,6 +1,7 @@
 //! Displacements on edges and the opening of contact pairs, by Bernstein coefficients.
 
-use crate::element::{Displacement, side};
+use crate::element::Displacement;
+use crate::element::polynomial::side;
 use crate::problem::{ContactPair, Problem};
 
 /// The coefficients of `v` along edge `e`, from its first vertex to its second, in the degree of its first triangle.

@@ -14,7 +14,8 @@
 use rayon::prelude::*;
 
 use super::UpperBound;
-use crate::element::{Displacement, StressField, triangle};
+use crate::element::polynomial::triangle;
+use crate::element::{Displacement, StressField};
 use crate::element::{Strains, elastic_degree};
 use crate::problem::Problem;
 

@@ -3,18 +3,13 @@
 mod at_rest;
 mod bracket;
 mod cells;
-mod counted;
 pub mod energy;
 mod gap;
 mod jump;
 mod mid;
-mod on_ranks;
-mod pipe;
 mod ranks;
 mod rounding;
 mod springs;
-mod sum;
-mod terms;
 pub mod upper;
 
 pub use at_rest::without_stress;
@@ -26,10 +21,10 @@ pub use energy::{
 pub use gap::{LocalGap, local_gap};
 pub use jump::{jumps, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
-pub use on_ranks::{make_part, on_ranks};
+pub use ranks::on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;
+pub use rounding::sum::Sum;
 pub use springs::{OnSprings, spring_jumps, spring_tractions};
-pub use sum::Sum;
 pub use upper::{
     Beside, Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until,
     Violation, admissible, bernstein, holds, holds_at, lifted_within, of_pair, repaired, repaired_at_contact, sides,

@@ -6,10 +6,11 @@
 //! Elastic contact resists what the jump exceeds the gap g by: with d = j − g these are ½ ∫ k d₊², ∫ t²/2k − ∫ t g, and
 //! ½ ∫ (k d₊ + t)²/k + ∫ (−t)(d₊ − d).
 
-use super::counted::Counted;
 use super::jump::side_coefficients;
-use super::sum::Sum;
-use crate::element::{Displacement, StressField, positive, side};
+use super::rounding::counted::Counted;
+use super::rounding::sum::Sum;
+use crate::element::polynomial::{positive, side};
+use crate::element::{Displacement, StressField};
 use crate::problem::{BedPair, ContactPair, OneSided, Problem};
 use crate::vector::dot;
 

@@ -4,7 +4,7 @@ use super::choice::{Of, pareto, slope};
 use super::data::{Plot, Reference, SceneChart, Status};
 use crate::measure::Method;
 use crate::plot::{PlotError, Scale, Series, Sheet, draw};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 /// What an error costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +92,7 @@ pub fn error_figure(scene: &SceneChart, axis: Cost, of: Of<'_>) -> Result<String
     let mut series = Vec::new();
     let mut notes = Vec::new();
     let (least, level) = resolution(scene, of);
-    for method in Method::ALL {
+    for method in Method::all() {
         for (secondary, name) in [(false, "true"), (true, "guaranteed")] {
             let error = |plot: &Plot| {
                 let error = scene.error(plot, of, secondary);

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::choice::{Choice, Of, WANTED, asked, fastest};
 use super::data::{Chart, Cold, Plot, Run, SceneChart, Spread, Status};
 use super::figure::{Cost, error_figures};
-use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
+use crate::report::text::number::{clean, grouped, optional, percent, seconds, significant};
 
 /// One section a scene, the command under each figure; figures are those that [`super::write()`] puts beside the text.
 pub fn markdown(chart: &Chart) -> String {

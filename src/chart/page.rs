@@ -6,7 +6,7 @@ use super::choice::{Of, WANTED, asked, fastest};
 use super::data::{Chart, Run, SceneChart, Spread, Status};
 use crate::report::CSS;
 use crate::report::document::{PLOTS, document};
-use crate::report::number::{clean, grouped, optional, percent, seconds, significant};
+use crate::report::text::number::{clean, grouped, optional, percent, seconds, significant};
 
 /// The page; `figures` are named SVG texts, of which those of a scene are shown with it.
 pub fn page(chart: &Chart, figures: &[(String, String)]) -> String {

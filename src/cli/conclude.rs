@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use super::session::{DualRun, Session};
-use super::{CliError, Exit, ci, say};
+use super::words::{ci, say};
+use super::{CliError, Exit};
 use crate::cause::{outcome, told};
 use crate::compare::Comparison;
 use crate::diagnose::{Diagnosis, Finding};
 use crate::problem::Note;
-use crate::report::{self, BaselineRow, Dossier, Status};
+use crate::report::{self, BaselineRow, Dossier, Report, Status};
 use crate::study::{Answer, Certified, Fields, Findings, Sharpened, assemble};
 
 /// What a command tells beside the dual run and its comparison.
@@ -130,33 +131,7 @@ impl Session {
         report::write(dossier, folder).map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
         ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
-            let report = &dossier.report;
-            say::line(&report.verdict);
-            for quantity in &report.quantities {
-                say::line(&format!("  {}", quantity.in_words(report.is_guaranteed())));
-            }
-            for cause in &report.causes {
-                // The verdict begins with the first.
-                let is_told = report.verdict.starts_with(&cause.sentence);
-                let sentence = if is_told { String::new() } else { format!("{} ", cause.sentence) };
-                say::line(&format!("  {sentence}{} {}", cause.suggests, cause.remedy));
-                for check in report.checks.iter().filter(|check| cause.checks.contains(&check.name)) {
-                    say::line(&format!("    {}: {}: {}", outcome(check), check.name, told(check)));
-                }
-            }
-            let is_told = |diagnosis: &&Diagnosis| {
-                let told = |finding: &Finding| report.verdict.contains(&finding.sentence);
-                !diagnosis.findings.is_empty() && diagnosis.findings.iter().all(told)
-            };
-            for diagnosis in report.diagnosis.iter().filter(|diagnosis| !is_told(diagnosis)) {
-                say::line(&format!("  {}: {}", diagnosis.field, diagnosis.sentence));
-            }
-            for remark in report.remarks.iter().filter(|c| !c.passed) {
-                // What a method does by design is said on the spot.
-                let by_design = remark.name.ends_with("/penetration-at-nodes") && !remark.why.is_empty();
-                let why = if by_design { remark.why.clone() } else { told(remark) };
-                say::line(&format!("  worth a look: {}: {why}", remark.name));
-            }
+            lines(&dossier.report).iter().for_each(|line| say::line(line));
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {
                 say::line(&format!("  in place of the report of `{other}` that was there; --out DIR keeps both"));
@@ -169,6 +144,37 @@ impl Session {
             Status::Failed => Exit::Failed,
         })
     }
+}
+
+/// The report in short words: the verdict, the quantities, and what failed with its causes.
+pub fn lines(report: &Report) -> Vec<String> {
+    let mut lines = vec![report.verdict.clone()];
+    for quantity in &report.quantities {
+        lines.push(format!("  {}", quantity.in_words(report.is_guaranteed())));
+    }
+    for cause in &report.causes {
+        // The verdict begins with the first.
+        let is_told = report.verdict.starts_with(&cause.sentence);
+        let sentence = if is_told { String::new() } else { format!("{} ", cause.sentence) };
+        lines.push(format!("  {sentence}{} {}", cause.suggests, cause.remedy));
+        for check in report.checks.iter().filter(|check| cause.checks.contains(&check.name)) {
+            lines.push(format!("    {}: {}: {}", outcome(check), check.name, told(check)));
+        }
+    }
+    let is_told = |diagnosis: &&Diagnosis| {
+        let told = |finding: &Finding| report.verdict.contains(&finding.sentence);
+        !diagnosis.findings.is_empty() && diagnosis.findings.iter().all(told)
+    };
+    for diagnosis in report.diagnosis.iter().filter(|diagnosis| !is_told(diagnosis)) {
+        lines.push(format!("  {}: {}", diagnosis.field, diagnosis.sentence));
+    }
+    for remark in report.remarks.iter().filter(|c| !c.passed) {
+        // What a method does by design is said on the spot.
+        let by_design = remark.name.ends_with("/penetration-at-nodes") && !remark.why.is_empty();
+        let why = if by_design { remark.why.clone() } else { told(remark) };
+        lines.push(format!("  worth a look: {}: {why}", remark.name));
+    }
+    lines
 }
 
 /// The command whose report lies in `folder`, where it is not `command`.

@@ -3,40 +3,11 @@
 //! A command reads its input, calls the library and returns an [`Exit`] or a [`CliError`]. Nothing is written before
 //! there is a result to write, so an error leaves no file behind.
 
-pub mod cases;
-pub mod certify;
-pub mod chart;
-pub mod ci;
+pub mod commands;
 pub mod conclude;
-pub mod diff;
-pub mod element;
-pub mod error;
-pub mod exit;
-pub mod gather;
 pub mod given;
-pub mod job;
-pub mod judge;
-pub mod measure;
-pub mod memory;
-pub mod mesh;
-mod methods;
-pub mod options;
-pub mod part;
-mod points;
-pub mod progress;
-mod proof;
-pub mod revolved;
-pub mod say;
-pub mod schema;
 pub mod session;
-pub mod shell;
-pub mod show;
-pub mod solve;
-pub mod stability;
-pub mod threads;
-mod values;
-pub mod verify;
-pub mod version;
+pub mod words;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -48,15 +19,15 @@ use std::sync::OnceLock;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-pub use error::CliError;
-pub use exit::Exit;
 use given::Given;
+pub use words::error::CliError;
+pub use words::exit::Exit;
 
 use crate::process::{clear, signals};
 
 /// Guaranteed two-sided energy bounds for plane frictionless contact, and a displacement model to compare with.
 #[derive(Debug, Parser)]
-#[command(name = "hypercircle", version, propagate_version = true, after_help = exit::TABLE)]
+#[command(name = "hypercircle", version, propagate_version = true, after_help = words::exit::TABLE)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -67,37 +38,37 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Solve in stresses and, with FEniCSx, in displacements; compare, report and judge
-    Verify(verify::Args),
+    Verify(commands::verify::Args),
     /// Solve in stresses, with a two-sided energy bracket; needs no Python
-    Solve(solve::Args),
+    Solve(commands::solve::Args),
     /// Hold a displacement field from elsewhere against the bound
-    Certify(certify::Args),
+    Certify(commands::certify::Args),
     /// Make one page of the parts of a job
-    Gather(gather::Args),
+    Gather(commands::gather::Args),
     /// Examine an element formulation: what is right and wrong with it
-    Element(element::Args),
+    Element(commands::element::Args),
     /// Compare two reports: what changed, and whether it matters
-    Diff(diff::Args),
+    Diff(commands::diff::Args),
     /// Show what a mesh file holds, and write a scene to start from
-    Mesh(mesh::Args),
+    Mesh(commands::mesh::Args),
     /// List the published benchmarks, and run them: is the printed number inside the guaranteed interval?
-    Cases(cases::Args),
+    Cases(commands::cases::Args),
     /// Measure accuracy against time, every method and refinement
-    Chart(chart::Args),
+    Chart(commands::chart::Args),
     /// Sweep the regimes where contact methods are known to fail
-    Stability(stability::Args),
+    Stability(commands::stability::Args),
     /// One run for a chart or a matrix, printed as JSON
     #[command(hide = true)]
-    Measure(measure::Args),
+    Measure(commands::measure::Args),
     /// The part of a bracket that one of several ranks makes
     #[command(hide = true)]
-    Part(part::Args),
+    Part(commands::part::Args),
     /// Print the JSON Schema of a file format
-    Schema(schema::Args),
+    Schema(commands::schema::Args),
     /// Print the script that completes command lines in a shell
-    Completions(shell::CompletionsArgs),
+    Completions(commands::shell::CompletionsArgs),
     /// Print the manual page, or write one for each command
-    Man(shell::ManArgs),
+    Man(commands::shell::ManArgs),
 }
 
 /// The executable of this program; there is none where a program of someone else's calls the library.
@@ -116,7 +87,7 @@ pub fn main() -> ExitCode {
     let (cli, given) = match parsed(std::env::args_os()) {
         Ok(parsed) => parsed,
         Err(error) if error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(|w| w == "--version") => {
-            let _ = writeln!(std::io::stdout(), "{}", version::long());
+            let _ = writeln!(std::io::stdout(), "{}", words::version::long());
             return ExitCode::SUCCESS;
         }
         Err(error) => {
@@ -126,14 +97,14 @@ pub fn main() -> ExitCode {
             return if error.use_stderr() { Exit::BadInput.into() } else { ExitCode::SUCCESS };
         }
     };
-    show::install_panic_message();
+    words::show::install_panic_message();
     signals::watch();
     clear();
     match std::panic::catch_unwind(AssertUnwindSafe(|| run(&cli.command, &given))) {
         Ok(Ok(exit)) => exit.into(),
         Ok(Err(error)) => {
-            show::error(&error);
-            ci::annotate_error(&error);
+            words::show::error(&error);
+            words::ci::annotate_error(&error);
             error.exit().into()
         }
         Err(_) => Exit::Failed.into(),
@@ -158,21 +129,21 @@ pub(crate) fn options_of<A: clap::Args>(words: impl IntoIterator<Item = OsString
 
 fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
     match command {
-        Command::Verify(args) => verify::run(args, given),
-        Command::Solve(args) => solve::run(args, given),
-        Command::Certify(args) => certify::run(args, given),
-        Command::Gather(args) => gather::run(args),
-        Command::Element(args) => element::run(args),
-        Command::Diff(args) => diff::run(args),
-        Command::Mesh(args) => mesh::run(args),
-        Command::Cases(args) => cases::run(args),
-        Command::Chart(args) => chart::run(args),
-        Command::Stability(args) => stability::run(args),
-        Command::Measure(args) => measure::run(args),
-        Command::Part(args) => part::run(args),
-        Command::Schema(args) => schema::run(args),
-        Command::Completions(args) => shell::completions(args),
-        Command::Man(args) => shell::man(args),
+        Command::Verify(args) => commands::verify::run(args, given),
+        Command::Solve(args) => commands::solve::run(args, given),
+        Command::Certify(args) => commands::certify::run(args, given),
+        Command::Gather(args) => commands::gather::run(args),
+        Command::Element(args) => commands::element::run(args),
+        Command::Diff(args) => commands::diff::run(args),
+        Command::Mesh(args) => commands::mesh::run(args),
+        Command::Cases(args) => commands::cases::run(args),
+        Command::Chart(args) => commands::chart::run(args),
+        Command::Stability(args) => commands::stability::run(args),
+        Command::Measure(args) => commands::measure::run(args),
+        Command::Part(args) => commands::part::run(args),
+        Command::Schema(args) => commands::schema::run(args),
+        Command::Completions(args) => commands::shell::completions(args),
+        Command::Man(args) => commands::shell::man(args),
     }
 }
 

@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::job::JobOptions;
-use super::memory::{COARSER, enough, too_fine};
-use super::options::{Engine, EngineOptions, Limits, SolveOptions};
-use super::progress::Progress;
-use super::revolved::refuse_unsupported;
-use super::{CliError, Exit, ci, program, threads};
+use super::commands::job::JobOptions;
+use super::given::memory::{COARSER, enough, too_fine};
+use super::given::options::{Engine, EngineOptions, Limits, SolveOptions};
+use super::given::revolved::refuse_unsupported;
+use super::given::threads;
+use super::words::ci;
+use super::words::progress::Progress;
+use super::{CliError, Exit, program};
 use crate::budget::Budget;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
@@ -18,7 +20,9 @@ use crate::problem::{Problem, ProblemError};
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
-use crate::study::{self, Adapted, Admission, Answer, Certified, Goal, OtherEnd, Sharpened, StudyError, outlook};
+use crate::study;
+use crate::study::outlook;
+use crate::study::{Adapted, Admission, Answer, Certified, Goal, OtherEnd, Sharpened, StudyError};
 
 /// A scene on its way through a command.
 pub struct Session {

@@ -19,10 +19,11 @@ use nalgebra::DVector;
 
 use super::candidate::Candidate;
 use super::forces::NodalForces;
-use super::turned::{self, Rule};
+use super::forces::turned;
+use super::forces::turned::Rule;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::{ContactPair, Problem};
+use crate::sets::DisjointSets;
 use crate::statics::cone::unbalanced;
 use crate::vector::dot;
 

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
+use super::forces::turned;
+use super::forces::turned::Rule;
 use super::on_quadrilaterals::QuadrilateralSolution;
 use super::solution::Numbering;
-use super::turned::{self, Rule};
 use crate::bounds::energy::initial_energy;
 use crate::bounds::{
     Bracket, Cell, NoUpperBound, Potential, Repair, UpperBound, Violation, repaired, repaired_at_contact,

@@ -5,8 +5,8 @@
 //! larger than its strains loses every digit of them. The check is then not made, and has not passed.
 
 use super::Check;
-use super::pressure::{Piece, dual_pressure, resultant};
-use super::resultant::forces;
+use super::contact::pressure::{Piece, dual_pressure, resultant};
+use super::contact::resultant::forces;
 use crate::bounds::Bracket;
 use crate::bounds::energy::initial_energy;
 use crate::dual::DualSolution;

@@ -7,8 +7,8 @@
 use super::forces::NodalForces;
 use crate::bounds::Potential;
 use crate::element::OnQuadrilaterals;
-use crate::element::bilinear::Bilinear;
-use crate::element::quadrature::segment_rule;
+use crate::element::displacement::bilinear::Bilinear;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::mesh::Quadrilateral;
 use crate::problem::Problem;
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::mean::MeanPressure;
+use super::contact::mean::MeanPressure;
 
 /// A pair of values, one from each side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]

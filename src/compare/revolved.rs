@@ -4,7 +4,7 @@ use super::candidate::Judged;
 use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use super::stress::{von_mises_of, von_mises_of_means};
 use crate::dual::DualSolution;
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::revolved::Held;
 use crate::element::{Displacement, Revolved};
 use crate::problem::Problem;

@@ -7,24 +7,10 @@
 //! (`physical`) and has far fewer unknowns than the residual has numbers. What contact and
 //! supports do shows in forces and displacements there and is read from them.
 
-mod anisotropic;
-mod contact;
 mod fit;
-mod initial;
-mod integration;
-mod layer;
-mod loads;
-mod local;
-mod lumped;
-mod material;
-mod moved;
+mod mistakes;
 mod physical;
-mod single;
 mod space;
-mod springs;
-mod supports;
-mod turned;
-mod values;
 mod words;
 
 use schemars::JsonSchema;
@@ -32,8 +18,8 @@ use serde::Serialize;
 
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
-pub use contact::in_the_mean;
 use fit::Terms;
+pub use mistakes::contact::in_the_mean;
 use space::Space;
 
 /// Of the squared residual what an explanation may leave: a hundredth of the residual.
@@ -142,8 +128,8 @@ impl Energies {
 
 /// Looks for what explains that `solution` is none; `None` where it is one.
 pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis> {
-    let mut findings = supports::findings(solution);
-    findings.extend(contact::findings(solution, energies));
+    let mut findings = mistakes::supports::findings(solution);
+    findings.extend(mistakes::contact::findings(solution, energies));
     findings.extend(energies.thickness(solution));
     let mut diagnosis = Diagnosis {
         field: solution.candidate.name.clone(),
@@ -176,9 +162,9 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
                 diagnosis.findings.retain(|finding| trial.leaves(finding));
                 diagnosis.findings.extend(trial.findings);
             }
-            Err(_) if single::finding(solution).is_some() => {
+            Err(_) if mistakes::single::finding(solution).is_some() => {
                 diagnosis.explained = Some(1.0);
-                diagnosis.findings.extend(single::finding(solution));
+                diagnosis.findings.extend(mistakes::single::finding(solution));
             }
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
@@ -198,24 +184,24 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
 /// All that is held against the residual, with terms to be fitted put into `terms`.
 fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     if space.problem().section().is_revolved() {
-        turned::terms(space, terms);
-        return turned::trials(space).into_iter().chain(contact::trials(space)).collect();
+        mistakes::turned::terms(space, terms);
+        return mistakes::turned::trials(space).into_iter().chain(mistakes::contact::trials(space)).collect();
     }
-    material::terms(space, terms);
-    initial::terms(space, terms);
-    loads::terms(space, terms);
-    springs::terms(space, terms);
-    let mut trials = values::trials(space);
-    trials.extend(material::trials(space));
-    trials.extend(anisotropic::trials(space));
-    trials.extend(layer::trials(space));
-    trials.extend(moved::trial(space));
-    trials.extend(lumped::trials(space));
-    trials.extend(local::trials(space));
-    trials.extend(integration::trials(space));
-    trials.extend(contact::trials(space));
-    trials.extend(springs::trials(space));
-    trials.extend(loads::trials(space));
+    mistakes::material::terms(space, terms);
+    mistakes::initial::terms(space, terms);
+    mistakes::loads::terms(space, terms);
+    mistakes::springs::terms(space, terms);
+    let mut trials = mistakes::values::trials(space);
+    trials.extend(mistakes::material::trials(space));
+    trials.extend(mistakes::anisotropic::trials(space));
+    trials.extend(mistakes::layer::trials(space));
+    trials.extend(mistakes::moved::trial(space));
+    trials.extend(mistakes::lumped::trials(space));
+    trials.extend(mistakes::local::trials(space));
+    trials.extend(mistakes::integration::trials(space));
+    trials.extend(mistakes::contact::trials(space));
+    trials.extend(mistakes::springs::trials(space));
+    trials.extend(mistakes::loads::trials(space));
     trials
 }
 

@@ -1,7 +1,8 @@
 //! Nodal forces of parts of a model, as columns that can be held against the residual.
 
 use crate::bounds::Cell;
-use crate::compare::{Solution, cells};
+use crate::compare::Solution;
+use crate::compare::forces::cells;
 use crate::elasticity::Elasticity;
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};

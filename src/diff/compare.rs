@@ -252,7 +252,7 @@ fn notes(first: &Stored, second: &Stored) -> Vec<String> {
 
 /// A status as a word.
 pub(super) fn word(status: Status) -> &'static str {
-    crate::report::words::status_word(status)
+    crate::report::text::words::status_word(status)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::text::{difference, pair, verdict};
 use crate::compare::Check;
 use crate::report::CSS;
 use crate::report::document::document;
-use crate::report::number::{clean, optional, seconds};
+use crate::report::text::number::{clean, optional, seconds};
 
 const MORE_CSS: &str =
     "tr.good td.s{color:var(--good)}tr.bad td.s{color:var(--bad)}td.s{font-weight:600;white-space:nowrap}";

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::compare::{CheckChange, Difference, Kind, word};
 use crate::compare::Check;
-use crate::report::number::{digits_to_tell, optional, seconds, significant};
+use crate::report::text::number::{digits_to_tell, optional, seconds, significant};
 
 /// The differences in lines; `names` are those of the two reports.
 pub fn text(difference: &Difference, names: [&str; 2]) -> String {

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::contact_moments::columns;
+use super::contact::moments::columns;
 use super::resultants::work_within;
 use super::system::applied;
 use crate::element::{SideValues, StressField};

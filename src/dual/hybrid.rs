@@ -3,14 +3,15 @@
 use faer::sparse::SymbolicSparseColMatRef;
 use rayon::prelude::*;
 
-use super::dissection::nested_dissection;
+use super::contact::interface::Interface;
 use super::factor::{Breakdown, SymbolicFactor};
-use super::interface::Interface;
-use super::rows::Sides;
 use super::system::System;
-use super::unknowns::Unknowns;
+use super::system::dissection::nested_dissection;
+use super::system::rows::Sides;
+use super::system::unknowns::Unknowns;
 use super::{DualError, Options};
-use crate::element::{SideValues, side};
+use crate::element::SideValues;
+use crate::element::polynomial::side;
 use crate::problem::Problem;
 
 /// A displacement of every vertex that no support and no closed contact resists.

@@ -3,57 +3,39 @@
 //! A [`DualMethod`] finds the unique λ_h; [`solve`] measures what it found. Methods differ in how they get there and in
 //! nothing else, so every one of them is tested against the others.
 
-mod active_set;
-mod beds;
-mod clearing;
-mod condensed;
-mod contact_moments;
+mod adjoint;
+mod contact;
 mod degrees;
-mod dissection;
-mod ends;
 pub mod equilibrium;
 mod factor;
 mod footprint;
 mod hybrid;
-mod initial;
-mod interface;
-mod interior;
-mod loaded;
-mod method;
+mod methods;
 pub mod modes;
 pub mod paper;
-mod pattern;
 mod petsc;
-mod reduced;
 mod refinement;
-mod response;
 mod resultants;
-mod rigid;
-mod rows;
-mod schur;
-mod settling;
-mod solver;
 mod system;
-mod unknowns;
 pub mod yardstick;
 
 use std::sync::Arc;
 use std::time::Instant;
 
-pub use active_set::ActiveSet;
-pub use condensed::Condensed;
+pub use adjoint::loaded::{Bounds, Loaded};
+pub use adjoint::response::{Factorised, Load, Response, Responses, ShapedStrain};
 pub use degrees::{carrying, spread};
 pub use equilibrium::Equilibrium;
 pub use footprint::Size;
 pub use hybrid::Motion;
-pub use interior::Clarabel;
-pub use loaded::{Bounds, Loaded};
-pub use method::{DualError, DualMethod, Found, Options, Progress};
+pub use methods::active_set::ActiveSet;
+pub use methods::clarabel::Clarabel;
+pub use methods::condensed::Condensed;
+pub use methods::method::{DualError, DualMethod, Found, Options, Progress};
+pub use methods::solver::Solver;
 pub use paper::Uzawa;
 pub use petsc::{Divided, LinearSolver, Petsc};
-pub use response::{Factorised, Load, Response, Responses, ShapedStrain};
-pub use solver::Solver;
-pub use unknowns::{contact_coefficients, edge_degrees};
+pub use system::unknowns::{contact_coefficients, edge_degrees};
 
 use crate::element::{SideValues, StressField};
 use crate::problem::{ContactPair, Problem};

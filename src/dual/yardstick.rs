@@ -8,8 +8,8 @@ use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
 
 use super::hybrid::{Motion, held_unknowns};
-use super::reduced::make_definite;
 use super::system::System;
+use super::system::reduced::make_definite;
 use super::{DualError, Options};
 use crate::problem::Problem;
 

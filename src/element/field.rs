@@ -8,10 +8,10 @@ use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
 
-use super::samples::Samples;
-use super::side;
-use super::side_values::{parts, starts};
-use super::triangle;
+use super::polynomial::samples::Samples;
+use super::polynomial::side;
+use super::polynomial::side_values::{parts, starts};
+use super::polynomial::triangle;
 
 /// A stress, on each triangle of a degree of its own on every subtriangle.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,7 +127,7 @@ impl StressField {
         // Exact for degree 1; for higher degree the centroid rule of the lattice would not be, so integrate.
         let mut mean = [0.0; 3];
         for sub in 0..3 {
-            for (bary, weight) in crate::element::quadrature::triangle_rule(self.degree(t)) {
+            for (bary, weight) in super::polynomial::quadrature::triangle_rule(self.degree(t)) {
                 let value = self.at(t, sub, *bary);
                 for c in 0..3 {
                     mean[c] += weight * value[c] / 3.0;

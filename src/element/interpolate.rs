@@ -7,7 +7,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::quadrature::segment_rule;
+use super::polynomial::quadrature::segment_rule;
 use super::{Block, EquilibriumElement, Material, Modes, StressField};
 use crate::load::BodyForce;
 use crate::mesh::Triangulation;

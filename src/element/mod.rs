@@ -9,7 +9,6 @@
 //!
 //! where T holds the traction coefficients of the modes (theory in `docs/theory.md`).
 
-pub mod bilinear;
 mod block;
 pub mod congruent;
 pub mod displacement;
@@ -19,39 +18,28 @@ mod frame;
 pub mod geometry;
 mod interpolate;
 mod material;
-pub mod on_quadrilaterals;
-pub mod plain;
-pub mod positive;
-pub mod quadrature;
-pub mod quadrilateral;
+pub mod polynomial;
 pub mod revolved;
-mod samples;
 mod section;
-pub mod side;
-mod side_values;
 pub mod spanned;
 mod split;
-pub mod strain;
-pub mod subdivision;
 pub mod subtriangle;
-pub mod symmetric_rules;
 mod traction;
-pub mod triangle;
 
 pub use block::Block;
 pub use displacement::Displacement;
+pub use displacement::on_quadrilaterals::OnQuadrilaterals;
+pub use displacement::plain::PlainDisplacement;
+pub use displacement::quadrilateral::Quadrilateral;
+pub use displacement::strain::{Strains, elastic_degree};
 pub use elements::Elements;
 pub use field::{StressField, contraction, lattice, lattice_len, weighed};
 pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use material::{Material, Roots, Stiffness};
-pub use on_quadrilaterals::OnQuadrilaterals;
-pub use plain::PlainDisplacement;
-pub use quadrilateral::Quadrilateral;
-pub use samples::Samples;
+pub use polynomial::samples::Samples;
+pub use polynomial::side_values::{SideValues, parts, starts};
 pub use section::{Revolved, Section};
-pub use side_values::{SideValues, parts, starts};
 pub use spanned::Spanned;
-pub use strain::{Strains, elastic_degree};
 
 use std::borrow::Cow;
 
@@ -82,7 +70,7 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 /// A space of self-equilibrated stresses on a triangle.
 ///
 /// Traction coefficients are numbered side by side: side i joins the corners i + 1 and i + 2 (counter-clockwise); on it come
-/// the p + 1 Bernstein coefficients of the outward traction ([`side`]) from its first to its second end, each with its x and y
+/// the p + 1 Bernstein coefficients of the outward traction ([`polynomial::side`]) from its first to its second end, each with its x and y
 /// component. They are conjugate to the moments ∫ u B_k ds. For p = 1 they are the values at the ends.
 ///
 /// Every mode holds itself in balance: the force of its tractions on the three sides is zero.

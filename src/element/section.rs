@@ -7,11 +7,12 @@
 
 use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
-use super::quadrature::triangle_rule;
+use super::polynomial::quadrature::triangle_rule;
+use super::polynomial::triangle;
 use super::revolved::{Held, Ring, Tensor, Weighted, rule, work};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
-    lattice_len, triangle,
+    lattice_len,
 };
 use crate::load::BodyForce;
 

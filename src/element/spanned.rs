@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use nalgebra::{DMatrix, DVector};
 
 use super::geometry::from_centroid;
-use super::quadrature::triangle_rule;
+use super::polynomial::quadrature::triangle_rule;
 use super::{EquilibriumElement, Material, Modes, ModesMut, StressField, lattice, lattice_len};
 use crate::load::{BodyForce, balancing};
 

@@ -1,6 +1,7 @@
 //! Tractions of a stress on the edges of a mesh.
 
-use super::{StressField, side};
+use super::StressField;
+use super::polynomial::side;
 use crate::mesh::Triangulation;
 
 impl StressField {

@@ -118,7 +118,7 @@ fn entry_of(planned: &Planned, record: &Record, report: Option<&Stored>) -> Entr
 
 /// How a run without a report counts, and why there is none.
 fn without_report(record: &Record) -> (u8, SceneStatus, String) {
-    let seconds = || crate::report::number::seconds(record.seconds);
+    let seconds = || crate::report::text::number::seconds(record.seconds);
     let reason = reason(&record.said);
     match record.end {
         End::TimedOut => {

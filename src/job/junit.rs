@@ -7,7 +7,7 @@ use quick_junit::{
 };
 
 use super::data::{Entry, Gathered, Job, SceneStatus};
-use crate::report::number::clean;
+use crate::report::text::number::clean;
 use crate::report::{Stored, case, for_jenkins};
 
 /// The suites in the order of the scenes. A scene that ends otherwise than with agreement though none of its checks failed has

@@ -7,7 +7,7 @@ use crate::cause::told;
 use crate::report::CSS;
 use crate::report::Stored;
 use crate::report::document::document;
-use crate::report::number::{clean, digits_to_tell, grouped, percent, seconds, significant};
+use crate::report::text::number::{clean, digits_to_tell, grouped, percent, seconds, significant};
 
 const MORE_CSS: &str = "td.s{white-space:nowrap;font-weight:600}tr.good td.s{color:var(--good)}tr.bad td.s{color:var(--bad)}\
 tr.warn td.s{color:var(--warn)}td.w{min-width:320px}pre{white-space:pre-wrap;overflow-wrap:anywhere;font:.85em ui-monospace,Menlo,monospace;\

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::data::{Entry, Gathered, Job};
-use crate::report::markdown::{cell, code};
-use crate::report::number::{percent, seconds};
+use crate::report::text::markdown::{cell, code};
+use crate::report::text::number::{percent, seconds};
 use crate::scene::counted;
 
 /// Bytes of the whole text.
@@ -104,7 +104,7 @@ fn in_full(entry: &Entry, out: &Path) -> String {
             whole_lines(&own, LONGEST)
         }
         None => {
-            let said = whole_lines(&crate::report::number::clean(&entry.said.join("\n")), LONGEST);
+            let said = whole_lines(&crate::report::text::number::clean(&entry.said.join("\n")), LONGEST);
             let fence = "`".repeat(3.max(longest_run(&said, '`') + 1));
             let place = entry.line.map_or(String::new(), |line| format!(":{line}"));
             let head = format!(

@@ -4,59 +4,30 @@
 //! Bodies that meet in a contact have their own vertices there, at equal coordinates; triangles that share a vertex
 //! index are bonded.
 
-mod abaqus;
-pub(crate) mod along;
-pub mod bisect;
-pub(crate) mod bonded;
-mod boxes;
-mod bulge;
-mod cells;
-pub(crate) mod concentric;
-mod content;
+pub mod cells;
 pub(crate) mod error;
-mod file;
-pub mod file_cells;
-pub mod foreign;
-pub mod glue;
-#[cfg(test)]
-mod glue_tests;
-pub mod gmsh;
-mod halves;
-mod hanging;
-mod insert;
+pub mod files;
 pub mod inventory;
-pub(crate) mod labels;
-pub(crate) mod meshio;
-mod nearby;
-mod overlap;
-mod parts;
 pub mod polygons;
-pub(crate) mod polyline;
-pub(crate) mod quadrilateral;
-mod quarter;
+pub mod refinement;
 mod select;
-pub(crate) mod sets;
-mod solids;
+pub mod sides;
 #[cfg(test)]
 pub(crate) mod testing;
-mod topology;
-#[cfg(test)]
-mod topology_tests;
-mod touching;
-mod uncut;
+pub(crate) mod topology;
 
+pub use cells::file_cells::{FileCells, Quadrilateral};
 pub use error::MeshError;
-pub use file_cells::{FileCells, Quadrilateral};
+pub use refinement::uncut::Uncut;
 pub use select::Sets;
-pub use touching::{Touching, touching};
-pub use uncut::Uncut;
+pub use topology::touching::{Touching, touching};
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.
 pub(crate) type Map<K, V> = std::collections::HashMap<K, V, foldhash::fast::FixedState>;
 
 use std::time::Duration;
 
-use glue::Glued;
+use sides::glue::Glued;
 
 /// The circles of the edges that stand for an arc, by edge; refining puts new vertices on them.
 pub type Curved = Map<usize, crate::scene::Circle>;
@@ -95,8 +66,8 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
         MeshSource::File(_) | MeshSource::Parts(_) => {
             let (mut raw, mut notes) = match &scene.mesh {
-                MeshSource::Parts(parts) => parts::read(parts, &scene, limit)?,
-                MeshSource::File(path) => file::read(path, limit)?,
+                MeshSource::Parts(parts) => files::parts::read(parts, &scene, limit)?,
+                MeshSource::File(path) => files::file::read(path, limit)?,
                 MeshSource::Geometry { .. } => Default::default(),
             };
             raw.shift(scene.origin);
@@ -115,7 +86,7 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     };
     let (mesh, more) = Triangulation::new(raw, &scene)?;
     notes.extend(more);
-    let Glued { mesh, notes: more, uncut } = glue::glue(mesh, &scene)?;
+    let Glued { mesh, notes: more, uncut } = sides::glue::glue(mesh, &scene)?;
     notes.extend(more);
     let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     notes.extend(scene.coarseness(size));
@@ -127,7 +98,7 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
 /// # Errors
 /// [`MeshError::Contact`] with an edge of one side that has none of the other opposite.
 pub fn bonded(mesh: Triangulation, scene: &Scene) -> Result<Triangulation, MeshError> {
-    Ok(bonded::bond(mesh, scene)?.0)
+    Ok(sides::bonded::bond(mesh, scene)?.0)
 }
 
 /// What a reader or a mesher delivers: triangles and named segments, not yet checked.
@@ -165,7 +136,7 @@ impl RawMesh {
         for Shared { names, triangles, segments } in std::mem::take(&mut self.shared) {
             let bodies = |name: &String| scene.bodies.iter().any(|body| body.name == *name);
             spread(&names, triangles, bodies, &mut self.triangles);
-            let used = labels::used_names(scene);
+            let used = topology::labels::used_names(scene);
             spread(&names, segments, |name| used.contains(&name.as_str()), &mut self.segments);
         }
         self

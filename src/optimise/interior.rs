@@ -11,7 +11,7 @@ use crate::vector::long::{axpy, largest};
 
 /// Steps at most; twenty to thirty are usual.
 const MOST: usize = 80;
-/// Steps that win nothing before it ends where it is.
+/// Steps that win nothing, neither of the equations nor of all that is asked, before it ends where it is.
 const PATIENCE: usize = 3;
 /// What is left of the equations, relative to data of size one, where the state may be read.
 const BALANCED: f64 = 1e-9;
@@ -37,7 +37,7 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
     let mut x = vec![0.0; n];
     let count: f64 = all.iter().map(|b| b.product().1).sum::<f64>().max(1.0);
     let mean = |all: &[Barrier]| all.iter().map(|b| b.product().0).sum::<f64>() / count;
-    let (mut least, mut patience, mut steps) = (f64::INFINITY, PATIENCE, 0);
+    let (mut least, mut patience, mut steps) = ([f64::INFINITY; 2], PATIENCE, 0);
     let mut left;
     loop {
         let mu = mean(&all);
@@ -47,14 +47,19 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
         let smooth = forces.clone();
         all.iter().zip(&owner).for_each(|(b, i)| forces[*i] += b.force());
         let misfit = all.iter().zip(&owner).fold(0.0_f64, |m, (b, i)| m.max(b.misfit(x[*i]).abs()));
-        left = mu.max(largest(&forces)).max(misfit / (1.0 + largest(&x)));
+        let unbalanced = largest(&forces).max(misfit / (1.0 + largest(&x)));
+        left = mu.max(unbalanced);
         if !left.is_finite() {
             return None;
         }
         if mu <= enough && left <= BALANCED || all.is_empty() && left <= TOLERANCES.identified {
             break;
         }
-        (least, patience) = if left < 0.9 * least { (left, PATIENCE) } else { (least, patience - 1) };
+        // On the way to values that are large beside the data, products grow while the equations come near.
+        let now = [left, unbalanced];
+        let gains = (0..2).any(|i| now[i] < 0.9 * least[i]);
+        patience = if gains { PATIENCE } else { patience - 1 };
+        least = [0, 1].map(|i| least[i].min(now[i]));
         if steps == MOST || patience == 0 {
             break;
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-use crate::report::number::{significant, superscript};
+use crate::report::text::number::{significant, superscript};
 
 /// How values are placed.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::{PlotError, accessible};
-use crate::report::number::seconds;
+use crate::report::text::number::seconds;
 
 /// One bar.
 #[derive(Debug, Clone, PartialEq)]

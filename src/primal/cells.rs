@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
+use crate::element::displacement::on_quadrilaterals::{HIGHEST, can_carry};
 use crate::mesh::Triangulation;
 
 /// Which cells are wanted.

@@ -7,9 +7,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::{Cells, HIGHEST_DEGREE, PrimalError, PrimalSolution, Space};
-use crate::element::on_quadrilaterals::{HIGHEST, can_carry};
-use crate::element::plain::inner_len;
-use crate::element::quadrature::even_rule;
+use crate::element::displacement::on_quadrilaterals::{HIGHEST, can_carry};
+use crate::element::displacement::plain::inner_len;
+use crate::element::polynomial::quadrature::even_rule;
 use crate::load::{Affine, BodyForce};
 use crate::mesh::Quadrilateral;
 use crate::problem::{Condition, ContactPair, Pin, Problem};

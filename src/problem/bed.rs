@@ -6,7 +6,7 @@
 
 use super::{ContactPair, ProblemError};
 use crate::mesh::Triangulation;
-use crate::mesh::bonded::opposite;
+use crate::mesh::sides::bonded::opposite;
 use crate::scene::{Bond, Scene, Support, SupportKind};
 
 /// An interface that is elastic.

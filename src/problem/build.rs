@@ -4,17 +4,18 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::contact::curves::{beside_long_edges, curved, turned_by_the_mesh};
+use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
-use super::curves::{beside_long_edges, curved, turned_by_the_mesh};
-use super::normals::{Coarser, inherit, keep_gap, replace, smooth};
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, softened};
+use super::contact::softened;
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
 use crate::element::Section;
 use crate::mesh::MeshError;
-use crate::mesh::bisect::{RefinementEdges, bisect};
-use crate::mesh::concentric::Concentric;
 use crate::mesh::error::at;
-use crate::mesh::labels::contact_names;
-use crate::mesh::meshio::PATIENCE;
+use crate::mesh::files::meshio::PATIENCE;
+use crate::mesh::refinement::bisect::{RefinementEdges, bisect};
+use crate::mesh::sides::concentric::Concentric;
+use crate::mesh::topology::labels::contact_names;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
 use crate::scene::{Contact, ContactSides, Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
 

@@ -1,24 +1,17 @@
 //! The scene on a mesh: every edge with its condition, every contact as a list of matched edge pairs.
 
-mod along;
-mod around;
 mod bed;
-mod bow;
 mod build;
 mod contact;
-mod curves;
-mod direction;
 mod error;
-mod normals;
 mod scales;
-mod softened;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use bed::facing_vertices;
 pub use bed::{Bed, BedPair, OneSided};
-pub use bow::Bow;
-pub use direction::Direction;
+pub use contact::bow::Bow;
+pub use contact::direction::Direction;
 pub use error::ProblemError;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 

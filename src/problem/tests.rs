@@ -2,7 +2,7 @@
 
 use super::{Condition, Problem};
 use crate::mesh::Triangulation;
-use crate::mesh::bisect::RefinementEdges;
+use crate::mesh::refinement::bisect::RefinementEdges;
 use crate::mesh::testing::*;
 use crate::scene::{Affine, Contact, ContactSides, Gap, Load, Scene, Support, SupportKind};
 

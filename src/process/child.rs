@@ -3,6 +3,7 @@
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -24,7 +25,7 @@ static LIVING: Mutex<Vec<Pid>> = Mutex::new(Vec::new());
 pub enum Outcome {
     /// By itself.
     Exit(ExitStatus),
-    /// It was ended after the time it was allowed.
+    /// It was ended after the time it was allowed, or because nobody waited for it any more.
     TimedOut,
     /// It could not be watched, and was ended.
     Lost(io::Error),
@@ -53,6 +54,14 @@ impl Ended {
 /// # Errors
 /// The process could not be started.
 pub fn supervise(command: &mut Command, limit: Duration) -> io::Result<Ended> {
+    supervise_unless(command, limit, &AtomicBool::new(false))
+}
+
+/// The same for a process that nobody waits for any more once `unwanted` is true: it is then ended as if its time were over.
+///
+/// # Errors
+/// The process could not be started.
+pub fn supervise_unless(command: &mut Command, limit: Duration, unwanted: &AtomicBool) -> io::Result<Ended> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
     let started = Instant::now();
     let mut child = Supervised::start(command)?;
@@ -68,7 +77,7 @@ pub fn supervise(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     }
     drop(open);
     let outcome = match drained {
-        Ok(()) => child.wait(started, limit),
+        Ok(()) => child.wait(started, limit, unwanted),
         Err(error) => Outcome::Lost(error),
     };
     if !matches!(outcome, Outcome::Exit(_)) {
@@ -106,7 +115,7 @@ impl Supervised {
         Ok(Supervised { child, pid })
     }
 
-    fn wait(&mut self, started: Instant, limit: Duration) -> Outcome {
+    fn wait(&mut self, started: Instant, limit: Duration, unwanted: &AtomicBool) -> Outcome {
         loop {
             // The process stays unreaped, and its number its own, until its group has been ended.
             let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
@@ -115,7 +124,7 @@ impl Supervised {
                     let _ = kill_process_group(self.pid, Signal::KILL);
                     return self.child.wait().map_or_else(Outcome::Lost, Outcome::Exit);
                 }
-                Ok(None) if started.elapsed() >= limit => return Outcome::TimedOut,
+                Ok(None) if started.elapsed() >= limit || unwanted.load(Ordering::Relaxed) => return Outcome::TimedOut,
                 Ok(None) | Err(rustix::io::Errno::INTR) => thread::sleep(POLL),
                 Err(error) => return Outcome::Lost(error.into()),
             }

@@ -16,7 +16,7 @@ pub mod words;
 
 use std::time::Duration;
 
-pub use child::{Ended, Outcome, supervise};
+pub use child::{Ended, Outcome, supervise, supervise_unless};
 pub use scratch::{Scratch, clear};
 pub use tail::Tail;
 

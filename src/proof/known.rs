@@ -3,50 +3,41 @@
 use toml::{Table, Value};
 
 /// A table of the scene by its place, and the keys that the checker knows in it.
-const KNOWN: [(&str, &[&str]); 7] = [
+const KNOWN: [(&str, &str); 12] = [
+    ("", "title model mesh geometry bodies boundaries supports tractions contacts bonds quantities"),
+    ("model", "kinematics thickness"),
     (
-        "",
-        &[
-            "title",
-            "model",
-            "mesh",
-            "geometry",
-            "bodies",
-            "boundaries",
-            "supports",
-            "tractions",
-            "contacts",
-            "quantities",
-        ],
+        "bodies",
+        "young poisson orthotropic stiffness compliance angle expansion temperature initial_stress body_force rotation tag set",
     ),
-    ("model", &["kinematics", "thickness"]),
-    ("bodies", &["young", "poisson", "body_force", "tag", "set"]),
-    ("supports", &["on", "type", "displacement", "direction"]),
-    ("tractions", &["on", "value", "gradient", "pressure"]),
-    ("contacts", &["between", "on", "gap", "normals", "direction", "obstacle", "move"]),
-    ("geometry.polygons", &["body", "points", "edges", "arcs"]),
+    ("bodies.orthotropic", "young poisson shear angle"),
+    ("bodies.temperature", "value gradient"),
+    ("bodies.body_force", "value gradient"),
+    ("bodies.rotation", "density omega about"),
+    ("supports", "on type displacement direction stiffness"),
+    ("tractions", "on value gradient pressure"),
+    ("contacts", "between on gap normals direction obstacle move stiffness"),
+    ("bonds", "between direction stiffness"),
+    ("geometry.polygons", "body points edges arcs"),
 ];
 
 /// The values that the checker knows of keys that name a kind.
-const KINDS: [(&str, &str, &[&str]); 2] =
-    [("model", "kinematics", &["plane-strain", "plane-stress"]), ("supports", "type", &["clamped", "roller"])];
-
-/// Keys that the checker knows as vectors alone.
-const CONSTANT: [(&str, &str); 1] = [("bodies", "body_force")];
+const KINDS: [(&str, &str, &[&str]); 2] = [
+    ("model", "kinematics", &["plane-strain", "plane-stress"]),
+    ("supports", "type", &["clamped", "roller", "spring"]),
+];
 
 /// What the scene with this text has that the checker does not know; `None` where there is nothing.
 pub fn unknown(text: &str) -> Option<String> {
     let scene: Table = text.parse().ok()?;
     for (place, keys) in KNOWN {
         for table in tables(&scene, place) {
-            if let Some(key) = table.keys().find(|key| !keys.contains(&key.as_str())) {
+            if let Some(key) = table.keys().find(|key| !keys.split(' ').any(|known| known == key.as_str())) {
                 let of = if place.is_empty() { String::new() } else { format!(" in `{place}`") };
                 return Some(format!("`{key}`{of}"));
             }
-            if let Some((_, key)) =
-                CONSTANT.iter().find(|(of, key)| *of == place && !table.get(*key).is_none_or(Value::is_array))
-            {
-                return Some(format!("a `{key}` in `{place}` that is not constant"));
+            if let Some(key) = ["young", "gap", "stiffness"].into_iter().find(|key| is_range(place, table, key)) {
+                return Some(format!("a range of `{key}` in `{place}`"));
             }
             for (_, key, kinds) in KINDS.iter().filter(|(of, ..)| *of == place) {
                 if let Some(kind) = table.get(*key).and_then(Value::as_str).filter(|kind| !kinds.contains(kind)) {
@@ -56,6 +47,18 @@ pub fn unknown(text: &str) -> Option<String> {
         }
     }
     None
+}
+
+/// Whether a number is given by the two ends of a range, of which there is no proof.
+fn is_range(place: &str, table: &Table, key: &str) -> bool {
+    let Some(Value::Array(parts)) = table.get(key) else { return false };
+    let nested = parts.iter().any(Value::is_array);
+    match (place, key) {
+        ("bodies", "young") | ("contacts", "stiffness") => true,
+        ("contacts", "gap") => !nested,
+        ("supports" | "bonds", "stiffness") => nested,
+        _ => false,
+    }
 }
 
 /// The tables at a place: one, those of an array, or those by name.
@@ -85,9 +88,10 @@ mod tests {
         assert_eq!(unknown(&text), None);
         let with = |from: &str, to: &str| unknown(&text.replacen(from, to, 1)).unwrap();
         assert_eq!(with("poisson = 0.3", "poisson = 0.3\nplasticity = 1"), "`plasticity` in `bodies`");
-        assert_eq!(with("type = \"roller\"", "type = \"spring\""), "`type = \"spring\"` in `supports`");
-        let force = "poisson = 0.3\nbody_force = { value = [0, -1], gradient = [[0, 0], [0, 1]] }";
-        assert_eq!(with("poisson = 0.3", force), "a `body_force` in `bodies` that is not constant");
+        assert_eq!(with("type = \"roller\"", "type = \"glue\""), "`type = \"glue\"` in `supports`");
+        let turning = "poisson = 0.3\nrotation = { density = 1.0, omega = 2.0, about = [0, 0], axis = 1 }";
+        assert_eq!(with("poisson = 0.3", turning), "`axis` in `bodies.rotation`");
+        assert_eq!(with("young = ", "young = [1.0, 2.0] # "), "a range of `young` in `bodies`");
         assert_eq!(unknown(&format!("{text}\n[[cracks]]\n")), Some("`cracks`".to_string()));
     }
 }

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::{Case, Value, Verdict};
-use crate::report::markdown::cell;
-use crate::report::number::significant;
+use crate::report::text::markdown::cell;
+use crate::report::text::number::significant;
 
 /// A published number and what was found of it.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use super::Value;
 use crate::quantity::outside;
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 /// How a published number lies to the interval of its quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]

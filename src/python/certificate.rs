@@ -10,7 +10,7 @@ use super::arrays;
 use super::aside::{aside, threads};
 use super::errors::fault;
 use super::line::Line;
-use crate::cli::certify::{Args, judged, read, stress_side};
+use crate::cli::commands::certify::{Args, judged, read, stress_side};
 use crate::cli::session::{DualRun, Session, refuse_unknown};
 use crate::cli::{CliError, Exit};
 use crate::report;

@@ -9,17 +9,19 @@
 //! and with s ≥ ρ t(λ) and k ≤ ρ (g − j(v)), both by coefficients, Q ≥ Q_h − B(ρ), where B(ρ) is the largest
 //! D √(H − X) + ρ X with D = ‖σ_z − σ(z)‖_a. The upper end is the lower one of −Q. Every pair gives a bound, good or poor.
 
-use super::end::End;
+use super::adjoint::end::End;
+use super::adjoint::pass::{strained, uncancelled};
+use super::adjoint::revolved;
+use super::adjoint::revolved::Of;
+use super::adjoint::search::Search;
+use super::adjoint::springs::{middle_of, square_of, uncancelled_of};
 use super::functional::Functional;
-use super::pass::{strained, uncancelled};
-use super::revolved::{self, Of};
-use super::search::Search;
-use super::springs::{middle_of, square_of, uncancelled_of};
-use super::value::{displaced, value_of};
+use super::functional::value::{displaced, value_of};
 use crate::bounds::energy::square;
 use crate::bounds::{Bracket, Nearest, OnSprings, UpperBound, excess_work, mid_field, openings_within};
 use crate::dual::{Bounds, DualError, DualSolution, Factorised, Loaded, Options, Response, Responses, ShapedStrain};
-use crate::element::{Material, Samples, StressField, side};
+use crate::element::polynomial::side;
+use crate::element::{Material, Samples, StressField};
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Ends that are closer than this, relative to the value, are one but for rounding.

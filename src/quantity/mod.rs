@@ -4,29 +4,17 @@
 //! of the exact solution ([`Functional`]), bounded from both sides by adjoint pairs ([`Known::interval`]), or what three of them determine
 //! ([`Form`]).
 
-mod constants;
-mod end;
-mod form;
+mod adjoint;
 mod functional;
 mod interval;
 mod invariant;
-mod lift;
-mod local;
-mod pass;
 mod point;
-mod projection;
-mod region;
-mod revolved;
-mod search;
-mod springs;
 mod tip;
-mod tried;
-mod value;
 
-pub use form::Form;
+pub use functional::form::Form;
+pub use functional::value::{displaced, value_of};
 pub use functional::{Functional, Kind, NotBounded};
 pub use interval::{Interval, Known, outside};
 pub use invariant::Invariants;
 pub use point::Wanted;
 pub use tip::NoTip;
-pub use value::{displaced, value_of};

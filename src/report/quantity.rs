@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Report;
-use super::number::{digits_to_tell, outward, significant};
+use super::text::number::{digits_to_tell, outward, significant};
 use crate::quantity::outside;
 
 /// Ends that are closer than this, relative to their size, differ by rounding.

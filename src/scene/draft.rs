@@ -9,8 +9,8 @@ use std::path::PathBuf;
 
 use toml::Value;
 
-use super::range::{DataRange, Ranged};
-use super::selection::written;
+use super::keys::range::{DataRange, Ranged};
+use super::keys::selection::written;
 use super::{
     Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
     Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene, SceneError, Shape,

@@ -5,30 +5,11 @@
 //! (whether the named boundaries exist, whether contact sides coincide) is checked by [`crate::mesh`] and
 //! [`crate::problem`].
 
-mod body_force;
-mod bonds;
 mod centre;
-mod circle;
-mod conditions;
 mod draft;
-pub mod error;
-mod fault;
-mod files;
-mod geometry;
-mod material;
-mod nearest;
-mod obstacle;
-mod parse;
-pub(crate) mod polygon;
+pub(crate) mod keys;
 mod quantity;
-mod range;
-mod raw;
-mod read;
-mod selection;
-mod source;
-mod springs;
-pub(crate) mod text;
-mod validate;
+pub mod reading;
 
 use std::path::PathBuf;
 
@@ -36,21 +17,21 @@ use crate::elasticity::{Elasticity, Initial};
 
 pub use crate::load::Affine;
 use crate::load::BodyForce;
-pub use bonds::Bond;
-pub(crate) use bonds::Joint;
-pub use circle::Circle;
 pub use draft::Draft;
 pub(crate) use draft::{key as toml_key, quoted as toml_string};
-pub use error::{Fault, SceneError};
-pub use files::Part;
-pub use obstacle::{Obstacle, Shape};
+pub use keys::bonds::Bond;
+pub(crate) use keys::bonds::Joint;
+pub use keys::circle::Circle;
+pub use keys::files::Part;
+pub use keys::obstacle::{Obstacle, Shape};
+pub use keys::range::{DataRange, Ranged};
+pub use keys::selection::{BodyCells, Boundary, Edges, Group};
 pub use quantity::{Component, Extent, Holder, Invariant, Mode, PointValue, Quantity, Region, Target};
-pub use range::{DataRange, Ranged};
-pub use raw::schema;
-pub use read::BoundaryUse;
-pub use selection::{BodyCells, Boundary, Edges, Group};
-pub(crate) use source::counted;
-pub(crate) use validate::scene_name;
+pub use reading::error::{Fault, SceneError};
+pub use reading::raw::schema;
+pub use reading::read::BoundaryUse;
+pub(crate) use reading::source::counted;
+pub(crate) use reading::validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.
 const MAX_BYTES: u64 = 64 << 20;

@@ -6,7 +6,7 @@ use super::data::{Cell, Matrix, Outcome, Row};
 use super::markdown::shortened;
 use crate::report::CSS;
 use crate::report::document::{PLOTS, document};
-use crate::report::number::{clean, percent};
+use crate::report::text::number::{clean, percent};
 
 const MORE_CSS: &str = "td.o{white-space:nowrap}td.o a{color:inherit}.correct{background:var(--good-bg)}.inaccurate,.no-convergence{background:var(--warn-bg)}\
 .refused{background:var(--sheet)}.crash,.wrong{background:var(--bad-bg);font-weight:700}.not-applicable{color:var(--dim)}\

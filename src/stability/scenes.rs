@@ -1,6 +1,7 @@
 //! Rectangular bodies on grids, put together in memory.
 
-use crate::mesh::glue::{self, Glued};
+use crate::mesh::sides::glue;
+use crate::mesh::sides::glue::Glued;
 use crate::mesh::{RawMesh, Triangulation};
 use crate::problem::Problem;
 use crate::scene::{
@@ -75,6 +76,13 @@ impl Sketch {
     /// u_n = 0, no shear, on `on`.
     pub fn roller(mut self, on: &str) -> Self {
         self.scene.supports.push(Support { on: on.into(), kind: SupportKind::ROLLER });
+        self
+    }
+
+    /// Springs of this stiffness along the normal on `on`.
+    pub fn springs(mut self, on: &str, stiffness: f64) -> Self {
+        let kind = SupportKind::Spring { stiffness: [stiffness, 0.0] };
+        self.scene.supports.push(Support { on: on.into(), kind });
         self
     }
 

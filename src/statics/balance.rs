@@ -2,10 +2,10 @@
 
 use super::StaticsError;
 use super::cone;
-use super::few::DenseCone;
+use super::cone::few::DenseCone;
+use super::cone::many::SparseCone;
 use super::lasting::{Lasting, Question};
 use super::loads::LoadResultants;
-use super::many::SparseCone;
 use super::restraint::{Group, Part, Points};
 use super::words;
 use crate::problem::Problem;

@@ -1,7 +1,7 @@
 //! Connected pieces of the mesh and their rigid motions.
 
-use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
+use crate::sets::DisjointSets;
 
 /// One rigid motion of every piece of the mesh.
 ///

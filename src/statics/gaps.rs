@@ -6,9 +6,9 @@
 
 use super::StaticsError;
 use super::balance::{RANK, Verdict};
+use super::cone::span::Span;
 use super::loads::LoadResultants;
 use super::restraint::{Group, Run};
-use super::span::Span;
 use crate::problem::Problem;
 use nalgebra::DVector;
 

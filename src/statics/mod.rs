@@ -10,17 +10,12 @@
 mod balance;
 mod components;
 pub(crate) mod cone;
-mod few;
 mod gaps;
-mod interior;
 mod lasting;
 mod loads;
-mod many;
 mod pins;
 mod reach;
 mod restraint;
-mod span;
-mod sparse;
 mod words;
 
 #[cfg(test)]

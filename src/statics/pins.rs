@@ -6,9 +6,9 @@
 use super::StaticsError;
 use super::balance::RANK;
 use super::components::Components;
+use super::cone::span::Span;
+use super::cone::sparse::{Row, Triangular, dense};
 use super::restraint::Group;
-use super::span::Span;
-use super::sparse::{Row, Triangular, dense};
 use crate::problem::{Condition, Problem};
 use nalgebra::DVector;
 use std::collections::BTreeMap;

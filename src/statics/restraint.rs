@@ -7,8 +7,8 @@
 
 use super::components::Components;
 use super::reach::{Degree, pressure_degree, reach};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
+use crate::sets::DisjointSets;
 use nalgebra::{DVector, Vector3};
 
 /// Relative distance from which points leave a straight line, and directions differ.

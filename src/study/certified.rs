@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use super::admission::Admission;
-use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, on_ranks, supports_agree, without_stress};
+use super::adaptive::admission::Admission;
+use crate::bounds::on_ranks;
+use crate::bounds::{Bracket, Groundwork, NoUpperBound, NodalValues, supports_agree, without_stress};
 use crate::dual::{self, DualError, DualMethod, DualSolution, Motion, Options, Size};
 use crate::element::Elements;
 use crate::problem::{Note, Problem, ProblemError};

@@ -1,9 +1,10 @@
 //! Fields that claim to be discrete solutions: their checks, and what explains a claim that does not hold.
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
-use crate::compare::turned::Rule;
+use crate::compare::forces::cells;
+use crate::compare::forces::turned::Rule;
 use crate::compare::{
-    ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution, cells,
+    ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution,
 };
 use crate::diagnose::{Diagnosis, Energies, diagnose, in_the_mean};
 use crate::problem::{Note, Problem, Scales};

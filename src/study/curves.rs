@@ -3,7 +3,7 @@
 use super::Certified;
 use crate::problem::{ContactPair, Note, Problem, Refinement};
 use crate::report::HistoryRow;
-use crate::report::number::{percent, significant};
+use crate::report::text::number::{percent, significant};
 use crate::statics::Statics;
 
 /// A remark on what the edges of a finer mesh would change: what the last step of an adaptive run made of the answer.

@@ -6,7 +6,7 @@
 use super::Certified;
 use crate::bounds::Bracket;
 use crate::problem::{Note, Problem};
-use crate::report::number::{digits_to_tell, significant};
+use crate::report::text::number::{digits_to_tell, significant};
 use crate::report::{DataRangeSummary, RangedParameter};
 
 /// The scene of the ends with the highest energy, solved.

@@ -20,7 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::displacement::DisplacementElement;
-use crate::report::number::{percent, significant};
+use crate::report::text::number::{percent, significant};
 
 pub use reference::Reference;
 pub use untold::untold;

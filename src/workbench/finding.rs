@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 /// One property of an element under test.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix3};
 use super::displacement::DisplacementElement;
 use super::material::Material;
 use super::outline::Outline;
-use crate::element::quadrature::{segment_rule, triangle_rule};
+use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
 
 pub use dilatation::Split;
 pub(super) use dilatation::{one_sided, with_rows};

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::vector::cross;
 
 /// Of the size of the element, how far a node may lie from the side that it is on.

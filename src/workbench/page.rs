@@ -6,7 +6,7 @@ use super::finding::Finding;
 use super::report::Report;
 use crate::report::CSS;
 use crate::report::document::document;
-use crate::report::number::{clean, optional};
+use crate::report::text::number::{clean, optional};
 
 /// The page: verdict, diagnosis, what is missing, pictures, and a table of all findings.
 pub fn page(report: &Report) -> String {

@@ -14,7 +14,7 @@ use super::material::{Material, Written};
 use super::page;
 use super::stress::{self, StressElement};
 use crate::report::folder;
-use crate::report::number::{clean, optional};
+use crate::report::text::number::{clean, optional};
 use crate::report::{ReportError, for_jenkins};
 
 /// Version of `report.json`.

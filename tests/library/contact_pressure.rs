@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use crate::arcs::Arcs;
-use hypercircle::compare::pressure::{contact_ends, dual_pressure, l2, maximum, open_length, profile, resultant};
+use hypercircle::compare::contact::pressure::{
+    contact_ends, dual_pressure, l2, maximum, open_length, profile, resultant,
+};
 use hypercircle::dual::{self, Condensed, DualSolution, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::{ContactPair, Problem};

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::arcs::{Arcs, between_arcs, disc};
 use crate::support::random::Random;
 use hypercircle::dual::{Condensed, Options};
-use hypercircle::mesh::bisect::RefinementEdges;
+use hypercircle::mesh::refinement::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Adapt, Adapted, Goal, adapt, certify, certify_divided};

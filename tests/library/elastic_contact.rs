@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
-use hypercircle::mesh::bisect::RefinementEdges;
+use hypercircle::mesh::refinement::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Certified, certify};

@@ -1,7 +1,8 @@
 //! Properties that every equilibrium element must have, as the workbench measures them with derivatives of its own; energies and elastic
 //! solutions against quadrature and closed formulas of these tests.
 
-use hypercircle::element::{block, parameters_from_tractions, side};
+use hypercircle::element::polynomial::side;
+use hypercircle::element::{block, parameters_from_tractions};
 use hypercircle::scene::Kinematics;
 use hypercircle::workbench::stress;
 use nalgebra::{DMatrix, DVector};

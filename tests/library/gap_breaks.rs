@@ -26,7 +26,7 @@ fn weakened(problem: &Problem) -> bool {
 fn a_break_point_a_rounding_error_from_a_vertex_is_that_vertex_and_stays_it() {
     let coarse = foot(6.1999999999897, "[[0.0, 0.0], [6.2, 0.0], [10.0, 0.038]]");
     let mut marked = coarse.clone();
-    let mut refinement = hypercircle::mesh::bisect::RefinementEdges::longest(&marked.mesh);
+    let mut refinement = hypercircle::mesh::refinement::bisect::RefinementEdges::longest(&marked.mesh);
     for _ in 0..3 {
         let all: Vec<usize> = (0..marked.mesh.triangles.len()).collect();
         (marked, refinement, _) = marked.bisect(&refinement, &all).expect("refines");

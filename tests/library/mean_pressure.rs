@@ -1,7 +1,7 @@
 //! The mean of the contact pressure around its largest value, and how far it may be from the exact one.
 
 use crate::support::toml::Toml;
-use hypercircle::compare::pressure::{dual_pressure, profile};
+use hypercircle::compare::contact::pressure::{dual_pressure, profile};
 use hypercircle::compare::{Allowances, ContactSummary, MeanPressure, compare};
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::problem::Problem;

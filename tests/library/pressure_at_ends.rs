@@ -3,7 +3,8 @@
 
 use crate::support::toml::Toml;
 use hypercircle::dual::{self, Clarabel, Condensed, DualMethod, Options};
-use hypercircle::element::{Elements, block, side};
+use hypercircle::element::polynomial::side;
+use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics;

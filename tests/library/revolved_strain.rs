@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hypercircle::dual::{Condensed, Options};
-use hypercircle::element::quadrature::segment_rule;
+use hypercircle::element::polynomial::quadrature::segment_rule;
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;

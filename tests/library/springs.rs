@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::toml::Toml;
 use hypercircle::dual::{Condensed, Options};
-use hypercircle::mesh::bisect::RefinementEdges;
+use hypercircle::mesh::refinement::bisect::RefinementEdges;
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::study::{Certified, answers, certify};

@@ -22,6 +22,7 @@ mod labels;
 mod malformed;
 mod malformed_meshes;
 mod many_bodies;
+mod mcp;
 mod memory;
 mod mesh;
 mod named_mistakes;

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::command::{case, ended, hypercircle, run};
 use crate::fields::FieldFile;
 use crate::random::Random;
-use hypercircle::mesh::gmsh;
+use hypercircle::mesh::files::gmsh;
 use serde_json::Value;
 
 /// Two blocks; contact puts a vertex into the lower one beside the middle of its side, 9e-6 from it.

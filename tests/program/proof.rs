@@ -26,13 +26,18 @@ fn a_proof_comes_and_goes_with_its_run() {
 fn scenes_beyond_the_checker_are_refused_before_they_are_solved() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = fs::read_to_string(case("gap")).expect("a scene");
-    let [ram, bonded] =
-        ["between = [\"ram_face\", \"target_face\"]\ngap = 0.01", "between = [\"ram_face\", \"target_face\"]"];
-    assert!(text.contains(ram));
-    fs::write(folder.path().join("bonded.toml"), text.replace("[[contacts]]", "[[bonds]]").replace(ram, bonded))
-        .expect("writable");
-    let output = run(hypercircle(folder.path(), ["solve", "bonded.toml", "--proof"]));
-    ended("solve", &output, 2, &["a scene with `bonds` has no proof", "leave out --proof"]);
+    let refused = |text: &str, why: &str| {
+        fs::write(folder.path().join("scene.toml"), text).expect("writable");
+        let output = run(hypercircle(folder.path(), ["solve", "scene.toml", "--proof"]));
+        ended("solve", &output, 2, &[why, "leave out --proof"]);
+    };
+    assert!(text.contains("gap = 0.01"));
+    refused(
+        &text.replace("gap = 0.01", "gap = [0.01, 0.02]"),
+        "a scene with a range of `gap` in `contacts` has no proof",
+    );
+    let turned = fs::read_to_string(case("tube")).expect("a scene");
+    refused(&turned, "a scene with `kinematics = \"axisymmetric\"` in `model` has no proof");
     assert!(!folder.path().join("out").exists());
 }
 

@@ -70,7 +70,7 @@ fn has(text: &str, what: &str) -> bool {
 
 #[test]
 fn every_random_scene_is_valid_and_every_kind_of_condition_occurs() {
-    let samples: Vec<Sample> = (1..=600).map(sample).collect();
+    let samples: Vec<Sample> = (1..=900).map(sample).collect();
     let folder = tempfile::tempdir().expect("a folder");
     for sample in &samples {
         let (seed, text) = (sample.seed, &sample.text);

@@ -9,7 +9,7 @@
 //! which those from 2n on count), along ξ and along η. On the ellipse |T_k| ≤ (ρ^k + ρ^(−k))/2 bounds N, and |d| is least at
 //! an end of the larger axis. Where d is nearly zero at a corner or along a side, the square is cut in two across the direction that errs most.
 
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::element::{Material, Quadrilateral};
 
 /// Numbers of points that are tried, and how often a part of the square is cut in two.

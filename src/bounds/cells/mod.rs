@@ -16,12 +16,12 @@ mod turned;
 use rayon::prelude::*;
 
 use super::bracket::UpperBound;
-use super::counted::Counted;
 use super::energy::{strain_of, strain_on, work_inside};
 use super::rounding::ROUNDING_PER_TERM;
-use super::terms::UpperTerms;
+use super::rounding::counted::Counted;
+use super::rounding::terms::UpperTerms;
 use crate::dual::DualSolution;
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::element::{Displacement, Material, Quadrilateral, Section, contraction};
 use crate::load::BodyForce;
 use crate::problem::Problem;

@@ -12,7 +12,7 @@
 //! until that is next to nothing.
 
 use super::enclosure::{CUTS, Enclosed, FEWEST, MOST, Part, WHOLE, chebyshev, least_along, sizes_on};
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::element::revolved::{Law, work};
 use crate::element::{Material, Quadrilateral};
 

@@ -1,11 +1,11 @@
 //! What the upper bound needs of a problem before its dual solution is known.
 
-use super::holds::{Holds, holds};
-use super::model::Model;
-use super::nodes::Nodes;
-use super::patches::Patches;
+use super::admissible::holds::{Holds, holds};
+use super::admissible::nodes::Nodes;
+use super::admissible::rows::{Row, rows};
+use super::energy::model::Model;
 use super::prepared::Made;
-use super::rows::{Row, rows};
+use super::relaxation::patches::Patches;
 use super::{NoUpperBound, Pull};
 use crate::problem::Problem;
 

@@ -4,52 +4,29 @@
 //! From these: vertex values by a local fit ([`fit`]); the inside of every edge such that it has the moments of the dual
 //! solution, so that every triangle changes its volume as the dual solution says and nothing locks ([`edges`]); jumps on Γ_K
 //! restricted by their Bernstein coefficients, so that they are admissible between the nodes too ([`ends`], [`contact`]);
-//! relaxation, patch by patch ([`relax`]); and the inside of each triangle by minimising its energy on the three subtriangles
-//! ([`interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
+//! relaxation, patch by patch ([`relaxation`]); and the inside of each triangle by minimising its energy on the three subtriangles
+//! ([`energy::interior`]). Quadratics and higher degrees on that split can follow an incompressible field (Arnold & Qin 1992), which
 //! keeps the bound uniform as ν → ½.
 
-mod beds;
-mod cholesky;
-mod contact;
-mod edges;
-mod ends;
-mod energies;
-mod fit;
-mod fronts;
+mod admissible;
+mod energy;
 mod groundwork;
-mod groups;
-mod holds;
-mod interior;
-mod lift;
-mod minimum;
-mod model;
-mod momentum;
-mod nearest;
-mod nodes;
 mod part;
-mod patch;
-mod patches;
 mod prepared;
-mod pull;
-mod relax;
-mod rows;
-mod sets;
-mod share;
-mod split;
-mod stiffness;
-mod yielded;
+mod relaxation;
 
+pub use self::admissible::holds::{Hold, Holds, holds, holds_at, supports_agree};
+pub use self::admissible::nearest::Nearest;
+pub use self::admissible::nodes::{NodalValues, Nodes};
+pub use self::admissible::rows::{Row, bernstein, of_pair, sides};
+pub(super) use self::admissible::yielded::yielded;
+use self::admissible::{contact, edges, ends, fit, lift, nodes, rows};
+pub use self::energy::pull::{Beside, Pull};
 pub use self::groundwork::Groundwork;
-pub use self::holds::{Hold, Holds, holds, holds_at, supports_agree};
-pub use self::nearest::Nearest;
-pub use self::nodes::{NodalValues, Nodes};
 pub use self::part::{Division, Found, Part};
 pub use self::prepared::Prepared;
-pub use self::pull::{Beside, Pull};
-pub use self::relax::Until;
-pub use self::rows::{Row, bernstein, of_pair, sides};
-use self::share::{Share, Whole};
-pub(super) use self::yielded::yielded;
+pub use self::relaxation::Until;
+use self::relaxation::share::{Share, Whole};
 use super::energy::potential;
 use crate::dual::DualSolution;
 use crate::element::{Displacement, PlainDisplacement, SideValues, StressField};
@@ -112,7 +89,8 @@ pub fn admissible_on(
     let problem = &*problem.softened();
     let relaxed = relaxed(&mut ground, problem, (&dual.stress, &dual.moments), floor, start, &Whole)?;
     let Groundwork { holds, rows, made, .. } = ground;
-    let displacement = interior::fill(problem, &restricted(problem, &holds, &rows, relaxed, &Whole)?.0, &made.model);
+    let displacement =
+        energy::interior::fill(problem, &restricted(problem, &holds, &rows, relaxed, &Whole)?.0, &made.model);
     let prepared = if keep { Prepared::holding(made) } else { Prepared::default() };
     Ok((displacement, prepared))
 }
@@ -132,7 +110,7 @@ fn relaxed(
     let mut field = NodalValues::zeros(nodes.clone());
     field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
     share.refresh(&mut field.values);
-    beds::draw(problem, stress, &mut field);
+    energy::beds::draw(problem, stress, &mut field);
     let vertex = field.vertices_mut();
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
@@ -167,7 +145,8 @@ fn relaxed(
     let floor = floor / problem.scene.thickness;
     let stored = made.model.touch(&candidates[0].values);
     let near = |stored| Until::Near(floor - stored);
-    let mut relaxed = relax::relax(problem, &made.model, &mut made.patches, near(stored), candidates, at_rest, share)?;
+    let mut relaxed =
+        relaxation::relax(problem, &made.model, &mut made.patches, near(stored), candidates, at_rest, share)?;
     if problem.beds.iter().flat_map(|bed| &bed.pairs).all(|pair| pair.contact.is_none()) {
         return Ok(relaxed);
     }
@@ -175,7 +154,7 @@ fn relaxed(
     for _ in 0..TOUCHES {
         let stored = made.model.touch(&relaxed.values);
         let again = vec![relaxed.clone()];
-        let next = relax::relax(problem, &made.model, &mut made.patches, near(stored), again, at_rest, share)?;
+        let next = relaxation::relax(problem, &made.model, &mut made.patches, near(stored), again, at_rest, share)?;
         let lower = made.model.energy(&next.values, share) + stored;
         relaxed = next;
         if energy - lower <= WORTH_A_TOUCH * (lower - floor).abs() {

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::model::Model;
-use super::patches::Patches;
+use super::energy::model::Model;
+use super::relaxation::patches::Patches;
 
 /// A place for them: the upper bound leaves there what it made, and the next displacement on its mesh takes it.
 #[derive(Clone, Default)]

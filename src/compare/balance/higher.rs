@@ -7,7 +7,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Solution;
 use crate::bounds::{Nodes, Row, of_pair, sides};
-use crate::element::{PlainDisplacement, plain, triangle};
+use crate::element::PlainDisplacement;
+use crate::element::displacement::plain;
+use crate::element::polynomial::triangle;
 use crate::problem::{ContactPair, Problem};
 use crate::statics::cone::unbalanced;
 

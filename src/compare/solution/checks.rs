@@ -4,8 +4,8 @@ use super::{SOLVER, Site, Solution, Weak};
 use crate::bounds::Hold;
 use crate::compare::ceiling::Allowance;
 use crate::compare::{Allowances, Basis, Check};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::Scales;
+use crate::sets::DisjointSets;
 
 /// How many nodes with a large residual are named.
 const NAMED: usize = 3;

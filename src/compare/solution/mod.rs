@@ -18,9 +18,10 @@ pub use weak::{Law, Shape, Station, Weak};
 
 use super::balance::Balance;
 use super::candidate::Candidate;
-use super::cells;
 use super::forces::NodalForces;
-use super::turned::{self, Rule};
+use super::forces::cells;
+use super::forces::turned;
+use super::forces::turned::Rule;
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};

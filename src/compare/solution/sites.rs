@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{DMatrix, DVector};
 
 use crate::bounds::{Hold, Holds};
-use crate::mesh::sets::DisjointSets;
 use crate::problem::Problem;
+use crate::sets::DisjointSets;
 use crate::vector::{cross, dot};
 
 /// Directions whose cross product is smaller are one.

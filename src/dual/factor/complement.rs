@@ -5,7 +5,7 @@ use faer::sparse::SparseColMatRef;
 use faer::{Accum, Mat};
 
 use super::Factor;
-use crate::dual::interface::Interface;
+use crate::dual::contact::interface::Interface;
 
 /// No place.
 const NONE: usize = usize::MAX;

@@ -11,7 +11,7 @@ use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::{Conj, MatMut, Par};
 
 pub use self::symbolic::SymbolicFactor;
-use super::interface::Interface;
+use super::contact::interface::Interface;
 
 /// Why a matrix could not be factorised.
 #[derive(Debug, Clone, PartialEq, Eq)]

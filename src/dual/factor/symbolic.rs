@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::Breakdown;
 use crate::budget::{fallible, words};
-use crate::dual::interface::Interface;
+use crate::dual::contact::interface::Interface;
 
 /// Symbolic factorisation: the fill-reducing ordering and the structure of the factor.
 #[derive(Debug)]

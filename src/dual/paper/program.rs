@@ -6,9 +6,10 @@ use super::constraints::Constraints;
 use super::dependence::{Dependence, dependences};
 use super::rows::SparseRows;
 use crate::dual::DualError;
+use crate::element::StressField;
 use crate::element::contraction;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::subtriangle::Matrix;
-use crate::element::{StressField, quadrature::triangle_rule};
 use crate::problem::{Problem, Scales};
 
 /// What is kept of a block once Q has been found.

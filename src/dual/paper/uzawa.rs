@@ -10,9 +10,10 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
-use crate::dual::method::{plane_only, without_springs};
+use crate::dual::methods::method::{plane_only, without_springs};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
-use crate::element::{SideValues, side};
+use crate::element::SideValues;
+use crate::element::polynomial::side;
 use crate::problem::{ContactPair, Problem, Sizes};
 
 /// The paper's method.

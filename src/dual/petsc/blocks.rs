@@ -6,10 +6,10 @@
 
 use std::io::{self, Write};
 
-use crate::dual::initial::initial_parameters;
 use crate::dual::modes::ModeTable;
-use crate::dual::rows::Sides;
-use crate::dual::unknowns::Unknowns;
+use crate::dual::system::initial::initial_parameters;
+use crate::dual::system::rows::Sides;
+use crate::dual::system::unknowns::Unknowns;
 use crate::problem::Problem;
 
 /// All triangles, one after the other. B itself is written to a file at once, congruent triangles sharing theirs.

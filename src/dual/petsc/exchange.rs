@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 use super::LinearSolver;
 use super::blocks::Blocks;
 use super::nodal::Nodal;
-use crate::dual::ends;
+use crate::dual::contact::ends;
 use crate::dual::equilibrium::LEAST_STRESS;
 use crate::dual::hybrid::{Motion, held_unknowns};
 use crate::dual::modes::ModeTable;
+use crate::dual::system::unknowns::Unknowns;
 use crate::dual::system::{jump_bounds, load_of_tractions};
-use crate::dual::unknowns::Unknowns;
 use crate::problem::{ContactPair, Problem, Scales};
 
 /// Name of the file that the package is started with.

@@ -17,9 +17,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::equilibrium::Equilibrium;
-use super::method::{plane_only, without_springs};
+use super::methods::method::{plane_only, without_springs};
 use super::modes::ModeTable;
-use super::unknowns::Unknowns;
+use super::system::unknowns::Unknowns;
 use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::problem::Problem;

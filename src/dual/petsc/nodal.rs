@@ -3,7 +3,7 @@
 //! On such a displacement K is the stiffness matrix of linear finite elements, for which multigrid is made.
 
 use crate::dual::hybrid::moments_of_ends;
-use crate::dual::unknowns::{EdgeMoments, Unknowns};
+use crate::dual::system::unknowns::{EdgeMoments, Unknowns};
 use crate::problem::Problem;
 
 /// The map from the displacements of the vertices, x and y of one after the other, to the unknowns, unknown by unknown.

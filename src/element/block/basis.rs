@@ -4,7 +4,7 @@ use super::{COMMON, N};
 use crate::element::Material;
 use crate::element::frame::Frame;
 use crate::element::geometry::from_centroid;
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::subtriangle::{Matrix, Moments, flexibility, side_map};
 
 /// Numbers of which the energy of a field is the sum of the squares: three at each of three points of each subtriangle.

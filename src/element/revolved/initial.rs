@@ -7,7 +7,7 @@
 use super::{Sampled, Strained, Tensor, work};
 use crate::elasticity::InitialStrain;
 use crate::element::geometry::sub_area;
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::{Displacement, Material, Revolved, StressField};
 use crate::load::BodyForce;
 

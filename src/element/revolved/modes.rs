@@ -9,9 +9,10 @@ use super::stress::to_bernstein;
 use super::{Held, ROUGH};
 use crate::element::field::{from_equispaced, lattice};
 use crate::element::geometry::{from_centroid, gradients};
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
+use crate::element::polynomial::triangle;
 use crate::element::split::polynomials::{Jet, values, with_derivatives};
-use crate::element::{Layout, Modes, ModesMut, lattice_len, triangle};
+use crate::element::{Layout, Modes, ModesMut, lattice_len};
 
 /// A triangle beside the axis.
 #[derive(Debug, Clone)]

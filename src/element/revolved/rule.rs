@@ -11,7 +11,7 @@
 //! ∫ q/r. Intervals whose ends have very different radii are divided. Where a triangle has a corner or a side on the axis, q is divisible by
 //! what makes q/r a polynomial in the coordinates of that part, and ε = 0.
 
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 
 /// Largest ratio of the radii at the ends of an interval that is not divided.
 const RATIO: f64 = 3.0;

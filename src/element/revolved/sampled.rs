@@ -2,7 +2,7 @@
 
 use super::{NEAR, Point, Tensor, Weighted, rule};
 use crate::element::geometry::{sub_area, sub_gradients};
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::{Displacement, Revolved, Strains, StressField, lattice_len};
 use crate::load::BodyForce;
 

@@ -11,7 +11,8 @@ use super::law::Tensor;
 use super::rule::Point;
 use crate::element::displacement::MOST;
 use crate::element::field::lattice;
-use crate::element::{lattice_len, triangle};
+use crate::element::lattice_len;
+use crate::element::polynomial::triangle;
 
 /// Σ on one subtriangle.
 #[derive(Debug, Clone, Default)]

@@ -55,7 +55,7 @@ pub fn values(p: usize, l: [f64; 3]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::quadrature::triangle_rule;
+    use crate::element::polynomial::quadrature::triangle_rule;
 
     #[test]
     fn they_are_orthonormal() {

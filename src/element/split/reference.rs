@@ -15,8 +15,8 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use super::polynomials::{self, Jet};
 use crate::element::MAX_DEGREE;
 use crate::element::lattice;
-use crate::element::quadrature::{segment_rule, triangle_rule};
-use crate::element::side;
+use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
+use crate::element::polynomial::side;
 
 /// Corners of the reference triangle.
 const CORNERS: [[f64; 2]; 3] = [[0.0, 1.0], [-HALF_SIDE, -0.5], [HALF_SIDE, -0.5]];

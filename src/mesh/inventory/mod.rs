@@ -12,9 +12,10 @@ pub use outline::{Piece, Shape};
 pub use regions::Region;
 pub use starting::starting_scene;
 
-use super::labels::{Pair, pair};
+use super::files::file;
 use super::select::{named_cells, sorted};
-use super::{MeshError, RawMesh, file};
+use super::topology::labels::{Pair, pair};
+use super::{MeshError, RawMesh};
 use crate::scene::{Note, toml_key, toml_string};
 
 /// Edges that a file names or numbers.

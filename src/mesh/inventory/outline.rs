@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::Region;
-use crate::mesh::labels::{Pair, pair};
+use crate::mesh::topology::labels::{Pair, pair};
 use crate::scene::Circle;
 
 /// Distance from a line or circle, in parts of the largest coordinate, that counts as on it: a tenth of what `[[boundaries]]` allow.

@@ -6,9 +6,9 @@
 use std::collections::HashSet;
 
 use super::outline::Piece;
-use crate::mesh::labels::contact_names;
-use crate::mesh::polyline::key;
-use crate::mesh::quarter::middle;
+use crate::mesh::refinement::quarter::middle;
+use crate::mesh::sides::polyline::key;
+use crate::mesh::topology::labels::contact_names;
 use crate::scene::{Circle, Polygon, Scene};
 
 /// A piece more than this many times as long as the next is halved.

@@ -11,7 +11,7 @@ mod tests;
 
 use std::collections::HashMap;
 
-use super::polyline::key;
+use super::sides::polyline::key;
 use super::{MeshError, RawMesh};
 use crate::scene::Note;
 use crate::scene::{MeshSource, Polygon, Scene};

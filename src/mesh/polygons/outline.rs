@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use super::grade::grade;
-use crate::mesh::boxes::{BoxTree, around};
+use crate::mesh::cells::overlap::cross_over;
 use crate::mesh::error::at;
-use crate::mesh::overlap::cross_over;
-use crate::mesh::polyline::{chain, inner_points, key};
+use crate::mesh::sides::polyline::{chain, inner_points, key};
+use crate::mesh::topology::boxes::{BoxTree, around};
 use crate::scene::{Circle, Polygon, Scene};
 
 /// Part of the size of the whole geometry within which two corners are the same, or a corner lies on an edge.

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::{list, named_cells, sorted};
 use crate::mesh::error::{MeshError, shown_by};
-use crate::mesh::labels::suggestion;
+use crate::mesh::topology::labels::suggestion;
 use crate::mesh::{Map, RawMesh};
 use crate::scene::{Group, Note, Scene};
 

@@ -9,7 +9,7 @@ use outline::Outline;
 
 use super::RawMesh;
 use super::error::MeshError;
-use super::labels::{Pair, pair, used_names};
+use super::topology::labels::{Pair, pair, used_names};
 use crate::scene::{Boundary, Edges, Group, Note, Scene};
 
 /// Cells by their vertices.

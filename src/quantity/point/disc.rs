@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use crate::element::geometry::{sub_area, sub_corners};
-use crate::element::quadrature::{segment_rule, triangle_rule};
+use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
 
 /// The circle is made of so many arcs.
 const ARCS: usize = 24;

@@ -20,12 +20,12 @@ use super::{Point, Wanted};
 use crate::dual::ShapedStrain;
 use crate::element::contraction;
 use crate::element::geometry::from_centroid;
-use crate::element::quadrature::segment_rule;
-use crate::element::side;
+use crate::element::polynomial::quadrature::segment_rule;
+use crate::element::polynomial::side;
 use crate::problem::{Condition, Problem};
-use crate::quantity::constants::Constants;
+use crate::quantity::adjoint::constants::Constants;
 use crate::quantity::functional::Functional;
-use crate::quantity::projection::projected;
+use crate::quantity::functional::projection::projected;
 
 /// What rounding leaves of a difference of squares.
 const ROUNDING: f64 = 1e-14;

@@ -11,7 +11,7 @@
 
 use std::f64::consts::PI;
 
-use crate::element::side::binomial;
+use crate::element::polynomial::side::binomial;
 
 /// k and G of one disc.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,7 @@ impl Kernel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::element::quadrature::segment_rule;
+    use crate::element::polynomial::quadrature::segment_rule;
 
     /// ∫ k f over the disc, in polar coordinates.
     fn mean(kernel: &Kernel, f: impl Fn([f64; 2]) -> f64) -> f64 {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 use crate::scene::Mode;
 
 /// A field of one power of r, with the material it belongs to.

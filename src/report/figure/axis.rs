@@ -1,7 +1,7 @@
 //! A linear or logarithmic axis.
 
 use super::svg::{Anchor, Svg, look};
-use crate::report::number::superscript;
+use crate::report::text::number::superscript;
 
 /// Page length of a digit.
 const DIGIT: f64 = 8.2;

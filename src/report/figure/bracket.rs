@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::svg::{Anchor, Svg, look};
 use crate::report::Report;
-use crate::report::number::{digits_to_tell, significant};
-use crate::report::words::energies;
+use crate::report::text::number::{digits_to_tell, significant};
+use crate::report::text::words::energies;
 
 const WIDTH: f64 = 560.0;
 const LANE: f64 = 42.0;

@@ -7,7 +7,8 @@ use super::mark::{Mark, draw};
 use super::outline::{View, loops, outline, polyline};
 use super::svg::{Svg, look, px};
 use super::symbols;
-use crate::element::{Displacement, displacement, side};
+use crate::element::polynomial::side;
+use crate::element::{Displacement, displacement};
 use crate::problem::Problem;
 
 const WIDTH: f64 = 560.0;

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::outline::polyline;
 use super::svg::{Anchor, Svg, look};
 use crate::report::HistoryRow;
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 const WIDTH: f64 = 560.0;
 

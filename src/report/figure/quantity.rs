@@ -2,8 +2,8 @@
 
 use super::axis::Axis;
 use super::svg::{Anchor, Svg, look, px};
-use crate::report::number::significant;
 use crate::report::quantity::Held;
+use crate::report::text::number::significant;
 use crate::report::{QuantitySummary, Report};
 use crate::scene::counted;
 

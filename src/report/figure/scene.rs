@@ -8,7 +8,7 @@ use super::svg::{Anchor, Svg, look};
 use super::symbols;
 use crate::mesh::touching;
 use crate::problem::{Condition, Interface, Problem};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 
 const WIDTH: f64 = 560.0;
 const MARGIN: f64 = 58.0;

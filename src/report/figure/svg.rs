@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Write};
 
-use crate::report::number::clean;
+use crate::report::text::number::clean;
 
 /// Looks by class, as attributes for where no style sheet reaches.
 pub(crate) mod look {

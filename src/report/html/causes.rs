@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::links;
 use crate::cause::{outcome, told};
-use crate::report::number::{clean, optional, percent, significant};
-use crate::report::words::{basis_word, failing, meaning};
+use crate::report::text::number::{clean, optional, percent, significant};
+use crate::report::text::words::{basis_word, failing, meaning};
 use crate::report::{Cause, Check, Report};
 
 /// One entry for each cause, with the checks behind it folded.

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 use super::links;
 use super::tables::scroll;
 use crate::cause::{outcome, told};
-use crate::report::number::{clean, optional};
-use crate::report::words::basis_word;
+use crate::report::text::number::{clean, optional};
+use crate::report::text::words::basis_word;
 use crate::report::{Check, Report};
 
 pub(super) fn checks(report: &Report) -> Markup {

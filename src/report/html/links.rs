@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::report::number::clean;
+use crate::report::text::number::clean;
 use crate::report::{Check, Report};
 
 /// The id of the row of a check.

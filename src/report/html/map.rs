@@ -6,7 +6,7 @@ use super::links;
 use super::values::values;
 use crate::report::figure::map::{self, Scale};
 use crate::report::figure::mark::{Mark, spots};
-use crate::report::number::{clean, percent};
+use crate::report::text::number::{clean, percent};
 use crate::report::{Dossier, Map, MapKind};
 
 /// What the map can show, in the order of the choice; the first is what it shows where no script runs.
@@ -80,7 +80,7 @@ fn largest(map: &Map) -> Markup {
     let top = finite.max_by(|a, b| map.values[*a].total_cmp(&map.values[*b]));
     let number = |x: f64| match map.kind {
         MapKind::GapShare | MapKind::QuantityShare => percent(x),
-        _ => crate::report::number::significant(x, 4),
+        _ => crate::report::text::number::significant(x, 4),
     };
     html! {
         tr {

@@ -15,7 +15,7 @@ mod verdict;
 use maud::{Markup, PreEscaped, html};
 
 use super::document::document;
-use super::number::{clean, grouped};
+use super::text::number::{clean, grouped};
 use super::{Dossier, Report};
 pub(crate) use style::CSS;
 
@@ -25,7 +25,7 @@ const SCRIPT: &str = include_str!("page.js");
 /// The page: nothing loaded, and complete where its one script does not run.
 pub fn page(dossier: &Dossier) -> String {
     let report = &dossier.report;
-    let title = format!("{} · {}", clean(&report.title), super::words::headline(report));
+    let title = format!("{} · {}", clean(&report.title), super::text::words::headline(report));
     let body = html! {
         a.skip href="#pictures" { "To the pictures" }
         (verdict::first_screen(dossier))

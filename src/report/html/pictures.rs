@@ -8,7 +8,7 @@ use crate::element::Displacement;
 use crate::report::figure::drawn::Drawn;
 use crate::report::figure::mark::{Mark, marks};
 use crate::report::figure::{deformed, history, pressure, scene};
-use crate::report::number::{clean, optional, percent, significant};
+use crate::report::text::number::{clean, optional, percent, significant};
 use crate::report::{ContactSummary, Dossier};
 
 pub(super) fn pictures(dossier: &Dossier) -> Markup {

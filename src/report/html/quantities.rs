@@ -4,7 +4,7 @@ use maud::{Markup, PreEscaped, html};
 
 use super::tables::scroll;
 use crate::report::figure::quantity::quantity;
-use crate::report::number::{clean, optional, outward, percent, significant};
+use crate::report::text::number::{clean, optional, outward, percent, significant};
 use crate::report::{QuantitySummary, Report};
 
 /// How many quantities the first screen shows; the table has all.

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
 use crate::problem::Problem;
-use crate::report::number::{clean, grouped, significant, vector};
+use crate::report::text::number::{clean, grouped, significant, vector};
 use crate::report::{Dossier, Report};
 use crate::scene::{Affine, Gap, Kinematics, Load, Scene, SupportKind};
 

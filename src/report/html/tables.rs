@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
-use crate::report::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
-use crate::report::words::{mean_in_words, upper_from};
+use crate::report::text::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
+use crate::report::text::words::{mean_in_words, upper_from};
 use crate::report::{DualSummary, Energy, PrimalSummary, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {

@@ -13,7 +13,7 @@ use crate::report::deflate::deflated;
 use crate::report::figure::map::{self, Scale, WIDTH};
 use crate::report::figure::raster::raster;
 use crate::report::figure::viridis::{LEVELS, colour};
-use crate::report::number::clean;
+use crate::report::text::number::clean;
 use crate::report::vtu::shortened;
 
 /// Page length of a cell of the grid.

@@ -3,8 +3,8 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
-use crate::report::number::{clean, digits_to_tell, grouped, percent, significant, vector};
-use crate::report::words::{accuracy, failing, headline, status_symbol, status_word, upper_from, worth_a_look};
+use crate::report::text::number::{clean, digits_to_tell, grouped, percent, significant, vector};
+use crate::report::text::words::{accuracy, failing, headline, status_symbol, status_word, upper_from, worth_a_look};
 use crate::report::{Dossier, Report, Status};
 
 pub(super) fn first_screen(dossier: &Dossier) -> Markup {

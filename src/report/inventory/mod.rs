@@ -4,8 +4,8 @@ mod page;
 
 pub use page::page;
 
+use super::text::number::significant;
 use crate::mesh::inventory::{Curve, Inventory, Piece, Region, Shape};
-use crate::report::number::significant;
 use crate::scene::counted;
 
 /// Entries of a list on a terminal.

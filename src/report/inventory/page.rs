@@ -7,7 +7,7 @@ use crate::mesh::inventory::Inventory;
 use crate::report::CSS;
 use crate::report::document::{PLOTS, document};
 use crate::report::figure::mesh;
-use crate::report::number::clean;
+use crate::report::text::number::clean;
 
 const MORE_CSS: &str = "pre{margin:0;font:0.86em ui-monospace,SFMono-Regular,Menlo,monospace;white-space:pre-wrap}";
 

@@ -5,12 +5,12 @@ use std::ops::Range;
 
 use super::fault::KINDS;
 use super::{Component, Extent, Holder, Quantity, QuantityFault, RawQuantity, Region, Target};
-use crate::scene::conditions::Conditions;
-use crate::scene::error::{Fault, SceneError};
-use crate::scene::fault::names;
-use crate::scene::raw::{At, RawScene};
-use crate::scene::source::Source;
-use crate::scene::text::acts;
+use crate::scene::keys::conditions::Conditions;
+use crate::scene::reading::error::{Fault, SceneError};
+use crate::scene::reading::fault::names;
+use crate::scene::reading::raw::{At, RawScene};
+use crate::scene::reading::source::Source;
+use crate::scene::reading::text::acts;
 use crate::scene::{Body, BoundaryUse, Kinematics};
 
 /// What quantities may name.

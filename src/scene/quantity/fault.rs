@@ -1,6 +1,6 @@
 //! The faults that only a quantity can have, with their words.
 
-use crate::scene::nearest::{list, suggestion};
+use crate::scene::reading::nearest::{list, suggestion};
 
 /// What is wrong with a table of `[[quantities]]`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -2,11 +2,11 @@
 
 use super::check::Context;
 use super::{Component, Holder, Invariant, QuantityFault};
-use crate::scene::conditions::Conditions;
-use crate::scene::error::{Fault, SceneError};
-use crate::scene::polygon::{Defect, area, defect};
-use crate::scene::raw::{At, Pair};
-use crate::scene::source::counted;
+use crate::scene::keys::conditions::Conditions;
+use crate::scene::keys::polygon::{Defect, area, defect};
+use crate::scene::reading::error::{Fault, SceneError};
+use crate::scene::reading::raw::{At, Pair};
+use crate::scene::reading::source::counted;
 use crate::scene::{BoundaryUse, ContactSides};
 
 /// Part of its arc length below which the slope of a window is a jump.

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::check::{Context, DIRECTION_OF_DISPLACEMENT};
 use super::{Component, Invariant, Mode, PointValue, Target};
-use crate::scene::error::{Fault, SceneError};
-use crate::scene::raw::{At, Pair};
+use crate::scene::reading::error::{Fault, SceneError};
+use crate::scene::reading::raw::{At, Pair};
 
 impl Context<'_> {
     pub(super) fn displacement_at(

@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 
-use crate::scene::raw::{At, Pair};
+use crate::scene::reading::raw::{At, Pair};
 
 /// A number the scene is solved for, with a guaranteed interval: one of `displacement`, `force`, `moment`, `stress`,
 /// `stress_intensity`.

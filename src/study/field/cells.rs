@@ -5,8 +5,10 @@ use super::matching::mean;
 use super::places::Place;
 use super::{FieldError, ForeignField, Part};
 use crate::bounds::Cell;
-use crate::element::{PlainDisplacement, Quadrilateral, quadrilateral as shape, triangle};
-use crate::mesh::quadrilateral;
+use crate::element::displacement::quadrilateral as shape;
+use crate::element::polynomial::triangle;
+use crate::element::{PlainDisplacement, Quadrilateral};
+use crate::mesh::cells::quadrilateral;
 use crate::problem::Problem;
 use crate::vector::distance;
 

@@ -13,20 +13,20 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
-use super::provenance::hash;
+use super::dossier::provenance::hash;
 use crate::compare::Candidate;
-use crate::mesh::meshio;
+use crate::mesh::files::meshio;
 use crate::problem::{Note, Problem};
 
 const SCRIPT: &str = concat!(
-    include_str!("../../mesh/readers/found.py"),
-    include_str!("../../mesh/readers/unv.py"),
-    include_str!("../../mesh/readers/text.py"),
-    include_str!("../../mesh/readers/exodus.py"),
-    include_str!("../../mesh/readers/med.py"),
-    include_str!("../../mesh/readers/frd.py"),
-    include_str!("../../mesh/readers/dat.py"),
-    include_str!("../../mesh/readers/choose.py"),
+    include_str!("../../mesh/files/readers/found.py"),
+    include_str!("../../mesh/files/readers/unv.py"),
+    include_str!("../../mesh/files/readers/text.py"),
+    include_str!("../../mesh/files/readers/exodus.py"),
+    include_str!("../../mesh/files/readers/med.py"),
+    include_str!("../../mesh/files/readers/frd.py"),
+    include_str!("../../mesh/files/readers/dat.py"),
+    include_str!("../../mesh/files/readers/choose.py"),
     include_str!("own.py"),
     include_str!("read.py")
 );

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, Matrix2};
 
 use super::numbering::renumbered;
 use super::{Reference, Trial};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::displacement::{DisplacementElement, hooke_seen, silent_motions};
 use crate::workbench::formulas::Variant;
 use crate::workbench::outline::Outline;

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix3};
 
 use super::{Reference, Trial, fit};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::scene::Kinematics;
 use crate::workbench::displacement::{DisplacementElement, material_words};
 use crate::workbench::formulas::{Family, Variant};

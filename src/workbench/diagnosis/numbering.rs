@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Trial;
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::displacement::{DisplacementElement, Order};
 
 /// Of all entries, how many may be wrong for them to be listed.

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{Reference, Trial, fit};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::formulas::{Family, Point, Variant};
 
 /// How far a fitted weight may be from the one a mistake makes, where K has all its digits.

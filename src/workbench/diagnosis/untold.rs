@@ -1,7 +1,7 @@
 //! What a matrix of one shape cannot tell: mistakes that leave it as it is.
 
 use super::Reference;
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::displacement::DisplacementElement;
 use crate::workbench::formulas::{Correction, Family, Variant};
 

@@ -1,7 +1,7 @@
 //! How conditioning of K grows with the shape.
 
 use super::{DisplacementElement, nodes_on, shapes};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::picture;
 

@@ -4,7 +4,7 @@
 //! the energy norm. An energy below the bound is impossible for such an element.
 
 use super::{DisplacementElement, mesh::Patch};
-use crate::report::number::{percent, significant};
+use crate::report::text::number::{percent, significant};
 use crate::workbench::diagnosis::known;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::formulas::Family;

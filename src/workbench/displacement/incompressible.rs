@@ -2,7 +2,7 @@
 
 use super::DisplacementElement;
 use super::convergence::{Level, levels};
-use crate::report::number::percent;
+use crate::report::text::number::percent;
 use crate::scene::Kinematics;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::picture;

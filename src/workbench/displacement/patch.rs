@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, Matrix3};
 
 use super::{DisplacementElement, mesh::Patch, nodes_on, shapes};
-use crate::report::number::{percent, significant};
+use crate::report::text::number::{percent, significant};
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::material::Material;
 use crate::workbench::outline::Outline;

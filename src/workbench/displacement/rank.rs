@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{DisplacementElement, motions, within};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::diagnosis::Reference;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::picture;

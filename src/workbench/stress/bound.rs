@@ -1,7 +1,7 @@
 //! The element solves a scene, and its bound is one.
 
 use super::StressElement;
-use crate::report::number::{percent, significant};
+use crate::report::text::number::{percent, significant};
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::material::Material;
 use crate::workbench::picture;

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::element::geometry::sub_corners;
-use crate::element::quadrature::triangle_rule;
+use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::{EquilibriumElement, Material, lattice_len};
 
 /// A stress of degree p on every part of a triangle, by its values (xx, yy, xy) on the lattice.

@@ -6,7 +6,7 @@ use super::divergence::at_points;
 use super::interpolation::orthonormal;
 use super::{FORCE, SolverElement, StressElement, usual};
 use crate::element::{MAX_DEGREE, block, lattice_len};
-use crate::report::number::significant;
+use crate::report::text::number::significant;
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::material::Material;
 

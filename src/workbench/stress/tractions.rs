@@ -3,7 +3,7 @@
 use super::fields::{Fields, area, side, traction};
 use super::{StressElement, worst};
 use crate::element::geometry::sub_corners;
-use crate::element::side as polynomial;
+use crate::element::polynomial::side as polynomial;
 use crate::workbench::finding::{Measured, Property};
 
 pub const COEFFICIENTS: Property<dyn StressElement> = Property {

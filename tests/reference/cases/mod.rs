@@ -8,6 +8,7 @@ mod discs;
 mod elastic_contact;
 mod exact;
 mod failures;
+mod formulas;
 mod half_planes;
 mod near_vertices;
 mod own_solver;
@@ -30,6 +31,7 @@ fn every_case_is_asserted_and_listed() {
         include_str!("curved.rs"),
         include_str!("quadrilaterals.rs"),
         include_str!("revolved.rs"),
+        include_str!("formulas.rs"),
     ]
     .concat();
     let mut count = 0;

@@ -2,8 +2,9 @@
 
 use hypercircle::bounds::{admissible, complementary, potential};
 use hypercircle::dual::{self, Condensed, Options};
+use hypercircle::element::polynomial::side;
 use hypercircle::element::{
-    Elements, Material, SideValues, StressField, block, interpolant, parameters_from_tractions, side,
+    Elements, Material, SideValues, StressField, block, interpolant, parameters_from_tractions,
 };
 use hypercircle::load::BodyForce;
 use hypercircle::mesh::Triangulation;

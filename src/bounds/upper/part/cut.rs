@@ -1,8 +1,8 @@
 //! A problem on some of its triangles.
 
-use crate::bounds::upper::groups::Group;
-use crate::bounds::upper::holds::Holds;
-use crate::bounds::upper::nodes::Nodes;
+use crate::bounds::upper::admissible::holds::Holds;
+use crate::bounds::upper::admissible::nodes::Nodes;
+use crate::bounds::upper::relaxation::groups::Group;
 use crate::element::{SideValues, StressField};
 use crate::mesh::{Edge, FileCells, Triangulation};
 use crate::problem::{ContactPair, Interface, Problem};

@@ -1,6 +1,6 @@
 //! The part of the upper bound that one of several ranks makes.
 //!
-//! Relaxing moves one patch after the other, and [`super::fronts`] tells which of them may be moved at the same time. So ranks that
+//! Relaxing moves one patch after the other, and [`super::relaxation::fronts`] tells which of them may be moved at the same time. So ranks that
 //! move their own patches front by front, and hand on what these moved before the next one, make the displacement of one process:
 //! its values differ only where a sum over all triangles, which here is one of sums, decides about them.
 //!
@@ -17,20 +17,21 @@ mod traffic;
 
 pub use self::division::Division;
 use self::traffic::Traffic;
-use super::fronts::Fronts;
-use super::groups::Group;
-use super::holds::Holds;
-use super::model::Model;
-use super::nodes::Nodes;
-use super::patches::Patches;
+use super::admissible::holds::Holds;
+use super::admissible::nodes::Nodes;
+use super::admissible::rows::rows;
+use super::energy::interior;
+use super::energy::model::Model;
 use super::prepared::Made;
-use super::rows::rows;
-use super::share::Share;
-use super::{Groundwork, NoUpperBound, Pull, interior, relaxed, restricted};
-use crate::bounds::counted::Counted;
+use super::relaxation::fronts::Fronts;
+use super::relaxation::groups::Group;
+use super::relaxation::patches::Patches;
+use super::relaxation::share::Share;
+use super::{Groundwork, NoUpperBound, Pull, relaxed, restricted};
 use crate::bounds::ranks::Ranks;
-use crate::bounds::sum::Sum;
-use crate::bounds::terms::{LowerTerms, UpperTerms};
+use crate::bounds::rounding::counted::Counted;
+use crate::bounds::rounding::sum::Sum;
+use crate::bounds::rounding::terms::{LowerTerms, UpperTerms};
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 

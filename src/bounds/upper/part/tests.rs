@@ -4,12 +4,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::{Division, Found, Part};
 use crate::bounds::ranks::Ranks;
-use crate::bounds::terms::LowerTerms;
+use crate::bounds::rounding::terms::LowerTerms;
 use crate::bounds::upper::admissible;
-use crate::bounds::upper::groups::Group;
-use crate::bounds::upper::nodes::Nodes;
-use crate::bounds::upper::patches::grouped;
-use crate::bounds::upper::patches::tests::two_blocks;
+use crate::bounds::upper::admissible::nodes::Nodes;
+use crate::bounds::upper::relaxation::groups::Group;
+use crate::bounds::upper::relaxation::patches::grouped;
+use crate::bounds::upper::relaxation::patches::tests::two_blocks;
 use crate::bounds::{Bracket, Complementary, Potential, UpperBound};
 use crate::dual::{Condensed, Options};
 use crate::element::{Displacement, Elements, block};

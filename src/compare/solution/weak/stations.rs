@@ -2,7 +2,7 @@
 
 use super::super::Solution;
 use crate::element::geometry::gradients;
-use crate::element::quadrature::segment_rule;
+use crate::element::polynomial::quadrature::segment_rule;
 
 /// One quadrature point.
 pub struct Station {

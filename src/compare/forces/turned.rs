@@ -1,0 +1,257 @@
+//! Nodal forces of displacement models of bodies of revolution, by the rule that a program integrates with.
+//!
+//! Integrals of v_r/r are rational. A displacement model integrates them by a rule and minimises the energy that this rule gives: its
+//! identities hold with the same rule, and bounds with enclosed integrals, as of every field. FEniCSx is given the rule of this program; of
+//! other programs the one with which the equations hold best is taken for theirs.
+
+use super::NodalForces;
+use super::cells;
+use crate::bounds::Potential;
+use crate::compare::candidate::Candidate;
+use crate::element::Material;
+use crate::element::geometry::gradients;
+use crate::element::polynomial::quadrature::segment_rule;
+use crate::element::polynomial::side;
+use crate::element::polynomial::symmetric_rules::symmetric_rules;
+use crate::element::revolved::{NEAR, rule};
+use crate::problem::Problem;
+
+/// The degree to which polynomials are integrated by the rule that is as good as exact.
+const EXACT: usize = 12;
+
+/// How a program integrates its equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rule {
+    /// On triangles the place in [`symmetric_rules`]; `None` for one that is as good as exact.
+    pub triangles: Option<usize>,
+    /// On quadrilaterals the points in each direction.
+    pub points: usize,
+}
+
+impl Rule {
+    /// That of FEniCSx beside this program.
+    pub const OWN: Self = Rule { triangles: Some(0), points: 3 };
+
+    /// Those that a program may have used for `candidate`.
+    pub fn all(candidate: &Candidate) -> Vec<Self> {
+        let points: Vec<usize> = cells::rules(candidate).into_iter().flatten().collect();
+        let [first, ..] = points[..] else {
+            let triangles = (0..symmetric_rules().len()).map(Some).chain([None]);
+            return triangles.map(|triangles| Rule { triangles, points: 0 }).collect();
+        };
+        // Beside quadrilaterals triangles are integrated by the rule of their own degree.
+        let beside = if first > 2 { [2, 6, 7] } else { [1, 2, 6] };
+        let triangles = if has_triangles(candidate) { beside.map(Some).to_vec() } else { vec![None] };
+        triangles.into_iter().flat_map(|t| points.iter().map(move |n| Rule { triangles: t, points: *n })).collect()
+    }
+}
+
+fn has_triangles(candidate: &Candidate) -> bool {
+    let covered: usize = candidate.cells.iter().map(|cell| cell.triangles.len()).sum();
+    candidate.numbering.as_ref().is_none_or(|numbering| covered < numbering.triangles.len())
+}
+
+/// What a model has at one point of its rule.
+pub struct At<'a> {
+    /// The triangle, the first one of a quadrilateral.
+    pub triangle: usize,
+    /// The body.
+    pub body: usize,
+    /// The nodes of the cell, with their functions and gradients.
+    pub nodes: &'a [usize],
+    /// Values and gradients of their functions.
+    pub shapes: &'a [(f64, [f64; 2])],
+    /// Their displacements.
+    pub values: &'a [[f64; 2]],
+    /// Distance from the axis.
+    pub radius: f64,
+    /// Where it is.
+    pub place: [f64; 2],
+    /// What the point counts, thickness and angle included, without the radius.
+    pub weight: f64,
+}
+
+impl At<'_> {
+    /// The strain (rr, zz, tt, rz), and the size of what is added up for it.
+    pub fn strain(&self) -> ([f64; 4], f64) {
+        let (mut e, mut spread) = ([0.0; 4], 0.0);
+        for ((value, d), u) in self.shapes.iter().zip(self.values) {
+            // A translation along the axis leaves no trace.
+            let (r, z) = (u[0], u[1] - self.values[0][1]);
+            e[0] += d[0] * r;
+            e[1] += d[1] * z;
+            e[2] += value / self.radius * r;
+            e[3] += 0.5 * (d[1] * r + d[0] * z);
+            spread += (d[0].hypot(d[1]) + (value / self.radius).abs()) * u[0].hypot(u[1]);
+        }
+        (e, spread)
+    }
+
+    /// The same without the initial strain of a material.
+    pub fn elastic(&self, material: &Material) -> ([f64; 4], f64) {
+        let (e, spread) = self.strain();
+        if material.initial().is_none() {
+            return (e, spread);
+        }
+        let own = material.initial().around(self.place);
+        ([0, 1, 2, 3].map(|c| e[c] - own[c]), spread + own.iter().map(|e| e.abs()).sum::<f64>())
+    }
+
+    /// What a stress asks for at node `i` of the cell, times its weight.
+    pub fn force(&self, i: usize, s: [f64; 4]) -> [f64; 2] {
+        let (value, d) = self.shapes[i];
+        [d[0] * s[0] + d[1] * s[3] + value / self.radius * s[2], d[0] * s[3] + d[1] * s[1]]
+    }
+}
+
+/// Shape functions of degree 1 or 2 at a point of a triangle, with their gradients: corners, then the midpoints opposite them.
+fn shapes(degree: usize, l: [f64; 3], g: &[[f64; 2]; 3]) -> Vec<(f64, [f64; 2])> {
+    if degree != 2 {
+        return (0..3).map(|i| (l[i], g[i])).collect();
+    }
+    let corner = |i: usize| (l[i] * (2.0 * l[i] - 1.0), g[i].map(|d| (4.0 * l[i] - 1.0) * d));
+    let middle = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        (4.0 * l[j] * l[k], [0, 1].map(|c| 4.0 * (l[j] * g[k][c] + l[k] * g[j][c])))
+    };
+    (0..3).map(corner).chain((0..3).map(middle)).collect()
+}
+
+/// Calls `each` at every point of the rule, cell by cell.
+pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl FnMut(&At<'_>)) {
+    let (mesh, section, thickness) = (&problem.mesh, problem.section(), problem.scene.thickness);
+    let vertices = mesh.points.len();
+    let of = cells::of_triangles(problem, &candidate.cells);
+    let known = by.triangles.map(|rule| &symmetric_rules()[rule]);
+    for t in (0..mesh.triangles.len()).filter(|t| of[*t].is_none()) {
+        let g = gradients(mesh.corners(t));
+        let corners = mesh.corners(t);
+        let radii = corners.map(|p| section.weight(p));
+        let middles = mesh.triangle_edges[t].map(|e| vertices + e);
+        let quadratic = candidate.degree == 2;
+        let nodes: Vec<usize> =
+            mesh.triangles[t].into_iter().chain(middles.into_iter().filter(|_| quadratic)).collect();
+        let values: Vec<[f64; 2]> = nodes.iter().map(|node| candidate.value(*node)).collect();
+        let area = thickness * mesh.area(t);
+        let mut one = |l: [f64; 3], weight: f64| {
+            let shapes = shapes(candidate.degree, l, &g);
+            let radius = (0..3).map(|i| l[i] * radii[i]).sum();
+            let body = mesh.body[t];
+            let place = [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum());
+            each(&At {
+                place,
+                triangle: t,
+                body,
+                nodes: &nodes,
+                shapes: &shapes,
+                values: &values,
+                radius,
+                weight: area * weight,
+            });
+        };
+        match known {
+            Some(known) => known.iter().for_each(|(l, weight)| one(*l, *weight)),
+            None => rule(radii, EXACT, NEAR).iter().for_each(|point| one(point.bary, point.weight)),
+        }
+    }
+    for cell in &candidate.cells {
+        let Some(&t) = cell.triangles.first() else { continue };
+        let values = cell.values(candidate);
+        for (at, weight) in cells::rule(by.points) {
+            let (gradients, determinant) = cell.field.gradients(at);
+            let functions = cell.field.shapes(at).into_iter().zip(gradients);
+            let shapes: Vec<_> = functions.map(|(w, g)| (w, g.map(|g| g / determinant))).collect();
+            let place = cell.field.point(at);
+            let (radius, weight) = (section.weight(place), thickness * weight * determinant);
+            let body = mesh.body[t];
+            each(&At {
+                triangle: t,
+                body,
+                nodes: &cell.nodes,
+                shapes: &shapes,
+                values: &values,
+                radius,
+                place,
+                weight,
+            });
+        }
+    }
+}
+
+/// How many nodes `candidate` has.
+pub fn count(problem: &Problem, candidate: &Candidate) -> usize {
+    problem.mesh.points.len() + if candidate.degree == 2 { problem.mesh.edges.len() } else { 0 }
+}
+
+/// The forces at the nodes of a displacement of degree 1 or 2, and its energy, by a rule.
+pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForces, Potential) {
+    let mut forces = NodalForces::zeros(count(problem, candidate));
+    let mut stiffest = vec![0.0; forces.left.len()];
+    let (materials, section) = (problem.materials(), problem.section());
+    let (mut strain, mut rounded) = (0.0, 0.0);
+    points(problem, candidate, by, |at| {
+        let (material, law) = (&materials[at.body], materials[at.body].revolved());
+        let modulus = material.stiffest();
+        let weight = at.weight * at.radius;
+        let (e, spread) = at.elastic(material);
+        let s = law.stress(e);
+        strain += 0.5 * weight * law.strain_product(e, e);
+        let ([a, b], [_, axial]) =
+            (section.radial(problem.body_force(at.triangle)), section.forces(problem.body_force(at.triangle)));
+        let force = [a + b * at.radius, axial];
+        for (i, (&node, (value, d))) in at.nodes.iter().zip(at.shapes).enumerate() {
+            let (long, hoop) = (d[0].hypot(d[1]), value / at.radius);
+            let own = at.force(i, s);
+            (0..2).for_each(|c| forces.left[node][c] += weight * own[c]);
+            forces.size[node] += weight.abs() * modulus * (long + hoop.abs()) * spread;
+            let part = weight * modulus * long * long;
+            forces.stiffness[node] += part;
+            if part > stiffest[node] {
+                (stiffest[node], forces.triangle[node]) = (part, at.triangle);
+            }
+            (0..2).for_each(|c| forces.load[node][c] += weight * value * force[c]);
+        }
+    });
+    for (e, ends) in problem.tractions() {
+        add_traction(problem, candidate, (e, &problem.weighted(e, ends)), &mut forces.load);
+    }
+    forces.take_loads();
+    let mut work = 0.0;
+    for (node, load) in forces.load.iter().enumerate() {
+        let u = candidate.value(node);
+        for c in 0..2 {
+            work += load[c] * u[c];
+            rounded += (load[c] * u[c]).abs();
+        }
+    }
+    let magnitude = strain + rounded;
+    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0 })
+}
+
+/// Adds ∫ T·φ along an edge, T by its Bernstein coefficients.
+pub fn add_traction(
+    problem: &Problem,
+    candidate: &Candidate,
+    (e, traction): (usize, &[[f64; 2]]),
+    load: &mut [[f64; 2]],
+) {
+    let mesh = &problem.mesh;
+    let [a, b] = mesh.edges[e].vertices;
+    let (length, _) = mesh.edge_frame(e);
+    let [across, along] = [0, 1].map(|c| traction.iter().map(|t| t[c]).collect::<Vec<f64>>());
+    for &(s, weight) in segment_rule(4) {
+        let weight = weight * problem.scene.thickness * length;
+        let traction = [side::value(&across, s), side::value(&along, s)];
+        let functions = match candidate.degree {
+            2 => vec![
+                (a, (1.0 - s) * (1.0 - 2.0 * s)),
+                (b, s * (2.0 * s - 1.0)),
+                (mesh.points.len() + e, 4.0 * s * (1.0 - s)),
+            ],
+            _ => vec![(a, 1.0 - s), (b, s)],
+        };
+        for (node, value) in functions {
+            (0..2).for_each(|c| load[node][c] += weight * value * traction[c]);
+        }
+    }
+}

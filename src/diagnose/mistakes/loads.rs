@@ -1,0 +1,221 @@
+//! Wrong loads.
+
+use crate::compare::forces::cells;
+use crate::diagnose::fit::Terms;
+use crate::diagnose::space::Space;
+use crate::diagnose::words::{factor, near, number};
+use crate::diagnose::{Finding, Trial};
+use crate::load::{Affine, BodyForce};
+use crate::problem::Condition;
+use crate::scene::Body;
+
+/// Coefficients of components that are smaller than this are none.
+const NONE: f64 = 5e-3;
+
+/// Loads that are off by a number, one by one and all together, and body forces that the scene does not have.
+pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    let scene = &space.problem().scene;
+    let tractions: Vec<(&str, Vec<[f64; 2]>)> = scene
+        .tractions
+        .iter()
+        .map(|traction| (traction.on.as_str(), of_traction(space, &traction.on)))
+        .filter(|(_, forces)| forces.iter().flatten().any(|f| *f != 0.0))
+        .collect();
+    let weights: Vec<usize> = (0..scene.bodies.len()).filter(|b| !scene.bodies[*b].body_force.is_none()).collect();
+    let several = tractions.len() + weights.len() > 1;
+    let negative = |forces: &[[f64; 2]]| space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
+    let thickness = scene.thickness;
+    let all = move |name: &str, what: &str, s: f64| {
+        let mut sentence = factor(what, s);
+        if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
+            sentence += &format!(", as if the thickness {thickness} were left out on one side");
+        }
+        if s.abs() > NONE && !near(s, -1.0) {
+            sentence += &format!(" (or every Young's modulus {} times)", number(1.0 / s));
+        }
+        vec![Finding::new(name, Some(s), Some(1.0), sentence)]
+    };
+    if several {
+        // What initial strains pull is no load.
+        let materials = space.problem().materials();
+        let held = space.forces_of(|b, x| (!materials[b].initial().is_none()).then(|| materials[b].held_back(x)));
+        let load = space.solution.forces.load.iter().zip(&held);
+        let column = negative(&load.map(|(f, h)| [f[0] - h[0], f[1] - h[1]]).collect::<Vec<_>>());
+        terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
+    }
+    for (on, forces) in &tractions {
+        let (on, name, what) = (on.to_string(), format!("load/{on}"), format!("the load on {on}"));
+        terms.push(1, vec![negative(forces)], move |x| match several {
+            true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+            false => all(&name, &what, 1.0 + x[0]),
+        });
+        // Each component of the traction acting in each direction.
+        let part = |from: usize, to: usize| {
+            let turned = |f: &[f64; 2]| if to == 0 { [f[from], 0.0] } else { [0.0, f[from]] };
+            negative(&forces.iter().map(turned).collect::<Vec<_>>())
+        };
+        let given = [0, 1].map(|c| forces.iter().any(|f| f[c] != 0.0));
+        let parts: Vec<[usize; 2]> =
+            [[0, 0], [1, 1], [0, 1], [1, 0]].into_iter().filter(|[from, _]| given[*from]).collect();
+        let columns = parts.iter().map(|[from, to]| part(*from, *to)).collect();
+        terms.push(3, columns, move |x| components(&on, given, &parts, x));
+    }
+    let origin = scene.origin;
+    for (b, body) in scene.bodies.iter().enumerate() {
+        let [fx, fy] = [[1.0, 0.0], [0.0, 1.0]].map(|f| of_body(space, b, &f.into()));
+        let force = &body.body_force;
+        let name = format!("body/{}/body_force", body.name);
+        let what = format!("the body force of {}", body.name);
+        if !force.is_none() {
+            let whole = of_body(space, b, force);
+            let (name, what) = (name.clone(), what.clone());
+            terms.push(1, vec![negative(&whole)], move |x| match several {
+                true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+                false => all(&name, &what, 1.0 + x[0]),
+            });
+        }
+        if !force.is_constant() {
+            parts(space, b, terms);
+            let rotation = force.rotation();
+            terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
+                let sentence = match rotation.filter(|rotation| rotation.stiffness() != 0.0) {
+                    Some(rotation) => {
+                        let about = [0, 1].map(|c| origin[c] + rotation.about[c] - x[c] / rotation.stiffness());
+                        format!(
+                            "{what} lacks or adds the constant ({}, {}), as if it turned about ({}, {})",
+                            number(x[0]),
+                            number(x[1]),
+                            number(about[0]),
+                            number(about[1])
+                        )
+                    }
+                    None => format!("{what} lacks or adds the constant ({}, {})", number(x[0]), number(x[1])),
+                };
+                vec![Finding::new(name.clone(), Some(x[0].hypot(x[1])), Some(0.0), sentence)]
+            });
+            continue;
+        }
+        let given = force.given().value;
+        terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
+            let [found, wanted] = [[given[0] + x[0], given[1] + x[1]], given];
+            let vector = |v: [f64; 2]| format!("({}, {})", number(v[0]), number(v[1]));
+            let sentence = format!("{what} is {} in place of {}", vector(found), vector(wanted));
+            vec![Finding::new(name.clone(), Some(found[0].hypot(found[1])), Some(wanted[0].hypot(wanted[1])), sentence)]
+        });
+    }
+}
+
+/// Body forces with rows and columns of their gradient exchanged.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let of_body = |(b, body): (usize, &Body)| {
+        let [[_, xy], [yx, _]] = body.body_force.given().gradient;
+        if xy == yx {
+            return None;
+        }
+        let more = BodyForce::affine(Affine { value: [0.0; 2], gradient: [[0.0, yx - xy], [xy - yx, 0.0]] });
+        let change = space.column(of_body(space, b, &more).iter().map(|f| f.map(|x| -x)).collect());
+        let sentence = format!("rows and columns of the gradient of the body force of {} are exchanged", body.name);
+        let finding = Finding::new(format!("body/{}/gradient/body_force", body.name), None, None, sentence);
+        Some(Trial { rank: 1, left: space.left_with(&change), findings: vec![finding] })
+    };
+    space.problem().scene.bodies.iter().enumerate().filter_map(of_body).collect()
+}
+
+/// The parts of a force that is not the same everywhere, each with a factor of its own, where there are several.
+fn parts<'a>(space: &'a Space<'a>, b: usize, terms: &mut Terms<'a>) {
+    let body = &space.problem().scene.bodies[b];
+    let Affine { value, gradient } = body.body_force.given();
+    let rotation = body.body_force.rotation().map(|rotation| BodyForce::NONE.with_rotation(rotation));
+    let all = [
+        ("value", "the constant part of the body force of", BodyForce::constant(value)),
+        ("gradient", "the gradient of the body force of", BodyForce::affine(Affine { value: [0.0; 2], gradient })),
+        ("rotation", "the rotation of", rotation.unwrap_or(BodyForce::NONE)),
+    ];
+    let present: Vec<_> = all.into_iter().filter(|(_, _, force)| !force.is_none()).collect();
+    if present.len() < 2 {
+        return;
+    }
+    for (key, what, force) in present {
+        let column = space.column(of_body(space, b, &force).iter().map(|f| f.map(|x| -x)).collect());
+        let (name, what) = (format!("body/{}/{key}/body_force", body.name), format!("{what} {}", body.name));
+        terms.push(2, vec![column], move |x| {
+            vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))]
+        });
+    }
+}
+
+/// What is wrong with the components of the traction on `on`; `parts` say which component acts in which direction.
+fn components(on: &str, given: [bool; 2], parts: &[[usize; 2]], x: &[f64]) -> Vec<Finding> {
+    let axis = ["x", "y"];
+    let factor_of = |from: usize, to: usize| {
+        let own = if from == to { 1.0 } else { 0.0 };
+        parts.iter().position(|p| *p == [from, to]).map_or(0.0, |k| own + x[k])
+    };
+    let (same, crossed) = ([0, 1].map(|c| factor_of(c, c)), [factor_of(0, 1), factor_of(1, 0)]);
+    let zero = |values: [f64; 2]| (0..2).all(|c| !given[c] || values[c].abs() < NONE);
+    let one = |values: [f64; 2]| (0..2).all(|c| !given[c] || near(values[c], 1.0));
+    if zero(same) && one(crossed) {
+        let sentence = format!("x and y of the load on {on} are exchanged");
+        return vec![Finding::new(format!("load/{on}/axes"), None, None, sentence)];
+    }
+    let mut findings = Vec::new();
+    for c in (0..2).filter(|c| given[*c]) {
+        if !near(same[c], 1.0) {
+            let sentence = factor(&format!("component {} of the load on {on}", axis[c]), same[c]);
+            findings.push(Finding::new(format!("load/{on}/{}", axis[c]), Some(same[c]), Some(1.0), sentence));
+        }
+        if crossed[c].abs() >= NONE {
+            let (from, to) = (axis[c], axis[1 - c]);
+            let sentence = format!("component {from} of the load on {on} acts {} times along {to}", number(crossed[c]));
+            findings.push(Finding::new(format!("load/{on}/{from}{to}"), Some(crossed[c]), Some(0.0), sentence));
+        }
+    }
+    findings
+}
+
+/// Nodal forces of the traction on one boundary.
+fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
+    let (problem, mesh) = (space.problem(), &space.problem().mesh);
+    let vertices = mesh.points.len();
+    let mut forces = vec![[0.0; 2]; space.count()];
+    let quadratic = space.count() > vertices;
+    for e in mesh.boundary(on) {
+        let Condition::Traction([pa, pb]) = problem.conditions[e] else { continue };
+        let part = problem.scene.thickness * mesh.edge_frame(e).0 / 6.0;
+        let [a, b] = mesh.edges[e].vertices;
+        for c in 0..2 {
+            let [at_a, at_b] = match quadratic {
+                true => [pa[c], pb[c]],
+                false => [2.0 * pa[c] + pb[c], pa[c] + 2.0 * pb[c]],
+            };
+            forces[a][c] += part * at_a;
+            forces[b][c] += part * at_b;
+            if quadratic {
+                forces[vertices + e][c] += 2.0 * part * (pa[c] + pb[c]);
+            }
+        }
+    }
+    forces
+}
+
+/// Nodal forces of a body force in one body.
+fn of_body(space: &Space<'_>, body: usize, force: &BodyForce) -> Vec<[f64; 2]> {
+    let (problem, mesh) = (space.problem(), &space.problem().mesh);
+    let mut forces = vec![[0.0; 2]; space.count()];
+    for t in (0..mesh.triangles.len()).filter(|t| mesh.body[*t] == body) {
+        let Some(cell) = space.counted(t) else { continue };
+        if let Some(cell) = cell {
+            for (node, f) in cell.nodes.iter().zip(cells::load(&cell.field, force)) {
+                (0..2).for_each(|c| forces[*node][c] += problem.scene.thickness * f[c]);
+            }
+            continue;
+        }
+        let nodes = space.nodes(t);
+        let shares =
+            force.on(mesh.corners(t)).of_area(problem.scene.thickness * mesh.area(t)).at_nodes(nodes.len() > 3);
+        for (node, f) in nodes.iter().zip(shares) {
+            (0..2).for_each(|c| forces[*node][c] += f[c]);
+        }
+    }
+    forces
+}

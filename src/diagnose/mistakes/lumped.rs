@@ -1,0 +1,107 @@
+//! Loads that are shared among nodes by hand where shape functions would share them.
+
+use crate::diagnose::space::Space;
+use crate::diagnose::{Finding, Trial};
+use crate::problem::{Condition, Problem};
+
+/// How a load is shared.
+#[derive(Clone, Copy)]
+struct Shares {
+    /// In words.
+    what: &'static str,
+    /// Parts of a traction for the two ends and the middle of an edge.
+    edge: [f64; 3],
+    /// Whether ends have their own value of the traction, and not the mean of the edge.
+    own: bool,
+    /// Parts of a body force for each corner and each middle of a triangle.
+    triangle: [f64; 2],
+}
+
+const LINEAR: [Shares; 2] = [
+    Shares { what: "half of each edge at its own value", edge: [0.5, 0.5, 0.0], own: true, triangle: [1.0 / 3.0, 0.0] },
+    Shares { what: "half of the mean of each edge", edge: [0.5, 0.5, 0.0], own: false, triangle: [1.0 / 3.0, 0.0] },
+];
+const QUADRATIC: [Shares; 3] = [
+    Shares {
+        what: "a third of each edge",
+        edge: [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+        own: false,
+        triangle: [1.0 / 6.0, 1.0 / 6.0],
+    },
+    Shares {
+        what: "a quarter, a half, a quarter of each edge",
+        edge: [0.25, 0.25, 0.5],
+        own: true,
+        triangle: [0.0, 1.0 / 3.0],
+    },
+    Shares { what: "all of it at the ends of edges", edge: [0.5, 0.5, 0.0], own: true, triangle: [1.0 / 3.0, 0.0] },
+];
+
+/// Every way of sharing all tractions, all body forces, or both.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let problem = space.problem();
+    let all: &[Shares] = if space.count() > problem.mesh.points.len() { &QUADRATIC } else { &LINEAR };
+    let mut trials = Vec::new();
+    for shares in all {
+        let [edges, bodies] = [tractions(space, shares), body_forces(space, shares)];
+        let both: Vec<[f64; 2]> = edges.iter().zip(&bodies).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect();
+        let named =
+            [(edges, "edges", "tractions are"), (bodies, "bodies", "body forces are"), (both, "all", "loads are")];
+        for (forces, key, what) in named {
+            let column = space.column(forces);
+            if column.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            let sentence =
+                format!("{what} lumped at the nodes, {}, and are not the consistent nodal forces", shares.what);
+            let findings = vec![Finding::new(format!("loads/lumped-{key}"), None, None, sentence)];
+            trials.push(Trial { rank: if key == "all" { 2 } else { 1 }, left: space.left_with(&column), findings });
+        }
+    }
+    trials
+}
+
+/// Consistent forces of the tractions less those that are shared as `shares` say.
+fn tractions(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
+    let problem: &Problem = space.problem();
+    let mesh = &problem.mesh;
+    let quadratic = space.count() > mesh.points.len();
+    let mut forces = vec![[0.0; 2]; space.count()];
+    for (e, condition) in problem.conditions.iter().enumerate() {
+        let Condition::Traction(values) = condition else { continue };
+        let length = problem.scene.thickness * mesh.edge_frame(e).0;
+        let [a, b] = mesh.edges[e].vertices;
+        let nodes = [Some(a), Some(b), quadratic.then_some(mesh.points.len() + e)];
+        for c in 0..2 {
+            let [pa, pb] = values.map(|p| p[c]);
+            let mean = 0.5 * (pa + pb);
+            let consistent = match quadratic {
+                true => [pa / 6.0, pb / 6.0, 2.0 / 3.0 * mean],
+                false => [(2.0 * pa + pb) / 6.0, (pa + 2.0 * pb) / 6.0, 0.0],
+            };
+            let given = if shares.own { [pa, pb, mean] } else { [mean; 3] };
+            for k in 0..3 {
+                if let Some(node) = nodes[k] {
+                    forces[node][c] += length * (consistent[k] - shares.edge[k] * given[k]);
+                }
+            }
+        }
+    }
+    forces
+}
+
+/// The same of the body forces.
+fn body_forces(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
+    let problem = space.problem();
+    let mesh = &problem.mesh;
+    let mut forces = vec![[0.0; 2]; space.count()];
+    for t in 0..mesh.triangles.len() {
+        let force = problem.force_on(t).of_area(problem.scene.thickness * mesh.area(t));
+        let (whole, nodes) = (force.resultant(), space.nodes(t));
+        for (k, (node, consistent)) in nodes.iter().zip(force.at_nodes(nodes.len() > 3)).enumerate() {
+            let given = shares.triangle[usize::from(k >= 3)];
+            (0..2).for_each(|c| forces[*node][c] += consistent[c] - given * whole[c]);
+        }
+    }
+    forces
+}

@@ -1,0 +1,119 @@
+//! Wrong springs, elastic layers and elastic contact.
+
+use crate::compare::forces::springs::{Part, spring_forces};
+use crate::diagnose::fit::Terms;
+use crate::diagnose::space::Space;
+use crate::diagnose::words::{factor, near, number};
+use crate::diagnose::{Finding, Trial};
+use crate::problem::{Bed, OneSided};
+
+const DIRECTIONS: [&str; 2] = ["normal", "tangential"];
+
+/// What a bed is called in names and in sentences.
+struct Called {
+    /// `support/foot`, `bond/a|b` or `contact/a|b`.
+    name: String,
+    /// `the springs on foot` and the like.
+    what: String,
+}
+
+impl Called {
+    fn of(bed: &Bed) -> Self {
+        let (name, elastic) = (&bed.name, bed.pairs.iter().any(|pair| pair.contact.is_some()));
+        match (elastic, bed.is_layer()) {
+            (true, _) => Called { name: format!("contact/{name}"), what: format!("contact {name}") },
+            (false, true) => Called { name: format!("bond/{name}"), what: format!("the layer {name}") },
+            (false, false) => Called { name: format!("support/{name}"), what: format!("the springs on {name}") },
+        }
+    }
+}
+
+/// Gaps of elastic contact that are mistaken most often, as factors on those of the scene.
+const GAPS: [(f64, &str); 3] = [(0.0, "is ignored"), (2.0, "counts twice"), (-1.0, "has the opposite sign")];
+
+/// Elastic contact with another gap.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let beds = space.problem().beds.iter();
+    let elastic = beds.filter(|bed| bed.pairs.iter().any(|pair| pair.contact.is_some_and(has_gap)));
+    let of_bed = |bed: &Bed| -> Vec<Trial> {
+        let (name, k) = (&bed.name, bed.stiffness[0]);
+        let own = column(space, bed, 0, Part::Own);
+        let other = |(factor, words): (f64, &str)| {
+            let made = column(space, bed, 0, Part::WithGap(factor));
+            let change: Vec<f64> = made.iter().zip(&own).map(|(made, own)| k * (made - own)).collect();
+            let sentence = format!("the gap of contact {name} {words}");
+            let finding = Finding::new(format!("contact/{name}/gap"), Some(factor), Some(1.0), sentence);
+            Trial { rank: 1, left: space.left_with(&change), findings: vec![finding] }
+        };
+        GAPS.map(other).into()
+    };
+    elastic.flat_map(of_bed).collect()
+}
+
+fn has_gap(contact: OneSided) -> bool {
+    contact.gap().iter().any(|g| *g != 0.0)
+}
+
+/// Forces per unit of stiffness, as they can be held against the residual.
+fn column(space: &Space<'_>, bed: &Bed, direction: usize, part: Part) -> Vec<f64> {
+    let of = (space.solution.candidate.degree.min(2), space.count());
+    let value = |node: usize| space.solution.candidate.value(node);
+    space.column(spring_forces(space.problem(), bed, direction, part, of, value))
+}
+
+/// Stiffnesses that are off, exchanged or missing, and springs that act where they should not.
+pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    for bed in &space.problem().beds {
+        let Called { name, what } = Called::of(bed);
+        let own = [0, 1].map(|c| column(space, bed, c, Part::Own));
+        let times = |c: usize| -> Vec<f64> { own[c].iter().map(|f| bed.stiffness[c] * f).collect() };
+        let given = bed.stiffness;
+        let resist = [0, 1].map(|c| given[c] > 0.0);
+        for c in (0..2).filter(|c| resist[*c]) {
+            let alone = !resist[1 - c];
+            let (name, what) = match alone {
+                true => (format!("{name}/stiffness"), format!("the stiffness of {what}")),
+                false => (format!("{name}/{}", DIRECTIONS[c]), format!("the {} stiffness of {what}", DIRECTIONS[c])),
+            };
+            terms.push(1, vec![times(c)], move |x| {
+                let s = 1.0 + x[0];
+                vec![Finding::new(name.clone(), Some(s * given[c]), Some(given[c]), factor(&what, s))]
+            });
+        }
+        if resist == [true; 2] {
+            let both = times(0).iter().zip(times(1)).map(|(a, b)| a + b).collect();
+            let (name, what) = (format!("{name}/stiffness"), format!("the stiffness of {what}"));
+            let told = (name.clone(), what.clone());
+            terms.push(1, vec![both], move |x| {
+                vec![Finding::new(told.0.clone(), Some(1.0 + x[0]), Some(1.0), factor(&told.1, 1.0 + x[0]))]
+            });
+            terms.push(2, vec![times(0), times(1)], move |x| {
+                let found = [0, 1].map(|c| (1.0 + x[c]) * given[c]);
+                let [normal, tangential] = found.map(number);
+                let mut sentence = format!("{what} is [{normal}, {tangential}]");
+                if near(found[0], given[1]) && near(found[1], given[0]) {
+                    sentence += ": normal and tangential are exchanged";
+                }
+                let at = |c: usize| Finding::new(name.clone(), Some(found[c]), Some(given[c]), sentence.clone());
+                vec![at(usize::from(near(found[0], given[0])))]
+            });
+        } else if let Some(c) = (0..2).find(|c| !resist[*c] && bed.pairs.iter().all(|pair| pair.contact.is_none())) {
+            let (name, what) = (format!("{name}/{}", DIRECTIONS[c]), what.clone());
+            let direction = ["along their normal", "along the boundary"][c];
+            terms.push(2, vec![own[c].clone()], move |x| {
+                let sentence = format!("{what} resist {direction} too, with the stiffness {}", number(x[0]));
+                vec![Finding::new(name.clone(), Some(x[0]), Some(0.0), sentence)]
+            });
+        }
+        if bed.pairs.iter().any(|pair| pair.contact.is_some()) {
+            let pulling = column(space, bed, 0, Part::Pulling).iter().map(|f| given[0] * f).collect();
+            terms.push(1, vec![pulling], move |x| {
+                let mut sentence = format!("{what} pulls where it is open");
+                if !near(x[0], 1.0) {
+                    sentence += &format!(", with {} times its stiffness", number(x[0]));
+                }
+                vec![Finding::new(format!("{name}/pulling"), Some(x[0]), Some(0.0), sentence)]
+            });
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! Mistakes in models of bodies of revolution: those of the axis, and constants and loads that are off by a number.
+
+use std::f64::consts::TAU;
+
+use super::material;
+use crate::bounds::Sum;
+use crate::compare::forces::turned;
+use crate::compare::forces::turned::{Rule, add_traction};
+use crate::diagnose::Finding;
+use crate::diagnose::Trial;
+use crate::diagnose::fit::Terms;
+use crate::diagnose::space::{Moduli, Space};
+use crate::diagnose::words::{factor, near, number};
+use crate::problem::Problem;
+
+/// How a model counts points and the hoop.
+#[derive(Clone, Copy)]
+struct Model {
+    /// Whether integrals carry the weight r; else its mean.
+    weighted: bool,
+    /// Whether there is a hoop strain.
+    hoop: bool,
+}
+
+const RIGHT: Model = Model { weighted: true, hoop: true };
+
+/// Stress (rr, zz, tt, rz) of a strain, of the material of a body; `None` where it has no part.
+type Law<'a> = dyn Fn(usize, [f64; 4]) -> Option<[f64; 4]> + 'a;
+
+/// What makes columns of a body of revolution.
+struct Columns<'a> {
+    space: &'a Space<'a>,
+    rule: Rule,
+    /// ∫ r over ∫ 1, of all bodies.
+    mean: f64,
+}
+
+/// The mistakes that are linear in nothing: the weight and the hoop.
+pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let Some(columns) = Columns::new(space) else { return Vec::new() };
+    let materials = space.problem().materials();
+    let own = |body: usize, e: [f64; 4]| Some(materials[body].revolved().stress(e));
+    let loads = [true, false].map(|weighted| space.column(columns.loads(None, weighted)));
+    let trial = |name: &str, model: Model, weighted: bool, sentence: &str| {
+        let stiffness = space.column(columns.stresses(&own, model));
+        let load = &loads[usize::from(!weighted)];
+        // In which unit of length or angle loads are counted is another question.
+        let scale = if weighted { 1.0 } else { columns.fitted(&stiffness, load) };
+        let rest: f64 = stiffness.iter().zip(load).map(|(k, f)| (k - scale * f).powi(2)).sum();
+        Trial { rank: 0, left: rest / space.square, findings: vec![Finding::new(name, None, None, sentence)] }
+    };
+    vec![
+        trial("revolution/hoop", Model { hoop: false, ..RIGHT }, true, "the hoop strain u_r/r is left out"),
+        trial(
+            "revolution/plane-strain",
+            Model { hoop: false, weighted: false },
+            false,
+            "plane strain stands in place of a body of revolution",
+        ),
+        trial(
+            "revolution/weight",
+            Model { weighted: false, ..RIGHT },
+            false,
+            "the radius (the r of 2πr) is left out of all integrals",
+        ),
+        trial(
+            "revolution/weight-of-stiffness",
+            Model { weighted: false, ..RIGHT },
+            true,
+            "the radius is left out of the integrals of the stiffness",
+        ),
+        trial("revolution/weight-of-loads", RIGHT, false, "the radius is left out of the integrals of the loads"),
+    ]
+}
+
+/// Constants and loads that are off by a number.
+pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    let Some(columns) = Columns::new(space) else { return };
+    let bodies = &space.problem().scene.bodies;
+    let negative = |forces: Vec<[f64; 2]>| space.column(forces.into_iter().map(|f| f.map(|x| -x)).collect());
+    let part = |at: usize, law: &dyn Fn([f64; 4]) -> [f64; 4]| {
+        space.column(columns.stresses(&|body, e| (body == at).then(|| law(e)), RIGHT))
+    };
+    let tractions = &space.problem().scene.tractions;
+    let several = tractions.len() + bodies.iter().filter(|body| !body.body_force.is_none()).count() > 1;
+    let all = |name: String, what: String, s: f64| {
+        let mut sentence = factor(&what, s);
+        if near(s, TAU) || near(s, 1.0 / TAU) {
+            sentence += ", as if 2π were left out on one side";
+        } else if s.abs() > NONE {
+            sentence += &format!(" (or every Young's modulus {} times)", number(1.0 / s));
+        }
+        vec![Finding::new(name, Some(s), Some(1.0), sentence)]
+    };
+    terms.push(1, vec![negative(columns.loads(None, true))], move |x| {
+        all("loads".into(), "every load".into(), 1.0 + x[0])
+    });
+    for traction in tractions.iter().filter(|_| several) {
+        let on = &traction.on;
+        terms.push(1, vec![negative(columns.loads(Some(on), true))], move |x| {
+            let sentence = factor(&format!("the load on {on}"), 1.0 + x[0]);
+            vec![Finding::new(format!("load/{on}"), Some(1.0 + x[0]), Some(1.0), sentence)]
+        });
+    }
+    let shear =
+        |body: usize, e: [f64; 4]| Some([0.0, 0.0, 0.0, space.problem().material(body).revolved().stress(e)[3]]);
+    terms.push(1, vec![space.column(columns.stresses(&shear, RIGHT))], |x| {
+        let sentence = factor("the shear stiffness of every body", 1.0 + x[0]);
+        vec![Finding::new("stiffness/shear", Some(1.0 + x[0]), Some(1.0), sentence)]
+    });
+    for (b, body) in bodies.iter().enumerate().take(material::MOST_BODIES) {
+        let law = space.problem().material(b).revolved();
+        let own = move |e: [f64; 4]| law.stress(e);
+        if bodies.len() > 1 {
+            terms.push(1, vec![part(b, &own)], move |x| {
+                let s = 1.0 + x[0];
+                let (name, what, given) = match body.elasticity.isotropic() {
+                    Some([young, _]) => ("young", "Young's modulus", young),
+                    None => ("stiffness", "the stiffness", 1.0),
+                };
+                let sentence = factor(&format!("{what} of {}", body.name), s);
+                vec![Finding::new(format!("body/{}/{name}", body.name), Some(s * given), Some(given), sentence)]
+            });
+        }
+        let Some(given) = body.elasticity.isotropic() else { continue };
+        let Moduli { lambda, mu, .. } = Moduli::of_body(space.problem(), body);
+        let of_lambda = part(b, &|e| [1.0, 1.0, 1.0, 0.0].map(|i| i * (e[0] + e[1] + e[2])));
+        let of_mu = part(b, &|e| e.map(|e| 2.0 * e));
+        let kinematics = space.problem().scene.kinematics;
+        terms.push(2, vec![of_lambda, of_mu], move |x| {
+            let [young, found] = Moduli::engineering(kinematics, lambda + x[0], mu + x[1]);
+            material::told(body, [young, found], given)
+        });
+    }
+}
+
+/// Factors that are smaller than this are none.
+const NONE: f64 = 5e-3;
+
+impl<'a> Columns<'a> {
+    fn new(space: &'a Space<'a>) -> Option<Self> {
+        let (problem, rule) = (space.problem(), space.solution.rule?);
+        let mesh = &problem.mesh;
+        let over = |of: &dyn Fn(usize) -> f64| (0..mesh.triangles.len()).map(of).collect::<Sum>().value();
+        let volume = over(&|t| problem.section().volume(mesh.corners(t)));
+        Some(Columns { space, rule, mean: volume / over(&|t| mesh.area(t)) })
+    }
+
+    fn problem(&self) -> &'a Problem {
+        self.space.problem()
+    }
+
+    /// The scale s for which `stiffness` − s `load` is least.
+    fn fitted(&self, stiffness: &[f64], load: &[f64]) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let square = dot(load, load);
+        if square > 0.0 { dot(stiffness, load) / square } else { 0.0 }
+    }
+
+    /// ∫ s:e(φ) of the nodes.
+    fn stresses(&self, law: &Law<'_>, model: Model) -> Vec<[f64; 2]> {
+        let candidate = self.space.solution.candidate;
+        let mut forces = vec![[0.0; 2]; self.space.count()];
+        let materials = self.problem().materials();
+        turned::points(self.problem(), candidate, self.rule, |at| {
+            let mut e = at.elastic(&materials[at.body]).0;
+            if !model.hoop {
+                e[2] = 0.0;
+            }
+            let Some(mut s) = law(at.body, e) else { return };
+            if !model.hoop {
+                s[2] = 0.0;
+            }
+            let weight = at.weight * if model.weighted { at.radius } else { self.mean };
+            for (i, &node) in at.nodes.iter().enumerate() {
+                let own = at.force(i, s);
+                (0..2).for_each(|c| forces[node][c] += weight * own[c]);
+            }
+        });
+        forces
+    }
+
+    /// The loads on one boundary, or all.
+    fn loads(&self, on: Option<&str>, weighted: bool) -> Vec<[f64; 2]> {
+        let (problem, candidate) = (self.problem(), self.space.solution.candidate);
+        let mut loads = vec![[0.0; 2]; self.space.count()];
+        for (e, ends) in problem.tractions() {
+            if on.is_none_or(|on| problem.mesh.boundary(on).contains(&e)) {
+                let mean = || ends.map(|end| end.map(|t| self.mean * t)).to_vec();
+                let traction = if weighted { problem.weighted(e, ends) } else { mean() };
+                add_traction(problem, candidate, (e, &traction), &mut loads);
+            }
+        }
+        if on.is_none() {
+            let section = problem.section();
+            turned::points(problem, candidate, self.rule, |at| {
+                let force = problem.body_force(at.triangle);
+                let ([a, b], [_, axial]) = (section.radial(force), section.forces(force));
+                let weight = at.weight * if weighted { at.radius } else { self.mean };
+                for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
+                    loads[node][0] += weight * value * (a + b * at.radius);
+                    loads[node][1] += weight * value * axial;
+                }
+            });
+        }
+        loads
+    }
+}

@@ -1,0 +1,137 @@
+//! Refinement and contact state in turn.
+//!
+//! S is what elimination leaves of K, and where a body rests on a small part of its contact most digits of the softest
+//! motion are gone: the state that S gives may be one that the refined stresses do not bear out. Their normal tractions
+//! and jumps tell, and the same S with the remainder for a load gives the change of state: an error of S in the hundredth
+//! part costs a step, and no accuracy.
+
+use super::ends::{Ends, next_state};
+use super::schur::{ContactState, Schur};
+use crate::dual::DualError;
+use crate::dual::equilibrium::{Equilibrium, load_scale};
+use crate::dual::hybrid::parameters;
+use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
+use crate::dual::system::System;
+use crate::dual::system::reduced::Reduced;
+use crate::element::{SideValues, StressField};
+use crate::problem::{Problem, Scales};
+
+/// Changes of the contact state at most.
+const MOST_CHANGES: usize = 12;
+/// Tension and penetration, relative as in [`Ends`], where the changes have come to an end: more is no contact state.
+const UNSETTLED: f64 = 1e-8;
+
+/// Part of what is allowed below which remainders on the unknowns need no measure on the stresses: the two differ by the shape of triangles.
+const CLEAR: f64 = 1e-3;
+
+/// What is settled, and with what.
+pub struct Settling<'a> {
+    /// The scene.
+    pub problem: &'a Problem,
+    /// Its assembled form.
+    pub system: &'a System,
+    /// Its factor.
+    pub reduced: &'a Reduced,
+    /// The problem on Γ_K.
+    pub contact: &'a Schur<'a>,
+    /// What contact states are held against.
+    pub ends: Ends<'a>,
+    /// Limit of refinements for one state.
+    pub most_steps: usize,
+}
+
+impl Settling<'_> {
+    /// Refines `now` until stresses and contact state agree.
+    ///
+    /// # Errors
+    /// [`DualError::ContactUndetermined`], also where ends keep opening and closing, or what the contact problem returns.
+    pub fn run(&self, mut now: Refined, state: &mut ContactState) -> Result<Refined, DualError> {
+        now = self.refined(now, &state.closed)?;
+        for _ in 0..MOST_CHANGES {
+            let next = next_state(&state.closed, &self.misses(&now, &state.closed));
+            if next == state.closed || self.most_steps == 0 {
+                return Ok(now);
+            }
+            let jumps = &now.x[self.system.unknowns.first_jump..];
+            let room: Vec<f64> = self.system.jump_bound.iter().zip(jumps).map(|(g, j)| g - j).collect();
+            let (y, c) = self.reduced.condense(&now.r);
+            let change = self.contact.solve(&c, &room, Some(&next))?;
+            let d = self.reduced.expand(y, &change.jumps);
+            let ds = parameters(self.problem, self.system, &d, false);
+            now.add(self.problem, self.system, 1.0, &d, &ds);
+            state.steps += change.steps;
+            state.closed = change.closed;
+            now = self.refined(now, &state.closed)?;
+        }
+        let left = self.misses(&now, &state.closed).into_iter().fold(0.0, f64::max);
+        if left <= UNSETTLED {
+            return Ok(now);
+        }
+        Err(DualError::ContactUndetermined)
+    }
+
+    /// Refuses stresses that leave more of the loads than `allowed`, relative as in [`Equilibrium`].
+    ///
+    /// # Errors
+    /// [`DualError::Factorisation`] where rounding had left nothing of a pivot, otherwise [`DualError::NotConverged`].
+    pub fn accept(
+        &self,
+        now: &Refined,
+        stress: &StressField,
+        moments: &SideValues<[f64; 2]>,
+        state: &ContactState,
+        allowed: f64,
+    ) -> Result<(), DualError> {
+        let fixed = self.reduced.fixed(&state.closed);
+        let first = self.system.unknowns.first_jump;
+        let left = now.r.iter().zip(&fixed).enumerate().fold(0.0_f64, |m, (i, (r, fixed))| match (fixed, i >= first) {
+            (false, _) => m.max(r.abs()),
+            (true, true) => m.max(-r),
+            (true, false) => m,
+        });
+        // The measure itself takes longer; where the remainders are very small against the load, it can only agree. A
+        // sum notices what a maximum passes over: values that are not numbers.
+        let numbers = now.r.iter().sum::<f64>().is_finite();
+        if numbers && left <= CLEAR * allowed * load_scale(&Scales::new(self.problem), || stress.clone()) {
+            return Ok(());
+        }
+        let residual = Equilibrium::measure(self.problem, stress, moments).residual();
+        if numbers && residual <= allowed {
+            return Ok(());
+        }
+        Err(self.reduced.breakdown(self.problem, self.system).unwrap_or(DualError::NotConverged {
+            method: "refinement of the stresses",
+            iterations: state.steps,
+            residual,
+            wanted: allowed,
+            advice: "triangles are too flat, or a body rests on too small a part of its contact, for the digits that \
+                     numbers have; refine the mesh there"
+                .to_string(),
+        }))
+    }
+
+    /// The least energy with the present contact state.
+    fn refined(&self, now: Refined, closed: &[bool]) -> Result<Refined, DualError> {
+        let no_move = vec![0.0; closed.len()];
+        let correction = |r: &[f64]| {
+            let (y, c) = self.reduced.condense(r);
+            let jumps = self.contact.with_closed(&c, &no_move, closed).ok_or(DualError::ContactUndetermined)?;
+            Ok(self.reduced.expand(y, &jumps))
+        };
+        let refinement = Refinement {
+            problem: self.problem,
+            system: self.system,
+            fixed: &self.reduced.fixed(closed),
+            solve: &correction,
+            enough: ROUND_OFF,
+            most_steps: self.most_steps,
+        };
+        refinement.run(now)
+    }
+
+    /// By how much each end misses its state, penetration relative to the largest jump or gap.
+    fn misses(&self, now: &Refined, closed: &[bool]) -> Vec<f64> {
+        let jumps = &now.x[self.system.unknowns.first_jump..];
+        self.ends.misses(now, closed, &self.contact.allowed(jumps, &self.system.jump_bound, 1.0))
+    }
+}

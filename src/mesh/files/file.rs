@@ -1,0 +1,50 @@
+//! Opening a mesh file with the reader that its name asks for.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::{abaqus, foreign, gmsh};
+use crate::mesh::{MeshError, RawMesh};
+use crate::scene::Note;
+
+/// Reads a mesh file: Gmsh's `.msh` and Abaqus's `.inp` natively, everything else in a Python process, which is given at most `limit`.
+///
+/// # Errors
+/// [`MeshError`] when it does not exist, is no regular file, or does not follow its format.
+pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshError> {
+    let kind = std::fs::metadata(file).map_err(|e| {
+        MeshError::file(file, format!("cannot be opened: {e}"), "the path in mesh.file is relative to the scene file")
+    })?;
+    if kind.is_dir() && file.join("mesh.nodes").is_file() {
+        return foreign::read(file, limit);
+    }
+    if kind.is_dir() {
+        return Err(MeshError::file(file, "this is a directory", "give the path of the mesh file in it"));
+    }
+    if !kind.is_file() {
+        return Err(MeshError::file(file, "this is not a regular file", "write the mesh into a file"));
+    }
+    let bytes = || {
+        std::fs::read(file).map_err(|e| MeshError::file(file, format!("cannot be read: {e}"), "check its permissions"))
+    };
+    match file.extension().map(|extension| extension.to_ascii_lowercase()) {
+        Some(extension) if extension == "msh" => match bytes()? {
+            text if others(&text) => foreign::read(file, limit),
+            text => gmsh::parse(&text, file),
+        },
+        Some(extension) if extension == "inp" => abaqus::parse(&bytes()?, file),
+        _ => foreign::read(file, limit),
+    }
+}
+
+/// Whether a `.msh` file is not Gmsh's: FreeFEM's begins with three counts, GiD's with `MESH`, GetFEM's with a comment, and Fluent's with a bracket.
+fn others(text: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&text[..text.len().min(4000)]);
+    let first = head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+    let words: Vec<&str> = first.split_whitespace().collect();
+    let counts = words.len() == 3 && words.iter().all(|word| word.parse::<usize>().is_ok());
+    counts
+        || first.starts_with('(')
+        || first.to_ascii_lowercase().starts_with("mesh ")
+        || head.contains("BEGIN POINTS LIST")
+}

@@ -1,0 +1,9 @@
+//! Mesh files: opened by the reader that their name asks for, and made one mesh.
+
+pub(super) mod abaqus;
+pub(super) mod content;
+pub(super) mod file;
+pub mod foreign;
+pub mod gmsh;
+pub(crate) mod meshio;
+pub(super) mod parts;

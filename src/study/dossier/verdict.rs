@@ -1,0 +1,85 @@
+//! The verdict in words.
+
+use super::{Findings, in_numbers};
+use crate::cause::Cause;
+use crate::report::text::number::{digits_to_tell, percent, significant};
+use crate::report::{Energy, Status};
+
+/// The verdict in one sentence.
+pub(in crate::study) fn verdict(
+    findings: &Findings<'_>,
+    status: Status,
+    energy: Option<&Energy>,
+    causes: &[Cause],
+) -> String {
+    if let Some(failure) = &findings.failure {
+        return format!("No comparison was made: {failure}");
+    }
+    let failed = findings.comparison.checks.iter().filter(|c| !c.passed && c.decides());
+    let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
+    let bound = energy.map_or(String::new(), |e| {
+        let what = if e.guaranteed { "guaranteed" } else { "indicated" };
+        format!(
+            " The exact energy lies between {} and {}; the {what} relative energy-norm error is at most {}.",
+            significant(e.lower, digits_to_tell(e.lower, e.upper)),
+            significant(e.upper, digits_to_tell(e.lower, e.upper)),
+            percent(e.relative_error_bound)
+        )
+    });
+    let excused = findings.comparison.checks.iter().filter(|c| c.excused && c.decides());
+    let excused: Vec<&str> = excused.map(|c| c.name.as_str()).collect();
+    let allowances = match excused.as_slice() {
+        [] => String::new(),
+        names => format!(", with what was allowed for {}", names.join(", ")),
+    };
+    let bound = if findings.command == "certify" { of_field(findings, energy) } else { bound };
+    let told = causes.first().map_or(String::new(), |cause| format!("{} ", cause.sentence));
+    let told = match causes.len() {
+        0 | 1 => told,
+        2 => format!("{told}There is one more cause. "),
+        n => format!("{told}There are {} more causes. ", n - 1),
+    };
+    let models = findings.comparison.judged.len();
+    match (failed.as_slice(), models) {
+        ([], _) if status == Status::Undecided => {
+            format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
+        }
+        ([], 0) => {
+            format!("{}{bound}", given_values(findings).unwrap_or("Both bounds passed every check.".to_string()))
+        }
+        ([], _) if findings.command == "certify" => {
+            let claim = if findings.is_claimed { "the discrete solution it claims to be" } else { "admissible" };
+            format!("The displacement field is {claim}{allowances}, and its energy respects the bound.{bound}")
+        }
+        ([], _) => format!("The stress and displacement models agree{allowances}.{bound}"),
+        ([one], _) => format!("{told}One check failed: {one}.{bound}"),
+        (several, _) => format!("{told}{} checks failed, first {}.{bound}", several.len(), several[0]),
+    }
+}
+
+/// Says where values lie that were given without a field and passed; `None` without any.
+fn given_values(findings: &Findings<'_>) -> Option<String> {
+    let of_value = |name: &'_ str| name.strip_prefix("quantity/")?.strip_suffix("/given").map(str::to_string);
+    let names: Vec<String> = findings.comparison.checks.iter().filter_map(|check| of_value(&check.name)).collect();
+    match names.as_slice() {
+        [] => None,
+        [one] => Some(format!("The value given for {one} lies in its interval.")),
+        several => Some(format!("The values given for {} lie in their intervals.", several.join(", "))),
+    }
+}
+
+/// What is guaranteed of a field that was handed in, not of the best that the program has.
+fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
+    let sharpest = findings.finer.map_or(&findings.certified.bracket, |finer| &finer.bracket);
+    let Some((energy, judged)) = energy.zip(findings.comparison.judged.first()) else { return String::new() };
+    let name = &judged.candidate.name;
+    let of = if judged.is_admissible() { name.clone() } else { format!("the admissible field nearest to {name}") };
+    let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
+    let upper = judged.admissible.upper();
+    format!(
+        " The {what} relative energy-norm error of {of} is at most {}: its energy is {}, and the exact one is no lower than {}.",
+        percent(in_numbers(judged.relative_error(sharpest))),
+        significant(upper, digits_to_tell(energy.lower, upper)),
+        significant(energy.lower, digits_to_tell(energy.lower, upper)),
+    )
+}
