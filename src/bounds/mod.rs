@@ -8,6 +8,7 @@ mod friction;
 mod gap;
 mod jump;
 mod mid;
+pub mod oscillation;
 mod ranks;
 mod rounding;
 mod springs;

@@ -9,7 +9,7 @@ use super::contact::friction::{resist, rubs};
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
 use super::contact::softened;
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, polynomial};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::error::at;
@@ -18,16 +18,16 @@ use crate::mesh::refinement::bisect::{RefinementEdges, bisect};
 use crate::mesh::sides::concentric::Concentric;
 use crate::mesh::topology::labels::contact_names;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
-use crate::scene::{Contact, ContactSides, Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
+use crate::scene::{Contact, ContactSides, Draft, Kinematics, MeshSource, Normals, Scene, SupportKind, Traction};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
 
 /// What a boundary name stands for.
 #[derive(Clone, Copy)]
-enum Role {
+enum Role<'a> {
     Support(SupportKind),
-    Load(Load),
+    Load(&'a Traction),
     Contact,
 }
 
@@ -119,7 +119,7 @@ impl Problem {
                         direction: direction.unwrap_or_else(|| mesh.edge_frame(e).1),
                         displacement: *displacement,
                     },
-                    Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
+                    Some(Role::Load(load)) => Condition::Traction(polynomial::ends(&scene, &mesh, e, load)),
                     // Edges of contacts and springs are overwritten when they are paired.
                     Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
                         Condition::Traction([[0.0; 2]; 2])
@@ -175,7 +175,11 @@ impl Problem {
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None })
+        let mut problem = Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None };
+        let remarks = polynomial::remarks(&problem);
+        problem.notes.retain(|note| !polynomial::is_remark(note));
+        problem.notes.extend(remarks);
+        Ok(problem)
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -309,10 +313,6 @@ fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), 
 fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> {
     let refused = |what: String, remedy: &str| Err(MeshError::cells(scene, what, remedy).into());
     for body in &scene.bodies {
-        if !body.initial.is_none() {
-            let what = format!("body '{}' of revolution has an initial strain, stress or temperature", body.name);
-            return refused(what, "leave `expansion`, `temperature` and `initial_stress` out of axisymmetric scenes");
-        }
         if !section.carries(&body.body_force) {
             let what =
                 format!("the body force of '{}' of revolution varies along z, or its axial part varies", body.name);
@@ -322,6 +322,10 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
     if rubs(scene) {
         let what = "a contact of a body of revolution has friction".to_string();
         return refused(what, "leave `friction` out of axisymmetric scenes");
+    }
+    if scene.tractions.iter().any(|traction| !traction.terms.is_empty()) {
+        let what = "a traction on a body of revolution has `terms`".to_string();
+        return refused(what, "leave `terms` out of axisymmetric scenes");
     }
     let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
     let elastic = scene.contacts.iter().any(|contact| contact.stiffness.is_some());
@@ -357,21 +361,10 @@ fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
 }
 
 /// The role of every boundary that the scene mentions.
-fn roles(scene: &Scene) -> HashMap<&str, Role> {
+fn roles(scene: &Scene) -> HashMap<&str, Role<'_>> {
     let supports = scene.supports.iter().map(|s| (s.on.as_str(), Role::Support(s.kind)));
-    let loads = scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t.load)));
+    let loads = scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t)));
     let contacts = contact_names(scene).into_iter().map(|name| (name, Role::Contact));
     // A boundary of a valid scene has one condition.
     supports.chain(loads).chain(contacts).collect()
-}
-
-/// P at the two ends of edge `e`.
-fn end_tractions(mesh: &Triangulation, e: usize, load: &Load) -> [[f64; 2]; 2] {
-    match load {
-        Load::Pressure(p) => {
-            let (_, normal) = mesh.edge_frame(e);
-            [normal.map(|n| 0.0 - p * n); 2]
-        }
-        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
-    }
 }

@@ -4,6 +4,7 @@ mod bed;
 mod build;
 mod contact;
 mod error;
+mod polynomial;
 mod scales;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ pub use contact::bow::Bow;
 pub use contact::direction::Direction;
 pub use contact::friction::{Friction, rubs};
 pub use error::ProblemError;
+pub use polynomial::Oscillation;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;

@@ -66,6 +66,28 @@ def _of_meshio(mesh, name):
     return mesh.points[:, :2], cells[0], mesh.point_data[name][:, :2]
 
 
+def toml(data):
+    """The text of a scene whose tables are dictionaries; what is None is left out."""
+    return "".join(f"{json.dumps(str(key), ensure_ascii=False)} = {_toml(value, [key])}\n" for key, value in data.items() if value is not None)
+
+
+def _toml(value, place):
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, os.PathLike)):
+        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, dict):
+        entries = (f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v, [*place, k])}" for k, v in value.items() if v is not None)
+        return "{ " + ", ".join(entries) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(v, [*place, i]) for i, v in enumerate(value)) + "]"
+    raise ValueError(f"{'.'.join(map(str, place))} is a {type(value).__name__}; a scene has numbers, text, lists, arrays and dictionaries")
+
+
 def _flat(entry, prefix=""):
     """The numbers and words of an entry by name: parts with dots between, x and y of a vector, ends of an interval; no curves."""
     found = {}

@@ -28,6 +28,14 @@ fn known(error: PyErr) -> PyErr {
     )
 }
 
+/// The text of a scene whose tables are dictionaries.
+///
+/// # Errors
+/// `InputError` for values that no scene has.
+pub fn toml(data: &Bound<'_, PyDict>) -> PyResult<String> {
+    beside(data.py())?.call_method1("toml", (data,)).map_err(known)?.extract()
+}
+
 /// A list of a report as columns.
 ///
 /// # Errors

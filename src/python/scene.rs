@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyType};
 
 use super::aside::{aside, threads};
+use super::beside;
 use super::certificate::{Certificate, Claims, certify, verify};
 use super::errors::fault;
 use super::line::Line;
@@ -43,6 +44,19 @@ impl Scene {
     fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
         let path = folder.unwrap_or_default().join(format!("{name}.toml"));
         Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from)?) })
+    }
+
+    /// A scene from dictionaries and lists with the names that tables and keys have in the file: `{"model": {"kinematics": "plane-strain"},
+    /// "bodies": {"block": {"young": 1.0, "poisson": 0.3}}, …}`. Arrays are lists, and what is `None` is left out.
+    #[classmethod]
+    #[pyo3(signature = (data, name = "scene", folder = None))]
+    fn from_dict(
+        class: &Bound<'_, PyType>,
+        data: &Bound<'_, PyDict>,
+        name: &str,
+        folder: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        Self::from_text(class, &beside::toml(data)?, name, folder)
     }
 
     /// Its name, that of the file.

@@ -14,7 +14,7 @@ use super::keys::selection::written;
 use super::{
     Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, FrictionBound, Gap,
     Holder, Kinematics, Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene,
-    SceneError, Shape, Support, SupportKind, Target, Touching, Traction,
+    SceneError, Shape, Support, SupportKind, Target, Term, Touching, Traction,
 };
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
@@ -383,11 +383,19 @@ fn force(force: &BodyForce) -> String {
     }
 }
 
-fn traction(Traction { on, load }: &Traction) -> String {
+fn traction(Traction { on, load, terms }: &Traction) -> String {
     let on = quoted(on);
+    let term = |term: &Term| {
+        let [i, j] = term.powers;
+        format!("{{ powers = [{i}, {j}], value = {} }}", list(&term.value))
+    };
+    let terms = match terms[..] {
+        [] => String::new(),
+        _ => format!(", terms = [{}]", terms.iter().map(term).collect::<Vec<_>>().join(", ")),
+    };
     match load {
         Load::Affine(Affine { value, gradient }) => {
-            format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
+            format!("on = {on}, value = {}, gradient = {}{terms}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),
     }

@@ -193,6 +193,27 @@ pub struct Traction {
     pub on: String,
     /// The load.
     pub load: Load,
+    /// What it has beyond an affine one.
+    pub terms: Vec<Term>,
+}
+
+/// A term value · xⁱ yʲ of a traction, in coordinates as written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// i and j.
+    pub powers: [u8; 2],
+    /// Its factor.
+    pub value: [f64; 2],
+}
+
+impl Term {
+    /// The highest degree of terms.
+    pub const HIGHEST: u8 = 6;
+
+    /// i + j.
+    pub fn degree(&self) -> usize {
+        usize::from(self.powers[0]) + usize::from(self.powers[1])
+    }
 }
 
 /// Load on Γ_τ.

@@ -81,6 +81,10 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
     let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
+        if problem.has_polynomial_tractions() {
+            let reason = "a traction is of a higher degree than one, which edges hold but in the mean: its energy is enclosed, its quantities are not";
+            return Answer::unknown(name, Kind::Force, reason);
+        }
         if problem.has_elastic_contact() {
             return Answer::unknown(name, Kind::Force, "the scene has elastic contact");
         }

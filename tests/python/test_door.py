@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 import time
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +39,24 @@ def written(folder):
     (folder / "plate.msh").write_text(text)
     (folder / "plate.toml").write_text(PLATE)
     return folder / "plate.toml"
+
+
+def test_a_scene_of_dictionaries_is_that_of_its_file(hypercircle, tmp_path):
+    tables = tomllib.loads((CASES / "two_blocks.toml").read_text())
+    tables["title"] = 'a "title" with \\ and 摩擦 \x7f'
+    tables["model"]["thickness"] = None
+    for polygon in tables["geometry"]["polygons"]:
+        polygon["points"] = np.array(polygon["points"], dtype=float)
+    scene = hypercircle.Scene.from_dict(tables)
+    assert scene.title == tables["title"]
+    assert scene.solve().lower == hypercircle.Scene(CASES / "two_blocks.toml").solve().lower
+    with pytest.raises(hypercircle.InputError, match="poisson"):
+        hypercircle.Scene.from_dict(tables | {"bodies": {"left": {"young": 1, "poisson": 0.7}}})
+    with pytest.raises(hypercircle.InputError, match="bodies.left.young is a object"):
+        hypercircle.Scene.from_dict({"bodies": {"left": {"young": object()}}})
+    path = written(tmp_path)
+    meshed = tomllib.loads(path.read_text()) | {"mesh": {"file": tmp_path / "plate.msh"}}
+    assert hypercircle.Scene.from_dict(meshed).problem()["points"].shape == (25, 2)
 
 
 def test_verify_compares_with_fenicsx(hypercircle, tmp_path):

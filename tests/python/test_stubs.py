@@ -2,6 +2,9 @@
 
 import ast
 import inspect
+import json
+import subprocess
+import sys
 from pathlib import Path
 
 STUBS = Path(__file__).resolve().parents[2] / "hypercircle.pyi"
@@ -63,3 +66,14 @@ def test_stubs_and_module_agree(hypercircle):
 def test_types_come_with_the_package(hypercircle):
     folder = Path(hypercircle.__file__).parent
     assert (folder / "py.typed").exists() and (folder / "__init__.pyi").read_text() == STUBS.read_text()
+
+
+def test_the_tables_of_the_stubs_have_keys_of_scenes(hypercircle):
+    """Completion offers nothing that a scene does not take."""
+    schema = json.loads(subprocess.run([Path(sys.executable).parent / "hypercircle", "schema", "scene"], capture_output=True, check=True).stdout)
+    known = {"_Scene": schema} | {f"_{name}": table for name, table in schema["$defs"].items()}
+    tables = [node for node in TREE.body if isinstance(node, ast.ClassDef) and [getattr(base, "id", "") for base in node.bases] == ["TypedDict"]]
+    assert len(tables) > 10
+    for table in tables:
+        keys = {field.target.id for field in table.body}
+        assert keys <= set(known[table.name]["properties"]), table.name

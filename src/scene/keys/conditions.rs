@@ -12,11 +12,12 @@ use super::table::table_of;
 use crate::scene::reading::error::{Fault, SceneError};
 use crate::scene::reading::fault::names;
 use crate::scene::reading::raw::{
-    At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
+    At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTerm, RawTraction, Table,
 };
 use crate::scene::reading::source::{Source, counted};
 use crate::scene::{
-    Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
+    Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Term, Touching,
+    Traction,
 };
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
@@ -194,7 +195,26 @@ fn traction(raw: &At<Table<RawTraction>>, table: &str, taken: &mut Taken) -> Res
             Load::Affine(Affine { value, gradient: gradient.unwrap_or_default() })
         }
     };
-    Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load })
+    if let (Some(terms), Load::Pressure(_)) = (&traction.terms, load) {
+        let (table, other) = (table.to_owned(), "`pressure`, which is constant");
+        let remedy = "write the load as `value` and `terms`";
+        return Err(source.error(terms.span(), Fault::Misplaced { key: "terms", table, other, remedy }));
+    }
+    let terms = traction.terms.iter().flat_map(|terms| &terms.value);
+    let terms = terms.map(|raw| term(raw, table, source)).collect::<Result<_, _>>()?;
+    Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load, terms })
+}
+
+fn term(raw: &RawTerm, table: &str, source: &Source) -> Result<Term, SceneError> {
+    let powers: [f64; 2] = source.vector(&raw.powers, (table, "terms.powers"))?;
+    let total = powers[0] + powers[1];
+    if !powers.iter().all(|p| *p >= 0.0 && p.fract() == 0.0) || !(2.0..=f64::from(Term::HIGHEST)).contains(&total) {
+        let (table, key, found) = (table.to_owned(), "terms.powers".to_owned(), source.written(raw.powers.span()));
+        let rule = "powers are whole numbers that add up to 2 … 6";
+        let remedy = "write what is constant or linear as `value` and `gradient`";
+        return Err(source.error(raw.powers.span(), Fault::Number { key, table, found, rule, remedy }));
+    }
+    Ok(Term { powers: powers.map(|p| p as u8), value: source.vector(&raw.value, (table, "terms.value"))? })
 }
 
 fn matrix(
