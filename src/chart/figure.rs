@@ -92,7 +92,7 @@ pub fn error_figure(scene: &SceneChart, axis: Cost, of: Of<'_>) -> Result<String
     let mut series = Vec::new();
     let mut notes = Vec::new();
     let (least, level) = resolution(scene, of);
-    for method in Method::ALL {
+    for method in Method::all() {
         for (secondary, name) in [(false, "true"), (true, "guaranteed")] {
             let error = |plot: &Plot| {
                 let error = scene.error(plot, of, secondary);

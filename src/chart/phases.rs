@@ -28,8 +28,7 @@ const ORDER: [&str; 12] = [
 /// What the drawing library reported.
 pub fn phase_figure(scene: &SceneChart) -> Result<String, PlotError> {
     let finest = |m: Method| scene.done(m).map(|(run, _)| run.level).max();
-    let [adaptive, uniform] =
-        [true, false].map(|wanted| Method::ALL.into_iter().filter(move |m| m.is_adaptive() == wanted));
+    let [adaptive, uniform] = [true, false].map(|wanted| Method::all().filter(move |m| m.is_adaptive() == wanted));
     let level = uniform.clone().filter_map(finest).min().unwrap_or(0);
     let mut chosen: Vec<(&Run, &Plot)> = Vec::new();
     for method in uniform {

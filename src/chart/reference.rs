@@ -2,6 +2,7 @@
 
 use super::data::{Reference, SceneChart};
 use crate::measure::{Ended, Measured, Method};
+use crate::study::Adapt;
 
 /// Guaranteed relative error that the reference of a chart is refined to …
 pub const REFERENCE_ADAPTIVE: f64 = 1e-4;
@@ -85,7 +86,7 @@ impl SceneChart {
 }
 
 /// Names of the methods that a reference is made of.
-pub(super) const OF: [Method; 2] = [Method::AdaptiveHp, Method::FenicsP2];
+pub(super) const OF: [Method; 2] = [Method::Adaptive(Adapt::Hp), Method::Displacements(2)];
 
 #[cfg(test)]
 mod tests {
@@ -122,7 +123,7 @@ mod tests {
             reference: Ok(Reference { lower: -1.02, upper: -0.98, strain: 1.0, how: "first".into() }),
             cold: Vec::new(),
             // A displacement may lie below the exact energy where it is not admissible.
-            runs: vec![run(Method::Condensed, Some(-1.0001), -0.9999), run(Method::FenicsP2, None, -1.01)],
+            runs: vec![run(Method::CONDENSED, Some(-1.0001), -0.9999), run(Method::Displacements(2), None, -1.01)],
         };
         scene.sharpen();
         let reference = scene.reference.as_ref().expect("a bracket");

@@ -1,101 +1,60 @@
 //! The methods that are measured against each other.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::dual::{self, DualMethod};
+use crate::dual::Solver;
 use crate::study::Adapt;
 
 /// A way to answer a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// One sparse factorisation, contact on its Schur complement.
-    Condensed,
-    /// The same with stresses of degree 2.
-    CondensedP2,
-    /// The same with stresses of degree 3.
-    CondensedP3,
-    /// The same with stresses of degree 4.
-    CondensedP4,
-    /// Linear stresses on meshes refined where the gap is.
-    Adaptive,
-    /// Stresses whose degrees grow, on meshes refined, where the gap is.
-    AdaptiveHp,
-    /// Active set, refactorising at each step.
-    ActiveSet,
-    /// Interior point.
-    Clarabel,
-    /// The paper's iteration.
-    Uzawa,
-    /// Linear displacements.
-    FenicsP1,
-    /// Quadratic displacements.
-    FenicsP2,
-    /// Cubic displacements, beside quadratic stresses.
-    FenicsP3,
-    /// Displacements of degree 4.
-    FenicsP4,
-    /// Displacements of degree 5.
-    FenicsP5,
+    /// Equilibrated stresses of a degree on the mesh as it is.
+    Stresses(Solver, u8),
+    /// Equilibrated stresses, linear to begin with, on meshes refined where the gap is, by the condensed method.
+    Adaptive(Adapt),
+    /// FEniCSx with displacements of a degree.
+    Displacements(u8),
 }
 
-/// What a method is made of.
-pub enum Family {
-    /// Equilibrated stresses on the mesh as it is.
-    Dual(Box<dyn DualMethod>),
-    /// Equilibrated stresses on meshes, and with degrees, that are refined on the way.
-    Adaptive(Adapt, Box<dyn DualMethod>),
-    /// FEniCSx with displacements of this degree.
-    Primal(u8),
-}
+/// All methods in the order of tables, with their names in files, on the command line and in tables.
+const NAMED: [(Method, &str); 14] = [
+    (Method::CONDENSED, "condensed"),
+    (Method::Stresses(Solver::Condensed, 2), "condensed-p2"),
+    (Method::Stresses(Solver::Condensed, 3), "condensed-p3"),
+    (Method::Stresses(Solver::Condensed, 4), "condensed-p4"),
+    (Method::Adaptive(Adapt::H), "adaptive"),
+    (Method::Adaptive(Adapt::Hp), "adaptive-hp"),
+    (Method::Stresses(Solver::ActiveSet, 1), "active-set"),
+    (Method::CLARABEL, "clarabel"),
+    (Method::UZAWA, "uzawa"),
+    (Method::Displacements(1), "FEniCSx P1"),
+    (Method::Displacements(2), "FEniCSx P2"),
+    (Method::Displacements(3), "FEniCSx P3"),
+    (Method::Displacements(4), "FEniCSx P4"),
+    (Method::Displacements(5), "FEniCSx P5"),
+];
 
 impl Method {
+    /// One sparse factorisation, contact on its Schur complement, linear stresses.
+    pub const CONDENSED: Method = Method::Stresses(Solver::Condensed, 1);
+    /// Interior point, linear stresses.
+    pub const CLARABEL: Method = Method::Stresses(Solver::Clarabel, 1);
+    /// The paper's iteration.
+    pub const UZAWA: Method = Method::Stresses(Solver::Uzawa, 1);
+
     /// All of them, in the order of tables.
-    pub const ALL: [Method; 14] = [
-        Method::Condensed,
-        Method::CondensedP2,
-        Method::CondensedP3,
-        Method::CondensedP4,
-        Method::Adaptive,
-        Method::AdaptiveHp,
-        Method::ActiveSet,
-        Method::Clarabel,
-        Method::Uzawa,
-        Method::FenicsP1,
-        Method::FenicsP2,
-        Method::FenicsP3,
-        Method::FenicsP4,
-        Method::FenicsP5,
-    ];
+    pub fn all() -> impl Iterator<Item = Method> + Clone {
+        NAMED.into_iter().map(|(method, _)| method)
+    }
 
     /// Those that are run where none are named; displacements are then linear and quadratic.
     pub fn usual() -> impl Iterator<Item = Method> {
-        Self::ALL.into_iter().filter(|method| !method.is_primal() || method.degree() <= 2)
-    }
-
-    /// The displacement model of that degree.
-    pub fn primal(degree: u8) -> Option<Method> {
-        Self::ALL.into_iter().find(|method| method.is_primal() && method.degree() == usize::from(degree))
+        Self::all().filter(|method| !method.is_primal() || method.degree() <= 2)
     }
 
     /// Name in files, on the command line and in tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Method::Condensed => "condensed",
-            Method::CondensedP2 => "condensed-p2",
-            Method::CondensedP3 => "condensed-p3",
-            Method::CondensedP4 => "condensed-p4",
-            Method::Adaptive => "adaptive",
-            Method::AdaptiveHp => "adaptive-hp",
-            Method::ActiveSet => "active-set",
-            Method::Clarabel => "clarabel",
-            Method::Uzawa => "uzawa",
-            Method::FenicsP1 => "FEniCSx P1",
-            Method::FenicsP2 => "FEniCSx P2",
-            Method::FenicsP3 => "FEniCSx P3",
-            Method::FenicsP4 => "FEniCSx P4",
-            Method::FenicsP5 => "FEniCSx P5",
-        }
+        NAMED.iter().find(|(method, _)| *method == self).map_or("unnamed", |(_, name)| name)
     }
 
     /// Its name, or that of a displacement `solver` that was run in the place of FEniCSx, with the degree.
@@ -108,41 +67,20 @@ impl Method {
 
     /// The method of that name.
     pub fn of_name(name: &str) -> Option<Method> {
-        Self::ALL.into_iter().find(|m| m.name() == name)
+        NAMED.iter().find(|(_, known)| *known == name).map(|(method, _)| *method)
     }
 
-    /// Place in [`Method::ALL`].
+    /// Place in [`Method::all`].
     pub fn index(self) -> usize {
-        Self::ALL.iter().position(|m| *m == self).unwrap_or(0)
-    }
-
-    /// What it is made of.
-    pub fn family(self) -> Family {
-        match self {
-            Method::Condensed | Method::CondensedP2 | Method::CondensedP3 | Method::CondensedP4 => {
-                Family::Dual(Box::new(dual::Condensed::default()))
-            }
-            Method::Adaptive => Family::Adaptive(Adapt::H, Box::new(dual::Condensed::default())),
-            Method::AdaptiveHp => Family::Adaptive(Adapt::Hp, Box::new(dual::Condensed::default())),
-            Method::ActiveSet => Family::Dual(Box::new(dual::ActiveSet::default())),
-            Method::Clarabel => Family::Dual(Box::new(dual::Clarabel::default())),
-            Method::Uzawa => Family::Dual(Box::new(dual::Uzawa::default())),
-            Method::FenicsP1 | Method::FenicsP2 | Method::FenicsP3 | Method::FenicsP4 | Method::FenicsP5 => {
-                Family::Primal(self.degree() as u8)
-            }
-        }
+        Self::all().position(|method| method == self).unwrap_or(0)
     }
 
     /// Polynomial degree of its stresses, which an adaptive method begins with, or of its displacements where it is the displacement
     /// model.
     pub fn degree(self) -> usize {
         match self {
-            Method::Condensed | Method::Adaptive | Method::ActiveSet | Method::Clarabel | Method::Uzawa => 1,
-            Method::FenicsP1 | Method::AdaptiveHp => 1,
-            Method::CondensedP2 | Method::FenicsP2 => 2,
-            Method::CondensedP3 | Method::FenicsP3 => 3,
-            Method::CondensedP4 | Method::FenicsP4 => 4,
-            Method::FenicsP5 => 5,
+            Method::Stresses(_, degree) | Method::Displacements(degree) => usize::from(degree),
+            Method::Adaptive(_) => 1,
         }
     }
 
@@ -151,17 +89,9 @@ impl Method {
         !self.is_primal() && self.degree() > 1
     }
 
-    /// What it refines on the way to a tolerance.
-    pub fn adapt(self) -> Option<Adapt> {
-        match self.family() {
-            Family::Adaptive(adapt, _) => Some(adapt),
-            _ => None,
-        }
-    }
-
     /// Whether it refines on the way to a tolerance.
     pub fn is_adaptive(self) -> bool {
-        self.adapt().is_some()
+        matches!(self, Method::Adaptive(_))
     }
 
     /// Whether it delivers a two-sided bracket of its own.
@@ -171,7 +101,20 @@ impl Method {
 
     /// Whether it is the displacement model.
     pub fn is_primal(self) -> bool {
-        matches!(self.family(), Family::Primal(_))
+        matches!(self, Method::Displacements(_))
+    }
+}
+
+impl Serialize for Method {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Method {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Method::of_name(&name).ok_or_else(|| serde::de::Error::custom(format!("there is no method {name}")))
     }
 }
 
@@ -181,16 +124,17 @@ mod tests {
 
     #[test]
     fn every_method_is_found_by_its_name_and_place() {
-        for (i, method) in Method::ALL.into_iter().enumerate() {
+        for (i, method) in Method::all().enumerate() {
             assert_eq!(Method::of_name(method.name()), Some(method));
             assert_eq!(method.index(), i);
+            let stored = serde_json::to_string(&method).expect("a name");
+            assert_eq!(serde_json::from_str::<Method>(&stored).expect("a method"), method);
             if method.is_primal() || method.is_higher() {
                 assert!(method.name().ends_with(&method.degree().to_string()));
             }
         }
         assert_eq!(Method::of_name("newton"), None);
         let usual: Vec<Method> = Method::usual().filter(|method| method.is_primal()).collect();
-        assert_eq!(usual, [Method::FenicsP1, Method::FenicsP2]);
-        assert_eq!([1, 3, 9].map(Method::primal), [Some(Method::FenicsP1), Some(Method::FenicsP3), None]);
+        assert_eq!(usual, [1, 2].map(Method::Displacements));
     }
 }

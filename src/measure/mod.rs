@@ -16,7 +16,7 @@ mod solve;
 pub use child::{Ended, Limits, run};
 pub use clock::Clock;
 pub use machine::Machine;
-pub use method::{Family, Method};
+pub use method::Method;
 pub use record::{Answer, Asked, End, Measured, Seconds, finite_or_null};
 pub use settings::Settings;
 pub use solve::measure;

@@ -22,7 +22,7 @@ pub(super) fn displacements(
     clock: Clock,
 ) -> Vec<Measured> {
     let began = clock.elapsed();
-    let name = |degree: u8| Method::primal(degree).map_or("", Method::name);
+    let name = |degree: u8| Method::Displacements(degree).name();
     let all = |end: End| degrees.iter().map(|&d| Measured::without_answer(name(d), end.clone())).collect();
     if settings.step_length.is_some() {
         return all(End::NotApplicable("the method has no step length".to_string()));

@@ -1,13 +1,13 @@
 //! What happens inside the process: make the problem, solve it, evaluate the answer.
 
 use super::memory;
-use super::method::{Family, Method};
+use super::method::Method;
 use super::primal;
 use super::record::{Answer, Asked, End, Measured, Seconds};
 use super::{Clock, Settings};
 use crate::compare::contact::pressure::{dual_pressure, maximum, resultant, variation};
 use crate::dual::paper::{Iteration, Program};
-use crate::dual::{DualError, DualMethod, Options, Uzawa};
+use crate::dual::{DualError, DualMethod, Options, Solver, Uzawa};
 use crate::element::{Elements, block};
 use crate::problem::Problem;
 use crate::study::{self, Certified, Goal, StudyError};
@@ -24,20 +24,18 @@ pub fn measure(
     let mut results = Vec::new();
     let degrees: Vec<u8> = methods
         .iter()
-        .filter_map(|m| match m.family() {
-            Family::Primal(degree) => Some(degree),
+        .filter_map(|m| match *m {
+            Method::Displacements(degree) => Some(degree),
             _ => None,
         })
         .collect();
     for &method in methods {
-        let result = match method.family() {
-            Family::Dual(solver) => stresses(&make, method, solver.as_ref(), None, settings, clock),
-            Family::Adaptive(adapt, solver) => {
-                let goal = settings.goal(adapt);
-                stresses(&make, method, solver.as_ref(), Some(goal), settings, clock)
-            }
-            Family::Primal(_) => continue,
+        let (solver, goal) = match method {
+            Method::Stresses(solver, _) => (solver, None),
+            Method::Adaptive(adapt) => (Solver::Condensed, Some(settings.goal(adapt))),
+            Method::Displacements(_) => continue,
         };
+        let result = stresses(&make, method, solver.method().as_ref(), goal, settings, clock);
         results.push(result);
     }
     if !degrees.is_empty() {
@@ -63,7 +61,7 @@ fn stresses(
     let stepped;
     let solver: &dyn DualMethod = match settings.step_length {
         None => solver,
-        Some(_) if method != Method::Uzawa => {
+        Some(_) if method != Method::UZAWA => {
             let reason = "the method has no step length".to_string();
             return Measured::without_answer(method.name(), End::NotApplicable(reason));
         }

@@ -17,7 +17,7 @@ const BESIDE: f64 = 0.07;
 /// What the drawing library reported.
 pub fn curve(row: &Row) -> Result<String, PlotError> {
     let mut series = Vec::new();
-    let middle = 0.5 * (Method::ALL.len() - 1) as f64;
+    let middle = 0.5 * (Method::all().count() - 1) as f64;
     for cell in &row.cells {
         let beside = BESIDE * (cell.method.index() as f64 - middle);
         for (secondary, words) in [(false, "true"), (true, "guaranteed")] {

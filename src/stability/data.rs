@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measure::{Answer, Machine, Method};
+use crate::study::Adapt;
 
 /// The methods that promise a range in which they are correct.
-pub const PROMISING: [Method; 3] = [Method::Condensed, Method::Adaptive, Method::AdaptiveHp];
+pub const PROMISING: [Method; 3] = [Method::CONDENSED, Method::Adaptive(Adapt::H), Method::Adaptive(Adapt::Hp)];
 
 /// Everything in `stability.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

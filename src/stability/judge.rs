@@ -183,7 +183,7 @@ fn accuracy(method: Method, answer: &Answer, error: Option<f64>, claim: &Claim<'
 fn sameness(method: Method, answer: &Answer, claim: &Claim<'_>) -> Complaint {
     let ([energy, force], first) = (claim.known.scale?, claim.first?);
     let allowed = match method {
-        Method::Clarabel | Method::Uzawa => SAME_ITERATIVE,
+        Method::CLARABEL | Method::UZAWA => SAME_ITERATIVE,
         method if method.is_primal() => SAME_ITERATIVE,
         _ => SAME,
     };

@@ -165,7 +165,7 @@ fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Tas
         tasks.push(Task::Finer);
     }
     if regime.is_step_length {
-        tasks.extend(what.methods.contains(&Method::Uzawa).then_some(Task::One(Method::Uzawa)));
+        tasks.extend(what.methods.contains(&Method::UZAWA).then_some(Task::One(Method::UZAWA)));
         return tasks;
     }
     if what.methods.iter().any(|m| m.is_primal()) {
@@ -179,7 +179,7 @@ fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Tas
 /// rows only of a reduced matrix.
 fn is_run(what: &Sweep<'_>, regime: &Regime, method: Method) -> bool {
     if regime.is_step_length {
-        method == Method::Uzawa
+        method == Method::UZAWA
     } else {
         regime.degrees || !(what.reduced && method.is_higher())
     }
@@ -193,7 +193,7 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
         Task::Primal => what.methods.iter().copied().filter(|method| method.is_primal()).collect(),
         Task::Finer => {
             option("--refine", if heavy(regime, step) { 1 } else { FINER }.to_string());
-            vec![Method::Condensed]
+            vec![Method::CONDENSED]
         }
     };
     for method in methods {

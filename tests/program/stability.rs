@@ -2,6 +2,7 @@
 
 use hypercircle::measure::{Answer, End, Ended, Machine, Measured, Method, Seconds};
 use hypercircle::stability::{Cell, Claim, Known, Matrix, Outcome, REGIMES, Row, Step, Truth, judge};
+use hypercircle::study::Adapt;
 
 use crate::command::{ended, hypercircle, run};
 
@@ -47,7 +48,7 @@ fn outcome_of(method: Method, known: &Known, ended: &Ended) -> (Outcome, String)
 }
 
 fn outcome(answer: Answer) -> Outcome {
-    outcome_of(Method::Condensed, &known(), &told(Method::Condensed, End::Solved, Some(answer))).0
+    outcome_of(Method::CONDENSED, &known(), &told(Method::CONDENSED, End::Solved, Some(answer))).0
 }
 
 #[test]
@@ -84,8 +85,8 @@ fn a_wide_bracket_is_inaccurate_and_an_error_without_a_bound_wrong() {
     let wide = Answer { lower: Some(-1.3), upper: Some(-0.7), relative_error_bound: Some(0.6_f64.sqrt()), ..good() };
     assert_eq!(outcome(wide), Outcome::Inaccurate);
     let locked = Answer { lower: None, upper: Some(-0.6), relative_error_bound: None, equilibrium: None, ..good() };
-    let ended = told(Method::FenicsP1, End::Solved, Some(locked));
-    assert_eq!(outcome_of(Method::FenicsP1, &known(), &ended).0, Outcome::Wrong);
+    let ended = told(Method::Displacements(1), End::Solved, Some(locked));
+    assert_eq!(outcome_of(Method::Displacements(1), &known(), &ended).0, Outcome::Wrong);
 }
 
 #[test]
@@ -96,17 +97,17 @@ fn pressure_that_goes_up_and_down_is_inaccurate() {
 #[test]
 fn numbers_without_an_equilibrium_are_wrong_and_a_refusal_is_right() {
     let none = Known::none();
-    let solved = told(Method::Condensed, End::Solved, Some(good()));
-    assert_eq!(outcome_of(Method::Condensed, &none, &solved).0, Outcome::Wrong);
-    let denied = told(Method::Condensed, End::NoEquilibrium("it slides".to_string()), None);
-    assert_eq!(outcome_of(Method::Condensed, &none, &denied).0, Outcome::Correct);
-    assert_eq!(outcome_of(Method::Condensed, &known(), &denied).0, Outcome::Wrong);
+    let solved = told(Method::CONDENSED, End::Solved, Some(good()));
+    assert_eq!(outcome_of(Method::CONDENSED, &none, &solved).0, Outcome::Wrong);
+    let denied = told(Method::CONDENSED, End::NoEquilibrium("it slides".to_string()), None);
+    assert_eq!(outcome_of(Method::CONDENSED, &none, &denied).0, Outcome::Correct);
+    assert_eq!(outcome_of(Method::CONDENSED, &known(), &denied).0, Outcome::Wrong);
 }
 
 #[test]
 fn every_other_end_has_its_word() {
-    let of = |ended: &Ended| outcome_of(Method::Uzawa, &known(), ended).0;
-    let end = |end: End| of(&told(Method::Uzawa, end, None));
+    let of = |ended: &Ended| outcome_of(Method::UZAWA, &known(), ended).0;
+    let end = |end: End| of(&told(Method::UZAWA, end, None));
     assert_eq!(end(End::Refused("too flat".to_string())), Outcome::Refused);
     assert_eq!(end(End::NotConverged("2000 steps".to_string())), Outcome::NoConvergence);
     assert_eq!(end(End::NotApplicable("no step".to_string())), Outcome::NotApplicable);
@@ -124,9 +125,9 @@ fn a_scaled_answer_must_be_the_same_to_round_off() {
     let answer =
         Answer { lower: Some(-4.004), upper: Some(-3.996), strain: Some(4.0), resultants: vec![[-1.0, 0.0]], ..good() };
     let of = |answer: Answer| {
-        let ended = told(Method::Condensed, End::Solved, Some(answer));
+        let ended = told(Method::CONDENSED, End::Solved, Some(answer));
         judge(
-            Method::Condensed,
+            Method::CONDENSED,
             &ended,
             &Claim { known: &scaled, truth, first: Some(&first), first_error: None, flat: None },
         )
@@ -159,21 +160,21 @@ fn promising(method: Method, outcomes: [Outcome; 3]) -> Matrix {
 fn what_is_not_correct_where_it_is_promised_is_found() {
     use Outcome::{Correct, Crash, Inaccurate, NoConvergence, Refused, Wrong};
     let missed = |method, outcomes| promising(method, outcomes).shortfalls().iter().map(|s| s.2).collect::<Vec<_>>();
-    assert_eq!(missed(Method::Condensed, [Correct, Correct, Inaccurate]), [0; 0]);
-    assert_eq!(missed(Method::Condensed, [Correct, Inaccurate, Correct]), [1]);
-    assert_eq!(missed(Method::Adaptive, [Refused, NoConvergence, Correct]), [0, 1]);
-    assert_eq!(missed(Method::AdaptiveHp, [Correct, Wrong, Correct]), [1]);
-    assert_eq!(missed(Method::Clarabel, [Refused, Refused, Refused]), [0; 0]);
+    assert_eq!(missed(Method::CONDENSED, [Correct, Correct, Inaccurate]), [0; 0]);
+    assert_eq!(missed(Method::CONDENSED, [Correct, Inaccurate, Correct]), [1]);
+    assert_eq!(missed(Method::Adaptive(Adapt::H), [Refused, NoConvergence, Correct]), [0, 1]);
+    assert_eq!(missed(Method::Adaptive(Adapt::Hp), [Correct, Wrong, Correct]), [1]);
+    assert_eq!(missed(Method::CLARABEL, [Refused, Refused, Refused]), [0; 0]);
     let defects = |method, worst| promising(method, [Correct, Correct, worst]).defects().len();
-    assert_eq!([Wrong, Crash, Inaccurate].map(|worst| defects(Method::Uzawa, worst)), [1, 1, 0]);
-    assert_eq!(defects(Method::FenicsP1, Wrong), 0);
+    assert_eq!([Wrong, Crash, Inaccurate].map(|worst| defects(Method::UZAWA, worst)), [1, 1, 0]);
+    assert_eq!(defects(Method::Displacements(1), Wrong), 0);
 }
 
 #[test]
 fn a_displacement_that_penetrates_is_inaccurate() {
     let through = Answer { lower: None, relative_error_bound: None, violation: Some(1e-3), ..good() };
-    let ended = told(Method::FenicsP2, End::Solved, Some(through));
-    assert_eq!(outcome_of(Method::FenicsP2, &known(), &ended).0, Outcome::Inaccurate);
+    let ended = told(Method::Displacements(2), End::Solved, Some(through));
+    assert_eq!(outcome_of(Method::Displacements(2), &known(), &ended).0, Outcome::Inaccurate);
 }
 
 #[test]
@@ -185,10 +186,10 @@ fn an_error_that_grows_along_the_sweep_is_inaccurate_with_and_without_a_bound() 
         judge(method, &told(method, End::Solved, Some(answer)), &claim).outcome
     };
     let stress = Answer { lower: Some(-1.005), upper: Some(-0.995), relative_error_bound: Some(0.1), ..good() };
-    assert_eq!(growing(Method::Condensed, stress), Outcome::Inaccurate);
+    assert_eq!(growing(Method::CONDENSED, stress), Outcome::Inaccurate);
     let locked = Answer { lower: None, upper: Some(-0.99), relative_error_bound: None, ..good() };
-    assert_eq!(growing(Method::FenicsP1, locked.clone()), Outcome::Inaccurate);
-    assert_eq!(growing(Method::FenicsP1, Answer { upper: Some(-0.999), ..locked }), Outcome::Correct);
+    assert_eq!(growing(Method::Displacements(1), locked.clone()), Outcome::Inaccurate);
+    assert_eq!(growing(Method::Displacements(1), Answer { upper: Some(-0.999), ..locked }), Outcome::Correct);
 }
 
 /// The files of a sweep, and that a second one makes only the runs that are missing. `ci/figures reduced` sweeps all

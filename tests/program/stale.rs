@@ -67,7 +67,7 @@ fn pages_older_than_their_code_are_told_and_missing_stamps_fail() {
     assert!(ended && said.contains(&format!("docs/chart.md: chart of {first}")), "{said}");
     assert!(!said.contains("has changed"), "{said}");
 
-    commit("src/dual/methods/method.rs", "// changed");
+    commit("src/dual/changed.rs", "// changed");
     let (ended, said) = stale();
     assert!(ended && said.contains("docs/chart.md: chart of") && said.contains("has changed once"), "{said}");
 

@@ -213,8 +213,10 @@ pub(in crate::cli) fn this_program() -> Result<PathBuf, CliError> {
 
 /// What an adaptive run was told to refine, and to reach.
 fn tolerances(scene: &SceneChart, method: Method, tolerance: f64) -> String {
-    let adapt =
-        method.adapt().and_then(|adapt| adapt.to_possible_value()).map(|value| format!("--adapt {}", value.get_name()));
+    let adapt = match method {
+        Method::Adaptive(adapt) => adapt.to_possible_value().map(|value| format!("--adapt {}", value.get_name())),
+        Method::Stresses(..) | Method::Displacements(_) => None,
+    };
     let tolerances = match scene.quantities().as_slice() {
         [] => vec![format!("--tolerance {tolerance}")],
         names => names.iter().map(|name| format!("--tolerance-of {name}={tolerance}")).collect(),

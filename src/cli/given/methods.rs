@@ -26,14 +26,14 @@ pub struct MethodOptions {
 impl MethodOptions {
     /// Those that are run, in the order of tables.
     pub fn chosen(&self) -> Vec<Method> {
-        let of_degrees = |method: &Method| self.primal_degree.iter().any(|p| Method::primal(*p) == Some(*method));
+        let of_degrees = |method: &Method| self.primal_degree.iter().any(|p| Method::Displacements(*p) == *method);
         let named = |method: &Method| match self.method.is_empty() {
             true => {
                 Method::usual().any(|usual| usual == *method) && (!method.is_primal() || self.primal_degree.is_empty())
             }
             false => self.method.contains(method),
         };
-        Method::ALL.into_iter().filter(|method| named(method) || of_degrees(method)).collect()
+        Method::all().filter(|method| named(method) || of_degrees(method)).collect()
     }
 
     /// The words of a command line that choose the same.
@@ -46,13 +46,14 @@ impl MethodOptions {
 
 /// The method of that name, or the names there are.
 pub(in crate::cli) fn known(name: &str) -> Result<Method, String> {
-    let names = Method::ALL.map(Method::name).join(", ");
+    let names = Method::all().map(Method::name).collect::<Vec<_>>().join(", ");
     Method::of_name(name).ok_or_else(|| format!("there is no method {name}; choose from {names}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dual::Solver;
 
     #[test]
     fn degrees_take_the_place_of_the_usual_ones_and_join_what_is_named() {
@@ -60,16 +61,17 @@ mod tests {
             MethodOptions { method: method.to_vec(), primal_degree: degrees.to_vec() }.chosen()
         };
         let primal = |chosen: Vec<Method>| chosen.into_iter().filter(|m| m.is_primal()).collect::<Vec<_>>();
+        let quadratic = Method::Stresses(Solver::Condensed, 2);
         assert_eq!(chosen(&[], &[]), Method::usual().collect::<Vec<_>>());
-        assert_eq!(primal(chosen(&[], &[3, 2])), [Method::FenicsP2, Method::FenicsP3]);
+        assert_eq!(primal(chosen(&[], &[3, 2])), [2, 3].map(Method::Displacements));
         assert_eq!(chosen(&[], &[3]).len(), Method::usual().count() - 1);
-        assert_eq!(chosen(&[Method::CondensedP2], &[3]), [Method::CondensedP2, Method::FenicsP3]);
-        assert_eq!(chosen(&[Method::FenicsP4], &[]), [Method::FenicsP4]);
+        assert_eq!(chosen(&[quadratic], &[3]), [quadratic, Method::Displacements(3)]);
+        assert_eq!(chosen(&[Method::Displacements(4)], &[]), [Method::Displacements(4)]);
     }
 
     #[test]
     fn the_words_choose_the_same() {
-        let asked = MethodOptions { method: vec![Method::FenicsP1], primal_degree: vec![4, 3, 4] };
+        let asked = MethodOptions { method: vec![Method::Displacements(1)], primal_degree: vec![4, 3, 4] };
         assert_eq!(asked.words().collect::<Vec<_>>(), ["--method 'FEniCSx P1'", "--primal-degree 3,4"]);
     }
 }

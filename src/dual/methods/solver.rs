@@ -3,7 +3,7 @@
 use crate::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Uzawa};
 
 /// How the dual problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Solver {
     /// One sparse factorisation, contact solved on its Schur complement
     Condensed,

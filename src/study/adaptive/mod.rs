@@ -64,7 +64,7 @@ const TWICE: f64 = 2.0;
 const UNKNOWN: f64 = 10.0;
 
 /// What an adaptive run refines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum Adapt {
     /// The mesh.
     H,
