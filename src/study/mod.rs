@@ -12,6 +12,7 @@ mod field;
 mod primal;
 mod quantity_checks;
 mod ranges;
+mod slopes;
 
 pub use accepted::baseline::{Baseline, BaselineError};
 pub use accepted::date::today;
