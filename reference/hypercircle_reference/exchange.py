@@ -23,7 +23,8 @@ class Body:
 
     Isotropic by Young's modulus and Poisson's ratio, or any other by ``stiffness`` (3, 3), the stresses xx, yy, xy of unit strains
     ε_xx, ε_yy, 2 ε_xy; ``young`` is then the largest entry on its diagonal, which only tells stiff bodies from soft ones.
-    ``initial_strain`` (3, 3) has a row (value, ∂x, ∂y) for each of ε_xx, ε_yy, ε_xy: the strain without stress, affine in x.
+    ``initial_strain`` (3, 3) has a row (value, ∂x, ∂y) for each of ε_xx, ε_yy, ε_xy, in a body of revolution a fourth for ε_θθ: the strain
+    without stress, affine in x.
     """
 
     name: str
@@ -269,7 +270,7 @@ def _body(entry: dict, where: str, stresses: int) -> Body:
         force, slope = _array(force, "value", inside, (2,)), _array(force, "gradient", inside, (2, 2))
     else:
         force = _array(entry, "body_force", where, (2,))
-    initial = _array(entry, "initial_strain", where, (3, 3)) if "initial_strain" in entry else None
+    initial = _array(entry, "initial_strain", where, (stresses, 3)) if "initial_strain" in entry else None
     if "stiffness" in entry:
         stiffness = _array(entry, "stiffness", where, (stresses, stresses))
         if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):

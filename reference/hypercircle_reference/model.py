@@ -211,9 +211,9 @@ def build(mesh: Mesh, degree: int, flip_sign: bool = False) -> Model:
     if initial is None:
         energy, pull = compat.form(comm, 0.5 * work(displacement, displacement)), None
     else:
-        elastic = _strain(displacement) - initial
+        elastic = section.strain(displacement) - initial
         energy = compat.form(comm, 0.5 * product(elastic, elastic))
-        pull = compat.form(comm, product(initial, _strain(v)))
+        pull = compat.form(comm, product(initial, section.strain(v)))
     linear = compat.form(comm, section.integral(ufl.inner(force, v)))
     compiled = perf_counter()
 
@@ -317,10 +317,13 @@ def _initial_strain(mesh: Mesh, owner: np.ndarray):
     bodies = mesh.problem.bodies
     if all(body.initial_strain is None for body in bodies):
         return None
-    values = np.array([np.zeros((3, 3)) if body.initial_strain is None else body.initial_strain for body in bodies])[owner]
+    rows = 3 if mesh.problem.revolution is None else 4
+    values = np.array([np.zeros((rows, 3)) if body.initial_strain is None else body.initial_strain for body in bodies])[owner]
     x = ufl.SpatialCoordinate(mesh.mesh)
-    part = [[compat.constant_per_cell(mesh.mesh, values[:, i, j]) for j in range(3)] for i in range(3)]
-    xx, yy, xy = (value + along_x * x[0] + along_y * x[1] for value, along_x, along_y in part)
+    part = [[compat.constant_per_cell(mesh.mesh, values[:, i, j]) for j in range(3)] for i in range(rows)]
+    xx, yy, xy, *hoop = (value + along_x * x[0] + along_y * x[1] for value, along_x, along_y in part)
+    if hoop:
+        return ufl.as_matrix([[xx, xy, 0], [xy, yy, 0], [0, 0, hoop[0]]])
     return ufl.as_matrix([[xx, xy], [xy, yy]])
 
 

@@ -112,7 +112,8 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
             if let Some(revolved) = problem.section().revolved() {
                 let force = problem.body_force(t);
                 let [square, sensitivity] = revolved.square(stress, t, mesh.corners(t), material, force);
-                return [0.5 * square, sensitivity * shape(mesh.corners(t)), 0.0];
+                let [initial, size] = revolved.initial_on(stress, t, mesh.corners(t), material, force);
+                return [0.5 * square, (sensitivity + 2.0 * size) * shape(mesh.corners(t)), initial];
             }
             let sum = 0.5 * square_on(stress, t, material, third);
             let nodes = stress.block(t);
@@ -284,6 +285,9 @@ pub fn initial_energy(problem: &Problem) -> f64 {
     }
     let of = |t: usize| {
         let (material, corners) = (&materials[mesh.body[t]], mesh.corners(t));
+        if let Some(revolved) = problem.section().revolved() {
+            return 0.5 * revolved.initial_square(corners, material);
+        }
         let middles = [0, 1, 2].map(|i| [0, 1].map(|c| 0.5 * (corners[i][c] + corners[(i + 1) % 3][c])));
         let at = |x: [f64; 2]| material.strain_product(material.initial().at(x), material.initial().at(x));
         mesh.area(t) / 6.0 * middles.map(at).iter().sum::<f64>()
@@ -296,7 +300,12 @@ pub fn initial_work(problem: &Problem, v: &Displacement) -> f64 {
     if problem.scene.bodies.iter().all(|body| body.initial.is_none()) {
         return 0.0;
     }
-    let (mesh, materials, stress) = (&problem.mesh, problem.materials(), stress_of(problem, v));
+    let (mesh, materials) = (&problem.mesh, problem.materials());
+    if let Some(revolved) = problem.section().revolved() {
+        let of = |t: usize| revolved.initial_work(v, t, mesh.corners(t), &materials[mesh.body[t]]);
+        return problem.scene.thickness * (0..mesh.triangles.len()).map(of).collect::<Sum>().value();
+    }
+    let stress = stress_of(problem, v);
     let of = |t: usize| initial_on(&stress, t, &materials[mesh.body[t]], mesh.corners(t), mesh.area(t) / 3.0)[0];
     problem.scene.thickness * (0..mesh.triangles.len()).map(of).collect::<Sum>().value()
 }

@@ -5,6 +5,7 @@ use super::outcome::{ComponentDifference, StressSummary, TwoSides};
 use super::stress::{von_mises_of, von_mises_of_means};
 use crate::dual::DualSolution;
 use crate::element::polynomial::quadrature::triangle_rule;
+use crate::element::revolved::Held;
 use crate::element::{Displacement, Revolved};
 use crate::problem::Problem;
 
@@ -17,8 +18,12 @@ pub fn stress_at(
     sub: usize,
     bary: [f64; 3],
 ) -> [f64; 4] {
-    let e = revolved.strain_at(v, t, sub, problem.mesh.corners(t), bary);
-    problem.material(problem.mesh.body[t]).revolved().stress(e)
+    let (corners, material) = (problem.mesh.corners(t), problem.material(problem.mesh.body[t]));
+    let mut e = revolved.strain_at(v, t, sub, corners, bary);
+    if let Some(own) = Held::on(&material, corners).map(|held| held.at(sub, bary)) {
+        (0..4).for_each(|c| e[c] -= own[c]);
+    }
+    material.revolved().stress(e)
 }
 
 /// Von Mises stress of the mean stress of a displacement on each triangle.

@@ -42,8 +42,12 @@ impl ModeTable {
         let mesh = &problem.mesh;
         let section = problem.section();
         let place = |t: usize| section.place(mesh.corners(t));
-        // A force that is not the same everywhere differs on triangles that are congruent.
-        let own = |t: usize| (!problem.body_force(t).is_constant()).then_some(t);
+        // A force that is not the same everywhere differs on triangles that are congruent, and so does a strain that elements count in.
+        let differs = |t: usize| {
+            let strained = section.is_revolved() && !materials[mesh.body[t]].initial().is_constant();
+            strained || !problem.body_force(t).is_constant()
+        };
+        let own = |t: usize| differs(t).then_some(t);
         let key = |t: usize| (congruent::shape(mesh.corners(t)), mesh.body[t], elements.degree(t), own(t), place(t));
         let (class, first) = congruent::classes((0..mesh.triangles.len()).map(key));
         let mut end = 0;

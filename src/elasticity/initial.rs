@@ -1,6 +1,6 @@
 //! Strains and stresses that a body has before it is loaded.
 
-use super::{Elasticity, Plane};
+use super::{Elasticity, Plane, Revolution};
 
 /// What a body has without any load: e = a σ + ε0 with ε0 = α ΔT − a σ0.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -26,6 +26,10 @@ pub struct InitialStrain {
     pub transverse: f64,
     /// Its gradient.
     pub transverse_gradient: [f64; 2],
+    /// ε0_θθ of a body of revolution at the origin; nothing in the plane.
+    pub hoop: f64,
+    /// Its gradient.
+    pub hoop_gradient: [f64; 2],
 }
 
 impl Initial {
@@ -60,17 +64,29 @@ impl Initial {
 
 impl InitialStrain {
     /// None at all.
-    pub const NONE: Self =
-        InitialStrain { value: [0.0; 3], gradient: [[0.0; 2]; 3], transverse: 0.0, transverse_gradient: [0.0; 2] };
+    pub const NONE: Self = InitialStrain {
+        value: [0.0; 3],
+        gradient: [[0.0; 2]; 3],
+        transverse: 0.0,
+        transverse_gradient: [0.0; 2],
+        hoop: 0.0,
+        hoop_gradient: [0.0; 2],
+    };
 
-    /// Whether there is none in the plane.
+    /// Whether there is none in the plane, nor around an axis.
     pub fn is_none(&self) -> bool {
-        self.value == [0.0; 3] && self.is_constant()
+        self.value == [0.0; 3] && self.hoop == 0.0 && self.is_constant()
     }
 
     /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
-        self.gradient == [[0.0; 2]; 3]
+        self.gradient == [[0.0; 2]; 3] && self.hoop_gradient == [0.0; 2]
+    }
+
+    /// ε0 (rr, zz, tt, rz) of a body of revolution at a point.
+    pub fn around(&self, [x, y]: [f64; 2]) -> [f64; 4] {
+        let [rr, zz, rz] = self.at([x, y]);
+        [rr, zz, self.hoop + (self.hoop_gradient[0] * x + self.hoop_gradient[1] * y), rz]
     }
 
     /// ε0 at a point.
@@ -118,6 +134,29 @@ impl Elasticity {
             gradient: [0, 1, 2].map(slope),
             transverse: out[0] * initial.temperature + stress_out[0],
             transverse_gradient: initial.gradient.map(|g| out[0] * g),
+            ..InitialStrain::NONE
+        }
+    }
+
+    /// The initial strain of a body of revolution; `initial.stress` is rr, zz, rz and tt.
+    pub fn initial_strain_around(&self, initial: &Initial) -> InitialStrain {
+        if initial.is_none() {
+            return InitialStrain::NONE;
+        }
+        let Some(law) = self.revolution() else { return InitialStrain::NONE };
+        let [first, second, third] = initial.expansion;
+        let [c, s] = self.double_angle();
+        let (sum, apart) = (first + second, first - second);
+        let warm = [0.5 * (sum + apart * c), 0.5 * (sum - apart * c), third, 0.5 * apart * s];
+        let cold = of_stress_around(&law, initial.stress);
+        let slope = |c: usize| initial.gradient.map(|g| warm[c] * g);
+        let value = [0, 1, 2, 3].map(|c| warm[c] * initial.temperature + cold[c]);
+        InitialStrain {
+            value: [value[0], value[1], value[3]],
+            gradient: [slope(0), slope(1), slope(3)],
+            hoop: value[2],
+            hoop_gradient: slope(2),
+            ..InitialStrain::NONE
         }
     }
 
@@ -141,6 +180,14 @@ fn of_stress(plane: &Plane, strain: bool, [xx, yy, xy, zz]: [f64; 4]) -> [[f64; 
         return [product.map(|e| -e), [zz - held, 0.0, 0.0]];
     }
     [[0, 1, 2].map(|j| -(product[j] + plane.cross[j] * zz)), [0.0; 3]]
+}
+
+/// −a σ0 (rr, zz, tt, rz) of a stress rr, zz, rz and tt of a body of revolution.
+fn of_stress_around(law: &Revolution, [rr, zz, rz, tt]: [f64; 4]) -> [f64; 4] {
+    let own = Revolution::unknowns([rr, zz, tt, rz]);
+    let root = law.factor.map(|row| (0..4).map(|j| row[j] * own[j]).sum::<f64>());
+    let product = [0, 1, 2, 3].map(|j| (0..4).map(|i| law.factor[i][j] * root[i]).sum::<f64>());
+    Revolution::components(product).map(|e| -e)
 }
 
 #[cfg(test)]
@@ -182,6 +229,29 @@ mod tests {
             let zz = found.transverse + (0..3).map(|j| plane.transverse[j] * s[j]).sum::<f64>();
             assert!((zz - stress[3]).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_body_of_revolution_that_is_held_has_its_initial_stress_and_expands_by_its_coefficients() {
+        let law = Elasticity::Orthotropic(Orthotropic {
+            young: [9.0, 3.0, 4.0],
+            poisson: [0.3, 0.2, 0.25],
+            shear: 1.5,
+            angle: 35.0,
+        });
+        let stress = [0.3, -0.7, 0.2, 0.4];
+        let [rr, zz, tt, rz] = law.initial_strain_around(&Initial { stress, ..Initial::default() }).around([0.0; 2]);
+        let compliance = law.revolution().expect("a material").compliance;
+        let held = [0.3, -0.7, 0.4, 0.2];
+        for (row, e) in compliance.iter().zip([rr, zz, tt, 2.0 * rz]) {
+            let strain: f64 = row.iter().zip(held).map(|(a, s)| a * s).sum();
+            assert!((strain + e).abs() < 1e-14);
+        }
+        let warm = Initial { expansion: [1.0, 3.0, 2.0], gradient: [0.5, 0.0], ..Initial::default() };
+        let found = law.turned(55.0).initial_strain_around(&warm).around([2.0, 7.0]);
+        // The axes are turned by a right angle.
+        let exact = [3.0, 1.0, 2.0, 0.0];
+        (0..4).for_each(|c| assert!((found[c] - exact[c]).abs() < 1e-14, "{found:?}"));
     }
 
     #[test]

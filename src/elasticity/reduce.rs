@@ -43,6 +43,12 @@ impl Revolution {
     pub fn strains([rr, zz, tt, rz]: [f64; 4]) -> [f64; 4] {
         [rr + zz + tt, (rr - tt) + (zz - tt), rr - zz, 2.0 * rz]
     }
+
+    /// The strain (rr, zz, tt, rz) that has these for its work on [`Revolution::unknowns`].
+    pub fn components([trace, across, apart, shear]: [f64; 4]) -> [f64; 4] {
+        let plane = (2.0 * trace + across) / 3.0;
+        [0.5 * (plane + apart), 0.5 * (plane - apart), (trace - across) / 3.0, 0.5 * shear]
+    }
 }
 
 impl Elasticity {

@@ -100,7 +100,13 @@ impl Material {
     /// The same with what the body has before it is loaded.
     #[must_use]
     pub fn with_initial(self, kinematics: Kinematics, elasticity: &Elasticity, initial: &Initial) -> Self {
-        Material { initial: elasticity.initial_strain(kinematics == Kinematics::PlaneStrain, initial), ..self }
+        let initial = match kinematics {
+            Kinematics::Axisymmetric => elasticity.initial_strain_around(initial),
+            Kinematics::PlaneStrain | Kinematics::PlaneStress => {
+                elasticity.initial_strain(kinematics == Kinematics::PlaneStrain, initial)
+            }
+        };
+        Material { initial, ..self }
     }
 
     /// The same without initial strain.

@@ -9,7 +9,7 @@ use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
 use super::polynomial::quadrature::triangle_rule;
 use super::polynomial::triangle;
-use super::revolved::{Ring, Tensor, Weighted, rule, work};
+use super::revolved::{Held, Ring, Tensor, Weighted, rule, work};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
     lattice_len,
@@ -112,7 +112,8 @@ impl Section {
             Section::Slice => element.compute(corners, material, force, out),
             Section::Revolved { axis } => {
                 let (radial, [_, axial]) = (self.radial(force), self.forces(force));
-                Ring::new(element.degree(), axis, corners).compute(&material.revolved(), radial, axial, out);
+                let held = Held::beside_motion(material, axis, corners);
+                Ring::new(element.degree(), axis, corners).compute(&material.revolved(), (radial, axial), held, out);
             }
         }
     }
@@ -284,7 +285,7 @@ impl Revolved {
         (super::revolved::Point { bary, weight: 1.0, radius: radius(bary), excess: 0.0 }, on_axis)
     }
 
-    /// Strain (rr, zz, rz) of a weighted stress at a point off the axis.
+    /// Strain (rr, zz, rz) of a weighted stress at a point off the axis, without initial strain.
     pub fn plane_strain_of(
         self,
         stress: &StressField,

@@ -77,7 +77,7 @@ struct BodyEntry<'a> {
     #[serde(flatten)]
     material: MaterialEntry,
     #[serde(skip_serializing_if = "Option::is_none")]
-    initial_strain: Option<[[f64; 3]; 3]>,
+    initial_strain: Option<Vec<[f64; 3]>>,
     body_force: Force,
 }
 
@@ -144,12 +144,15 @@ impl MaterialEntry {
     }
 }
 
-/// ε_xx, ε_yy and ε_xy of a body without stress, each by its value at the origin and its derivatives along x and y.
-fn initial_strain(problem: &Problem, body: usize) -> Option<[[f64; 3]; 3]> {
+/// ε_xx, ε_yy and ε_xy of a body without stress, in a body of revolution ε_tt behind them, each by its value at the origin and its derivatives
+/// along x and y.
+fn initial_strain(problem: &Problem, body: usize) -> Option<Vec<[f64; 3]>> {
     let material = problem.material(body);
     let strain = material.initial();
     let row = |c: usize| [strain.value[c], strain.gradient[c][0], strain.gradient[c][1]];
-    (!strain.is_none()).then(|| [0, 1, 2].map(row))
+    let hoop = [strain.hoop, strain.hoop_gradient[0], strain.hoop_gradient[1]];
+    let turned = problem.section().is_revolved().then_some(hoop);
+    (!strain.is_none()).then(|| (0..3).map(row).chain(turned).collect())
 }
 
 #[derive(Serialize)]

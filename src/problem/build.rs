@@ -310,10 +310,6 @@ fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), 
 fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> {
     let refused = |what: String, remedy: &str| Err(MeshError::cells(scene, what, remedy).into());
     for body in &scene.bodies {
-        if !body.initial.is_none() {
-            let what = format!("body '{}' of revolution has an initial strain, stress or temperature", body.name);
-            return refused(what, "leave `expansion`, `temperature` and `initial_stress` out of axisymmetric scenes");
-        }
         if !section.carries(&body.body_force) {
             let what =
                 format!("the body force of '{}' of revolution varies along z, or its axial part varies", body.name);

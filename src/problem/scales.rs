@@ -237,7 +237,7 @@ fn initial(problem: &Problem, materials: &[Material], bodies: &[Extents]) -> f64
         }
         let [low, high] = [extent.low, extent.high];
         let corners = [low, high, [low[0], high[1]], [high[0], low[1]]];
-        let size = |p: [f64; 2]| strain.at(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        let size = |p: [f64; 2]| strain.around(p).iter().fold(0.0_f64, |most, e| most.max(e.abs()));
         corners.map(size).into_iter().fold(0.0, f64::max) * extent.diameter()
     };
     debug_assert_eq!(materials.len(), problem.scene.bodies.len());

@@ -66,6 +66,7 @@ mod quantities;
 mod ranges;
 mod refinement_ends;
 mod revolved;
+mod revolved_strain;
 mod rings;
 mod rounding;
 mod scene_schema;

@@ -22,6 +22,12 @@ impl Toml {
         self
     }
 
+    /// Bodies of revolution.
+    pub fn turned(mut self) -> Self {
+        self.model = Some("kinematics = \"axisymmetric\"".to_string());
+        self
+    }
+
     /// The target edge length.
     pub fn size(mut self, size: f64) -> Self {
         self.size = Some(size);

@@ -70,7 +70,11 @@ impl Correction {
             Some(axis) => turned::strain_energy(&cell.field, &material, axis),
         };
         let of_triangles: f64 = cell.triangles.iter().map(|t| strain_on(problem, polynomial, *t)[0]).sum();
-        let [initial, size] = if material.initial().is_none() { [0.0; 2] } else { of_initial(&cell.field, &material) };
+        let [initial, size] = match section.axis() {
+            _ if material.initial().is_none() => [0.0; 2],
+            None => of_initial(&cell.field, &material),
+            Some(axis) => turned::of_initial(&cell.field, &material, axis),
+        };
         let homogeneous = match material.initial().is_none() {
             true => of_triangles,
             false => cell.triangles.iter().map(|t| strain_of(problem, polynomial, *t, *t)[0]).sum(),

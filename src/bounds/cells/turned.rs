@@ -13,7 +13,7 @@
 
 use super::enclosure::{CUTS, Enclosed, FEWEST, MOST, Part, WHOLE, chebyshev, least_along, sizes_on};
 use crate::element::polynomial::quadrature::segment_rule;
-use crate::element::revolved::Law;
+use crate::element::revolved::{Law, work};
 use crate::element::{Material, Quadrilateral};
 
 /// Part of the energy at which its error is small enough.
@@ -26,6 +26,27 @@ pub fn strain_energy(cell: &Quadrilateral, material: &Material, axis: f64) -> En
         return Enclosed { error: f64::INFINITY, ..turned.by_rule(WHOLE, MOST) };
     }
     turned.part(WHOLE, CUTS)
+}
+
+/// ½∫ cε0:ε0 r − ∫ cε0:e(v) r over a quadrilateral, and the same with the sizes of all terms: polynomials of degree 5 at most along ξ and η.
+pub fn of_initial(cell: &Quadrilateral, material: &Material, axis: f64) -> [f64; 2] {
+    let (rule, law) = (segment_rule(7), material.revolved());
+    let mut sum = [0.0; 2];
+    for (s, v) in rule {
+        for (t, w) in rule {
+            let at = [2.0 * s - 1.0, 2.0 * t - 1.0];
+            let (of_v, place, u) = (cell.at(at), cell.position(at), cell.value(at)[0]);
+            let (radius, d) = (place[0] - axis, of_v.determinant);
+            let initial = material.initial().around(place);
+            let held = law.stress(initial);
+            let [rr, zz, rz] = of_v.strain.map(|e| radius * e);
+            let own = 0.5 * d * radius * work(initial, held);
+            let size = held.iter().map(|s| s.abs()).sum::<f64>() * (radius * of_v.spread + d * u.abs());
+            sum[0] += 4.0 * v * w * (own - work([rr, zz, d * u, rz], held));
+            sum[1] += 4.0 * v * w * (own.abs() + size);
+        }
+    }
+    sum
 }
 
 /// The side of the square that lies on the axis: the direction that leaves it, and where it is.

@@ -8,6 +8,7 @@ use super::NodalForces;
 use super::cells;
 use crate::bounds::Potential;
 use crate::compare::candidate::Candidate;
+use crate::element::Material;
 use crate::element::geometry::gradients;
 use crate::element::polynomial::quadrature::segment_rule;
 use crate::element::polynomial::side;
@@ -64,6 +65,8 @@ pub struct At<'a> {
     pub values: &'a [[f64; 2]],
     /// Distance from the axis.
     pub radius: f64,
+    /// Where it is.
+    pub place: [f64; 2],
     /// What the point counts, thickness and angle included, without the radius.
     pub weight: f64,
 }
@@ -82,6 +85,16 @@ impl At<'_> {
             spread += (d[0].hypot(d[1]) + (value / self.radius).abs()) * u[0].hypot(u[1]);
         }
         (e, spread)
+    }
+
+    /// The same without the initial strain of a material.
+    pub fn elastic(&self, material: &Material) -> ([f64; 4], f64) {
+        let (e, spread) = self.strain();
+        if material.initial().is_none() {
+            return (e, spread);
+        }
+        let own = material.initial().around(self.place);
+        ([0, 1, 2, 3].map(|c| e[c] - own[c]), spread + own.iter().map(|e| e.abs()).sum::<f64>())
     }
 
     /// What a stress asks for at node `i` of the cell, times its weight.
@@ -112,7 +125,8 @@ pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl
     let known = by.triangles.map(|rule| &symmetric_rules()[rule]);
     for t in (0..mesh.triangles.len()).filter(|t| of[*t].is_none()) {
         let g = gradients(mesh.corners(t));
-        let radii = mesh.corners(t).map(|p| section.weight(p));
+        let corners = mesh.corners(t);
+        let radii = corners.map(|p| section.weight(p));
         let middles = mesh.triangle_edges[t].map(|e| vertices + e);
         let quadratic = candidate.degree == 2;
         let nodes: Vec<usize> =
@@ -123,7 +137,9 @@ pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl
             let shapes = shapes(candidate.degree, l, &g);
             let radius = (0..3).map(|i| l[i] * radii[i]).sum();
             let body = mesh.body[t];
+            let place = [0, 1].map(|c| (0..3).map(|i| l[i] * corners[i][c]).sum());
             each(&At {
+                place,
                 triangle: t,
                 body,
                 nodes: &nodes,
@@ -145,9 +161,19 @@ pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl
             let (gradients, determinant) = cell.field.gradients(at);
             let functions = cell.field.shapes(at).into_iter().zip(gradients);
             let shapes: Vec<_> = functions.map(|(w, g)| (w, g.map(|g| g / determinant))).collect();
-            let (radius, weight) = (section.weight(cell.field.point(at)), thickness * weight * determinant);
+            let place = cell.field.point(at);
+            let (radius, weight) = (section.weight(place), thickness * weight * determinant);
             let body = mesh.body[t];
-            each(&At { triangle: t, body, nodes: &cell.nodes, shapes: &shapes, values: &values, radius, weight });
+            each(&At {
+                triangle: t,
+                body,
+                nodes: &cell.nodes,
+                shapes: &shapes,
+                values: &values,
+                radius,
+                place,
+                weight,
+            });
         }
     }
 }
@@ -167,7 +193,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
         let (material, law) = (&materials[at.body], materials[at.body].revolved());
         let modulus = material.stiffest();
         let weight = at.weight * at.radius;
-        let (e, spread) = at.strain();
+        let (e, spread) = at.elastic(material);
         let s = law.stress(e);
         strain += 0.5 * weight * law.strain_product(e, e);
         let ([a, b], [_, axial]) =

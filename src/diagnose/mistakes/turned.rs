@@ -161,8 +161,9 @@ impl<'a> Columns<'a> {
     fn stresses(&self, law: &Law<'_>, model: Model) -> Vec<[f64; 2]> {
         let candidate = self.space.solution.candidate;
         let mut forces = vec![[0.0; 2]; self.space.count()];
+        let materials = self.problem().materials();
         turned::points(self.problem(), candidate, self.rule, |at| {
-            let mut e = at.strain().0;
+            let mut e = at.elastic(&materials[at.body]).0;
             if !model.hoop {
                 e[2] = 0.0;
             }

@@ -17,6 +17,7 @@ use crate::dual::modes::ModeTable;
 use crate::dual::system::reduced::Reduced;
 use crate::dual::system::{Structured, System, add_edge_loads, jump_moments, load_of_tractions};
 use crate::dual::{DualError, Options};
+use crate::elasticity::Initial;
 use crate::element::polynomial::side;
 use crate::element::revolved::Tensor;
 use crate::element::{Samples, SideValues, StressField, contraction, lattice_len, weighed};
@@ -126,11 +127,19 @@ impl Responses<'_> {
     pub fn to(&self, load: &Load) -> Loaded<'_> {
         let Factorised { system, reduced } = self.factorised;
         let own = || self.problem.scene.bodies.iter().map(|body| body.body_force);
-        let (problem, modes) = if own().eq(load.force.iter().copied()) {
+        // Elements of bodies of revolution have the initial strains of the scene, which no other load has.
+        let strained = self.problem.section().is_revolved()
+            && self.problem.scene.bodies.iter().any(|body| !body.initial.is_none());
+        let (problem, modes) = if !strained && own().eq(load.force.iter().copied()) {
             (Cow::Borrowed(self.problem), system.modes.clone())
         } else {
             let mut other = self.problem.clone();
-            other.scene.draft.bodies.iter_mut().zip(&load.force).for_each(|(body, force)| body.body_force = *force);
+            for (body, force) in other.scene.draft.bodies.iter_mut().zip(&load.force) {
+                body.body_force = *force;
+                if strained {
+                    body.initial = Initial::default();
+                }
+            }
             let modes = Arc::new(ModeTable::new(&other, system.modes.elements().clone()));
             (Cow::Owned(other), modes)
         };

@@ -13,6 +13,7 @@ use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
 use crate::dual::system::{Structured, System, isolate};
 use crate::dual::{DualError, DualMethod, Found, Options, Phases, Size};
 use crate::problem::Problem;
+use crate::process::stop_if_unwanted;
 
 /// Active set with refactorisation, started from closed contact.
 #[derive(Debug, Clone, Copy)]
@@ -91,6 +92,7 @@ impl ActiveSet {
         let (mut left, mut steps) = (f64::INFINITY, 0);
         let (mut nearest, mut is_back) = ((f64::INFINITY, Vec::new()), false);
         for step in 1..=most_steps {
+            stop_if_unwanted();
             if step > 1 && options.deadline.is_some_and(|end| Instant::now() > end) {
                 break;
             }

@@ -21,6 +21,7 @@ use crate::dual::system::{Structured, System};
 use crate::dual::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::problem::Problem;
+use crate::process::stop_if_unwanted;
 
 /// The default method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,10 +98,12 @@ impl Condensed {
         let Structured { mut system, structure, seconds_of_structure } = System::structured(problem, options);
         seconds.assemble = (start.elapsed().as_secs_f64() - seconds_of_structure).max(0.0);
 
+        stop_if_unwanted();
         let start = Instant::now();
         let reduced = Reduced::new(problem, &mut system, structure?, motions, options)?;
         seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
+        stop_if_unwanted();
         let start = Instant::now();
         let contact = Schur::new(&system, &reduced, self.longest_dense, options.budget, |most| {
             unsupported(problem, &system.unknowns, most)
@@ -111,6 +114,7 @@ impl Condensed {
         let mut state = contact.solve(&c, &system.jump_bound, warm)?;
         seconds.contact = start.elapsed().as_secs_f64();
 
+        stop_if_unwanted();
         let start = Instant::now();
         let x = reduced.expand(y, &state.jumps);
         let traction = contact.gradient(&c, &state.jumps);

@@ -15,6 +15,7 @@ use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::element::polynomial::side;
 use crate::problem::{ContactPair, Problem, Sizes};
+use crate::process::stop_if_unwanted;
 
 /// The paper's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +79,7 @@ impl DualMethod for Uzawa {
         let step = self.step_length.unwrap_or(if self.accelerate { 1.0 } else { 1.9 } / norm);
         notes.push(format!("uzawa: step length {step:.4e}, largest allowed {:.4e}", 2.0 / norm));
         let report = |k: usize, r: f64| {
+            stop_if_unwanted();
             if let Some(progress) = &options.progress {
                 progress(k, r);
             }

@@ -41,9 +41,7 @@ impl Law {
 
     /// Strain aλ.
     pub fn strain(&self, l: Tensor) -> Tensor {
-        let [trace, across, apart, shear] = times_transposed(&self.factor, self.roots(l)).map(|e| e / self.unit);
-        let plane = (2.0 * trace + across) / 3.0;
-        [0.5 * (plane + apart), 0.5 * (plane - apart), (trace - across) / 3.0, 0.5 * shear]
+        Revolution::components(times_transposed(&self.factor, self.roots(l)).map(|e| e / self.unit))
     }
 
     /// Stress c e.
@@ -60,6 +58,11 @@ impl Law {
     /// Numbers of which the squares add up to a λ:λ times [`Self::unit`].
     pub fn roots(&self, l: Tensor) -> [f64; 4] {
         times(&self.factor, Revolution::unknowns(l))
+    }
+
+    /// The same of the stress of a strain.
+    pub fn roots_of_strain(&self, e: Tensor) -> [f64; 4] {
+        self.strain_roots(e).map(|root| self.unit * root)
     }
 
     /// Energies are measured in units of one over this.
@@ -110,6 +113,8 @@ mod tests {
             assert!(near(law.product(stress, law.stress(d)), work, allowed));
             let squares: f64 = law.roots(stress).iter().map(|x| x * x).sum();
             assert!(near(squares / law.unit(), law.product(stress, stress), allowed));
+            let (own, of_strain) = (law.roots(stress), law.roots_of_strain(e));
+            assert!((0..4).all(|i| near(of_strain[i], own[i], allowed)));
         }
     }
 

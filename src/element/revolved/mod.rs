@@ -17,12 +17,14 @@
 
 mod energies;
 mod householder;
+mod initial;
 mod law;
 mod modes;
 mod rule;
 mod sampled;
 mod stress;
 
+pub use initial::{Held, Motion};
 pub use law::{Law, Tensor, work};
 pub use modes::Ring;
 pub use rule::{Point, rule};

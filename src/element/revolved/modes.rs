@@ -2,11 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::ROUGH;
 use super::householder::range_and_rest;
 use super::law::Law;
 use super::rule::rule;
 use super::stress::to_bernstein;
+use super::{Held, ROUGH};
 use crate::element::field::{from_equispaced, lattice};
 use crate::element::geometry::{from_centroid, gradients};
 use crate::element::polynomial::quadrature::triangle_rule;
@@ -60,14 +60,15 @@ impl Ring {
 
     /// Computes tractions, particular field and nodal values of Σ.
     ///
-    /// The body force is (a + b r, `axial`), `radial` being a and b.
-    pub fn compute(&self, law: &Law, radial: [f64; 2], axial: f64, out: ModesMut<'_>) {
+    /// The body force is (a + b r, `axial`), `radial` being a and b; `held` is an initial strain.
+    pub fn compute(&self, law: &Law, (radial, axial): ([f64; 2], f64), held: Option<Held>, out: ModesMut<'_>) {
         let raw = Raw::new(self);
         let tractions = self.tractions(&raw);
         let fields = Fields::new(self, &raw, &tractions);
-        let loaded = radial != [0.0; 2] || axial != 0.0;
+        let loaded = radial != [0.0; 2] || axial != 0.0 || held.is_some();
         let balancing = self.balancing(axial);
-        let triangle = self.triangle(law, &raw, &fields.columns, loaded.then_some((&balancing[..], radial)));
+        let given = Given { balancing: &balancing, radial, held };
+        let triangle = self.triangle(law, &raw, &fields.columns, loaded.then_some(given));
         let (count, free) = (fields.columns.ncols(), fields.free);
         let unit = law.unit().sqrt();
         // Modes are what is left of uniform pressure and of the fields with traction by those before.
@@ -194,13 +195,7 @@ impl Ring {
     }
 
     /// R of the columns in their energy, times the unit of the law; behind them a field with a radial force, where there is one.
-    fn triangle(
-        &self,
-        law: &Law,
-        raw: &Raw,
-        columns: &DMatrix<f64>,
-        given: Option<(&[[f64; 3]], [f64; 2])>,
-    ) -> DMatrix<f64> {
+    fn triangle(&self, law: &Law, raw: &Raw, columns: &DMatrix<f64>, given: Option<Given<'_>>) -> DMatrix<f64> {
         let p = self.degree;
         let (n, own, count) = (lattice_len(p), raw.fields, columns.ncols());
         let width = own + usize::from(given.is_some());
@@ -210,8 +205,8 @@ impl Ring {
             // Bernstein coefficients of all fields: nodes one after the other, components of each together.
             let mut nodal = DMatrix::zeros(3 * n, width);
             nodal.columns_mut(0, own).copy_from(&raw.nodal.view((3 * n * sub, own * sub), (3 * n, own)));
-            if let Some((values, _)) = given {
-                nodal.column_mut(own).copy_from_slice(values[n * sub..n * (sub + 1)].as_flattened());
+            if let Some(given) = &given {
+                nodal.column_mut(own).copy_from_slice(given.balancing[n * sub..n * (sub + 1)].as_flattened());
             }
             let of_component = |c: usize| to_bernstein(p) * DMatrix::from_fn(n, width, |i, j| nodal[(3 * i + c, j)]);
             let [rr, zz, rz] = [0, 1, 2].map(of_component);
@@ -235,14 +230,19 @@ impl Ring {
                 };
                 for j in 0..width {
                     let r = point.radius;
-                    let of_force = given.filter(|_| j == own).map_or(0.0, |(_, [a, b])| r * (a + b * r));
+                    let given = given.as_ref().filter(|_| j == own);
+                    let of_force = given.map_or(0.0, |given| r * (given.radial[0] + given.radial[1] * r));
                     let tensor = [
                         sum(&basis, &rr, j) / r,
                         sum(&basis, &zz, j) / r,
                         sum(&lower, &hoop, j) + of_force,
                         sum(&basis, &rz, j) / r,
                     ];
-                    let roots = law.roots(tensor);
+                    let mut roots = law.roots(tensor);
+                    if let Some(held) = given.and_then(|given| given.held) {
+                        let more = law.roots_of_strain(held.at(sub, point.bary));
+                        (0..4).for_each(|c| roots[c] += more[c]);
+                    }
                     (0..4).for_each(|c| rows[(4 * q + c, j)] = weight * roots[c]);
                 }
             }
@@ -259,6 +259,16 @@ impl Ring {
         }
         all.qr().r()
     }
+}
+
+/// What is given on a triangle.
+struct Given<'a> {
+    /// Nodal values of a Σ that balances the axial force.
+    balancing: &'a [[f64; 3]],
+    /// a and b of the radial force a + b r.
+    radial: [f64; 2],
+    /// An initial strain.
+    held: Option<Held>,
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -19,7 +19,7 @@ fn law(nu: f64) -> Law {
 fn modes(ring: &Ring, nu: f64, force: [f64; 2]) -> Modes<'static> {
     let layout = ring.layout();
     let mut data = vec![0.0; layout.len()];
-    ring.compute(&law(nu), [force[0], 0.0], force[1], layout.split(&mut data));
+    ring.compute(&law(nu), ([force[0], 0.0], force[1]), None, layout.split(&mut data));
     Modes::owned(layout, data)
 }
 

@@ -118,7 +118,7 @@ pub fn pass(problem: &Problem, functional: &Functional, fields: Fields<'_>) -> P
 pub(in crate::quantity) const PAIR: usize = 0;
 const ALONE: usize = 3;
 pub(in crate::quantity) const BALANCED: usize = 6;
-const INITIAL: usize = 7;
+pub(in crate::quantity) const INITIAL: usize = 7;
 pub(in crate::quantity) const TERMS: usize = 9;
 
 /// χ on a triangle.

@@ -1,9 +1,9 @@
 //! The integrals of adjoint pairs over bodies of revolution, where stresses are weighted and strains have a hoop.
 
-use super::pass::{BALANCED, Fields, PAIR, TERMS};
+use super::pass::{BALANCED, Fields, INITIAL, PAIR, TERMS};
 use crate::bounds::Sum;
 use crate::bounds::energy::shape;
-use crate::element::revolved::{Sampled, Strained, Tensor, work};
+use crate::element::revolved::{Held, Sampled, Strained, Tensor, work};
 use crate::element::{Displacement, Material, Revolved, StressField};
 use crate::load::BodyForce;
 use crate::problem::Problem;
@@ -78,6 +78,7 @@ pub fn strained(problem: &Problem, revolved: Revolved, functional: &Functional, 
     for (t, _) in &functional.load.turned {
         let (t, corners, law) = (*t, problem.mesh.corners(*t), materials[problem.mesh.body[*t]].revolved());
         let mut of_v = Strained::default();
+        let held = Held::on(&materials[problem.mesh.body[t]], corners);
         let own = match of {
             Of::Stress(stress) => Some(revolved.stresses_on(stress, t, corners, problem.body_force(t))),
             Of::Displacement(_) => None,
@@ -89,7 +90,7 @@ pub fn strained(problem: &Problem, revolved: Revolved, functional: &Functional, 
         let mut add = |chi: Tensor, at: Sampled| {
             let stress = match (&own, of) {
                 (Some(own), _) => own[at.sub].stress(&at.point).0,
-                (None, Of::Displacement(v)) => law.stress(of_v.strain(v, t, corners, &at)),
+                (None, Of::Displacement(v)) => law.stress(elastic(of_v.strain(v, t, corners, &at), held, &at)),
                 (None, Of::Stress(_)) => [0.0; 4],
             };
             sum.add(at.by * work(chi, stress));
@@ -122,6 +123,7 @@ pub fn triangle(
     let balanced = revolved.stresses_on(adjoint, t, corners, force);
     let own_stress = revolved.stresses_on(stress, t, corners, problem.body_force(t));
     let (mut of_z, mut of_v) = (Strained::default(), Strained::default());
+    let held = Held::on(material, corners);
     let modulus = law.strain_product(ALONG, ALONG);
     let degree = lifted.degree(t).max(displacement.degree(t)).max(stress.degree(t)).max(adjoint.degree(t)).max(3);
     let mut out = [0.0; TERMS];
@@ -129,7 +131,7 @@ pub fn triangle(
         let (sigma, spread) = balanced[at.sub].stress(&at.point);
         let (z, spread_of_z) = of_z.at(lifted, t, corners, &at);
         let lambda = own_stress[at.sub].stress(&at.point).0;
-        let of_displacement = law.stress(of_v.strain(displacement, t, corners, &at));
+        let of_displacement = law.stress(elastic(of_v.strain(displacement, t, corners, &at), held, &at));
         let middle = [0, 1, 2, 3].map(|c| 0.5 * (lambda[c] + of_displacement[c]));
         // What 1/r is in: the majorant adds to its square.
         let [rr, zz, _, rz] = sigma;
@@ -156,7 +158,7 @@ pub fn triangle(
             let a_sigma = law.strain(balanced[at.sub].stress(&at.point).0);
             let z = of_z.strain(lifted, t, corners, &at);
             let lambda = own_stress[at.sub].stress(&at.point).0;
-            let of_displacement = law.stress(of_v.strain(displacement, t, corners, &at));
+            let of_displacement = law.stress(elastic(of_v.strain(displacement, t, corners, &at), held, &at));
             let middle = [0, 1, 2, 3].map(|c| 0.5 * (lambda[c] + of_displacement[c]));
             for (first, factor) in [(PAIR, factor), (PAIR + 3, 0.0)] {
                 let off = [0, 1, 2, 3].map(|c| a_sigma[c] - factor * z[c]);
@@ -166,8 +168,15 @@ pub fn triangle(
             }
         }
     }
+    out[INITIAL..].copy_from_slice(&revolved.initial_on(adjoint, t, corners, material, force));
     [PAIR + 2, PAIR + 5].into_iter().for_each(|i| out[i] *= shape(corners));
     out
+}
+
+/// e − ε0.
+fn elastic(e: Tensor, held: Option<Held>, at: &Sampled) -> Tensor {
+    let Some(own) = held.map(|held| held.at(at.sub, at.point.bary)) else { return e };
+    [0, 1, 2, 3].map(|c| e[c] - own[c])
 }
 
 /// A strain of one along r.
@@ -192,10 +201,12 @@ pub fn product(problem: &Problem, revolved: Revolved, v: &Displacement, w: &Disp
     let materials = problem.materials();
     let mut sum = Sum::default();
     for t in (0..problem.mesh.triangles.len()).filter(|t| w.largest(*t) != 0.0) {
-        let (corners, law) = (problem.mesh.corners(t), materials[problem.mesh.body[t]].revolved());
+        let (corners, material) = (problem.mesh.corners(t), &materials[problem.mesh.body[t]]);
+        let (law, held) = (material.revolved(), Held::on(material, corners));
         let (mut of_v, mut of_w) = (Strained::default(), Strained::default());
         for at in revolved.points(corners, 2 * v.degree(t).max(w.degree(t))) {
-            let [e, d] = [of_v.strain(v, t, corners, &at), of_w.strain(w, t, corners, &at)];
+            let e = elastic(of_v.strain(v, t, corners, &at), held, &at);
+            let d = of_w.strain(w, t, corners, &at);
             sum.add(at.by * law.strain_product(e, d));
         }
     }

@@ -94,12 +94,6 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                             td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
                         }
                     }
-                    @if let Some(across) = &across {
-                        tr {
-                            td { "for all data" } td.n { (across) }
-                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
-                        }
-                    }
                 }
             }
         }))

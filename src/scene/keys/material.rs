@@ -152,7 +152,10 @@ pub(in crate::scene) fn initial(
         if padded.value.len() != 4 {
             let found = crate::scene::counted(stress.value.len(), "number");
             let (key, table) = ("initial_stress".to_owned(), label.to_owned());
-            let remedy = "write xx, yy, xy, and where it is needed the stress out of the plane";
+            let remedy = match kinematics {
+                Kinematics::Axisymmetric => "write rr, zz, rz, and the hoop stress tt where there is one",
+                _ => "write xx, yy, xy, and where it is needed the stress out of the plane",
+            };
             let fault = Fault::Count { key, table, found, expected: "3 or 4".into(), remedy };
             return Err(source.error(stress.span(), fault));
         }
@@ -174,8 +177,14 @@ pub(in crate::scene) fn initial(
         let (key, table, found) = ("young".to_owned(), label.to_owned(), source.written(young.span()));
         return Err(source.error(young.span(), Fault::Number { key, table, found, rule, remedy }));
     }
-    let strain = law.initial_strain(kinematics == Kinematics::PlaneStrain, &initial);
-    let numbers = strain.value.iter().chain(strain.gradient.as_flattened());
+    let strain = match kinematics {
+        Kinematics::Axisymmetric => law.initial_strain_around(&initial),
+        Kinematics::PlaneStrain | Kinematics::PlaneStress => {
+            law.initial_strain(kinematics == Kinematics::PlaneStrain, &initial)
+        }
+    };
+    let around = strain.hoop_gradient.iter().chain([&strain.hoop]);
+    let numbers = strain.value.iter().chain(strain.gradient.as_flattened()).chain(around);
     if numbers.copied().any(|e| !e.is_finite()) {
         let (rule, remedy) = ("the initial strain overflows", "choose units in which the numbers are ordinary ones");
         let (key, table, found) = ("expansion".to_owned(), label.to_owned(), "too large".to_owned());

@@ -15,6 +15,7 @@ mod moved;
 mod msh;
 mod obstacles;
 pub mod stack;
+mod turned;
 
 use std::path::{Path, PathBuf};
 
@@ -67,7 +68,7 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 8] = [
+const LATER: [(&str, f64, Family); 9] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
@@ -76,6 +77,7 @@ const LATER: [(&str, f64, Family); 8] = [
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
     ("mixed", 0.2, mixed::mixed),
+    ("turned", 0.1, turned::turned),
 ];
 
 /// The scene of a seed in one family.

@@ -16,6 +16,7 @@ use crate::element::displacement::MOST;
 use crate::element::geometry::{from_centroid, gradients, sub_corners};
 use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
 use crate::element::polynomial::triangle;
+use crate::element::revolved::Held;
 use crate::element::{Material, Samples, SideValues, StressField, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
@@ -82,7 +83,12 @@ fn corner_values(
         Some(revolved) => {
             let force = if with_initial { problem.body_force(t) } else { &BodyForce::NONE };
             let of = revolved.plane_strain_of(stress, t, corners, material, force);
-            reference.strain(|sub, _, l| of(sub, l))
+            let held = Held::on(material, corners).filter(|_| with_initial);
+            reference.strain(|sub, _, l| {
+                let own = of(sub, l);
+                let Some([rr, zz, _, rz]) = held.map(|held| held.at(sub, l)) else { return own };
+                [own[0] + rr, own[1] + zz, own[2] + rz]
+            })
         }
     };
     let local = Local { p, gradients: gradients(p), strain };

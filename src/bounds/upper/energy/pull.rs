@@ -4,7 +4,7 @@ use super::split::{self, load};
 use crate::bounds::springs::OnSprings;
 use crate::element::StressField;
 use crate::element::geometry::sub_corners;
-use crate::element::revolved::Tensor;
+use crate::element::revolved::{Held, Tensor};
 use crate::load::{Affine, BodyForce};
 use crate::problem::{Condition, Problem};
 
@@ -46,7 +46,8 @@ impl Beside<'_> {
             forces.iter_mut().zip(load(section, k, corners, &radial)).for_each(|(f, own)| *f += own);
         }
         if let Ok(at) = self.stresses.binary_search_by_key(&t, |(t, _)| *t) {
-            split::pull_constant(section, k, corners, self.stresses[at].1.map(|s| factor * s), forces);
+            let stress = self.stresses[at].1.map(|s| factor * s);
+            split::pull_linear(section, k, corners, |_, _| stress, forces);
         }
     }
 }
@@ -73,6 +74,14 @@ impl Pull<'_> {
         let body = problem.mesh.body[t];
         if self.initial && !problem.scene.bodies[body].initial.is_none() {
             let material = problem.material(body);
+            if problem.section().is_revolved() {
+                let law = material.revolved();
+                if let Some(held) = Held::on(&material, corners) {
+                    let stress = |sub: usize, l: [f64; 3]| law.stress(held.at(sub, l));
+                    split::pull_linear(problem.section(), k, corners, stress, &mut forces);
+                }
+                return forces;
+            }
             let mut held = StressField::zeros(1, 1);
             let places = (0..3).flat_map(|sub| sub_corners(corners, sub));
             held.block_mut(0).iter_mut().zip(places).for_each(|(s, x)| *s = material.stress(material.initial().at(x)));

@@ -155,12 +155,20 @@ pub fn pull_revolved(k: usize, corners: [[f64; 2]; 3], stress: &[Weighted; 3], o
     }
 }
 
-/// Adds to them the forces ∫ σ : e(φ) r of a constant stress (rr, zz, tt, rz) of a body of revolution.
-pub fn pull_constant(section: Section, k: usize, corners: [[f64; 2]; 3], [rr, zz, tt, rz]: Tensor, out: &mut [f64]) {
+/// Adds to them the forces ∫ σ : e(φ) r of a constant or linear stress (rr, zz, tt, rz) of a body of revolution, given at points of
+/// subtriangles.
+pub fn pull_linear(
+    section: Section,
+    k: usize,
+    corners: [[f64; 2]; 3],
+    stress: impl Fn(usize, [f64; 3]) -> Tensor,
+    out: &mut [f64],
+) {
     let area = sub_area(corners);
     for (sub, nodes) in SplitNodes::of(k).subs.iter().enumerate() {
         let (g, places) = (sub_gradients(corners, sub), sub_corners(corners, sub));
         for &(l, weight) in triangle_rule(k + 1) {
+            let [rr, zz, tt, rz] = stress(sub, l);
             let radius: f64 = (0..3).map(|i| l[i] * section.weight(places[i])).sum();
             let weight = area * weight;
             for (beta, b) in triangle::indices(k - 1).zip(triangle::basis(k - 1, l)) {
