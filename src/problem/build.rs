@@ -160,7 +160,7 @@ impl Problem {
                     }
                 }
             }
-            softened::refuse(contact, &matched, section, &mesh, !scene.quantities.is_empty())?;
+            softened::refuse(contact, &matched, section, &mesh)?;
             interfaces.push(matched);
         }
         let beds = beds(&scene, &mesh)?;

@@ -72,6 +72,7 @@ mod rings;
 mod rounding;
 mod scene_schema;
 mod setup;
+mod slopes;
 mod springs;
 mod squares;
 #[path = "../support/mod.rs"]
