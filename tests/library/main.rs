@@ -65,6 +65,7 @@ mod quantities;
 mod ranges;
 mod refinement_ends;
 mod revolved;
+mod revolved_springs;
 mod revolved_strain;
 mod rings;
 mod rounding;
