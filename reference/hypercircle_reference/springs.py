@@ -23,6 +23,15 @@ def mass(degree: int) -> np.ndarray:
     return back.T @ np.array(gram) @ back
 
 
+def weighted_mass(degree: int) -> np.ndarray:
+    """The same (2, k + 1, k + 1) with the weights 1 − s and s, s from 0 to 1 along the edge."""
+    k = degree
+    of = lambda i, j, m: comb(k, i) * comb(k, j) / (comb(2 * k + 1, i + j + m) * (2 * k + 2))
+    gram = np.array([[[of(i, j, m) for j in range(k + 1)] for i in range(k + 1)] for m in range(2)])
+    back = np.linalg.inv(bernstein(k))
+    return back.T @ gram @ back
+
+
 def sides(problem: Problem, springs: Springs, degree: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The nodes (m, k + 1) of each edge and of the one opposite it, both along the first, and the lengths (m,)."""
     lattice = Lattice.of(problem, degree)
@@ -37,7 +46,12 @@ def sides(problem: Problem, springs: Springs, degree: int) -> tuple[np.ndarray, 
 
 def stiffness(problem: Problem, degree: int) -> sp.csr_matrix:
     """The matrix (2n, 2n) of the springs for the two components of every node; of no entries where there are none."""
-    return assembled(problem, problem.springs, degree, np.broadcast_to(mass(degree), (len(problem.springs.edges), degree + 1, degree + 1)))
+    count = len(problem.springs.edges)
+    weights = np.broadcast_to(mass(degree), (count, degree + 1, degree + 1))
+    if problem.revolution is not None:
+        ends = problem.points[problem.edges[problem.springs.edges]]
+        weights = np.einsum("me,eab->mab", ends[:, :, 0] - problem.revolution.axis, weighted_mass(degree))
+    return assembled(problem, problem.springs, degree, weights)
 
 
 def assembled(problem: Problem, springs: Springs, degree: int, weights: np.ndarray) -> sp.csr_matrix:

@@ -33,7 +33,7 @@ pub fn complementary_of_springs(problem: &Problem, stress: &StressField, counted
             _ => 0.0,
         };
         let energy = |(t, k): (&Vec<f64>, f64)| {
-            let (stored, on_gap) = (pair.length * side::integral(t, t) / (2.0 * k), on_gap(t));
+            let (stored, on_gap) = (pair.length * pair.weight.square_over(t) / (2.0 * k), on_gap(t));
             [stored + on_gap, 2.0 * stored + on_gap.abs()]
         };
         along.map(energy).collect()
@@ -55,8 +55,8 @@ pub fn potential_of_springs(problem: &Problem, v: &Displacement, counted: Counte
         along
             .map(|((j, size), k)| {
                 let least: Vec<f64> = j.iter().map(|j| j.abs()).collect();
-                let moved = pair.length * k * size * side::integral(&least, &[1.0]);
-                [0.5 * pair.length * k * side::integral(j, j), moved]
+                let moved = pair.length * k * size * side::integral(&pair.weight.times(&least), &[1.0]);
+                [0.5 * pair.length * k * side::integral(j, &pair.weight.times(j)), moved]
             })
             .collect()
     };
@@ -76,10 +76,11 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
         }
         let along = forces.iter().zip(&jump).zip(stiffness).filter(|(_, k)| *k > 0.0);
         let term = |((t, j), k): ((&Vec<f64>, &Vec<f64>), f64)| {
+            let j = pair.weight.times(j);
             let degree = t.len().max(j.len()) - 1;
-            let [t, j] = [side::elevate(t, degree), side::elevate(j, degree)];
+            let [t, j] = [side::elevate(t, degree), side::elevate(&j, degree)];
             let off: Vec<f64> = t.iter().zip(&j).map(|(t, j)| k * j + t).collect();
-            pair.length * side::integral(&off, &off) / (2.0 * k)
+            pair.length * pair.weight.square_over(&off) / (2.0 * k)
         };
         problem.scene.thickness * along.map(term).sum::<f64>()
     };

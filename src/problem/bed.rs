@@ -5,6 +5,9 @@
 //! energy has of it, with q = −t, and φ(j) + φ*(q) − q j = (k j − q)²/2k is what it adds to the gap.
 
 use super::{ContactPair, ProblemError};
+use crate::element::Section;
+use crate::element::polynomial::side;
+use crate::element::revolved::{NEAR, side_rule};
 use crate::mesh::Triangulation;
 use crate::mesh::sides::bonded::opposite;
 use crate::scene::{Bond, Scene, Support, SupportKind};
@@ -31,8 +34,64 @@ pub struct BedPair {
     pub axes: [[f64; 2]; 2],
     /// Length of the edge.
     pub length: f64,
+    /// What its points count.
+    pub weight: EdgeWeight,
     /// The elastic contact that it is, which resists along the first of the axes where the jump exceeds the gap, and pulls nowhere.
     pub contact: Option<OneSided>,
+}
+
+/// What a point of an edge counts in integrals over it: one, or its distance from the axis of revolution, by that of the two ends.
+///
+/// Tractions of a body of revolution are weighted with it, t̃ = r t; jumps are not.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EdgeWeight(Option<[f64; 2]>);
+
+impl EdgeWeight {
+    /// On an edge of the mesh.
+    fn on(section: Section, mesh: &Triangulation, edge: usize) -> Self {
+        EdgeWeight(section.is_revolved().then(|| mesh.edges[edge].vertices.map(|v| section.weight(mesh.points[v]))))
+    }
+
+    /// The mean along the edge.
+    pub fn mean(&self) -> f64 {
+        self.0.map_or(1.0, |[a, b]| 0.5 * (a + b))
+    }
+
+    /// At one of its ends.
+    pub fn at_end(&self, end: usize) -> f64 {
+        self.0.map_or(1.0, |radii| radii[end])
+    }
+
+    /// The distances of the ends from the axis of revolution.
+    pub fn radii(&self) -> Option<[f64; 2]> {
+        self.0
+    }
+
+    /// Bernstein coefficients of a function times the weight.
+    pub fn times(&self, f: &[f64]) -> Vec<f64> {
+        let Some([a, b]) = self.0 else { return f.to_vec() };
+        let n = f.len();
+        let of = |i: usize| {
+            let low = if i < n { (n - i) as f64 / n as f64 * a * f[i] } else { 0.0 };
+            low + if i > 0 { i as f64 / n as f64 * b * f[i - 1] } else { 0.0 }
+        };
+        (0..=n).map(of).collect()
+    }
+
+    /// ∫ f² over the weight, from above, for a weighted function on an edge of length one.
+    pub fn square_over(&self, f: &[f64]) -> f64 {
+        let Some(radii) = self.0 else { return side::integral(f, f) };
+        let points = side_rule(radii, 2 * (f.len() - 1), NEAR);
+        points.iter().map(|p| p.weight * (1.0 + p.excess) * side::value(f, p.at).powi(2) / p.radius).sum()
+    }
+
+    /// ∫ B_i B_j times the weight, for polynomials of degree `k` on an edge of length one.
+    pub fn product(&self, k: usize, i: usize, j: usize) -> f64 {
+        let Some([a, b]) = self.0 else { return side::product(k, i, k, j) };
+        let n = (k + 1) as f64;
+        (n - j as f64) / n * a * side::product(k, i, k + 1, j)
+            + (j + 1) as f64 / n * b * side::product(k, i, k + 1, j + 1)
+    }
 }
 
 /// The gap of an elastic contact along its edge.
@@ -60,7 +119,8 @@ impl OneSided {
 impl BedPair {
     fn new(mesh: &Triangulation, edge: usize, opposite: Option<usize>) -> Self {
         let (length, [x, y]) = mesh.edge_frame(edge);
-        BedPair { edge, opposite, axes: [[x, y], [-y, x]], length, contact: None }
+        let weight = EdgeWeight::default();
+        BedPair { edge, opposite, axes: [[x, y], [-y, x]], length, weight, contact: None }
     }
 
     /// The springs that an elastic contact is where it is closed, and their stiffness; `None` of a rigid one.
@@ -96,6 +156,12 @@ impl Bed {
         let pairs = opposite(mesh, scene, bond.joint())?;
         let pairs = pairs.into_iter().map(|[e, f]| BedPair::new(mesh, e, Some(f))).collect();
         Ok(Some(Bed { name: bond.name(), stiffness, pairs }))
+    }
+
+    /// The same in a section.
+    pub(super) fn of_section(mut self, section: Section, mesh: &Triangulation) -> Self {
+        self.pairs.iter_mut().for_each(|pair| pair.weight = EdgeWeight::on(section, mesh, pair.edge));
+        self
     }
 
     /// Whether it has a second side.

@@ -309,7 +309,7 @@ fn on_axis(scene: &Scene, mesh: &Triangulation, section: Section) -> Result<(), 
     Ok(())
 }
 
-/// Refuses bodies and springs that bodies of revolution do not have here.
+/// Refuses forces and contacts that bodies of revolution do not have here.
 fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> {
     let refused = |what: String, remedy: &str| Err(MeshError::cells(scene, what, remedy).into());
     for body in &scene.bodies {
@@ -327,11 +327,9 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
         let what = "a traction on a body of revolution has `terms`".to_string();
         return refused(what, "leave `terms` out of axisymmetric scenes");
     }
-    let springs = scene.supports.iter().any(|s| matches!(s.kind, SupportKind::Spring { .. }));
-    let elastic = scene.contacts.iter().any(|contact| contact.stiffness.is_some());
-    if springs || elastic || scene.bonds.iter().any(|bond| bond.stiffness.is_some()) {
-        let what = "a body of revolution has springs, an elastic layer or elastic contact".to_string();
-        return refused(what, "leave `stiffness` out of axisymmetric scenes");
+    if scene.contacts.iter().any(|contact| contact.stiffness.is_some()) {
+        let what = "a body of revolution has elastic contact".to_string();
+        return refused(what, "leave `stiffness` out of the contacts of axisymmetric scenes");
     }
     Ok(())
 }
@@ -357,7 +355,8 @@ fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
     for bond in &scene.bonds {
         all.extend(Bed::of_bond(bond, scene, mesh)?);
     }
-    Ok(all)
+    let section = section(scene);
+    Ok(all.into_iter().map(|bed| bed.of_section(section, mesh)).collect())
 }
 
 /// The role of every boundary that the scene mentions.

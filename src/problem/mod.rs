@@ -10,7 +10,7 @@ mod scales;
 mod tests;
 
 pub(crate) use bed::facing_vertices;
-pub use bed::{Bed, BedPair, OneSided};
+pub use bed::{Bed, BedPair, EdgeWeight, OneSided};
 pub use contact::bow::Bow;
 pub use contact::direction::Direction;
 pub use contact::friction::{Friction, rubs};

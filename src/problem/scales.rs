@@ -221,7 +221,7 @@ fn give(problem: &Problem) -> f64 {
         if bed.pairs.iter().all(own) {
             continue;
         }
-        let length: f64 = bed.pairs.iter().map(|pair| pair.length).sum();
+        let length: f64 = bed.pairs.iter().map(|pair| pair.length * pair.weight.mean()).sum();
         let softest = bed.stiffness.into_iter().filter(|k| *k > 0.0).fold(f64::INFINITY, f64::min);
         most = most.max(1.0 / (softest * length));
     }

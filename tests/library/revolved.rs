@@ -317,8 +317,8 @@ fn what_cannot_be_beside_an_axis_is_refused() {
     ] {
         assert!(with(key).contains(said), "{}", with(key));
     }
-    let spring = "[[supports]]\non = \"rod_foot\"\ntype = \"spring\"\nstiffness = [1.0, 0.0]\n";
-    assert!(refused(head("axisymmetric", 0.5) + &body(0.5) + spring).contains("springs"));
+    let spring = "[[contacts]]\non = \"rod_foot\"\nstiffness = 1.0\n";
+    assert!(refused(head("axisymmetric", 0.5) + &body(0.5) + spring).contains("elastic contact"));
     for asked in [
         "stress = \"rod\"\npoint = [0.7, 0.5]\ncomponent = \"von-mises\"",
         "displacement = \"rod\"\npoint = [0.7, 0.5]\ndirection = [0.0, 1.0]",

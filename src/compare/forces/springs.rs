@@ -2,7 +2,7 @@
 
 use super::NodalForces;
 use crate::element::polynomial::{positive, side};
-use crate::problem::{Bed, Problem};
+use crate::problem::{Bed, EdgeWeight, Problem};
 use crate::vector::dot;
 
 /// The functions that belong to the nodes of a field.
@@ -21,6 +21,22 @@ impl Functions {
         match (self, degree) {
             (Functions::Values, 2) => QUADRATIC[i][j] / 30.0,
             _ => side::product(degree, i, degree, j),
+        }
+    }
+
+    /// The same with what the points of an edge count.
+    fn weighted(self, weight: EdgeWeight, degree: usize, i: usize, j: usize) -> f64 {
+        if weight.radii().is_none() {
+            return self.product(degree, i, j);
+        }
+        // The functions of values by their Bernstein coefficients.
+        const VALUES: [[f64; 3]; 3] = [[1.0, -0.5, 0.0], [0.0, 2.0, 0.0], [0.0, -0.5, 1.0]];
+        match (self, degree) {
+            (Functions::Values, 2) => (0..3)
+                .flat_map(|p| (0..3).map(move |q| (p, q)))
+                .map(|(p, q)| VALUES[i][p] * VALUES[j][q] * weight.product(2, p, q))
+                .sum(),
+            _ => weight.product(degree, i, j),
         }
     }
 
@@ -82,7 +98,7 @@ impl NodalForces {
                     positive::points(&beyond, beyond.len() + gap.len() - 2, on_gap);
                 }
                 for i in 0..=degree {
-                    let weight = |j: usize| whole * functions.product(degree, i, j);
+                    let weight = |j: usize| whole * functions.weighted(pair.weight, degree, i, j);
                     let force: f64 = match &forces {
                         Some(forces) => whole * forces[i],
                         None => (0..=degree).map(|j| weight(j) * jump[j]).sum(),

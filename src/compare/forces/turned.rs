@@ -6,6 +6,7 @@
 
 use super::NodalForces;
 use super::cells;
+use super::springs::Functions;
 use crate::bounds::Potential;
 use crate::compare::candidate::Candidate;
 use crate::element::Material;
@@ -215,6 +216,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
     for (e, ends) in problem.tractions() {
         add_traction(problem, candidate, (e, &problem.weighted(e, ends)), &mut forces.load);
     }
+    let springs = forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
     forces.take_loads();
     let mut work = 0.0;
     for (node, load) in forces.load.iter().enumerate() {
@@ -224,8 +226,8 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             rounded += (load[c] * u[c]).abs();
         }
     }
-    let magnitude = strain + rounded;
-    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs: 0.0, friction: 0.0 })
+    let magnitude = strain + springs + rounded;
+    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs, friction: 0.0 })
 }
 
 /// Adds ∫ T·φ along an edge, T by its Bernstein coefficients.

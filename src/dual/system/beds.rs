@@ -15,6 +15,7 @@ use super::pattern::Pattern;
 use super::unknowns::{Component, EdgeMoments, Unknowns};
 use crate::element::displacement::MOST;
 use crate::element::polynomial::side;
+use crate::element::revolved::{ROUGH, SidePoint, side_rule, vanishes};
 use crate::problem::{BedPair, Problem};
 
 /// An edge on springs or on a side of a layer.
@@ -72,7 +73,7 @@ impl BedEdge {
 }
 
 /// One direction of one pair.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Spring {
     /// First unknown of its jump, or of the stretch of an elastic contact.
     first: usize,
@@ -83,6 +84,8 @@ struct Spring {
     stiffness: f64,
     /// Its first parameter, behind those of the triangles.
     parameter: usize,
+    /// L⁻¹ beside an axis of revolution.
+    turned: Option<DMatrix<f64>>,
 }
 
 /// All springs.
@@ -105,6 +108,7 @@ impl Springs {
                     degree: edge.degree,
                     stiffness: k / pair.length,
                     parameter: springs.parameters,
+                    turned: pair.weight.radii().map(|radii| turned_inverse(radii, edge.degree)),
                 });
                 springs.parameters += edge.degree + 1;
             }
@@ -114,7 +118,14 @@ impl Springs {
             let EdgeMoments::Contact(edge) = &unknowns.edges[e] else { continue };
             let Some(stretch) = edge.stretch else { continue };
             let (parameter, stiffness) = (springs.parameters, k / pair.length);
-            springs.all.push(Spring { first: stretch, step: 1, degree: edge.degree, stiffness, parameter });
+            springs.all.push(Spring {
+                first: stretch,
+                step: 1,
+                degree: edge.degree,
+                stiffness,
+                parameter,
+                turned: None,
+            });
             springs.parameters += edge.degree + 1;
         }
         springs
@@ -128,7 +139,7 @@ impl Springs {
     /// Adds their energy to K.
     pub fn assemble(&self, pattern: &Pattern, values: &mut [f64]) {
         for spring in &self.all {
-            let l = lower_inverse(spring.degree);
+            let l = spring.lower();
             for i in 0..=spring.degree {
                 for j in 0..=i {
                     let entry: f64 = (i..=spring.degree).map(|r| l[(r, i)] * l[(r, j)]).sum();
@@ -141,7 +152,7 @@ impl Springs {
     /// Their parameters for the unknowns `x`.
     pub fn parameters_from(&self, x: &[f64], out: &mut [f64]) {
         for spring in &self.all {
-            let (l, root) = (lower_inverse(spring.degree), spring.stiffness.sqrt());
+            let (l, root) = (spring.lower(), spring.stiffness.sqrt());
             for i in 0..=spring.degree {
                 let sum: f64 = (0..=i).map(|j| l[(i, j)] * x[spring.at(j)]).sum();
                 out[spring.parameter + i] = root * sum;
@@ -152,7 +163,7 @@ impl Springs {
     /// Takes their forces, for these parameters, from the residual of every unknown.
     pub fn subtract_forces(&self, s: &[f64], r: &mut [f64]) {
         for spring in &self.all {
-            let (l, root) = (lower_inverse(spring.degree), spring.stiffness.sqrt());
+            let (l, root) = (spring.lower(), spring.stiffness.sqrt());
             for j in 0..=spring.degree {
                 let sum: f64 = (j..=spring.degree).map(|i| l[(i, j)] * s[spring.parameter + i]).sum();
                 r[spring.at(j)] -= root * sum;
@@ -162,6 +173,10 @@ impl Springs {
 }
 
 impl Spring {
+    fn lower(&self) -> &DMatrix<f64> {
+        self.turned.as_ref().unwrap_or_else(|| lower_inverse(self.degree))
+    }
+
     fn at(&self, k: usize) -> usize {
         self.first + self.step * k
     }
@@ -177,6 +192,32 @@ fn lower_inverse(p: usize) -> &'static DMatrix<f64> {
     })
 }
 
+/// L⁻¹ of the matrix of ∫ B_i B_j/r on an edge of length one whose ends have these distances from the axis: forces are those of r t. At an end
+/// on the axis there is no force.
+fn turned_inverse(radii: [f64; 2], p: usize) -> DMatrix<f64> {
+    let kept: Vec<usize> = (0..=p).filter(|k| !vanishes(radii.map(|r| r == 0.0), *k, p)).collect();
+    let points = side_rule(radii, 2 * p, ROUGH);
+    let unit = |i: usize, at: f64| {
+        let mut one = vec![0.0; p + 1];
+        one[i] = 1.0;
+        side::value(&one, at)
+    };
+    let gram = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+        let of = |point: &SidePoint| point.weight * unit(kept[i], point.at) * unit(kept[j], point.at) / point.radius;
+        points.iter().map(of).sum::<f64>()
+    });
+    let lower = gram.cholesky().and_then(|factor| factor.l().try_inverse());
+    let mut out = DMatrix::zeros(p + 1, p + 1);
+    if let Some(lower) = lower {
+        for (i, row) in kept.iter().enumerate() {
+            for (j, column) in kept.iter().enumerate() {
+                out[(*row, *column)] = lower[(i, j)];
+            }
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,7 +228,7 @@ mod tests {
             let jump: Vec<f64> = (0..=p).map(|k| ((3 * k + 1) as f64).cos()).collect();
             let moments = side::moments(&jump, p);
             let springs = Springs {
-                all: vec![Spring { first: 0, step: 2, degree: p, stiffness: 4.0, parameter: 0 }],
+                all: vec![Spring { first: 0, step: 2, degree: p, stiffness: 4.0, parameter: 0, turned: None }],
                 parameters: p + 1,
             };
             let x: Vec<f64> = moments.iter().flat_map(|m| [*m, 7.0]).collect();

@@ -27,7 +27,7 @@ mod stress;
 pub use initial::{Held, Motion};
 pub use law::{Law, Tensor, work};
 pub use modes::Ring;
-pub use rule::{Point, rule};
+pub use rule::{Point, SidePoint, rule, side_rule};
 pub use sampled::{Sampled, Strained};
 pub use stress::Weighted;
 

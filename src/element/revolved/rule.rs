@@ -64,6 +64,40 @@ pub fn rule(radii: [f64; 3], degree: usize, near: f64) -> Vec<Point> {
     points
 }
 
+/// A point of a rule on an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SidePoint {
+    /// The place on the edge, from 0 to 1.
+    pub at: f64,
+    /// Weight; all weights sum to one.
+    pub weight: f64,
+    /// Distance from the axis.
+    pub radius: f64,
+    /// As [`Point::excess`].
+    pub excess: f64,
+}
+
+/// The same as [`rule`] on an edge whose ends have these distances from the axis.
+pub fn side_rule([first, last]: [f64; 2], degree: usize, near: f64) -> Vec<SidePoint> {
+    let (least, most) = (first.min(last), first.max(last));
+    let intervals = if least > 0.0 && most > least { intervals(most / least) } else { 1 };
+    let at = |s: f64| first + s * (last - first);
+    let mut points = Vec::new();
+    let mut from = 0.0;
+    for i in 1..=intervals {
+        let part = i as f64 / intervals as f64;
+        let to = if i == intervals { 1.0 } else { (first * (last / first).powf(part) - first) / (last - first) };
+        let majorant = Majorant::on(at(from), at(to), near);
+        for &(s, weight) in segment_rule(degree + majorant.degree) {
+            let s = from + s * (to - from);
+            let radius = at(s);
+            points.push(SidePoint { at: s, weight: weight * (to - from), radius, excess: majorant.excess(radius) });
+        }
+        from = to;
+    }
+    points
+}
+
 /// One of the two parts of a triangle: a corner, and the side opposite, on which r is constant.
 struct Half {
     corners: [[f64; 3]; 3],
@@ -168,6 +202,18 @@ mod tests {
                 assert!(found <= exact * (1.0 + near) + rounding, "{radii:?}: {found} is far above {exact}");
             }
         }
+    }
+
+    #[test]
+    fn inverse_radii_are_integrated_from_above_on_edges_too() {
+        for [a, b] in [[1.0, 2.0], [3.0, 1.0], [1e-4, 1.0], [2.0, 2.0], [10.0, 10.5]] {
+            let exact = if a == b { 1.0 / a } else { f64::ln(b / a) / (b - a) };
+            let found: f64 = side_rule([a, b], 0, 1e-14).iter().map(|p| p.weight * (1.0 + p.excess) / p.radius).sum();
+            assert!(found >= exact * (1.0 - 1e-13) && found <= exact * (1.0 + 1e-13), "{a} {b}: {found} {exact}");
+        }
+        // Divisible by r where that vanishes.
+        let found: f64 = side_rule([0.0, 2.0], 4, 1e-14).iter().map(|p| p.weight * p.at.powi(4) / p.radius).sum();
+        assert!((found - 0.125).abs() < 1e-15);
     }
 
     #[test]

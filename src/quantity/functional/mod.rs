@@ -73,6 +73,9 @@ impl Functional {
     pub fn new(problem: &Problem, quantity: &Quantity) -> Result<Self, NotBounded> {
         if problem.section().is_revolved() {
             refuse_in_revolved(&quantity.target)?;
+            if !problem.beds.is_empty() {
+                return Err(NotBounded::Revolved { what: "quantities of bodies on springs or with elastic layers" });
+            }
         }
         match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),

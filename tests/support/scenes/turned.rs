@@ -65,7 +65,7 @@ fn body(toml: Toml, random: &mut Random, name: &str, [[a, b], [d, c]]: [[[f64; 2
     let poisson = if random.chance(0.15) { 0.4999 } else { random.between(0.0, 0.45) };
     let mut keys = match random.below(3) {
         0 => format!("young = {young:?}\npoisson = {poisson:?}"),
-        _ => matter::keys(random, (young, poisson.min(0.4)), STRAIN, 2.0 + b[0]),
+        _ => matter::moderate(random, (young, poisson.min(0.4)), STRAIN, 2.0 + b[0]),
     };
     if !keys.contains("initial_stress") && random.chance(0.2) {
         let stress = [0, 1, 2, 3].map(|_| young * STRAIN * random.between(-1.0, 1.0));
@@ -84,8 +84,12 @@ fn body(toml: Toml, random: &mut Random, name: &str, [[a, b], [d, c]]: [[[f64; 2
 }
 
 fn ground(toml: Toml, random: &mut Random, foot: &str) -> Toml {
-    match random.below(4) {
+    match random.below(5) {
         0 => toml.clamp(foot),
+        4 => {
+            let both = [random.magnitude(-0.5, 1.5), random.magnitude(-0.5, 1.5)];
+            toml.table(&format!("[[supports]]\non = \"{foot}\"\ntype = \"spring\"\nstiffness = {both:?}"))
+        }
         1 => toml.table(&format!("[[supports]]\non = \"{foot}\"\ntype = \"roller\"\ndirection = [0.0, 1.0]")),
         2 => toml.table(&format!("[[contacts]]\non = \"{foot}\"\ngap = {:?}", random.between(0.0, 0.02))),
         _ => toml.rigid(foot),
@@ -94,8 +98,13 @@ fn ground(toml: Toml, random: &mut Random, foot: &str) -> Toml {
 
 fn between(toml: Toml, random: &mut Random, below: &str, foot: &str) -> Toml {
     let sides = format!("between = [\"{below}\", \"{foot}\"]");
-    if random.chance(0.25) {
-        return toml.table(&format!("[[bonds]]\n{sides}"));
+    match random.below(8) {
+        0 | 1 => return toml.table(&format!("[[bonds]]\n{sides}")),
+        2 => {
+            let both = [random.magnitude(-0.5, 1.5), random.magnitude(-0.5, 1.5)];
+            return toml.table(&format!("[[bonds]]\n{sides}\nstiffness = {both:?}"));
+        }
+        _ => {}
     }
     let gap = match random.below(4) {
         0 => "0.0".to_string(),
@@ -107,7 +116,7 @@ fn between(toml: Toml, random: &mut Random, below: &str, foot: &str) -> Toml {
 }
 
 fn wall(toml: Toml, random: &mut Random, side: &str) -> Toml {
-    match random.below(8) {
+    match random.below(9) {
         0 => toml.table(&format!("[[supports]]\non = \"{side}\"\ntype = \"roller\"\ndirection = [1.0, 0.0]")),
         1 => toml.table(&format!("[[contacts]]\non = \"{side}\"\ngap = {:?}", random.between(0.0, 0.02))),
         2 | 3 => toml.pressure(side, random.between(-0.1, 0.3)),
@@ -118,6 +127,10 @@ fn wall(toml: Toml, random: &mut Random, side: &str) -> Toml {
             ))
         }
         5 => toml.roller(side),
+        6 => {
+            let stiffness = random.magnitude(-1.0, 1.5);
+            toml.table(&format!("[[supports]]\non = \"{side}\"\ntype = \"spring\"\nstiffness = {stiffness:?}"))
+        }
         _ => toml,
     }
 }

@@ -8,7 +8,7 @@ use crate::bounds::upper::admissible::nodes::{NodalValues, Nodes};
 use crate::element::StressField;
 use crate::element::polynomial::side;
 use crate::element::polynomial::side::product;
-use crate::problem::{BedPair, Problem};
+use crate::problem::{BedPair, EdgeWeight, Problem};
 use crate::vector::dot;
 
 /// One edge on springs, or two with a layer between them.
@@ -22,6 +22,7 @@ pub struct BedEnergy {
     /// What pulls at the nodes of the first side, and at those of the second the other way.
     load: Vec<[f64; 2]>,
     length: f64,
+    weight: EdgeWeight,
     /// The gap of an elastic contact.
     gap: Option<Vec<f64>>,
     /// The energy that is counted beside all this.
@@ -38,6 +39,7 @@ pub fn energies(problem: &Problem, nodes: &Nodes) -> Vec<BedEnergy> {
         stiffness: stiffness.map(|k| k * pair.length),
         load: Vec::new(),
         length: pair.length,
+        weight: pair.weight,
         gap: pair.contact.map(|contact| contact.gap()),
         constant: 0.0,
     };
@@ -60,7 +62,8 @@ impl BedEnergy {
         };
         let load = (0..=k).map(|i| [along(i, &x), along(i, &y)]).collect();
         let axes = [[1.0, 0.0], [0.0, 1.0]];
-        BedEnergy { sides, axes, stiffness: [0.0; 2], load, length, gap: None, constant: 0.0 }
+        let weight = EdgeWeight::default();
+        BedEnergy { sides, axes, stiffness: [0.0; 2], load, length, weight, gap: None, constant: 0.0 }
     }
 
     /// All nodes, with the sign that their values have in the jump, and their place along the edge.
@@ -111,7 +114,7 @@ impl BedEnergy {
         let of = |i: usize| {
             let mut mean = [0.0; 2];
             for (j, u) in jump.iter().enumerate() {
-                let weight = product(k, i, k, j);
+                let weight = self.weight.product(k, i, j);
                 (0..2).for_each(|c| mean[c] += weight * u[c]);
             }
             let mut force = [0.0; 2];
@@ -128,7 +131,8 @@ impl BedEnergy {
     pub fn entry(&self, (i, p): (usize, [f64; 2]), (j, q): (usize, [f64; 2])) -> f64 {
         let k = self.degree();
         let along = self.axes.iter().zip(self.stiffness);
-        product(k, i, k, j) * along.map(|(axis, stiffness)| stiffness * dot(*axis, p) * dot(*axis, q)).sum::<f64>()
+        self.weight.product(k, i, j)
+            * along.map(|(axis, stiffness)| stiffness * dot(*axis, p) * dot(*axis, q)).sum::<f64>()
     }
 
     /// ½ k l jᵀMj less the work of what pulls.
@@ -190,6 +194,11 @@ pub fn draw(problem: &Problem, stress: &StressField, field: &mut NodalValues) {
                 let other = opposite.map(|ends| ends[1 - end]).filter(|w| *w != v);
                 let now = dot(vertex[v], *axis) - other.map_or(0.0, |w| dot(vertex[w], *axis));
                 // Where nothing presses on an elastic contact it is anywhere within its gap.
+                let weight = pair.weight.at_end(end);
+                if weight == 0.0 {
+                    continue;
+                }
+                let t = t / weight;
                 let off = match gap.as_ref().map(|gap| gap[end * (gap.len() - 1)]) {
                     None => -t / k - now,
                     Some(gap) if t < 0.0 => gap - t / k - now,
