@@ -13,6 +13,10 @@ use crate::vector::long::{axpy, largest};
 const MOST: usize = 80;
 /// Steps that win nothing, neither of the equations nor of all that is asked, before it ends where it is.
 const PATIENCE: usize = 3;
+/// A step that leaves more than this part of the mean product, where the equations hold better than that, wins nothing …
+const WORSE: f64 = 0.9;
+/// … and one towards this part of it is taken in its place.
+const CENTRED: f64 = 0.3;
 /// What is left of the equations, relative to data of size one, where the state may be read.
 const BALANCED: f64 = 1e-9;
 /// Products of room and force at which a point that comes no further still tells the state.
@@ -86,7 +90,12 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
         let (_, reach) = toward(&mut all, 0.0, false);
         let after = all.iter().map(|b| b.product_after(reach)).sum::<f64>() / count;
         let target = mu * (after / mu).powi(3).min(1.0);
-        let (dx, reach) = toward(&mut all, target, true);
+        let (mut dx, mut reach) = toward(&mut all, target, true);
+        let product = all.iter().map(|b| b.product_after(reach)).sum::<f64>() / count;
+        if unbalanced <= mu && product > WORSE * mu {
+            // The products of a long step can lead in circles; a step towards the centre without them does not.
+            (dx, reach) = toward(&mut all, CENTRED * mu, false);
+        }
         axpy(&mut x, reach, &dx);
         all.iter_mut().for_each(|b| b.advance(reach));
     }
