@@ -32,8 +32,11 @@ left = { young = 1.0, poisson = 0.3 }
 right = { young = 2.0, poisson = 0.2 }
 "#;
 
-/// Names of fields with the finding that explains each, and its number.
-const FIELDS: [(&str, Option<(&str, Option<f64>)>); 11] = [
+/// A finding, and its number.
+type Explained = (&'static str, Option<f64>);
+
+/// Names of fields with the finding that explains each.
+const FIELDS: [(&str, Option<Explained>); 11] = [
     ("right", None),
     ("frictionless", Some(("frictionless", Some(0.0)))),
     ("sticks", Some(("sticks", None))),

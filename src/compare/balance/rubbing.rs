@@ -110,10 +110,13 @@ impl<'a> Solution<'a> {
     }
 }
 
+/// The vertices at an end of a contact pair, and the direction of contact there.
+type PairEnd = (usize, Option<usize>, [f64; 2]);
+
 /// Which of the jumps do not follow the law of one tangent alone: several contacts, or several directions of one, meet there, or a
 /// support holds it askew.
 pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> Vec<bool> {
-    let mut meeting: HashMap<usize, Vec<(usize, Option<usize>, [f64; 2])>> = HashMap::new();
+    let mut meeting: HashMap<usize, Vec<PairEnd>> = HashMap::new();
     for pair in problem.pairs() {
         for k in 0..2 {
             let end = (pair.first[k], pair.second.map(|s| s[k]), pair.direction.ends[k]);
@@ -125,7 +128,7 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
         _ => false,
     };
     let is_coupled = |slide: &EndSlide| {
-        let other = |&(first, second, n): &(usize, Option<usize>, [f64; 2])| {
+        let other = |&(first, second, n): &PairEnd| {
             (first, second) != (slide.first, slide.second) || dot(n, slide.tangent).abs() > ALIGNED
         };
         let beside = |v: usize| meeting.get(&v).is_some_and(|ends| ends.iter().any(other));

@@ -82,7 +82,7 @@ fn degree_along(pair: &ContactPair, degree: usize) -> usize {
 /// friction.
 pub fn inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Slide> {
     let Some(friction) = pair.friction.filter(|_| degree > 1) else { return Vec::new() };
-    let tangential = ContactPair { direction: friction.tangent, gap: [0.0; 2], bow: Bow::default(), ..pair.clone() };
+    let tangential = ContactPair { direction: friction.tangent, gap: [0.0; 2], bow: Bow::default(), ..*pair };
     let vertices = problem.mesh.points.len();
     let rows = match degree {
         2 => bernstein(&tangential, vertices),
@@ -121,7 +121,7 @@ pub fn friction_resultant(problem: &Problem, interface: &Interface, pieces: &[Pi
     let along = |pair: &ContactPair| {
         let direction = pair.friction.map(|friction| friction.tangent);
         let reversed = |d: Direction| Direction { ends: d.ends.map(|t| t.map(|x| -x)), ..d };
-        direction.map(|d| ContactPair { direction: reversed(d), ..pair.clone() })
+        direction.map(|d| ContactPair { direction: reversed(d), ..*pair })
     };
     let rubbing = interface.pairs.iter().zip(pieces).filter_map(|(pair, piece)| Some((along(pair)?, piece.clone())));
     let (pairs, pieces): (Vec<ContactPair>, Vec<Piece>) = rubbing.unzip();

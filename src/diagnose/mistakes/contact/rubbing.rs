@@ -163,7 +163,7 @@ impl Along<'_> {
             let pair = &pairs[span.pair];
             let bound = pair.arc.map(|s| bound(begin + end - s).unwrap_or(0.0));
             let friction = pair.friction.map(|friction| Friction { bound, ..friction });
-            let turned = ContactPair { friction, ..pair.clone() };
+            let turned = ContactPair { friction, ..*pair };
             self.solution.shares(span, &turned, ask).into_iter().for_each(|(site, share)| limit[site] += share);
         }
         let miss: f64 = sliding.iter().map(|r| (r.force + limit[r.site] * r.slip.signum()).powi(2)).sum();
