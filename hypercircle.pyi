@@ -1,4 +1,4 @@
-"""Guaranteed two-sided energy bounds for plane frictionless contact, and what is wrong with an element or a field."""
+"""Guaranteed two-sided energy bounds for contact, and what is wrong with an element or a field."""
 
 from collections.abc import Callable, Sequence
 from os import PathLike

@@ -25,7 +25,7 @@ pub use words::exit::Exit;
 
 use crate::process::{clear, signals};
 
-/// Guaranteed two-sided energy bounds for plane frictionless contact, and a displacement model to compare with.
+/// Guaranteed two-sided energy bounds for contact, and a displacement model to compare with.
 #[derive(Debug, Parser)]
 #[command(name = "hypercircle", version, propagate_version = true, after_help = words::exit::TABLE)]
 pub struct Cli {

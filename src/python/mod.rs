@@ -26,7 +26,7 @@ fn from_json(py: Python<'_>, text: serde_json::Result<String>) -> PyResult<Bound
     py.import("json")?.call_method1("loads", (text.map_err(errors::fault)?,))
 }
 
-/// Guaranteed two-sided energy bounds for plane frictionless contact, and what is wrong with an element or a field.
+/// Guaranteed two-sided energy bounds for contact, and what is wrong with an element or a field.
 #[pymodule]
 fn hypercircle(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
