@@ -128,6 +128,9 @@ fn failed(check: &Check) -> String {
         ("contact", name, "penetration-at-nodes") => {
             format!("A node of {name}, which holds in the mean, penetrates by {value} of the largest displacement.")
         }
+        ("contact", name, "friction") => {
+            format!("Along {name} friction misses its law by {value} of all forces; {allowed} at most.")
+        }
         ("contact", name, "pulling") => format!("Contact {name} pulls with {value} of all forces; {allowed} at most."),
         ("contact", name, "pressure-where-open") => {
             format!("Contact {name} pushes with {value} of all forces where it is open; {allowed} at most.")
