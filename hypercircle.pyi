@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Literal, Protocol, final
+from typing import Any, Literal, Protocol, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,11 +22,144 @@ class InfeasibleError(RuntimeError):
 class SolveError(RuntimeError):
     remedy: str
 
+# The tables of a scene, for completion; `hypercircle schema scene` says what each key means.
+_Range = float | Sequence[float]
+_Point = Sequence[float]
+
+class _Affine(TypedDict, total=False):
+    value: _Point
+    gradient: Sequence[_Point]
+
+class _Model(TypedDict, total=False):
+    kinematics: Literal["plane-strain", "plane-stress", "axisymmetric"]
+    thickness: float
+
+class _MeshPart(TypedDict, total=False):
+    file: str | PathLike[str]
+    prefix: str
+    scale: float
+    translate: _Point
+
+class _Mesh(TypedDict, total=False):
+    file: str | PathLike[str]
+    parts: Sequence[_MeshPart]
+
+class _Arc(TypedDict):
+    edge: int
+    through: _Point
+
+class _Polygon(TypedDict, total=False):
+    body: str
+    points: ArrayLike
+    edges: Sequence[str]
+    arcs: Sequence[_Arc]
+
+class _Geometry(TypedDict, total=False):
+    size: float
+    polygons: Sequence[_Polygon]
+
+class _Boundary(TypedDict, total=False):
+    name: str
+    body: str
+    line: Sequence[_Point]
+    box: Sequence[_Point]
+    circle: dict[str, Any]
+    normal: _Point
+    angle: float
+    set: str
+    tag: int
+
+class _Orthotropic(TypedDict, total=False):
+    young: Sequence[float]
+    poisson: Sequence[float]
+    shear: float
+    angle: float
+
+class _Rotation(TypedDict, total=False):
+    density: float
+    omega: float
+    about: _Point
+
+class _Body(TypedDict, total=False):
+    young: _Range
+    poisson: float
+    orthotropic: _Orthotropic
+    stiffness: ArrayLike
+    compliance: ArrayLike
+    angle: float
+    expansion: float | Sequence[float]
+    temperature: float | dict[str, Any]
+    initial_stress: Sequence[float]
+    body_force: _Point | _Affine
+    rotation: _Rotation
+    set: str
+    tag: int
+
+class _Support(TypedDict, total=False):
+    on: str
+    type: Literal["clamped", "roller", "spring"]
+    displacement: float | _Point | _Affine
+    direction: _Point
+    stiffness: float | Sequence[float]
+
+class _Traction(TypedDict, total=False):
+    on: str
+    value: _Point
+    gradient: Sequence[_Point]
+    pressure: float
+
+class _Contact(TypedDict, total=False):
+    between: Sequence[str]
+    on: str
+    gap: float | Sequence[Any] | dict[str, float]
+    normals: Literal["smooth", "facets"]
+    direction: _Point
+    obstacle: dict[str, Any]
+    move: _Point
+    stiffness: _Range
+
+class _Bond(TypedDict, total=False):
+    between: Sequence[str]
+    direction: _Point
+    stiffness: Sequence[float]
+
+class _Quantity(TypedDict, total=False):
+    name: str
+    displacement: str
+    force: str
+    moment: str
+    stress: str
+    stress_intensity: Literal["KI", "KII"]
+    direction: _Point
+    component: str
+    window: Sequence[float]
+    about: _Point
+    box: Sequence[_Point]
+    polygon: Sequence[_Point]
+    point: _Point
+    tip: _Point
+    smoothness: int
+
+class _Scene(TypedDict, total=False):
+    title: str
+    model: _Model
+    mesh: _Mesh
+    geometry: _Geometry
+    boundaries: Sequence[_Boundary]
+    bodies: dict[str, _Body]
+    supports: Sequence[_Support]
+    tractions: Sequence[_Traction]
+    contacts: Sequence[_Contact]
+    bonds: Sequence[_Bond]
+    quantities: Sequence[_Quantity]
+
 @final
 class Scene:
     def __new__(cls, path: str | PathLike[str]) -> Scene: ...
     @classmethod
     def from_text(cls, text: str, name: str = "scene", folder: str | PathLike[str] | None = None) -> Scene: ...
+    @classmethod
+    def from_dict(cls, data: _Scene, name: str = "scene", folder: str | PathLike[str] | None = None) -> Scene: ...
     @property
     def name(self) -> str: ...
     @property
@@ -76,6 +209,22 @@ class Scene:
         tolerance: float | None = None,
         method: _Method = "condensed",
         degree: int | None = None,
+        max_triangles: int | None = None,
+        max_seconds: float | None = None,
+        max_memory: str | None = None,
+        threads: int = 1,
+        out: str | PathLike[str] | None = None,
+    ) -> Certificate: ...
+    def verify(
+        self,
+        *,
+        primal_degree: Sequence[int] = ...,
+        allow: dict[str, float] | None = None,
+        method: _Method = "condensed",
+        degree: int | None = None,
+        refine: int = 0,
+        tolerance: float | None = None,
+        tolerance_of: dict[str, float] | None = None,
         max_triangles: int | None = None,
         max_seconds: float | None = None,
         max_memory: str | None = None,
@@ -138,6 +287,19 @@ class Solution:
     def unknowns(self) -> int: ...
     @property
     def iterations(self) -> int: ...
+    @property
+    def maps(self) -> dict[str, NDArray[np.float64]]: ...
+    def table(self, name: str) -> dict[str, list[Any]]: ...
+    def plot(
+        self,
+        value: str | ArrayLike | None = None,
+        *,
+        ax: Any = None,
+        deformed: float = 0.0,
+        colorbar: bool = True,
+        **options: Any,
+    ) -> Any: ...
+    def _repr_html_(self) -> str: ...
     def certify(
         self,
         points: ArrayLike | None = None,
@@ -221,6 +383,8 @@ class Certificate:
     def residual(self) -> NDArray[np.float64] | None: ...
     @property
     def report(self) -> dict[str, Any]: ...
+    def table(self, name: str) -> dict[str, list[Any]]: ...
+    def _repr_html_(self) -> str: ...
 
 _Formula = Callable[[NDArray[np.float64], float, float], ArrayLike]
 
@@ -254,3 +418,15 @@ def element(
 ) -> dict[str, Any]: ...
 def flexibility(corners: ArrayLike, constants: Sequence[float]) -> list[list[float]]: ...
 def side_map(a: Sequence[float], b: Sequence[float]) -> list[list[float]]: ...
+def field(
+    of: Any, values: ArrayLike | None = None, name: str | None = None
+) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64]]: ...
+def job(
+    scenes: str | PathLike[str] | Sequence[str | PathLike[str]],
+    command: Literal["verify", "solve", "certify"] = "verify",
+    *,
+    out: str | PathLike[str],
+    jobs: int = 1,
+    options: Sequence[str] = ...,
+) -> dict[str, Any]: ...
+def main() -> int: ...

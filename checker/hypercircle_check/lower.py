@@ -367,12 +367,10 @@ def square(b):
 
 def load(mesh, e):
     """Legendre coefficients tau_0, tau_1 of the load on an edge; lengths that are no fraction are taken to BITS places."""
-    (a, b), data = mesh.edges[e].tolist(), mesh.conditions[e].data
+    (a, b), (pressure, affine) = mesh.edges[e].tolist(), mesh.conditions[e].data
     n = mesh.normal(a, b)
-    if isinstance(data, Q):
-        return [[-data * x for x in n], NONE]
-    ends, length = [data.at(mesh.written(v)) for v in (a, b)], root(n[0] ** 2 + n[1] ** 2)[0]
-    return [[length * (x + y) / 2 for x, y in zip(*ends)], [length * (y - x) / 2 for x, y in zip(*ends)]]
+    ends, length = [affine.at(mesh.written(v)) for v in (a, b)], root(n[0] ** 2 + n[1] ** 2)[0]
+    return [[length * (x + y) / 2 - pressure * z for x, y, z in zip(*ends, n)], [length * (y - x) / 2 for x, y in zip(*ends)]]
 
 
 def contact_traction(pair, b):

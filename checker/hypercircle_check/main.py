@@ -15,6 +15,7 @@ import numpy as np
 from . import VERSION, Refused
 from .lower import Stress
 from .mesh import Mesh
+from .quantity import interval
 from .scene import Scene
 from .upper import Displacement
 
@@ -61,6 +62,7 @@ class Proof:
         meshes = [Mesh(data, of, scene, self.manifest) for of in ("stress", "displacement")]
         self.stress, self.displacement = Stress(meshes[0], data), Displacement(meshes[1], data)
         self.lower, self.upper = self.stress.bound(), self.displacement.bound(self.stress.extra)
+        self.quantities = [interval(data, self.manifest, scene, i) for i in range(len(self.manifest.get("quantities", [])))]
         premises = [premise for mesh in meshes for premise in mesh.premises]
         if any(self.manifest["origin"]):
             premises.append(f"coordinates of the mesh count from {self.manifest['origin']} and were rounded there")
@@ -121,6 +123,9 @@ def main(arguments=None):
     print(f"proved: the exact energy of {proof.manifest['scene']} lies between {float(lower)!r} and {float(upper)!r}.")
     print(f"  lower bound: stress in exact equilibrium on {len(proof.stress.mesh.triangles)} triangles, {told[0]}")
     print(f"  upper bound: admissible displacement on {len(proof.displacement.mesh.triangles)} triangles, {told[1]}")
+    for name, ends, claimed in proof.quantities:
+        low, high = outwards(ends)
+        print(f"  quantity {name}: between {float(low)!r} and {float(high)!r}, where the report has {claimed[0]!r} to {claimed[1]!r}")
     for premise in proof.premises:
         print(f"  premise: {premise}")
     print(f"  scene: sha256 {proof.manifest['scene_sha256']}")

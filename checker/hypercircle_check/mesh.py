@@ -102,6 +102,12 @@ class Mesh:
     def exact(self, vertex):
         return [Q(x) for x in self.points[vertex].tolist()]
 
+    def exact_det(self):
+        """Twice the areas of triangles."""
+        for corners in self.triangles.tolist():
+            (a, b), (c, d), (e, f) = (self.exact(v) for v in corners)
+            yield (c - a) * (f - b) - (d - b) * (e - a)
+
     def written(self, vertex):
         """The vertex in the coordinates of the scene file."""
         return [x + o for x, o in zip(self.exact(vertex), self.origin)]

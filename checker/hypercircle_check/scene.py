@@ -1,5 +1,6 @@
 """The scene as written: materials, loads, supports, contacts, in exact rational numbers (decimals of the file are read as doubles)."""
 
+import copy
 import tomllib
 from dataclasses import dataclass
 from fractions import Fraction as Q
@@ -68,7 +69,7 @@ class Affine:
 
 @dataclass
 class Condition:
-    """`clamped`: u = data(x). `roller`: u . direction = data, the outward normal where there is none. `load`: an Affine or a pressure.
+    """`clamped`: u = data(x). `roller`: u . direction = data, the outward normal where there is none. `load`: a pressure and an Affine.
     `spring`: data is the stiffness along the normal and along the edge, or their names where they are a layer's. `contact`, `bond`: a name."""
 
     kind: str
@@ -101,7 +102,7 @@ class Scene:
                 self._hold(support["on"], Condition("roller", Q(u or 0), direction and vector(direction)))
         for load in tractions:
             pressed = "pressure" in known("tractions", load)
-            self._hold(load["on"], Condition("load", Q(load["pressure"]) if pressed else Affine.of(load["value"], load.get("gradient"))))
+            self._hold(load["on"], Condition("load", (Q(load.get("pressure", 0)), Affine.of() if pressed else Affine.of(load["value"], load.get("gradient")))))
         for place, joints, own in (("contacts", contacts, self.contacts), ("bonds", bonds, self.bonds)):
             for joint in joints:
                 sides = known(place, joint).get("between") or [joint["on"]]
@@ -111,6 +112,22 @@ class Scene:
                 for side, boundary in enumerate(sides):
                     self._hold(boundary, Condition(place[:-1], name))
                     self.sides[boundary] = (name, side)
+
+    def pulled(self, quantity, by):
+        """The same scene with `by` times a constant load along the direction of a mean displacement; None where it is no such quantity."""
+        on, direction = quantity.get("displacement"), quantity.get("direction")
+        if on is None or direction is None or "point" in quantity or self.contacts:
+            return None
+        held = self.conditions.get(on, Condition("load", (Q(0), Affine.of())))
+        if (on in self.bodies) == (on in self.conditions) and on in self.bodies or held.kind != "load":
+            return None
+        out, add = copy.copy(self), [by * x for x in vector(direction)]
+        more = lambda f: Affine([x + y for x, y in zip(f.value, add)], f.gradient)
+        if on in self.bodies:
+            out.forces = self.forces | {on: more(self.forces[on])}
+        else:
+            out.conditions = self.conditions | {on: Condition("load", (held.data[0], more(held.data[1])))}
+        return out
 
     def _body(self, name, body):
         self.bodies[name] = material.law(body, self.kinematics == "plane-strain")

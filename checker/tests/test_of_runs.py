@@ -73,14 +73,70 @@ def test_affine_force_against_a_bar(tmp_path, force):
     assert float(proof.upper) == pytest.approx(exact, abs=1e-12)
 
 
+def pull_more(a):
+    a["quantity0_tractions"] *= 1.001
+
+
+def hold_less(a):
+    wall = next(row[0] for row in a["displacement_edges"] if row[2] >= 0 and a["displacement_points"][row[0]][0] == 0)
+    a["quantity0_u_vertices"][wall] += 1e-3
+
+
+def claim_other(a):
+    a["manifest"]["quantities"][0]["upper"] = a["manifest"]["quantities"][0]["lower"] = 0.0
+
+
+def turn(a):
+    with_scene(a, lambda text: text.replace("direction = [0.6, 0.8]", "direction = [0.8, 0.6]"))
+
+
+def rename(a):
+    a["manifest"]["quantities"][0]["name"] = "force"
+
+
+def back(a):
+    a["manifest"]["quantities"][0]["step"] *= -1
+
+
+@needs_program
+def test_quantities(tmp_path):
+    """Intervals of mean displacements are proved, no wider than they were printed; and what was changed is refused for what it is."""
+    line = [PROGRAM, "solve", ROOT / "checker/tests/cantilever.toml", "--proof", "--quiet", "--out", tmp_path]
+    subprocess.run(line, check=True, timeout=300)
+    proof = check(tmp_path)
+    assert [name for name, *_ in proof.quantities] == ["tip", "top", "all"]
+    for _, (low, high), (claimed, most) in proof.quantities:
+        assert low < high and high - low < 1.05 * (most - claimed)
+    changes = [
+        (pull_more, "not in equilibrium"),
+        (hold_less, "misses a support"),
+        (claim_other, "'tip' lies between .* claims otherwise"),
+        (turn, "not in equilibrium|claims otherwise"),
+        (rename, "'force' of the proof is no mean displacement"),
+        (back, "'tip' of the proof is no mean displacement"),
+    ]
+    for change, why in changes:
+        arrays = again(tmp_path)
+        change(arrays)
+        write(arrays, tmp_path / "changed.npz")
+        with pytest.raises(Refused, match=why):
+            check(tmp_path / "changed.npz")
+
+
+def again(folder):
+    """The arrays of a proof, to be changed and written."""
+    arrays = read(folder / "proof.npz")
+    arrays["manifest"] = json.loads(bytes(arrays["manifest"]))
+    del arrays["digest"]
+    return arrays
+
+
 @needs_program
 def test_bodies_that_the_scene_does_not_bond(tmp_path):
     """One mesh of two bodies is no proof of a scene in which they are apart."""
     line = [PROGRAM, "solve", ROOT / "cases/bonded.toml", "--proof", "--quiet", "--out", tmp_path]
     subprocess.run(line, check=True, timeout=300)
-    arrays = read(tmp_path / "proof.npz")
-    arrays["manifest"] = json.loads(bytes(arrays["manifest"]))
-    del arrays["digest"]
+    arrays = again(tmp_path)
     with_scene(arrays, lambda text: text.replace('[[bonds]]\nbetween = ["left_face", "right_face"]', ""))
     write(arrays, tmp_path / "proof.npz")
     with pytest.raises(Refused, match="joins what the scene does not bond"):

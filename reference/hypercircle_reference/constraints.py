@@ -11,6 +11,8 @@ everywhere on the edge, not only at its nodes.
 Where n̂ turns from N0 to N1 along the edge, the jump is of degree k + 1. With J_0, …, J_k the Bernstein coefficients of
 v' − v'' its own are c_r = ((k + 1 − r) J_r·N0 + r J_(r−1)·N1)/(k + 1). Those between c_0 and c_(k+1) are k unknowns in place
 of as many of the 2(k − 1) components of J_1, …, J_(k−1). The jump of P1 is a quadratic there, bounded at the vertices.
+
+Where there is friction, the coefficients of the tangential jump are unknowns too; see :mod:`friction`.
 """
 
 from __future__ import annotations
@@ -21,10 +23,12 @@ from scipy.sparse.csgraph import connected_components
 
 from hypercircle_process import BadExchange
 
-from .builder import Builder, Constraints, JumpRow
+from .builder import Builder, Constraints, JumpRow, SlipRow
 from .exchange import Problem
+from .friction import check as check_friction, vertex_slips
 from .group import Conflict, eliminate
-from .inside import inside_contacts, inside_supports, inside_turning, turning_vertex_jumps, vertex_jumps_inside
+from .inside import inside_contacts, inside_friction, inside_supports, inside_turning
+from .inside import turning_friction, turning_vertex_jumps, vertex_jumps_inside
 from .lattice import Lattice
 
 
@@ -33,17 +37,20 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
 
     Raises :class:`BadExchange` where supports and contacts contradict each other.
     """
+    check_friction(problem, degree, nodal_contact)
     lattice = Lattice.of(problem, degree)
     nodes = lattice.ends[2]
     builder = Builder(nodes)
     done = np.ones(nodes, dtype=bool)
     done[lattice.of_triangles(problem)] = False
-    _vertex_groups(problem, builder, done)
+    _vertex_groups(problem, degree, builder, done)
     if degree > 1:
         inside_supports(problem, lattice, builder, done)
         inside_contacts(problem, lattice, builder, done, nodal_contact)
+        inside_friction(problem, lattice, builder, done)
         if not nodal_contact:
             inside_turning(problem, lattice, builder, done)
+            turning_friction(problem, lattice, builder)
     free = np.flatnonzero(~done)
     dofs = (2 * free[:, None] + np.arange(2)).reshape(-1)
     builder.add(dofs, builder.new_columns(np.full(len(dofs), np.inf)), 1.0)
@@ -54,12 +61,13 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
         follow = vertex_jumps_inside(problem, lattice) + turning_vertex_jumps(problem, lattice)
         T = (T + follow @ T).tocsr()
         offset = offset + follow @ offset
-    return Constraints(T, offset, np.concatenate(builder.lower), np.concatenate(builder.upper), builder.rows)
+    bounds = (np.concatenate(builder.lower), np.concatenate(builder.upper))
+    return Constraints(T, offset, *bounds, builder.rows, *builder.friction(), builder.slips, builder.slid, builder.coupled(2 * nodes))
 
 
-def _vertex_groups(problem: Problem, builder: Builder, done: np.ndarray) -> None:
+def _vertex_groups(problem: Problem, degree: int, builder: Builder, done: np.ndarray) -> None:
     equalities = _vertex_equalities(problem)
-    jumps = _vertex_jumps(problem)
+    jumps, slips = _vertex_jumps(problem), vertex_slips(problem, degree)
     touched = np.unique(
         np.concatenate([[v for v, _, _ in equalities], [v for jump in jumps for v in jump[0] if v >= 0]]).astype(int)
     )
@@ -78,26 +86,30 @@ def _vertex_groups(problem: Problem, builder: Builder, done: np.ndarray) -> None
     bounded: list[list] = [[] for _ in range(count)]
     for jump in jumps:
         bounded[label[slot[jump[0][0]]]].append(jump)
+    rubbing: list[list] = [[] for _ in range(count)]
+    for slip in slips:
+        rubbing[label[slot[slip[0][0]]]].append(slip)
     stiffness = _vertex_stiffness(problem)
-    for vertices, equal, jump in zip(members, fixed, bounded):
-        _one_group(problem, builder, stiffness, vertices, equal, jump)
+    for vertices, equal, jump, slip in zip(members, fixed, bounded, rubbing):
+        _one_group(problem, builder, stiffness, vertices, equal, jump, slip)
     done[touched] = True
 
 
-def _one_group(problem: Problem, builder: Builder, stiffness, vertices, equalities, jumps) -> None:
+def _one_group(problem: Problem, builder: Builder, stiffness, vertices, equalities, jumps, slips) -> None:
     place = {v: 2 * i for i, v in enumerate(vertices)}
     C, d = np.zeros((len(equalities), 2 * len(vertices))), np.zeros(len(equalities))
     for i, (v, direction, value) in enumerate(equalities):
         C[i, place[v] : place[v] + 2] = direction
         d[i] = value
-    B, g = np.zeros((len(jumps), 2 * len(vertices))), np.zeros(len(jumps))
-    for i, ((a, b), normal, gap, _) in enumerate(jumps):
-        B[i, place[a] : place[a] + 2] += normal
+    g = np.array([gap for _, _, gap, _ in jumps])
+    # Rows of the jump along normals, then along tangents.
+    B = np.zeros((len(jumps) + len(slips), 2 * len(vertices)))
+    for i, ((a, b), direction, *_) in enumerate(jumps + slips):
+        B[i, place[a] : place[a] + 2] += direction
         if b >= 0:
-            B[i, place[b] : place[b] + 2] -= normal
-        g[i] = gap
+            B[i, place[b] : place[b] + 2] -= direction
     try:
-        result = eliminate(C, d, B, g, np.repeat(stiffness[vertices], 2))
+        result = eliminate(C, d, B[: len(jumps)], g, np.repeat(stiffness[vertices], 2), B[len(jumps) :])
     except Conflict as conflict:
         x, y = problem.points[vertices[0]]
         raise BadExchange(f"supports and contacts contradict each other at ({x:g}, {y:g}): {conflict}") from conflict
@@ -113,6 +125,15 @@ def _one_group(problem: Problem, builder: Builder, stiffness, vertices, equaliti
         for bound in filter(None, bounds):
             (first, _), normal, _, contact = jumps[bound.row]
             builder.rows.append(JumpRow(int(column), bound.factor, contact, normal, first, -1))
+    for slip in result.slips:
+        (first, _), tangent, weight, contact = slips[slip.row]
+        where = (contact, tangent / slip.factor, tangent, first, -1)
+        builder.rub(slip.kink, SlipRow(int(columns[slip.unknown]), weight * abs(slip.factor), *where))
+    for row in result.coupled:
+        ends, tangent, weight, contact = slips[row]
+        terms = [(v, sign * tangent) for v, sign in zip(ends, (1.0, -1.0)) if v >= 0]
+        builder.rub_coupled(terms, SlipRow(-1, weight, contact, tangent, tangent, ends[0], -1))
+    builder.slid += sum(slips[row][2] * abs(value) for row, value in result.given)
 
 
 def _vertex_stiffness(problem: Problem) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The minimum of ½ wᵀA w − bᵀw over lower ≤ w ≤ upper, by projected Newton steps that each lower the energy.
+"""The minimum of ½ wᵀA w − bᵀw + Σ c |w − κ| over lower ≤ w ≤ upper, by projected Newton steps that each lower the energy.
 
 Bounds that hold w back are kept (the *face*), all other unknowns are moved to their minimum on it, and the step is bent
 along the bounds it runs into, until the energy falls: Bertsekas, "Projected Newton methods for optimization problems
@@ -6,6 +6,9 @@ with simple constraints", SIAM J. Control Optim. 20 (1982). A bound is let go on
 by more than rounding, and only where the face's minimum is reached; then the step to the minimum of the larger face
 goes downhill, however the bounds bend it. As the energy falls in each step, no face's minimum comes back, and the
 method cannot jump between two states for ever.
+
+Friction, the c |w − κ|, is linear on either side of its kink κ: an unknown that slips is bounded by the kink as by any bound, on the side
+where it is, and one that sticks is held there as long as the gradient is at most c. That is w = κ + a − b with a, b ≥ 0.
 
 The minimum on a face is found by conjugate gradients that are preconditioned with the factors of A + SHIFT on that
 face: one or two iterations where the face is well supported. Where it can move without strain, the curvature of a
@@ -72,29 +75,47 @@ class Minimum:
 
 
 class Descent:
-    """The quadratic and its bounds. ``A`` is a PETSc matrix with unit diagonal, the vectors are arrays; ``terms`` are
-    the sums of absolute values that rounding of ``b`` comes from, by default those of its entries."""
+    """The quadratic, its bounds, and the ``weight`` c and the ``kink`` κ of friction. ``A`` is a PETSc matrix with unit diagonal, the
+    vectors are arrays; ``terms`` are the sums of absolute values that rounding of ``b`` comes from, by default those of its
+    entries."""
 
     def __init__(
-        self, A: PETSc.Mat, b: np.ndarray, lower: np.ndarray, upper: np.ndarray, terms: np.ndarray | None = None
+        self,
+        A: PETSc.Mat,
+        b: np.ndarray,
+        lower: np.ndarray,
+        upper: np.ndarray,
+        terms: np.ndarray | None = None,
+        kink: np.ndarray | None = None,
+        weight: np.ndarray | None = None,
     ):
         self.comm, self.A, self.b, self.lower, self.upper = A.getComm().tompi4py(), A, b, lower, upper
-        self.terms = np.abs(b) if terms is None else terms
+        self.kink = np.zeros_like(b) if kink is None else kink
+        self.weight = np.zeros_like(b) if weight is None else weight
+        self.rubs = self.weight > 0.0
+        self.terms = (np.abs(b) if terms is None else terms) + self.weight
+        self._take(np.zeros_like(b))
         self.absolute = absolute(A)
         self._in, self._out = A.createVecRight(), A.createVecLeft()
         self.begin = A.getOwnershipRange()[0]
 
-    def minimise(self, near: np.ndarray | float = np.inf) -> Minimum:
+    def minimise(self, near: np.ndarray | float = np.inf, start: np.ndarray | None = None) -> Minimum:
         """Start with every unknown at its bound where that is nearer than ``near``, since a body may be held by contact
-        alone, and descend. From a bound far away, rounding can hide the way back."""
+        alone, or with those at a bound that are so at ``start``, and descend. From a bound far away, rounding can hide the way back."""
         nothing = np.zeros_like(self.b)
-        if self._count((self.b != 0.0) | (self.lower > 0.0) | (self.upper < 0.0)) == 0:
+        if self._count((self.b != 0.0) | (self.lower > 0.0) | (self.upper < 0.0) | self.rubs & (self.kink != 0.0)) == 0:
             return Minimum(nothing, nothing, nothing, 0.0, 1, AT_ROUNDING)
         bound = np.where(np.isfinite(self.upper), self.upper, self.lower)
+        bound = np.where(self.rubs, np.clip(self.kink, self.lower, self.upper), bound)
         bounded = np.isfinite(bound) & (np.abs(bound) < near)
-        w, face = np.where(bounded, bound, np.clip(nothing, self.lower, self.upper)), _Face(self, bounded)
-        step, _ = face.step(w, *self._gradient(w, nothing))
-        w = np.clip(w + step, self.lower, self.upper)
+        begin = np.clip(nothing if start is None else start, self.lower, self.upper)
+        if start is not None:
+            bounded, bound = (begin == self.upper) | (begin == self.lower) | self.rubs & (begin == self.kink), begin
+        w, face = np.where(bounded, bound, begin), _Face(self, bounded)
+        self._take(np.where(bounded, 0.0, np.sign(w - self.kink)))
+        gradient, unit = self._gradient(w, nothing)
+        step, _ = face.step(w, self._slope(gradient), unit)
+        w = np.clip(w + step, self.low, self.high)
         # Where the answer is zero, what remains of this start must not count.
         floor = EPSILON * EPSILON * self.product(self.absolute, np.abs(w))
         faces, idle, met = 1, 0, None
@@ -102,18 +123,20 @@ class Descent:
             gradient, unit = self._gradient(w, floor)
             if met is None:
                 pulled = ROUNDING * unit
-                held = (w >= self.upper) & (gradient <= pulled) | (w <= self.lower) & (gradient >= -pulled)
+                self._take(self._sides(w, gradient, pulled))
+                slope = self._slope(gradient)
+                held = (w >= self.high) & (slope <= pulled) | (w <= self.low) & (slope >= -pulled)
             else:
-                held = face.held | met
+                slope, held = self._slope(gradient), face.held | met
             if self._count(held != face.held) > 0:
                 if faces == FACES:
                     raise Failure(f"the contact has not settled after {faces} steps")
                 face.destroy()
                 face, faces = _Face(self, held), faces + 1
-            step, left = face.step(w, gradient, unit)
+            step, left = face.step(w, slope, unit)
             log(self.comm, f"step {faces}: {self._count(held)} bounds hold, energy to be gained {left:.3e}")
             moves = self._count(step != 0.0) > 0
-            found = self._search(w, step, gradient) if moves else None
+            found = self._search(w, step, slope) if moves else None
             if found is not None:
                 there, change, met = found
                 idle = idle + 1 if -change <= ROUNDING * self.dot(unit, np.abs(there - w)) else 0
@@ -137,14 +160,44 @@ class Descent:
         w, gradient, unit = found.w, found.gradient, found.rounding / ROUNDING
         best = found
         for _ in range(IMPROVEMENTS):
-            change = Descent(matrix, -gradient, self.lower - w, self.upper - w, unit / EPSILON)
+            bounds = (self.lower - w, self.upper - w)
+            change = Descent(matrix, -gradient, *bounds, unit / EPSILON, self.kink - w, self.weight)
             moved = change.minimise(float(np.finfo(float).tiny))
             there = np.where(moved.w == change.upper, self.upper, np.where(moved.w == change.lower, self.lower, w + moved.w))
+            there = np.where(self.rubs & (moved.w == change.kink), self.kink, there)
             w = np.clip(there, self.lower, self.upper)
             gradient, unit = self._gradient(w, 0.0)
             best = Minimum(w, gradient, ROUNDING * unit, found.left, best.steps + moved.steps, best.reason)
         matrix.destroy()
         return best
+
+    def gradient(self, w: np.ndarray) -> np.ndarray:
+        """A w − b."""
+        return self._gradient(w, 0.0)[0]
+
+    def imbalance(self, w: np.ndarray, gradient: np.ndarray) -> np.ndarray:
+        """How far the gradient A w − b is from what bounds and friction can balance, row by row."""
+        side = np.sign(w - self.kink)
+        least = np.where(self.rubs & (side == 0.0), -self.weight, self.weight * side)
+        most = np.where(self.rubs & (side == 0.0), self.weight, self.weight * side)
+        least, most = np.where(w <= self.lower, -np.inf, least), np.where(w >= self.upper, np.inf, most)
+        return np.maximum(np.maximum(-gradient - most, least + gradient), 0.0)
+
+    def _sides(self, w: np.ndarray, gradient: np.ndarray, pulled: np.ndarray) -> np.ndarray:
+        """Which side of its kink each unknown is on, or is pulled to by more than friction and rounding; 0 where it sticks."""
+        away = np.where(np.abs(gradient) > self.weight + pulled, -np.sign(gradient), 0.0)
+        return np.where(w == self.kink, away, np.sign(w - self.kink))
+
+    def _take(self, side: np.ndarray) -> None:
+        """Bounds ``low`` and ``high`` on these sides of the kinks."""
+        self.side = np.where(self.rubs, side, 0.0)
+        self.low = np.where(self.rubs & (side >= 0.0), np.maximum(self.lower, self.kink), self.lower)
+        self.high = np.where(self.rubs & (side <= 0.0), np.minimum(self.upper, self.kink), self.upper)
+
+    def _slope(self, gradient: np.ndarray) -> np.ndarray:
+        """The gradient with friction on the sides taken; where an unknown sticks, what friction leaves of it."""
+        sticks = self.rubs & (self.side == 0.0)
+        return np.where(sticks, gradient - np.clip(gradient, -self.weight, self.weight), gradient + self.weight * self.side)
 
     def _gradient(self, w: np.ndarray, floor: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A w − b, and a unit in the last place of each row."""
@@ -157,7 +210,7 @@ class Descent:
 
         Tried are points ever nearer, to meet many bounds at once where that pays; the last is where one is met first.
         """
-        bound = np.where(step > 0.0, self.upper, self.lower)
+        bound = np.where(step > 0.0, self.high, self.low)
         room = np.divide(bound - w, step, out=np.full_like(w, np.inf), where=step != 0.0)
         first = self.comm.allreduce(float(np.min(room[room > 0.0], initial=np.inf)), MPI.MIN)
         shortest = min(first, 1.0)
@@ -173,7 +226,7 @@ class Descent:
                 met, moved, slope, curvature = room <= 0.0, share * moved, share * slope, share * share * curvature
             change = slope + 0.5 * curvature
             if change <= 0.1 * slope < 0.0:
-                there = np.where(met, bound, np.clip(w + moved, self.lower, self.upper))
+                there = np.where(met, bound, np.clip(w + moved, self.low, self.high))
                 return there, change, met if self._count(met) > 0 else None
             if last:
                 break
@@ -271,7 +324,7 @@ class _Face:
         """How far it is along ``direction`` until every bound in the way is met; ``None`` where there is none."""
         comm = self.descent.comm
         largest = comm.allreduce(float(np.max(np.abs(direction), initial=0.0)), MPI.MAX)
-        bound = np.where(direction > 0.0, self.descent.upper, self.descent.lower)
+        bound = np.where(direction > 0.0, self.descent.high, self.descent.low)
         meets = np.isfinite(bound) & (np.abs(direction) > STILL * largest)
         if self.descent._count(meets) == 0:
             return None

@@ -44,7 +44,8 @@ class Contact:
     the end vertices on the first side, ``normal`` (m, 2) its outward unit normal n', ``direction`` (m, 2, 2) the direction
     of contact n̂ at the two ends, linear between, ``gap`` (m, 2) the gap g at the two ends. Where ``curved`` (m,), ``gap_below``
     (m, n, n + 2) has the coefficients of degree 2, 3, …, n + 1 of polynomials that lie nowhere above it, filled up with zeros,
-    the last of them the gap itself.
+        the last of them the gap itself. ``friction`` (m, 2) is the bound of the tangential traction at the two ends, zero where there is
+    none, ``tangent`` (m, 2, 2) the direction of sliding there, and ``length`` (m,) what integrals of friction are over.
     """
 
     name: str
@@ -56,6 +57,14 @@ class Contact:
     gap: np.ndarray
     curved: np.ndarray
     gap_below: np.ndarray
+    friction: np.ndarray
+    tangent: np.ndarray
+    length: np.ndarray
+
+    @property
+    def rubs(self) -> np.ndarray:
+        """Where there is friction (m,)."""
+        return np.any(self.friction > 0.0, axis=1)
 
     @property
     def turns(self) -> np.ndarray:
@@ -65,7 +74,7 @@ class Contact:
     def part(self, pairs: np.ndarray) -> "Contact":
         """The contact on some of its pairs."""
         arrays = (self.edges, self.first, self.second, self.normal, self.direction, self.gap)
-        arrays += (self.curved, self.gap_below)
+        arrays += (self.curved, self.gap_below, self.friction, self.tangent, self.length)
         return Contact(self.name, *(array[pairs] for array in arrays))
 
     def gap_coefficients(self, degree: int) -> np.ndarray:
@@ -290,6 +299,8 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
     inside = f"{where}.pairs"
     rigid = np.array([pair.get("second") is None for pair in pairs], dtype=bool)
     filled = [_without_second(pair, inside) if alone else pair for pair, alone in zip(pairs, rigid)]
+    none = {"bound": [0.0, 0.0], "tangent": [[0.0, 0.0], [0.0, 0.0]], "length": 0.0}
+    friction, rough = [pair.get("friction") or none for pair in pairs], f"{inside}[..].friction"
     contact = Contact(
         name=str(_get(entry, "name", where)),
         edges=_index_column(filled, inside, "edges", (2,), len(edges), lowest=-1),
@@ -300,7 +311,12 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
         gap=_column(filled, inside, "gap", (2,)),
         curved=np.array(["gap_below" in pair for pair in pairs], dtype=bool),
         gap_below=_gap_below(pairs, inside),
+        friction=_column(friction, rough, "bound", (2,)),
+        tangent=_column(friction, rough, "tangent", (2, 2)),
+        length=_column(friction, rough, "length", ()),
     )
+    if np.any(contact.friction < 0.0):
+        raise BadExchange(f"{inside}[{np.argmin(contact.friction.min(axis=1))}].friction.bound is negative")
     _check_unit(contact.normal, inside, "normal")
     if np.any(np.abs(np.linalg.norm(contact.direction, axis=2) - 1.0) > 0.1):
         raise BadExchange(f"{inside}: direction is not close to a unit vector")

@@ -34,18 +34,37 @@ class Bound:
 
 
 @dataclass(frozen=True)
+class Slip:
+    """Friction row ``row`` is F x = factor (w − kink) with the unknown w of index ``unknown``."""
+
+    row: int
+    unknown: int
+    factor: float
+    kink: float
+
+
+@dataclass(frozen=True)
 class Elimination:
-    """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side)."""
+    """x = offset + jumps w + free y; ``upper[k]`` and ``lower[k]`` bound w_k (None: unbounded on that side).
+
+    ``given`` are the friction rows whose value the supports decide, with that value, and ``coupled`` those that are told by several
+    unknowns, as at the corner of a contact line.
+    """
 
     offset: np.ndarray
     jumps: np.ndarray
     free: np.ndarray
     upper: list[Bound | None]
     lower: list[Bound | None]
+    slips: list[Slip]
+    given: list[tuple[int, float]]
+    coupled: list[int]
 
 
-def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray) -> Elimination:
-    """Parametrise {x : C x = d, B x ≤ g}; rows of C and B have entries of order one.
+def eliminate(
+    C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffness: np.ndarray, F: np.ndarray | None = None
+) -> Elimination:
+    """Parametrise {x : C x = d, B x ≤ g}; rows of C, B and F have entries of order one. Rows of F are unknowns too, as many as can be.
 
     The y are components of x, and ``stiffness``, one positive number per component, decides which: the stiff ones.
     The displacement of a stiff body is then an unknown of its own and never a small difference of large ones.
@@ -85,15 +104,66 @@ def eliminate(C: np.ndarray, d: np.ndarray, B: np.ndarray, g: np.ndarray, stiffn
 
     chosen = _independent(rows[leaders], np.array([bound.value for bound in upper]), lower)
     leaders = [leaders[k] for k in chosen]
-    jumps, free = _parametrise(np.vstack([_independent_rows(C), B[leaders]]), len(leaders), stiffness)
-    rigid = B[leaders] @ offset
+    upper, lower = [upper[k] for k in chosen], [lower[k] for k in chosen]
+    rubbing = np.zeros((0, len(offset))) if F is None else F
+    everything = np.vstack([B, rubbing])
+    leaders += _further(everything @ kernel, leaders, len(B))
+    own = everything[leaders]
+    jumps, free = _parametrise(np.vstack([_independent_rows(C), own]), len(leaders), stiffness)
+    rigid = own @ offset
+    slips, given, coupled = _slips(rubbing, offset, kernel, own, rigid)
+    new = [None] * (len(leaders) - len(chosen))
     return Elimination(
         offset=offset - jumps @ rigid,
         jumps=jumps,
         free=free,
-        upper=[_shift(upper[k], value) for k, value in zip(chosen, rigid)],
-        lower=[_shift(lower[k], value) for k, value in zip(chosen, rigid)],
+        upper=[_shift(bound, value) for bound, value in zip(upper + new, rigid)],
+        lower=[_shift(bound, value) for bound, value in zip(lower + new, rigid)],
+        slips=slips,
+        given=given,
+        coupled=coupled,
     )
+
+
+def _further(rows: np.ndarray, leaders: list[int], begin: int) -> list[int]:
+    """Rows from ``begin`` on that are unknowns of their own: independent of the leaders and of each other."""
+    found: list[int] = []
+    for row in range(begin, len(rows)):
+        if np.linalg.norm(rows[row]) <= RELATIVE:
+            continue
+        M = rows[leaders + found + [row]]
+        if np.linalg.matrix_rank(M / np.linalg.norm(M, axis=1)[:, None], tol=RELATIVE) == len(M):
+            found.append(row)
+    return found
+
+
+def _slips(rubbing, offset, kernel, own, rigid) -> tuple[list[Slip], list[tuple[int, float]], list[int]]:
+    """The friction rows that are an unknown's, those that the supports decide, and all others."""
+    slips: list[Slip] = []
+    given: list[tuple[int, float]] = []
+    coupled: list[int] = []
+    kinks: dict[int, float] = {}
+    for row, F in enumerate(rubbing):
+        value = float(F @ offset)
+        if np.linalg.norm(F @ kernel) <= RELATIVE:
+            given.append((row, value))
+            continue
+        factors = np.linalg.lstsq((own @ kernel).T, F @ kernel, rcond=None)[0]
+        used = np.flatnonzero(np.abs(factors) > RELATIVE)
+        if len(used) > 1:
+            coupled.append(row)
+            continue
+        k, factor = int(used[0]), float(factors[used[0]])
+        rest = value - factor * float(rigid[k])
+        if abs(rest) <= RELATIVE * (abs(value) + abs(factor * rigid[k])):
+            rest = 0.0
+        kink = -rest / factor
+        before = kinks.setdefault(k, kink)
+        if abs(before - kink) > RELATIVE * max(abs(before), abs(kink)):
+            coupled.append(row)
+        else:
+            slips.append(Slip(row, k, factor, before))
+    return slips, given, coupled
 
 
 def _shift(bound: Bound | None, value: float) -> Bound | None:

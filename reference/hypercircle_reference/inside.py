@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sparse
 
-from .builder import AXIS, Builder, JumpRow
+from .builder import AXIS, Builder, JumpRow, SlipRow
 from .exchange import Contact, Problem
+from .friction import weights as friction_weights
 from .lattice import Lattice, bernstein
 
 
@@ -33,7 +34,7 @@ def inside_contacts(problem: Problem, lattice: Lattice, builder: Builder, done: 
     k = lattice.degree
     steps = np.arange(1, k)
     for index, whole in enumerate(problem.contacts):
-        pairs = np.arange(len(whole.first)) if nodal else np.flatnonzero(~whole.turns)
+        pairs = np.arange(len(whole.first)) if nodal else np.flatnonzero(~whole.turns & ~whole.rubs)
         contact = whole.part(pairs)
         first, last = contact.direction[:, None, 0], contact.direction[:, None, 1]
         normal = first + (last - first) * (steps / k)[:, None]
@@ -58,6 +59,37 @@ def inside_contacts(problem: Problem, lattice: Lattice, builder: Builder, done: 
         for pair, own, normals in zip(pairs, jump, normal):
             rows = enumerate(zip(own, normals))
             builder.rows.extend(JumpRow(int(c), 1.0, index, n, -1, int(pair), inner) for inner, (c, n) in rows)
+
+
+def inside_friction(problem: Problem, lattice: Lattice, builder: Builder, done: np.ndarray) -> None:
+    """Where there is friction, u' = u'' + n j + t j_t: unknowns are the coefficients of j and of j_t between the ends, and the
+    displacement of the stiffer side."""
+    k = lattice.degree
+    shape = bernstein(k)[1:-1, 1:-1]
+    for index, whole in enumerate(problem.contacts):
+        pairs = np.flatnonzero(whole.rubs & ~whole.turns)
+        contact = whole.part(pairs)
+        follower, leader, sign = _sides(problem, lattice, contact)
+        moved = 2 * follower[..., None] + AXIS
+        bounds = contact.gap_coefficients(k)[:, 1:-1]
+        share = friction_weights(problem, contact, k)[:, 1:-1]
+        jump = builder.new_columns(bounds.reshape(-1)).reshape(bounds.shape)
+        slip = builder.new_columns(np.full(bounds.size, np.inf)).reshape(bounds.shape)
+        for columns, direction in ((jump, contact.direction[:, 0]), (slip, contact.tangent[:, 0])):
+            amount = sign[:, None, None, None] * shape[None, :, :, None] * direction[:, None, None]
+            builder.add(moved[:, :, None], columns[:, None, :, None], amount)
+        bodies = leader[:, 0] >= 0
+        columns = builder.new_columns(np.full(2 * leader[bodies].size, np.inf)).reshape(-1, k - 1, 2)
+        builder.add(2 * leader[bodies][..., None] + AXIS, columns, 1.0)
+        builder.add(moved[bodies], columns, 1.0)
+        done[follower] = True
+        done[leader[bodies]] = True
+        for i, pair in enumerate(pairs):
+            normal, tangent = contact.direction[i, 0], contact.tangent[i, 0]
+            for inner in range(k - 1):
+                builder.rows.append(JumpRow(int(jump[i, inner]), 1.0, index, normal, -1, int(pair), inner))
+                where = (index, tangent, tangent, -1, int(pair), inner)
+                builder.rub(0.0, SlipRow(int(slip[i, inner]), float(share[i, inner]), *where))
 
 
 def inside_turning(problem: Problem, lattice: Lattice, builder: Builder, done: np.ndarray) -> None:
@@ -85,6 +117,34 @@ def inside_turning(problem: Problem, lattice: Lattice, builder: Builder, done: n
             for inner, column in enumerate(own):
                 normal = ((k - inner) * first + (inner + 1) * last) / (k + 1)
                 builder.rows.append(JumpRow(int(column), 1.0, index, normal, -1, int(pair), inner))
+
+
+def turning_friction(problem: Problem, lattice: Lattice, builder: Builder) -> None:
+    """The work of friction on what is between the ends of pairs where t̂ turns, with the coefficients
+    d_r = ((k + 1 − r) J_r·T0 + r J_(r−1)·T1)/(k + 1)."""
+    k = lattice.degree
+    # J_r from the values at the nodes.
+    back = np.linalg.inv(bernstein(k))
+    for index, whole in enumerate(problem.contacts):
+        pairs = np.flatnonzero(whole.turns & whole.rubs)
+        contact = whole.part(pairs)
+        share = friction_weights(problem, contact, k + 1)
+        sides = []
+        for side, ends in enumerate((contact.first, contact.second)):
+            inside = lattice.along(problem, contact.edges[:, side], ends[:, 0])
+            sides.append(np.column_stack([ends[:, :1], inside, ends[:, 1:]]))
+        for i, pair in enumerate(pairs):
+            first, last = contact.tangent[i]
+            for r in range(1, k + 1):
+                along = ((k + 1 - r) * np.outer(back[r], first) + r * np.outer(back[r - 1], last)) / (k + 1)
+                terms = [
+                    (int(node), sign * factor)
+                    for nodes, sign in zip(sides, (1.0, -1.0))
+                    for node, factor in zip(nodes[i], along)
+                    if node >= 0
+                ]
+                tangent = ((k + 1 - r) * first + r * last) / (k + 1)
+                builder.rub_coupled(terms, SlipRow(-1, float(share[i, r]), index, tangent, tangent, -1, int(pair), r - 1))
 
 
 class _Turning:
@@ -131,14 +191,18 @@ def turning_vertex_jumps(problem: Problem, lattice: Lattice) -> sparse.csr_matri
 
 
 def vertex_jumps_inside(problem: Problem, lattice: Lattice) -> sparse.csr_matrix:
-    """Maps u to the part of ± n j inside the edges that follow that comes from b_0 and b_k, where n̂ is constant."""
+    """Maps u to the part of ± n j, with friction of ± J, inside the edges that follow that comes from the jump at their ends, where n̂ is
+    constant."""
     parts = _Follow(lattice)
     k = lattice.degree
     for whole in problem.contacts:
         contact = whole.part(np.flatnonzero(~whole.turns))
         follower, _, sign = _sides(problem, lattice, contact)
         normal = contact.direction[:, 0]
-        projection = sign[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        projection = normal[:, :, None] * normal[:, None, :]
+        # With friction the tangential jump is told by unknowns, too.
+        projection[contact.rubs] = np.eye(2)
+        projection *= sign[:, None, None]
         shape = [bernstein(k)[1:-1, end * k] for end in range(2)]
         along = [s[None, :, None, None] * projection[:, None] for s in shape]
         parts.add(contact, follower, [a.reshape(len(normal), 2 * (k - 1), 2) for a in along])

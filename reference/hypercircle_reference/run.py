@@ -78,6 +78,7 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
         "ranks": comm.size,
         "energy": solution.energy,
         "strain_energy": solution.strain_energy,
+        **({"friction_work": solution.friction} if any(contact.rubs.any() for contact in problem.contacts) else {}),
         "energy_rounding": solution.energy_rounding,
         "iterations": solution.iterations,
         "converged_reason": solution.reason,
@@ -92,15 +93,17 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
 
 
 def _contacts(problem: Problem, degree: int, constraints: Constraints, solution: Solution) -> list[dict]:
-    """Reactions R ≥ 0: −∂𝓛/∂w shared out to the row that binds, and the force −R n' they put on the first side."""
-    out = []
+    """Reactions R ≥ 0: −∂𝓛/∂w shared out to the row that binds, and the forces of friction; with the force that all of them put
+    on the first side."""
     order = [list(dict.fromkeys(contact.first.reshape(-1).tolist())) for contact in problem.contacts]
     place = [{v: i for i, v in enumerate(vertices)} for vertices in order]
-    at_vertex = [np.zeros(len(vertices)) for vertices in order]
-    at_edge = [[[0.0] * (degree if turns else degree - 1) for turns in contact.turns] for contact in problem.contacts]
+    at_vertex, rubbing = ([np.zeros(len(vertices)) for vertices in order] for _ in range(2))
+    inside = [[degree if turns else degree - 1 for turns in contact.turns] for contact in problem.contacts]
+    at_edge, rubbing_inside = ([[[0.0] * count for count in counts] for counts in inside] for _ in range(2))
     resultant = np.zeros((len(problem.contacts), 2))
+    by_friction = _by_friction(constraints, solution)
     for row in constraints.rows:
-        reaction = max(-solution.gradient[row.column] / row.factor, 0.0)
+        reaction = max(-(solution.gradient[row.column] - by_friction[row.column]) / row.factor, 0.0)
         if not _at_bound(constraints, solution, row):
             continue
         if row.vertex >= 0:
@@ -108,17 +111,37 @@ def _contacts(problem: Problem, degree: int, constraints: Constraints, solution:
         else:
             at_edge[row.contact][row.pair][row.inner] += reaction
         resultant[row.contact] -= reaction * row.normal
-    for index, contact in enumerate(problem.contacts):
-        out.append(
-            {
-                "name": contact.name,
-                "vertices": order[index],
-                "vertex_reaction": at_vertex[index].tolist(),
-                "edge_reaction": at_edge[index] if degree > 1 else None,
-                "resultant": resultant[index].tolist(),
-            }
-        )
-    return out
+    alone = [(row, by_friction[row.column] * row.weight / constraints.weight[row.column]) for row in constraints.slips]
+    for row, size in alone + list(zip(constraints.coupled.rows, -solution.coupled)):
+        force = size * row.vector
+        along = float(force @ row.tangent) / float(row.tangent @ row.tangent)
+        if row.vertex >= 0:
+            rubbing[row.contact][place[row.contact][row.vertex]] += along
+        else:
+            rubbing_inside[row.contact][row.pair][row.inner] += along
+        resultant[row.contact] += force
+    return [
+        {
+            "name": contact.name,
+            "vertices": order[index],
+            "vertex_reaction": at_vertex[index].tolist(),
+            "edge_reaction": at_edge[index] if degree > 1 else None,
+            "vertex_friction": rubbing[index].tolist() if contact.rubs.any() else None,
+            "edge_friction": rubbing_inside[index] if degree > 1 and contact.rubs.any() else None,
+            "resultant": resultant[index].tolist(),
+        }
+        for index, contact in enumerate(problem.contacts)
+    ]
+
+
+def _by_friction(constraints: Constraints, solution: Solution) -> np.ndarray:
+    """The part of every ∂𝓛/∂w that friction balances: all of it where there is no bound in the way, and where there is one
+    what the unknown slips against, or what a bound does not push."""
+    w, g, weight = solution.jumps, solution.gradient, constraints.weight
+    slips, side = weight > 0.0, np.sign(w - constraints.kink)
+    bound = np.where(w == constraints.upper, -1.0, np.where(w == constraints.lower, 1.0, 0.0))
+    held = np.where(side != 0.0, -weight * side, np.where(g * bound > 0.0, 0.0, g))
+    return np.where(slips, np.where(bound == 0.0, g, held), 0.0)
 
 
 def _at_bound(constraints: Constraints, solution: Solution, row) -> bool:

@@ -1,4 +1,4 @@
-"""The reduced problem: minimise ½ wᵀA w − bᵀw over lower ≤ w ≤ upper, where A = TᵀK T and b = Tᵀ(f − K u0).
+"""The reduced problem: minimise ½ wᵀA w − bᵀw + Σ c |w − κ| over lower ≤ w ≤ upper, where A = TᵀK T and b = Tᵀ(f − K u0).
 
 Unknowns are scaled so that A has a unit diagonal: residuals of a stiff and a soft body, in any units, are then
 comparable. :mod:`descent` finds the minimum. The outcome is checked here by the conditions that prove a minimum, and
@@ -7,14 +7,16 @@ with it comes an estimate of what rounding can have done to the energy.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sparse
 from petsc4py import PETSc
 
 from hypercircle_process import Failure, log
 
 from .constraints import Constraints
+from .coupled import CoupledDescent, Rows
 from .descent import EPSILON, Descent, Minimum, absolute
 from .model import Model
 
@@ -26,15 +28,18 @@ RESIDUAL = 1e-8
 class Solution:
     """Displacement u and gradient 𝓛'(u) in the numbering of the exchange file, equal on all ranks.
 
-    ``gradient`` (columns of T) is Tᵀ(K u − f); where a bound is active it is minus the multiplier. Energies include
-    the thickness; ``energy_rounding`` estimates what rounding and residual can have cost ``energy``.
+    ``gradient`` (columns of T) is Tᵀ(K u − f); where a bound is active it is minus the multiplier, and the force of friction where
+    there is any. Energies include the thickness, ``energy`` the work of ``friction``; ``energy_rounding`` estimates what
+    rounding and residual can have cost it.
     """
 
     displacement: np.ndarray
     gradient: np.ndarray
     jumps: np.ndarray
+    coupled: np.ndarray
     energy: float
     strain_energy: float
+    friction: float
     energy_rounding: float
     iterations: int
     reason: int
@@ -78,6 +83,7 @@ class Reduced:
         self.b.pointwiseMult(self.b, self.scale)
         self.terms *= self.scale.array_r
         self.lower, self.upper = self._mine(constraints.lower), self._mine(constraints.upper)
+        self.kink, self.weight = self._mine(constraints.kink), self._own(constraints.weight) * self.scale.array_r
 
     def _terms(self) -> np.ndarray:
         """|T|ᵀ(|f| + |K| |u0|): what the entries of b are sums of, before they cancel."""
@@ -90,12 +96,17 @@ class Reduced:
 
     def _mine(self, values: np.ndarray) -> np.ndarray:
         """This rank's share of bounds, scaled like the unknowns."""
-        return values[self.order[self.begin : self.end]] / self.scale.array_r
+        return self._own(values) / self.scale.array_r
+
+    def _own(self, values: np.ndarray) -> np.ndarray:
+        """This rank's share of values, one for each unknown."""
+        return values[self.order[self.begin : self.end]]
 
     def minimise(self) -> Solution:
         """Run the solver, check equilibrium and bounds, and gather the solution. Start with contacts closed whose gap
         the bodies could be thought to cross; where that fails, once more with those alone that are closed already."""
-        descent = Descent(self.A, self.b.array_r.copy(), self.lower, self.upper, self.terms)
+        right = self.b.array_r.copy()
+        descent = Descent(self.A, right, self.lower, self.upper, self.terms, self.kink, self.weight)
         try:
             found = self._checked(descent, self.reach / self.scale.array_r)
         except Failure as failure:
@@ -104,18 +115,29 @@ class Reduced:
                 found = self._checked(descent, np.finfo(float).tiny)
             except Failure:
                 raise failure from None
-        return self._gather(found)
+        return self._gather(*found)
 
-    def _checked(self, descent: Descent, near: np.ndarray | float) -> Minimum:
-        """The minimum found from bounds nearer than ``near``, improved where it fails its check."""
+    def _checked(self, descent: Descent, near: np.ndarray | float) -> tuple[Minimum, np.ndarray]:
+        """The minimum found from bounds nearer than ``near``, improved where it fails its check; and forces of coupled rows."""
+        if self.constraints.coupled.rows:
+            found, forces = CoupledDescent(descent, self._coupled()).minimise(near)
+            self._check(descent, found)
+            return found, forces
         found = descent.minimise(near)
         try:
-            self._check(found)
+            self._check(descent, found)
         except Failure as failure:
             log(self.comm, f"{failure}; once more, with further motion resisted")
             found = descent.improved(found)
-            self._check(found)
-        return found
+            self._check(descent, found)
+        return found, np.zeros(0)
+
+    def _coupled(self) -> Rows:
+        """The coupled rows in the scaled unknowns."""
+        coupled, scale = self.constraints.coupled, np.concatenate(self.comm.allgather(self.scale.array_r.copy()))
+        matrix = (coupled.matrix @ self.constraints.T)[:, self.order] @ sparse.diags(scale)
+        kink = -(coupled.matrix @ self.constraints.offset)
+        return Rows.of(matrix.tocsr(), coupled.weight, kink)
 
     def _displacement(self, w: PETSc.Vec) -> PETSc.Vec:
         """u = T w + u0 of the unscaled unknowns."""
@@ -130,10 +152,10 @@ class Reduced:
         u = self._displacement(unscaled)
         return self.b.norm() + np.sqrt(max(u.dot(self.model.stiffness * u), 0.0))
 
-    def _check(self, found: Minimum) -> None:
-        """Equilibrium and bounds. What rounding leaves of a row of the residual says nothing against the solution."""
-        x, g = found.w, found.gradient
-        wrong = np.where(((x >= self.upper) & (g <= 0.0)) | ((x <= self.lower) & (g >= 0.0)), 0.0, np.abs(g))
+    def _check(self, descent: Descent, found: Minimum) -> None:
+        """Equilibrium, bounds and friction. What rounding leaves of a row of the residual says nothing against the solution."""
+        x = found.w
+        wrong = descent.imbalance(x, found.gradient)
         beyond = wrong - np.minimum(wrong, found.rounding)
         residual = np.sqrt(self.comm.allreduce(float(beyond @ beyond)))
         outside = self.comm.allreduce(int(np.sum((x > self.upper) | (x < self.lower))))
@@ -149,14 +171,16 @@ class Reduced:
                 f"where {load * load:.1e} is at stake; a body moves rigidly by far more than displacements can resolve"
             )
 
-    def _gather(self, found: Minimum) -> Solution:
-        closed = [found.w == bound for bound in (self.upper, self.lower)]
+    def _gather(self, found: Minimum, coupled: np.ndarray) -> Solution:
+        rubs = self.weight > 0.0
+        closed = [found.w == self.upper, found.w == self.lower, rubs & (found.w == self.kink)]
+        slipped = self.comm.allreduce(float(self.weight @ np.abs(found.w - self.kink)))
         w, gradient = self.scale.duplicate(), self.scale.duplicate()
         w.array[:] = found.w * self.scale.array_r
         gradient.array[:] = found.gradient / self.scale.array_r
         mine = self.order[self.begin : self.end]
         # Scaling there and back may miss the bound by a rounding error.
-        for at, bound in zip(closed, (self.constraints.upper, self.constraints.lower)):
+        for at, bound in zip(closed, (self.constraints.upper, self.constraints.lower, self.constraints.kink)):
             w.array[at] = bound[mine[at]]
         u = self._displacement(w)
         strain_energy, work = self.model.strain_energy(u), u.dot(self.model.working)
@@ -164,6 +188,8 @@ class Reduced:
         pieces = self.comm.allgather((self.dofs, u.array_r.copy(), w.array_r.copy(), gradient.array_r.copy()))
         for dofs, values, *_ in pieces:
             displacement[dofs] = values
+        rows = self.constraints.coupled
+        friction = slipped + self.constraints.slid + float(rows.weight @ np.abs(rows.matrix @ displacement))
         jumps, derivative = np.empty(len(self.order)), np.empty(len(self.order))
         jumps[self.order] = np.concatenate([piece[2] for piece in pieces])
         derivative[self.order] = np.concatenate([piece[3] for piece in pieces])
@@ -171,9 +197,11 @@ class Reduced:
             displacement=displacement,
             gradient=derivative,
             jumps=jumps,
-            energy=strain_energy - work,
+            coupled=coupled,
+            energy=strain_energy + friction - work,
             strain_energy=strain_energy,
-            energy_rounding=self._energy_rounding(u, strain_energy) + found.left,
+            friction=friction,
+            energy_rounding=self._energy_rounding(u, strain_energy) + 4.0 * EPSILON * friction + found.left,
             iterations=found.steps,
             reason=found.reason,
             unknowns=len(self.order),
@@ -211,4 +239,4 @@ def without_strongest_row(constraints: Constraints, solution: Solution) -> Const
         raise Failure("no contact row is closed, so that dropping one would change nothing")
     upper = constraints.upper.copy()
     upper[strongest.column] = np.inf
-    return Constraints(constraints.T, constraints.offset, constraints.lower, upper, constraints.rows)
+    return replace(constraints, upper=upper)

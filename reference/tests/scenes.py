@@ -90,8 +90,24 @@ class Builder:
             })  # fmt: skip
         self.data["contacts"].append({"name": name, "pairs": pairs})
 
+    def friction(self, bound, contact=0):
+        """Give a contact the friction ``bound(x, y)``, along the order of its first side."""
+        for pair in self.data["contacts"][contact]["pairs"]:
+            rub(pair, self.data["points"], bound)
+
     def pin(self, vertex, direction):
         self.data["pins"].append({"vertex": vertex, "direction": list(direction)})
+
+
+def rub(pair, points, bound):
+    """Friction on one pair; the tangent is at right angles to the normal at each end, in the order of ``first``."""
+    (x0, y0), (x1, y1) = (points[v] for v in pair["first"])
+    tangents = []
+    for nx, ny in pair["direction"]:
+        sign = 1.0 if -ny * (x1 - x0) + nx * (y1 - y0) > 0.0 else -1.0
+        tangents.append([-sign * ny, sign * nx])
+    values = [bound(*points[v]) for v in pair["first"]]
+    pair["friction"] = {"bound": values, "tangent": tangents, "length": math.hypot(x1 - x0, y1 - y0)}
 
 
 def rotated(angle, move=(0.0, 0.0)):

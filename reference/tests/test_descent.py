@@ -14,13 +14,13 @@ from scenes import Builder, arched_blocks, two_blocks
 FREE, LOW, HIGH = range(3)
 
 
-def descend(matrix, right, lower, upper):
+def descend(matrix, right, lower, upper, *friction):
     size = len(right)
     rows = np.arange(0, size * size + 1, size, dtype=PETSc.IntType)
     columns = np.tile(np.arange(size, dtype=PETSc.IntType), size)
     A = PETSc.Mat().createAIJ((size, size), csr=(rows, columns, matrix.reshape(-1)), comm=MPI.COMM_SELF)
     A.assemble()
-    return Descent(A, right, lower, upper).minimise()
+    return Descent(A, right, lower, upper, None, *friction).minimise()
 
 
 def enumerated(matrix, right, lower, upper):
@@ -58,6 +58,50 @@ def test_random_minima_are_those_of_enumeration(seed, loose):
     energy = 0.5 * found.w @ matrix @ found.w - right @ found.w
     assert np.all(found.w >= lower) and np.all(found.w <= upper)
     assert energy == pytest.approx(enumerated(matrix, right, lower, upper), rel=1e-9)
+
+
+def enumerated_with_friction(matrix, right, upper, kink, weight):
+    """The same with Σ weight |w − kink|: each of these unknowns sticks or slips one way or the other."""
+    energies = []
+    choices = [[FREE, HIGH] if np.isfinite(b) else [-1, 0, 1] if c > 0.0 else [FREE] for b, c in zip(upper, weight)]
+    for state in product(*choices):
+        state = np.array(state)
+        rubs = weight > 0.0
+        held = np.where(rubs, state == 0, state == HIGH)
+        w = np.where(held, np.where(rubs, kink, np.minimum(upper, 1e300)), 0.0)
+        pulled = right - np.where(rubs & ~held, weight * state, 0.0)
+        if not held.all():
+            w[~held] = np.linalg.pinv(matrix[np.ix_(~held, ~held)], rcond=1e-9) @ (pulled - matrix @ w)[~held]
+        if np.all(w <= upper + 1e-9):
+            energies.append(0.5 * w @ matrix @ w - right @ w + weight @ np.abs(w - kink))
+    return min(energies)
+
+
+@pytest.mark.parametrize("loose", (0, 2))
+@pytest.mark.parametrize("seed", range(10))
+def test_random_minima_with_friction_are_those_of_enumeration(seed, loose):
+    """Two unknowns with bounds and five with friction, held by it alone in ``loose`` directions."""
+    rng = np.random.default_rng([seed, loose, 7])
+    size = 8
+    basis = np.linalg.qr(rng.normal(size=(size, size)))[0]
+    curvature = 10.0 ** rng.uniform(-rng.choice([0, 2, 4]), 0, size)
+    curvature[:loose] = 0.0
+    matrix = (basis * curvature) @ basis.T
+    scale = 1.0 / np.sqrt(np.diag(matrix))
+    matrix = scale[:, None] * matrix * scale
+    right, upper = rng.normal(size=size), np.full(size, np.inf)
+    upper[:2] = rng.choice([0.0, 0.1, 1.0], 2)
+    kink, weight = np.zeros(size), np.zeros(size)
+    kink[2:7] = rng.choice([0.0, 0.0, 0.3, -1.0], 5)
+    weight[2:7] = 10.0 ** rng.uniform(-2.0, 1.0, 5)
+    for direction in (basis[:, :loose] / scale[:, None]).T:
+        # What nothing else holds, friction does: the load along it is taken away but for a part.
+        right -= 0.9 * (right @ direction) / (direction @ direction) * direction
+        weight[2:7] += 0.2 * abs(right @ direction) / np.abs(direction[2:7]).sum() + 1.0
+    found = descend(matrix, right, np.full(size, -np.inf), upper, kink, weight)
+    energy = 0.5 * found.w @ matrix @ found.w - right @ found.w + weight @ np.abs(found.w - kink)
+    assert np.all(found.w <= upper)
+    assert energy == pytest.approx(enumerated_with_friction(matrix, right, upper, kink, weight), rel=1e-9)
 
 
 def test_a_direction_that_nothing_stops_is_a_failure():

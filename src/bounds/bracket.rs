@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::energy::{Complementary, Potential};
 use super::gap::LocalGap;
 use super::jump::side_coefficients;
+use super::oscillation;
 use super::rounding::counted::Counted;
 use super::rounding::terms::{LowerTerms, UpperTerms};
 use super::upper::yielded;
@@ -19,7 +20,7 @@ use crate::problem::{Problem, Scales};
 pub struct Bracket {
     /// Complementary energy of λ_h.
     pub complementary: Complementary,
-    /// By how much rounding and what is left of equilibrium can have moved the lower bound.
+    /// By how much rounding, what is left of equilibrium, and tractions of a degree that edges do not hold can have moved the lower bound.
     pub lower_widening: f64,
     /// Energies up to this size are none: what rounding leaves of the data of the problem.
     pub round_off: f64,
@@ -34,7 +35,7 @@ pub struct UpperBound {
     pub displacement: Displacement,
     /// Its energy.
     pub potential: Potential,
-    /// By how much rounding can have moved it.
+    /// By how much rounding, and tractions of a degree that edges do not hold, can have moved it.
     pub widening: f64,
     /// 𝓛(v) + Π(λ_h) in local terms.
     pub local: LocalGap,
@@ -53,6 +54,7 @@ impl UpperBound {
     pub fn of_terms(problem: &Problem, displacement: Displacement, terms: UpperTerms) -> Self {
         let UpperTerms { potential, widening, triangles, pairs, springs } = terms;
         let local = LocalGap::of(problem, triangles, pairs, springs);
+        let widening = widening + oscillation::above(problem, &displacement);
         UpperBound { displacement, potential, widening, local, prepared: Prepared::default() }
     }
 
@@ -102,9 +104,11 @@ impl Bracket {
         lower: LowerTerms,
         free: Result<UpperBound, NoUpperBound>,
     ) -> Self {
+        let held = free.as_ref().ok().map(|free| (&free.displacement, free.local.triangles.as_slice()));
+        let oscillation = oscillation::below(problem, held);
         Bracket {
             complementary: lower.complementary,
-            lower_widening: lower.rounding + problem.scene.thickness * dual.equilibrium.work,
+            lower_widening: lower.rounding + problem.scene.thickness * dual.equilibrium.work + oscillation,
             round_off: Scales::new(problem).round_off.energy,
             free,
         }

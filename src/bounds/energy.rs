@@ -1,7 +1,8 @@
-//! Complementary and potential energy: −Π(λ) = −½∫ a λ:λ − ∫ λ:ε0 + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g and 𝓛(v) = ½∫ c (e(v) − ε0):(e(v) − ε0) − ∫F·v − ∫_{Γτ} P·v.
+//! Complementary and potential energy: −Π(λ) = −½∫ a λ:λ − ∫ λ:ε0 + ∫_{Γu} T·u0 + ∫_{ΓK} T_n g and 𝓛(v) = ½∫ c (e(v) − ε0):(e(v) − ε0) + ∫_{ΓK} τ̄ |j_t| − ∫F·v − ∫_{Γτ} P·v.
 
 use rayon::prelude::*;
 
+use super::friction::potential_of_friction;
 use super::jump::side_coefficients;
 use super::mid::stress_of;
 use super::rounding::counted::Counted;
@@ -191,6 +192,8 @@ pub struct Potential {
     pub strain: f64,
     /// ½∫ k j² of springs and elastic layers.
     pub springs: f64,
+    /// ∫ τ̄ |j_t| of contacts with friction.
+    pub friction: f64,
     /// ∫F·v + ∫P·v.
     pub work: f64,
     /// Sum of the absolute values of all terms.
@@ -200,14 +203,14 @@ pub struct Potential {
 }
 
 impl Potential {
-    /// The energy of strains and springs.
+    /// The energy of strains and springs, without friction, which stores none.
     pub fn stored(&self) -> f64 {
         self.strain + self.springs
     }
 
     /// 𝓛(v).
     pub fn total(&self) -> f64 {
-        self.stored() - self.work
+        self.stored() + self.friction - self.work
     }
 }
 
@@ -235,13 +238,15 @@ pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -
     let force = |body: usize| problem.scene.bodies[body].body_force;
     let work = counted_work(problem, v, force, problem.tractions(), counted);
     let springs = potential_of_springs(problem, v, counted);
+    let friction = potential_of_friction(problem, v, counted);
     let t = problem.scene.thickness;
     Potential {
         strain: t * strain.value(),
         springs: springs.value,
+        friction: friction.value,
         work: t * work.value(),
-        magnitude: t * (strain.magnitude() + work.magnitude()) + springs.value,
-        sensitivity: t * (sensitivity + work.magnitude()) + springs.sensitivity,
+        magnitude: t * (strain.magnitude() + work.magnitude()) + springs.value + friction.value,
+        sensitivity: t * (sensitivity + work.magnitude()) + springs.sensitivity + friction.sensitivity,
     }
 }
 

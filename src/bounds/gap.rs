@@ -2,11 +2,12 @@
 //!
 //! 𝓛(v) + Π(λ) = ½‖c e(v) − λ‖²_a + ∫_{ΓK} (−t(λ)) (g − (v' − v'')·n̂) ds
 //!
-//! for equilibrated λ with T' = t n̂ on Γ_K and admissible v; t is T_n where the direction of contact n̂ is the normal n'. It
+//! (with friction also ∫ (τ̄ |j_t| + t_t j_t), see [`super::friction`]) for equilibrated λ with T' = t n̂ on Γ_K and admissible v; t is T_n where the direction of contact n̂ is the normal n'. It
 //! shares no arithmetic with the energies.
 
 use rayon::prelude::*;
 
+use super::friction::friction_error;
 use super::jump::openings;
 use super::rounding::counted::Counted;
 use super::rounding::sum::Sum;
@@ -22,7 +23,7 @@ use crate::problem::{ContactPair, Problem};
 pub struct LocalGap {
     /// ½‖c e(v) − λ‖²_a on each triangle.
     pub triangles: Vec<f64>,
-    /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, interface by interface.
+    /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, interface by interface, and ∫ (τ̄ |j_t| + t_t j_t) ds where there is friction.
     pub pairs: Vec<Vec<f64>>,
     /// ½ ∫ (k j + t)²/k on each pair of springs and elastic layers, one after the other.
     pub springs: Vec<f64>,
@@ -47,7 +48,8 @@ pub fn local_gap(problem: &Problem, stress: &StressField, v: &Displacement) -> L
     LocalGap::of(problem, triangles, contact, spring_error(problem, stress, v, Counted::ALL))
 }
 
-/// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, the part of an elastic one in its place, thickness included; zero where it is not counted.
+/// ∫ (−t)(g − (v' − v'')·n̂) ds and what friction has of the gap on each contact pair, the part of an elastic one in its place, thickness
+/// included; zero where it is not counted.
 pub fn contact_error(problem: &Problem, stress: &StressField, v: &Displacement, counted: Counted<'_>) -> Vec<f64> {
     let of = |(p, pair): (usize, &ContactPair)| {
         if !counted.pair(p) {
@@ -57,7 +59,8 @@ pub fn contact_error(problem: &Problem, stress: &StressField, v: &Displacement, 
             return elastic_contact_error(problem, stress, v, pair);
         }
         let t = contact_traction(problem, stress, pair);
-        -problem.scene.thickness * pair.length * side::integral(&t, &openings(problem, v, pair))
+        let contact = -problem.scene.thickness * pair.length * side::integral(&t, &openings(problem, v, pair));
+        contact + friction_error(problem, stress, v, pair)
     };
     problem.pairs().enumerate().map(of).collect()
 }

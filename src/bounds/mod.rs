@@ -4,9 +4,11 @@ mod at_rest;
 mod bracket;
 mod cells;
 pub mod energy;
+mod friction;
 mod gap;
 mod jump;
 mod mid;
+pub mod oscillation;
 mod ranks;
 mod rounding;
 mod springs;
@@ -18,8 +20,9 @@ pub use cells::{Cell, Enclosed, strain_energy, strain_energy_by};
 pub use energy::{
     Complementary, Potential, complementary, excess_work, potential, support_work, work, work_of, work_on_edges,
 };
+pub use friction::{absolute, friction_error, slides};
 pub use gap::{LocalGap, local_gap};
-pub use jump::{jumps, openings, openings_within, side_coefficients};
+pub use jump::{jumps, jumps_along, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use ranks::on_ranks::{make_part, on_ranks};
 pub use rounding::ROUNDING_PER_TERM;

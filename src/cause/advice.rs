@@ -112,6 +112,35 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "The constraint is an equation where it should be an inequality.",
             "Look at the active set: nodes whose force pulls have to leave it.",
         ],
+        (Kind::Contact, "frictionless") => [
+            "The tangential traction of this contact is not in the equations.",
+            "Look whether the friction bound of this contact is read and given to both sides; a coefficient is no bound.",
+        ],
+        (Kind::Contact, "sticks") => [
+            "Tangential jumps of this contact are held, whatever force that takes.",
+            "Release a node along the contact where its tangential force is larger than its share of the bound, ∫τ̄φ.",
+        ],
+        (Kind::Contact, "friction-sign") => [
+            "Friction pushes the sides on in the sense in which they slide.",
+            "The traction on the first side is −τ̄ times the sign of its slip against the second; look at which side the jump is counted from.",
+        ],
+        (Kind::Contact, "friction-bound" | "friction-turned") => [
+            "The friction bound is not that of the scene.",
+            "Compare the bound as the model uses it with `friction` of the scene: unit, thickness, arc length, and whether it is counted once for \
+             two sides.",
+        ],
+        (Kind::Contact, "tangential-penalty") => [
+            "Sticking is enforced by a penalty, which gives way.",
+            "Raise the tangential stiffness until the slip below the bound no longer matters, or use multipliers.",
+        ],
+        (Kind::Contact, "regularised") => [
+            "The jump of the friction law at rest is smoothed, so that nothing ever sticks.",
+            "Lower ε until the slip below the bound no longer matters, or use a method that knows sticking.",
+        ],
+        (Kind::Contact, "friction-law") => [
+            "Nodes stick or slide where the law of friction says otherwise, or the iteration is not finished.",
+            "Compare at the marked node the tangential force with ∫τ̄φ, and its sign with that of the slip.",
+        ],
         (Kind::Contact, "tied" | "friction") => [
             "The sides cannot slide along each other.",
             "Constrain the jump along the direction of contact alone, and give the two sides vertices of their own.",

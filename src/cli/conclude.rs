@@ -191,7 +191,7 @@ fn command_line() -> String {
         true => format!("'{}'", word.replace('\'', r"'\''")),
         false => word,
     };
-    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    let words = super::arguments().map(|word| quoted(word.to_string_lossy().into_owned()));
     std::iter::once("hypercircle".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }
 

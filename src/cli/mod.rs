@@ -57,6 +57,8 @@ pub enum Command {
     Chart(commands::chart::Args),
     /// Sweep the regimes where contact methods are known to fail
     Stability(commands::stability::Args),
+    /// Serve as tools of an agent (Model Context Protocol), over standard input and output
+    Mcp(commands::mcp::Args),
     /// One run for a chart or a matrix, printed as JSON
     #[command(hide = true)]
     Measure(commands::measure::Args),
@@ -71,43 +73,75 @@ pub enum Command {
     Man(commands::shell::ManArgs),
 }
 
-/// The executable of this program; there is none where a program of someone else's calls the library.
-static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+/// How this program was started; nothing is known where a program of someone else's calls the library.
+static STARTED: OnceLock<Started> = OnceLock::new();
+
+/// What was started, and how.
+pub struct Started {
+    /// What can be started to be this program once more, where that is known.
+    pub program: Option<PathBuf>,
+    /// The file with its code: the same, or the library that it calls.
+    pub code: Option<PathBuf>,
+    /// The command line; the first word is the name of the program.
+    pub words: Vec<OsString>,
+}
 
 /// What this process can start to be this program once more.
 fn program() -> Option<PathBuf> {
-    PROGRAM.get().cloned()
+    STARTED.get()?.program.clone()
+}
+
+/// The same for a command that cannot do without, with the file of its code.
+fn this_program() -> Result<(PathBuf, PathBuf), CliError> {
+    let found = STARTED.get().and_then(|started| started.program.clone().zip(started.code.clone()));
+    found.ok_or_else(|| {
+        CliError::stopped(
+            Exit::Failed,
+            "this program does not find itself to start its runs",
+            "start it by its whole path",
+        )
+    })
+}
+
+/// The words of the command line after the name of the program; none where the library is called.
+fn arguments() -> impl Iterator<Item = &'static OsString> {
+    STARTED.get().into_iter().flat_map(|started| &started.words).skip(1)
 }
 
 /// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
-    if let Ok(program) = std::env::current_exe() {
-        let _ = PROGRAM.set(program);
-    }
-    let (cli, given) = match parsed(std::env::args_os()) {
+    let program = std::env::current_exe().ok();
+    main_of(Started { code: program.clone(), program, words: std::env::args_os().collect() }).into()
+}
+
+/// Runs the command of a program that was started so.
+pub fn main_of(started: Started) -> Exit {
+    let words = STARTED.get_or_init(|| started).words.clone();
+    let is_version = words.iter().any(|word| word == "--version");
+    let (cli, given) = match parsed(words) {
         Ok(parsed) => parsed,
-        Err(error) if error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(|w| w == "--version") => {
+        Err(error) if error.kind() == ErrorKind::DisplayVersion && is_version => {
             let _ = writeln!(std::io::stdout(), "{}", words::version::long());
-            return ExitCode::SUCCESS;
+            return Exit::Agree;
         }
         Err(error) => {
             // Help and version are answers, on stdout with code 0; the rest is bad usage, with the code of bad input.
             // Where nobody reads the answer there is nobody to tell.
             let _ = error.print();
-            return if error.use_stderr() { Exit::BadInput.into() } else { ExitCode::SUCCESS };
+            return if error.use_stderr() { Exit::BadInput } else { Exit::Agree };
         }
     };
     words::show::install_panic_message();
     signals::watch();
     clear();
     match std::panic::catch_unwind(AssertUnwindSafe(|| run(&cli.command, &given))) {
-        Ok(Ok(exit)) => exit.into(),
+        Ok(Ok(exit)) => exit,
         Ok(Err(error)) => {
             words::show::error(&error);
             words::ci::annotate_error(&error);
-            error.exit().into()
+            error.exit()
         }
-        Err(_) => Exit::Failed.into(),
+        Err(_) => Exit::Failed,
     }
 }
 
@@ -139,6 +173,7 @@ fn run(command: &Command, given: &Given) -> Result<Exit, CliError> {
         Command::Cases(args) => commands::cases::run(args),
         Command::Chart(args) => commands::chart::run(args),
         Command::Stability(args) => commands::stability::run(args),
+        Command::Mcp(args) => commands::mcp::run(args),
         Command::Measure(args) => commands::measure::run(args),
         Command::Part(args) => commands::part::run(args),
         Command::Schema(args) => commands::schema::run(args),

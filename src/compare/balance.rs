@@ -6,25 +6,27 @@
 //! ∫ σ(u_h):e(φ) − L(φ) + Σ_r R_r b_r(φ) ∈ forces of the supports,  R_r ≥ 0,  R_r = 0 where b_r(u_h) < g_r,
 //!
 //! with b_r the bounded coefficients of v_n' + v_n'': its values at the vertices of degree 1, its Bernstein coefficients
-//! of higher degrees. From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
+//! of higher degrees. Friction has forces of its own there (`slides`). From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
 //! is what the solver left and what rounding of the displacements costs. A wrong modulus, load, thickness, support or
 //! contact leaves far more, however small its effect on the energy is.
 
 mod higher;
 mod reported;
+mod rubbing;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use nalgebra::DVector;
 
 use super::candidate::Candidate;
+use super::contact::slides::{EndSlide, at_ends};
 use super::forces::NodalForces;
 use super::forces::turned;
 use super::forces::turned::Rule;
 use crate::bounds::{Holds, NoUpperBound, bernstein, holds};
 use crate::problem::{ContactPair, Problem};
 use crate::sets::DisjointSets;
-use crate::statics::cone::unbalanced;
+use crate::statics::cone::balanced;
 use crate::vector::dot;
 
 /// A coefficient this close below its bound, relative to the largest displacement, is closed.
@@ -101,12 +103,17 @@ impl Balance {
         let holds = holds(problem)?;
         let nodes = higher::nodes(problem, candidate.degree);
         let mut rest = forces.unsupported(&holds, &nodes);
-        let solution = Solution { problem, candidate, holds: &holds };
+        let slides = at_ends(problem, candidate.degree);
+        let coupled = rubbing::coupled(problem, &holds, &slides);
+        let slides = slides.into_iter().zip(coupled).collect();
+        let solution = Solution { problem, candidate, holds: &holds, slides };
+        solution.slide_inside(&mut rest);
         match (&candidate.on_quadrilaterals, higher) {
             (None, Some(field)) => solution.take_inside(field, &mut rest),
             _ => solution.take_middles(&mut rest),
         }
         let at_vertices = rest.clone();
+        solution.slide_at_vertices(&mut rest);
         solution.take_vertices(&mut rest);
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
@@ -153,6 +160,8 @@ struct Solution<'a> {
     problem: &'a Problem,
     candidate: &'a Candidate,
     holds: &'a Holds,
+    /// Tangential jumps at vertices, and whether the law of one is coupled with others.
+    slides: Vec<(EndSlide, bool)>,
 }
 
 impl Solution<'_> {
@@ -258,12 +267,27 @@ impl Solution<'_> {
                     rows.push(row / length);
                 }
             }
+            let sticking = self.sticking(&group, &slot);
+            if self.couples(&group) {
+                let load = DVector::from_iterator(size, group.vertices.iter().flat_map(|v| rest[*v].map(|f| -f)));
+                let left = rubbing::least(&load, &rows, &sticking);
+                slot.into_iter().for_each(|(v, i)| rest[v] = [-left[i], -left[i + 1]]);
+                continue;
+            }
+            let pushing = rows.len();
+            rows.extend(sticking.iter().flat_map(|(row, _)| [row.clone(), -row]));
             let mut load = DVector::zeros(size);
             for (v, i) in &slot {
                 (load[*i], load[*i + 1]) = (-rest[*v][0], -rest[*v][1]);
             }
             // Where the working set does not settle, the whole force is left over and the check fails in the open.
-            let Ok(left) = unbalanced(&load, &rows) else { continue };
+            let Ok((mut left, forces)) = balanced(&load, &rows) else { continue };
+            for (row, force) in forces {
+                if let Some((_, limit)) = row.checked_sub(pushing).map(|i| &sticking[i / 2]) {
+                    // Friction carries no more than its bound.
+                    left.axpy((force - limit).max(0.0), &rows[row], 1.0);
+                }
+            }
             for (v, i) in slot {
                 rest[v] = [left[i], left[i + 1]];
             }

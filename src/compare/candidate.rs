@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::balance::Balance;
 use super::ceiling::{Extent, MISTAKE, PART};
+use super::contact::slides;
 use super::forces::turned;
 use super::forces::turned::Rule;
 use super::on_quadrilaterals::QuadrilateralSolution;
@@ -86,6 +87,13 @@ impl Candidate {
         self.on_quadrilaterals.as_ref().is_none_or(|own| own.field.is_polynomial())
     }
 
+    /// What its model counts for ∫ τ̄ |j_t|.
+    fn friction_work(&self, problem: &Problem) -> f64 {
+        let coefficients = self.higher.as_ref().filter(|_| self.degree > 2);
+        let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
+        slides::work(problem, self.degree, value)
+    }
+
     /// The largest component of all displacements.
     pub fn largest(&self) -> f64 {
         self.vertex.iter().chain(&self.middle).flatten().fold(0.0, |m, v| m.max(v.abs()))
@@ -102,8 +110,19 @@ pub struct Reactions {
     /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree k from 2 on): k − 1, or k where the direction
     /// of contact turns.
     pub edge: Option<Vec<Vec<f64>>>,
+    /// What friction puts on the first side, where it rubs.
+    pub friction: Option<FrictionForces>,
     /// Force on the first side.
     pub resultant: [f64; 2],
+}
+
+/// Variationally consistent forces of friction on the first side of an interface along t̂, thickness included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionForces {
+    /// At each of [`Reactions::vertices`].
+    pub vertex: Vec<f64>,
+    /// Conjugate to the inner Bernstein coefficients of the tangential jump of each pair.
+    pub edge: Option<Vec<Vec<f64>>>,
 }
 
 /// A candidate after it was evaluated.
@@ -113,7 +132,7 @@ pub struct Judged {
     pub candidate: Candidate,
     /// The field as delivered, or the polynomials on triangles that have its values.
     pub field: UpperBound,
-    /// The energy of the field as delivered.
+    /// The energy of the field as delivered; of a solution with friction as its model counts it.
     pub own: Potential,
     /// How far it was from admissible.
     pub violation: Violation,
@@ -151,7 +170,7 @@ impl Judged {
             let admissible = UpperBound::of_mended_cells(problem, dual, cells, (&field, mended));
             (UpperBound::of_cells(problem, dual, cells, field), admissible)
         };
-        let own = match &candidate.on_quadrilaterals {
+        let mut own = match &candidate.on_quadrilaterals {
             Some(own) if !own.field.is_polynomial() => own.forces(problem).1,
             // Integrals over a body of revolution are rational, and a model's those of its rule.
             _ if problem.section().is_revolved() && candidate.is_solution => {
@@ -159,6 +178,9 @@ impl Judged {
             }
             _ => field.potential,
         };
+        if candidate.is_solution && problem.has_friction() {
+            own.friction = candidate.friction_work(problem);
+        }
         let balance = candidate
             .is_solution
             .then(|| Balance::new(problem, &candidate, field.potential.stored() + initial_energy(problem)));

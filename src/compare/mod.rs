@@ -15,9 +15,10 @@ mod stress;
 mod tolerance;
 
 pub use balance::Balance;
-pub use candidate::{ADMISSIBLE, Candidate, Judged, Reactions};
+pub use candidate::{ADMISSIBLE, Candidate, FrictionForces, Judged, Reactions};
 pub use ceiling::Extent;
 pub use check::{Basis, Check};
+pub use contact::friction::{FrictionState, FrictionSummary, FrictionZone};
 pub use contact::mean::MeanPressure;
 pub use contact::pressure::weighted_reactions;
 pub use forces::NodalForces;

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::contact::friction::FrictionSummary;
 use super::contact::mean::MeanPressure;
 
 /// A pair of values, one from each side.
@@ -38,6 +39,8 @@ pub struct ContactSummary {
     pub contact_ends: Vec<f64>,
     /// L² norm of the pressure difference relative to the L² norm of the dual pressure.
     pub pressure_l2_difference: Option<f64>,
+    /// Friction in the dual solution; `null` where the contact has none.
+    pub friction: Option<FrictionSummary>,
     /// Total length of the interface.
     pub length: f64,
     /// Pressure along the interface from every model, for the picture.

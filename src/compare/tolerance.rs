@@ -24,7 +24,7 @@ pub(super) fn chosen(last: &str) -> f64 {
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 28] = [
+const NAMES: [&str; 29] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
@@ -53,6 +53,7 @@ const NAMES: [&str; 28] = [
     "solution/contact/{contact}/penetration-at-nodes",
     "solution/contact/{contact}/pulling",
     "solution/contact/{contact}/pressure-where-open",
+    "solution/contact/{contact}/friction",
 ];
 
 /// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end

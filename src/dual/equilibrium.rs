@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::contact::moments::columns;
+use super::contact::moments::columns_of_pair;
 use super::resultants::work_within;
 use super::system::applied;
 use crate::element::{SideValues, StressField};
@@ -157,7 +157,8 @@ impl Measured<'_> {
         own.iter().map(left).collect()
     }
 
-    /// What is left of t n̂ on both sides of a contact pair, and what of t pulls.
+    /// What is left of t n̂ on both sides of a contact pair, with friction of t n̂ and what is along t̂, and what of t pulls or exceeds
+    /// the bound of friction.
     fn pair(&self, pair: &ContactPair, found: &mut Equilibrium) {
         let Some(a) = pair.edges[0] else { return };
         let degree = self.moments.of(a).len() - 1;
@@ -166,7 +167,7 @@ impl Measured<'_> {
         let own = along.of_pair(self.problem, 0, self.moments.of(a));
         let opposite = pair.edges[1].map(|b| along.of_pair(self.problem, 1, self.moments.of(b)));
         for (side, e) in pair.edges.into_iter().enumerate().filter_map(|(side, e)| Some((side, e?))) {
-            // What is left of the traction of each side where t n̂ of the first is taken away.
+            // What is left of the traction of each side where that of the first is taken away.
             let carried = along.of_pair(self.problem, side, &self.traction(e, 0, degree));
             let held = along.traction(&t, side);
             let moments = if side == 0 { Some(&own) } else { opposite.as_ref() };
@@ -177,11 +178,18 @@ impl Measured<'_> {
                 found.work += left * moments.map_or(0.0, |m| norm(m[k]));
             }
         }
-        let openings = along.along(&own, opposite.as_deref(), pair.direction.shares);
-        let gaps = pair.gap_moments(t.len() - 1);
-        for ((t, opening), gap) in t.iter().zip(openings).zip(gaps) {
+        let jumps = along.along(&own, opposite.as_deref(), pair.direction.shares);
+        let (normal, tangential) = t.split_at(along.normal);
+        let gaps = pair.gap_moments(along.normal - 1);
+        for ((t, opening), gap) in normal.iter().zip(&jumps).zip(gaps) {
             found.tension = found.tension.max(self.relative.of(*t, a));
             found.work += t.max(0.0) * (opening + pair.length * gap);
+        }
+        let Some(friction) = pair.friction else { return };
+        for ((t, jump), bound) in tangential.iter().zip(&jumps).zip(friction.coefficients(tangential.len() - 1)) {
+            let over = (t.abs() - bound).max(0.0);
+            found.tension = found.tension.max(self.relative.of(over, a));
+            found.work += over * jump;
         }
     }
 }
@@ -237,18 +245,26 @@ fn largest_resultant(problem: &Problem, stress: &StressField, moments: &SideValu
     (0..bodies).map(of).fold(0.0, f64::max)
 }
 
-/// t n̂ along a contact pair.
+/// The tractions that a contact pair carries: t n̂, and with friction t̂ times another.
 struct Along<'a> {
     pair: &'a ContactPair,
     degree: usize,
-    /// The coefficients of t n̂, where n̂ turns.
+    /// Number of coefficients along n̂; those along t̂ follow.
+    normal: usize,
+    /// The coefficients of n̂ and t̂ times polynomials, where they turn.
     turning: Option<DMatrix<f64>>,
 }
 
 impl<'a> Along<'a> {
     fn new(pair: &'a ContactPair, degree: usize) -> Self {
-        let turning = (!pair.direction.is_constant()).then(|| columns(&pair.direction, degree));
-        Along { pair, degree, turning }
+        let turning = (!pair.direction.is_constant()).then(|| columns_of_pair(pair, degree));
+        Along { pair, degree, normal: pair.direction.columns(degree), turning }
+    }
+
+    /// The directions that traction is carried along.
+    fn axes(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let tangent = self.pair.friction.map(|friction| friction.tangent.ends[0]);
+        [Some(self.pair.direction.ends[0]), tangent].into_iter().flatten()
     }
 
     /// Values of the edge on side `side`, from end to end of the pair.
@@ -258,26 +274,29 @@ impl<'a> Along<'a> {
         if along { values.to_vec() } else { values.iter().rev().copied().collect() }
     }
 
-    /// The coefficients of t, from those of the traction of the first side.
+    /// The coefficients of t along n̂, then of that along t̂ where there is friction, from those of the traction of the first side.
     fn multiplier(&self, traction: &[[f64; 2]]) -> Vec<f64> {
         let share = self.pair.direction.shares[0];
         let Some(columns) = &self.turning else {
-            let n = self.pair.direction.ends[0];
-            return traction.iter().map(|t| (t[0] * n[0] + t[1] * n[1]) / share).collect();
+            let of = |n: [f64; 2]| traction.iter().map(move |t| (t[0] * n[0] + t[1] * n[1]) / share);
+            return self.axes().flat_map(of).collect();
         };
         let traction = DMatrix::from_column_slice(2 * (self.degree + 1), 1, traction.as_flattened());
         let normal = columns.transpose() * columns;
         // Independent columns: the direction vanishes nowhere.
         let t = normal.lu().solve(&(columns.transpose() * traction));
-        t.map_or_else(|| vec![0.0; self.degree], |t| t.iter().map(|t| t / share).collect())
+        t.map_or_else(|| vec![0.0; columns.ncols()], |t| t.iter().map(|t| t / share).collect())
     }
 
-    /// The coefficients of the traction ± t n̂ of a side, per unit length of its edge.
+    /// The coefficients of the traction that a side carries, per unit length of its edge.
     fn traction(&self, t: &[f64], side: usize) -> Vec<[f64; 2]> {
         let share = if side == 0 { self.pair.direction.shares[0] } else { -self.pair.direction.shares[1] };
         let Some(columns) = &self.turning else {
-            let n = self.pair.direction.ends[0];
-            return t.iter().map(|t| [share * t * n[0], share * t * n[1]]).collect();
+            let mut all = vec![[0.0; 2]; self.degree + 1];
+            for (n, t) in self.axes().zip(t.chunks_exact(self.degree + 1)) {
+                all.iter_mut().zip(t).for_each(|(all, t)| (0..2).for_each(|c| all[c] += share * t * n[c]));
+            }
+            return all;
         };
         let all = columns * DMatrix::from_column_slice(t.len(), 1, t) * share;
         all.as_slice().as_chunks::<2>().0.to_vec()
@@ -299,10 +318,18 @@ impl<'a> Along<'a> {
 
 /// The coefficients of t on `pair`, from the traction t n̂ of its first side.
 pub fn contact_traction(problem: &Problem, stress: &StressField, pair: &ContactPair) -> Vec<f64> {
-    let Some(e) = pair.edges[0] else { return Vec::new() };
+    let [normal, _] = contact_tractions(problem, stress, pair);
+    normal
+}
+
+/// The same with those of the traction along t̂, none where there is no friction.
+pub fn contact_tractions(problem: &Problem, stress: &StressField, pair: &ContactPair) -> [Vec<f64>; 2] {
+    let Some(e) = pair.edges[0] else { return [Vec::new(), Vec::new()] };
     let degree = pair_degree(problem, stress, pair);
     let along = Along::new(pair, degree);
-    along.multiplier(&along.of_pair(problem, 0, &stress.edge_traction(&problem.mesh, e, 0, degree)))
+    let mut normal = along.multiplier(&along.of_pair(problem, 0, &stress.edge_traction(&problem.mesh, e, 0, degree)));
+    let tangential = normal.split_off(along.normal);
+    [normal, tangential]
 }
 
 /// The degree of the traction on a pair: the larger one of its sides.

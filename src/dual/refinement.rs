@@ -46,8 +46,10 @@ pub struct Refined {
     pub x: Vec<f64>,
     /// Mode parameters, triangle by triangle.
     pub s: Vec<f64>,
-    /// Residual of every unknown: on free ones a jump of traction, on closed jumps minus the normal traction.
+    /// Residual of every unknown: on free ones a jump of traction, on jumps that are held minus the traction.
     pub r: Vec<f64>,
+    /// What resists the sliding of jumps, and is taken off their residuals; empty where nothing does.
+    pub resistance: Vec<f64>,
 }
 
 impl Refined {
@@ -55,7 +57,17 @@ impl Refined {
     pub fn new(problem: &Problem, system: &System, x: Vec<f64>) -> Self {
         let s = parameters(problem, system, &x, true);
         let r = residual(problem, system, &s);
-        Refined { x, s, r }
+        Refined { x, s, r, resistance: Vec::new() }
+    }
+
+    /// The same where jumps slide against this resistance.
+    pub fn resisted(mut self, system: &System, resistance: Vec<f64>) -> Self {
+        let new = resistance.iter().chain(std::iter::repeat(&0.0));
+        let old = self.resistance.iter().chain(std::iter::repeat(&0.0));
+        let changes = new.zip(old).map(|(new, old)| new - old);
+        self.r[system.unknowns.first_jump..].iter_mut().zip(changes).for_each(|(r, change)| *r -= change);
+        self.resistance = resistance;
+        self
     }
 
     /// Adds `step` times the correction `d`, with its stresses `ds`.
@@ -63,6 +75,8 @@ impl Refined {
         axpy(&mut self.x, step, d);
         axpy(&mut self.s, step, ds);
         self.r = residual(problem, system, &self.s);
+        let jumps = self.r[system.unknowns.first_jump..].iter_mut();
+        jumps.zip(&self.resistance).for_each(|(r, resistance)| *r -= resistance);
     }
 }
 

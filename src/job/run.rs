@@ -22,6 +22,8 @@ use crate::study::{hash, identifier};
 pub struct Runner<'a> {
     /// This program.
     pub program: &'a Path,
+    /// The file with its code, the same where it is no script.
+    pub code: &'a Path,
     /// Folder of the job.
     pub out: &'a Path,
     /// Processes at a time.
@@ -53,7 +55,7 @@ impl Runner<'_> {
     /// A process cannot be started, or a record not be kept; scenes that fail are no errors but results.
     pub fn run(&self, plan: &Plan, told: &(dyn Fn(&Planned, &Record) + Sync)) -> Result<usize, JobError> {
         let failed = |source| JobError::Start { program: self.program.to_path_buf(), source };
-        let program = hash(&std::fs::read(self.program).map_err(failed)?);
+        let program = hash(&std::fs::read(self.code).map_err(failed)?);
         let own: Vec<&Planned> =
             plan.scenes.iter().enumerate().filter(|(i, _)| self.shard.has(*i)).map(|(_, scene)| scene).collect();
         let open: Vec<&Planned> =

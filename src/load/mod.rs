@@ -73,6 +73,13 @@ impl BodyForce {
         BodyForce { given, ..BodyForce::NONE }
     }
 
+    /// The same with a constant force added.
+    #[must_use]
+    pub fn plus(mut self, force: [f64; 2]) -> Self {
+        (0..2).for_each(|c| self.given.value[c] += force[c]);
+        self
+    }
+
     /// With the centrifugal force of a rotation, in place of any other.
     pub fn with_rotation(self, rotation: Rotation) -> Self {
         BodyForce { rotation: Some(rotation), ..self }

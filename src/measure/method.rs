@@ -1,5 +1,7 @@
 //! The methods that are measured against each other.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::dual::Solver;
@@ -16,7 +18,7 @@ pub enum Method {
     Displacements(u8),
 }
 
-/// All methods in the order of tables, with their names in files, on the command line and in tables.
+/// All methods in the order of tables, with their names on the command line and in tables.
 const NAMED: [(Method, &str); 14] = [
     (Method::CONDENSED, "condensed"),
     (Method::Stresses(Solver::Condensed, 2), "condensed-p2"),
@@ -52,9 +54,17 @@ impl Method {
         Self::all().filter(|method| !method.is_primal() || method.degree() <= 2)
     }
 
-    /// Name in files, on the command line and in tables.
+    /// Name on the command line and in tables.
     pub fn name(self) -> &'static str {
         NAMED.iter().find(|(method, _)| *method == self).map_or("unnamed", |(_, name)| name)
+    }
+
+    /// Name in JSON.
+    fn key(self) -> Cow<'static, str> {
+        match self {
+            Method::Displacements(degree) => Cow::Owned(format!("fenics-p{degree}")),
+            Method::Stresses(..) | Method::Adaptive(_) => Cow::Borrowed(self.name()),
+        }
     }
 
     /// Its name, or that of a displacement `solver` that was run in the place of FEniCSx, with the degree.
@@ -107,14 +117,15 @@ impl Method {
 
 impl Serialize for Method {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
+        serializer.serialize_str(&self.key())
     }
 }
 
 impl<'de> Deserialize<'de> for Method {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        Method::of_name(&name).ok_or_else(|| serde::de::Error::custom(format!("there is no method {name}")))
+        let key = String::deserialize(deserializer)?;
+        let found = Method::all().find(|method| method.key() == key);
+        found.ok_or_else(|| serde::de::Error::custom(format!("there is no method {key}")))
     }
 }
 

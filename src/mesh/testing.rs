@@ -22,7 +22,7 @@ pub(crate) fn clamp(mut scene: Scene, on: &str) -> Scene {
 }
 
 pub(crate) fn load(mut scene: Scene, on: &str, load: Load) -> Scene {
-    scene.draft.tractions.push(Traction { on: on.into(), load });
+    scene.draft.tractions.push(Traction { on: on.into(), load, terms: Vec::new() });
     scene
 }
 

@@ -1,7 +1,7 @@
 //! The barrier of one unknown: room and force of each kink, which an interior point keeps positive.
 //!
 //! A bound x ≤ g has the room y = g − x and the force z with z y = 0; elastic contact is a bound that gives way by z / k. Friction
-//! τ|x| is τu with |x| ≤ u, whose two forces add up to τ.
+//! τ|x − c| is τu with |x − c| ≤ u, whose two forces add up to τ.
 
 use super::law::{Law, State};
 
@@ -13,7 +13,7 @@ const SHORT: f64 = 0.995;
 pub enum Barrier {
     /// `sign` · x ≤ bound + force · give.
     Face { sign: f64, bound: f64, give: f64, room: f64, force: f64, step: [f64; 2] },
-    /// |x| ≤ u, with the rooms u ∓ x and the forces at them.
+    /// |x − c| ≤ u, with the rooms u ∓ (x − c) and the forces at them.
     Ridge { room: [f64; 2], force: [f64; 2], step: [f64; 4] },
 }
 
@@ -35,9 +35,9 @@ pub fn barriers(law: Law) -> impl Iterator<Item = Barrier> {
         Law::Between { lower, upper } => [face(1.0, upper, 0.0), face(-1.0, -lower, 0.0)],
         Law::Elastic { gap, stiffness } => [face(1.0, gap, 1.0 / stiffness), None],
         // Without any threshold there is nothing to hold against.
-        Law::Friction { threshold } if threshold > 0.0 => {
-            let force = [0.5 * threshold; 2];
-            [Some(Barrier::Ridge { room: [1.0; 2], force, step: [0.0; 4] }), None]
+        Law::Friction { threshold, centre } if threshold > 0.0 => {
+            let (force, far) = ([0.5 * threshold; 2], 1.0 + centre.abs());
+            [Some(Barrier::Ridge { room: [far + centre, far - centre], force, step: [0.0; 4] }), None]
         }
         Law::Friction { .. } => [None, None],
     }
@@ -171,7 +171,7 @@ impl Barrier {
             (Barrier::Face { .. }, Law::Elastic { .. }) => State::Above,
             (Barrier::Face { .. }, _) => State::Held,
             (Barrier::Ridge { room: [a, b], force: [p, q], .. }, _) => {
-                // u − x has no room where x is positive, and the force there is all of the threshold.
+                // u − (x − c) has no room where x − c is positive, and the force there is all of the threshold.
                 if b > q {
                     State::Above
                 } else if a > p {

@@ -13,6 +13,10 @@ use crate::vector::long::{axpy, largest};
 const MOST: usize = 80;
 /// Steps that win nothing, neither of the equations nor of all that is asked, before it ends where it is.
 const PATIENCE: usize = 3;
+/// A step that leaves more than this part of the mean product, where the equations hold better than that, wins nothing …
+const WORSE: f64 = 0.9;
+/// … and one towards this part of it is taken in its place.
+const CENTRED: f64 = 0.3;
 /// What is left of the equations, relative to data of size one, where the state may be read.
 const BALANCED: f64 = 1e-9;
 /// Products of room and force at which a point that comes no further still tells the state.
@@ -21,10 +25,14 @@ const NEARLY: f64 = 1e-7;
 /// The minimum to about as many digits as the factor has; nothing where it does not come near one. It ends where the mean product of
 /// room and force, for data of size one, is `enough`, or where it comes no further.
 pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
-    let size = program.size();
-    let n = program.load.len();
-    let load: Vec<f64> = program.load.iter().map(|b| b / size).collect();
-    let laws: Vec<Law> = program.laws.iter().map(|law| law.scaled(size)).collect();
+    // From where friction holds: y = x − c has laws without a centre, and the load b − Ac.
+    let origin: Vec<f64> = program.laws.iter().map(|law| law.centre()).collect();
+    let laws: Vec<Law> = program.laws.iter().map(|law| law.centred()).collect();
+    let load: Vec<f64> = program.form.gradient(program.load, &origin).iter().map(|force| -force).collect();
+    let size = Program { load: &load, laws: &laws, ..*program }.size();
+    let n = load.len();
+    let load: Vec<f64> = load.iter().map(|b| b / size).collect();
+    let laws: Vec<Law> = laws.iter().map(|law| law.scaled(size)).collect();
     let mut owner = Vec::new();
     let mut all: Vec<Barrier> = Vec::new();
     for (i, law) in laws.iter().enumerate() {
@@ -82,7 +90,12 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
         let (_, reach) = toward(&mut all, 0.0, false);
         let after = all.iter().map(|b| b.product_after(reach)).sum::<f64>() / count;
         let target = mu * (after / mu).powi(3).min(1.0);
-        let (dx, reach) = toward(&mut all, target, true);
+        let (mut dx, mut reach) = toward(&mut all, target, true);
+        let product = all.iter().map(|b| b.product_after(reach)).sum::<f64>() / count;
+        if unbalanced <= mu && product > WORSE * mu {
+            // The products of a long step can lead in circles; a step towards the centre without them does not.
+            (dx, reach) = toward(&mut all, CENTRED * mu, false);
+        }
         axpy(&mut x, reach, &dx);
         all.iter_mut().for_each(|b| b.advance(reach));
     }
@@ -97,7 +110,7 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
             states[*i] = state;
         }
     }
-    let x: Vec<f64> = x.into_iter().map(|x| x * size).collect();
+    let x = x.into_iter().zip(origin).map(|(x, from)| from + x * size).collect();
     Some(Solution { x, states, steps, settled: false })
 }
 
@@ -110,13 +123,26 @@ impl Law {
         }
     }
 
+    /// Where friction holds; zero for every other law.
+    fn centre(self) -> f64 {
+        if let Law::Friction { centre, .. } = self { centre } else { 0.0 }
+    }
+
+    /// The law of the distance from [`Law::centre`].
+    fn centred(self) -> Self {
+        match self {
+            Law::Friction { threshold, .. } => Law::Friction { threshold, centre: 0.0 },
+            _ => self,
+        }
+    }
+
     /// The law of x / `size`, when forces are divided by `size` too.
     fn scaled(self, size: f64) -> Self {
         match self {
             Law::AtMost { bound } => Law::AtMost { bound: bound / size },
             Law::Between { lower, upper } => Law::Between { lower: lower / size, upper: upper / size },
             Law::Elastic { gap, stiffness } => Law::Elastic { gap: gap / size, stiffness },
-            Law::Friction { threshold } => Law::Friction { threshold: threshold / size },
+            Law::Friction { threshold, centre } => Law::Friction { threshold: threshold / size, centre: centre / size },
             Law::Free | Law::Spring { .. } => self,
         }
     }

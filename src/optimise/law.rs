@@ -33,10 +33,12 @@ pub enum Law {
         /// Stiffness, positive.
         stiffness: f64,
     },
-    /// φ = `threshold` |x|: friction with a given bound.
+    /// φ = `threshold` |x − `centre`|: friction with a given bound.
     Friction {
         /// The largest force, not negative.
         threshold: f64,
+        /// Where it holds.
+        centre: f64,
     },
 }
 
@@ -84,7 +86,7 @@ impl Law {
             (Law::AtMost { bound }, State::Held) => Some(bound),
             (Law::Between { lower, .. }, State::Held) => Some(lower),
             (Law::Between { upper, .. }, State::HeldAbove) => Some(upper),
-            (Law::Friction { .. }, State::Held) => Some(0.0),
+            (Law::Friction { centre, .. }, State::Held) => Some(centre),
             _ => None,
         }
     }
@@ -94,8 +96,8 @@ impl Law {
         match (self, state) {
             (Law::Spring { stiffness }, _) => Piece { stiffness, offset: 0.0 },
             (Law::Elastic { gap, stiffness }, State::Above) => Piece { stiffness, offset: -stiffness * gap },
-            (Law::Friction { threshold }, State::Above) => Piece { stiffness: 0.0, offset: threshold },
-            (Law::Friction { threshold }, State::Below) => Piece { stiffness: 0.0, offset: -threshold },
+            (Law::Friction { threshold, .. }, State::Above) => Piece { stiffness: 0.0, offset: threshold },
+            (Law::Friction { threshold, .. }, State::Below) => Piece { stiffness: 0.0, offset: -threshold },
             _ => Piece { stiffness: 0.0, offset: 0.0 },
         }
     }
@@ -113,10 +115,10 @@ impl Law {
             (Law::Between { upper, .. }, Between) if x > upper + depth => HeldAbove,
             (Law::Elastic { gap, .. }, Below) if x > gap + depth => Above,
             (Law::Elastic { gap, .. }, Above) if x < gap - depth => Below,
-            (Law::Friction { threshold }, Held) if q > threshold + slack => Above,
-            (Law::Friction { threshold }, Held) if q < -threshold - slack => Below,
-            (Law::Friction { .. }, Above) if x < -depth => Held,
-            (Law::Friction { .. }, Below) if x > depth => Held,
+            (Law::Friction { threshold, .. }, Held) if q > threshold + slack => Above,
+            (Law::Friction { threshold, .. }, Held) if q < -threshold - slack => Below,
+            (Law::Friction { centre, .. }, Above) if x < centre - depth => Held,
+            (Law::Friction { centre, .. }, Below) if x > centre + depth => Held,
             _ => state,
         }
     }
@@ -129,7 +131,7 @@ impl Law {
             Law::Between { lower, upper } => Law::Between { lower: lower / unit, upper: upper / unit },
             Law::Spring { stiffness } => Law::Spring { stiffness: stiffness * unit * unit },
             Law::Elastic { gap, stiffness } => Law::Elastic { gap: gap / unit, stiffness: stiffness * unit * unit },
-            Law::Friction { threshold } => Law::Friction { threshold: threshold * unit },
+            Law::Friction { threshold, centre } => Law::Friction { threshold: threshold * unit, centre: centre / unit },
         }
     }
 
@@ -140,7 +142,8 @@ impl Law {
             Law::AtMost { bound } => finite(bound),
             Law::Between { lower, upper } => finite(lower).max(finite(upper)),
             Law::Elastic { gap, .. } => finite(gap),
-            Law::Free | Law::Spring { .. } | Law::Friction { .. } => 0.0,
+            Law::Friction { centre, .. } => finite(centre),
+            Law::Free | Law::Spring { .. } => 0.0,
         }
     }
 
@@ -153,7 +156,7 @@ impl Law {
             Law::Between { lower, upper } => unless(x > upper || x < lower),
             Law::Spring { stiffness } => 0.5 * stiffness * x * x,
             Law::Elastic { gap, stiffness } => 0.5 * stiffness * (x - gap).max(0.0).powi(2),
-            Law::Friction { threshold } => threshold * x.abs(),
+            Law::Friction { threshold, centre } => threshold * (x - centre).abs(),
         }
     }
 
@@ -168,7 +171,7 @@ impl Law {
             Law::Between { lower, upper } => times(q, if q > 0.0 { upper } else { lower }),
             Law::Spring { stiffness } => 0.5 * q * q / stiffness,
             Law::Elastic { gap, stiffness } => unless(q < 0.0, 0.5 * q * q / stiffness + times(q.max(0.0), gap)),
-            Law::Friction { threshold } => unless(q.abs() > threshold, 0.0),
+            Law::Friction { threshold, centre } => unless(q.abs() > threshold, q * centre),
         }
     }
 }

@@ -215,6 +215,23 @@ struct PairEntry {
     gap: [f64; 2],
     #[serde(skip_serializing_if = "Vec::is_empty")]
     gap_below: Vec<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionEntry>,
+}
+
+/// The friction of a pair.
+#[derive(Serialize)]
+struct FrictionEntry {
+    bound: [f64; 2],
+    tangent: [[f64; 2]; 2],
+    length: f64,
+}
+
+impl FrictionEntry {
+    fn new(pair: &ContactPair) -> Option<Self> {
+        let friction = pair.friction?;
+        Some(FrictionEntry { bound: friction.bound, tangent: friction.tangent.ends, length: pair.length })
+    }
 }
 
 #[derive(Serialize)]
@@ -292,6 +309,7 @@ impl<'a> ProblemFile<'a> {
                             direction: pair.direction.ends,
                             gap: pair.gap,
                             gap_below: gap_below(pair),
+                            friction: FrictionEntry::new(pair),
                         })
                         .collect(),
                 })
@@ -429,6 +447,12 @@ fn check(solution: &PrimalSolution, Space { cells, degree }: Space, problem: &Pr
                 .all(|(inner, pair)| inner.len() == if pair.direction.is_constant() { k - 1 } else { k });
         if !fits {
             return Err(format!("the reactions of {} do not match its edges", contact.name));
+        }
+        let rubs = contact.vertex_friction.as_ref().is_none_or(|forces| forces.len() == contact.vertices.len());
+        let inside = contact.edge_friction.iter().flatten().zip(contact.edge_reaction.iter().flatten());
+        let few = contact.edge_friction.as_ref().is_some_and(|pairs| Some(pairs.len()) != edges);
+        if !rubs || few || inside.into_iter().any(|(own, other)| own.len() != other.len()) {
+            return Err(format!("the friction forces of {} do not match its edges", contact.name));
         }
     }
     Ok(())

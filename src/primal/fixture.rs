@@ -36,6 +36,7 @@ pub(crate) fn pressed_square() -> Problem {
         arc: [0.0, 1.0],
         gap: [0.0, 0.0],
         bow: Bow::default(),
+        friction: None,
         stiffness: None,
     };
     Problem {

@@ -187,6 +187,10 @@ pub struct PrimalSolution {
     /// ½∫ c e(u_h):e(u_h).
     #[serde(default)]
     pub strain_energy: Option<f64>,
+    /// Σ ∫ τ̄ B_i · |d_i| of the coefficients of tangential jumps, a part of `energy`; `None` where nothing rubs or the solver does not
+    /// tell.
+    #[serde(default)]
+    pub friction_work: Option<f64>,
     /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
     #[serde(default)]
     pub energy_rounding: Option<f64>,
@@ -250,6 +254,12 @@ pub struct PrimalContact {
     /// R ≥ 0 of each pair, conjugate to the inner Bernstein coefficients of its jump (to the values at the nodes with
     /// [`Options::nodal_contact`]): k − 1, or k where the direction of contact turns; `None` for degree 1.
     pub edge_reaction: Option<Vec<Vec<f64>>>,
+    /// Force of friction on the first side along t̂ at each of `vertices`, conjugate to the tangential jump there; `None` without friction.
+    #[serde(default)]
+    pub vertex_friction: Option<Vec<f64>>,
+    /// The same of each pair for its inner Bernstein coefficients, k − 1 of them; `None` for degree 1.
+    #[serde(default)]
+    pub edge_friction: Option<Vec<Vec<f64>>>,
     /// Force on the first side.
     pub resultant: [f64; 2],
 }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::contact::curves::{beside_long_edges, curved, turned_by_the_mesh};
+use super::contact::friction::{resist, rubs};
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
 use super::contact::softened;
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement};
+use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, polynomial};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::error::at;
@@ -17,16 +18,16 @@ use crate::mesh::refinement::bisect::{RefinementEdges, bisect};
 use crate::mesh::sides::concentric::Concentric;
 use crate::mesh::topology::labels::contact_names;
 use crate::mesh::{self, Curved, Loaded, Triangulation};
-use crate::scene::{Contact, ContactSides, Draft, Kinematics, Load, MeshSource, Normals, Scene, SupportKind};
+use crate::scene::{Contact, ContactSides, Draft, Kinematics, MeshSource, Normals, Scene, SupportKind, Traction};
 
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
 
 /// What a boundary name stands for.
 #[derive(Clone, Copy)]
-enum Role {
+enum Role<'a> {
     Support(SupportKind),
-    Load(Load),
+    Load(&'a Traction),
     Contact,
 }
 
@@ -118,7 +119,7 @@ impl Problem {
                         direction: direction.unwrap_or_else(|| mesh.edge_frame(e).1),
                         displacement: *displacement,
                     },
-                    Some(Role::Load(load)) => Condition::Traction(end_tractions(&mesh, e, load)),
+                    Some(Role::Load(load)) => Condition::Traction(polynomial::ends(&scene, &mesh, e, load)),
                     // Edges of contacts and springs are overwritten when they are paired.
                     Some(Role::Contact | Role::Support(SupportKind::Spring { .. })) | None => {
                         Condition::Traction([[0.0; 2]; 2])
@@ -151,6 +152,7 @@ impl Problem {
                     replace(&mut notes, &matched);
                 }
             }
+            resist(contact, &mesh, &mut matched, &mut remarks);
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {
                     if let Some(edge) = edge {
@@ -158,7 +160,7 @@ impl Problem {
                     }
                 }
             }
-            softened::refuse(contact, &matched, section, &mesh, !scene.quantities.is_empty())?;
+            softened::refuse(contact, &matched, section, &mesh)?;
             interfaces.push(matched);
         }
         let beds = beds(&scene, &mesh)?;
@@ -173,7 +175,11 @@ impl Problem {
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        Ok(Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None })
+        let mut problem = Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None };
+        let remarks = polynomial::remarks(&problem);
+        problem.notes.retain(|note| !polynomial::is_remark(note));
+        problem.notes.extend(remarks);
+        Ok(problem)
     }
 
     /// The same problem after `n` uniform refinements, each cutting every triangle into four.
@@ -201,7 +207,8 @@ impl Problem {
         Problem::with_directions(self.scene.clone(), mesh, self.notes.clone(), Some(&coarser))
     }
 
-    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) = L(u).
+    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) + ∫ τ̄ |u_t' − u_t''| = L(u), the
+    /// integral over contacts with friction.
     pub fn is_cone(&self) -> bool {
         let elastic = self.bed_pairs().filter_map(|(pair, _)| pair.contact);
         let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none())
@@ -312,6 +319,14 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
             return refused(what, "give F_r as value + gradient · r, and a constant F_z");
         }
     }
+    if rubs(scene) {
+        let what = "a contact of a body of revolution has friction".to_string();
+        return refused(what, "leave `friction` out of axisymmetric scenes");
+    }
+    if scene.tractions.iter().any(|traction| !traction.terms.is_empty()) {
+        let what = "a traction on a body of revolution has `terms`".to_string();
+        return refused(what, "leave `terms` out of axisymmetric scenes");
+    }
     if scene.contacts.iter().any(|contact| contact.stiffness.is_some()) {
         let what = "a body of revolution has elastic contact".to_string();
         return refused(what, "leave `stiffness` out of the contacts of axisymmetric scenes");
@@ -345,21 +360,10 @@ fn beds(scene: &Scene, mesh: &Triangulation) -> Result<Vec<Bed>, ProblemError> {
 }
 
 /// The role of every boundary that the scene mentions.
-fn roles(scene: &Scene) -> HashMap<&str, Role> {
+fn roles(scene: &Scene) -> HashMap<&str, Role<'_>> {
     let supports = scene.supports.iter().map(|s| (s.on.as_str(), Role::Support(s.kind)));
-    let loads = scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t.load)));
+    let loads = scene.tractions.iter().map(|t| (t.on.as_str(), Role::Load(t)));
     let contacts = contact_names(scene).into_iter().map(|name| (name, Role::Contact));
     // A boundary of a valid scene has one condition.
     supports.chain(loads).chain(contacts).collect()
-}
-
-/// P at the two ends of edge `e`.
-fn end_tractions(mesh: &Triangulation, e: usize, load: &Load) -> [[f64; 2]; 2] {
-    match load {
-        Load::Pressure(p) => {
-            let (_, normal) = mesh.edge_frame(e);
-            [normal.map(|n| 0.0 - p * n); 2]
-        }
-        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
-    }
 }

@@ -4,6 +4,7 @@ mod bed;
 mod build;
 mod contact;
 mod error;
+mod polynomial;
 mod scales;
 #[cfg(test)]
 mod tests;
@@ -12,7 +13,9 @@ pub(crate) use bed::facing_vertices;
 pub use bed::{Bed, BedPair, EdgeWeight, OneSided};
 pub use contact::bow::Bow;
 pub use contact::direction::Direction;
+pub use contact::friction::{Friction, rubs};
 pub use error::ProblemError;
+pub use polynomial::Oscillation;
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
@@ -230,6 +233,8 @@ pub struct ContactPair {
     pub gap: [f64; 2],
     /// How far it lies below its chord between them.
     pub bow: Bow,
+    /// What resists sliding, where something does.
+    pub friction: Option<Friction>,
     /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
     pub stiffness: Option<f64>,
 }

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, kill_process_group, waitid};
 
+use super::interrupt;
 use super::tail::Tail;
 
 /// How long a process may take to end after it was asked to, and its pipes to close after it ended.
@@ -49,12 +50,12 @@ impl Ended {
 
 /// Starts `command` in a process group of its own, and waits for its end, for at most `limit`. Standard input is a pipe
 /// that is never written to: its end tells the process that this one is gone. What it started and left running in its
-/// group ends with it.
+/// group ends with it, and so does it itself where nobody wants the work of this thread any more.
 ///
 /// # Errors
 /// The process could not be started.
 pub fn supervise(command: &mut Command, limit: Duration) -> io::Result<Ended> {
-    supervise_unless(command, limit, &AtomicBool::new(false))
+    supervise_unless(command, limit, &interrupt::unwanted().unwrap_or_default())
 }
 
 /// The same for a process that nobody waits for any more once `unwanted` is true: it is then ended as if its time were over.

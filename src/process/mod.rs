@@ -7,6 +7,7 @@
 //! leaves no time by the next run ([`clear`]).
 
 pub mod child;
+mod interrupt;
 pub mod package;
 pub mod python;
 mod scratch;
@@ -17,6 +18,7 @@ pub mod words;
 use std::time::Duration;
 
 pub use child::{Ended, Outcome, supervise, supervise_unless};
+pub use interrupt::{Interrupted, interruptible, stop_if_unwanted};
 pub use scratch::{Scratch, clear};
 pub use tail::Tail;
 

@@ -45,11 +45,12 @@ pub(super) fn mesh(archive: &mut Archive, of: &str, problem: &Problem) {
     archive.array(&named("pair_data"), &real, 9 + Bow::NUMBERS);
 }
 
-/// The tractions of λ_h.
-pub(super) fn stress(archive: &mut Archive, problem: &Problem, dual: &DualSolution) {
+/// The tractions of λ_h; `of` stands before their names.
+pub(super) fn stress(archive: &mut Archive, of: &str, problem: &Problem, dual: &DualSolution) {
     let (mesh, stress) = (&problem.mesh, &dual.stress);
+    let named = |what: &str| format!("{of}{what}");
     let degrees: Vec<u8> = (0..mesh.triangles.len()).map(|t| stress.degree(t) as u8).collect();
-    archive.array("stress_degrees", &degrees, 0);
+    archive.array(&named("stress_degrees"), &degrees, 0);
     let (mut counts, mut values) = (Vec::new(), Vec::new());
     for (e, edge) in mesh.edges.iter().enumerate() {
         // Where degrees meet, the lower one is that of the traction.
@@ -59,23 +60,24 @@ pub(super) fn stress(archive: &mut Archive, problem: &Problem, dual: &DualSoluti
         counts.push(degree as u8 + 1);
         values.extend(stress.edge_traction(mesh, e, side, degree).into_iter().flatten().map(|t| sign * t));
     }
-    archive.array("traction_counts", &counts, 0);
-    archive.array("tractions", &values, 2);
+    archive.array(&named("traction_counts"), &counts, 0);
+    archive.array(&named("tractions"), &values, 2);
     let pairs = || dual.contact_traction.iter().flat_map(|interface| interface.iter());
-    archive.array("pressure_counts", &pairs().map(|t| t.len() as u8).collect::<Vec<_>>(), 0);
-    archive.array("pressures", &pairs().flatten().copied().collect::<Vec<f64>>(), 0);
+    archive.array(&named("pressure_counts"), &pairs().map(|t| t.len() as u8).collect::<Vec<_>>(), 0);
+    archive.array(&named("pressures"), &pairs().flatten().copied().collect::<Vec<f64>>(), 0);
 }
 
-/// The coefficients of v.
-pub(super) fn displacement(archive: &mut Archive, problem: &Problem, v: &Displacement) {
+/// The coefficients of v; `of` stands before their names.
+pub(super) fn displacement(archive: &mut Archive, of: &str, problem: &Problem, v: &Displacement) {
     let mesh = &problem.mesh;
+    let named = |what: &str| format!("{of}{what}");
     let degrees: Vec<u8> = (0..v.len()).map(|t| v.degree(t) as u8).collect();
-    archive.array("displacement_degrees", &degrees, 0);
+    archive.array(&named("displacement_degrees"), &degrees, 0);
     let mut vertices = vec![[0.0; 2]; mesh.points.len()];
     for (t, corners) in mesh.triangles.iter().enumerate() {
         (0..3).for_each(|i| vertices[corners[i]] = v.corner(t, i));
     }
-    archive.array("u_vertices", vertices.as_flattened(), 2);
+    archive.array(&named("u_vertices"), vertices.as_flattened(), 2);
     let (mut counts, mut values) = (Vec::new(), Vec::<f64>::new());
     for (e, edge) in mesh.edges.iter().enumerate() {
         let owners = edge.triangles.iter().flatten().copied();
@@ -93,8 +95,8 @@ pub(super) fn displacement(archive: &mut Archive, problem: &Problem, v: &Displac
         counts.push(own.len() as u8 - 1);
         values.extend(own[1..].as_flattened());
     }
-    archive.array("u_edge_counts", &counts, 0);
-    archive.array("u_edges", &values, 2);
+    archive.array(&named("u_edge_counts"), &counts, 0);
+    archive.array(&named("u_edges"), &values, 2);
     let inside = |t: usize| v.block(t)[3 * v.degree(t)..].iter().flatten().copied();
-    archive.array("u_inside", &(0..v.len()).flat_map(inside).collect::<Vec<f64>>(), 2);
+    archive.array(&named("u_inside"), &(0..v.len()).flat_map(inside).collect::<Vec<f64>>(), 2);
 }

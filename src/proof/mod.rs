@@ -37,6 +37,25 @@ pub struct Fields<'a> {
     pub claim: [f64; 2],
     /// Where the upper one comes from.
     pub upper_from: &'a str,
+    /// What the intervals of quantities follow from.
+    pub adjoints: &'a [Adjoint<'a>],
+}
+
+/// The fields of a problem with a unit load along a quantity, on the same mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Adjoint<'a> {
+    /// Name of the quantity.
+    pub name: &'a str,
+    /// Its interval in the report.
+    pub claim: [f64; 2],
+    /// The multiple of the load at which energies are compared.
+    pub step: f64,
+    /// Its problem and fields.
+    pub problem: &'a Problem,
+    /// Its stress.
+    pub dual: &'a DualSolution,
+    /// Its displacement.
+    pub displacement: &'a Displacement,
 }
 
 /// Why there is no proof.
@@ -71,6 +90,7 @@ struct Manifest<'a> {
     bodies: Vec<&'a str>,
     contacts: Vec<String>,
     claim: Claim<'a>,
+    quantities: Vec<QuantityClaim<'a>>,
     /// What this program says of its own data: where it represents them by others.
     notes: Vec<&'a str>,
     mesh_files: Vec<MeshFile>,
@@ -84,6 +104,14 @@ struct Claim<'a> {
 }
 
 #[derive(Serialize)]
+struct QuantityClaim<'a> {
+    name: &'a str,
+    lower: f64,
+    upper: f64,
+    step: f64,
+}
+
+#[derive(Serialize)]
 struct MeshFile {
     name: String,
     sha256: String,
@@ -93,7 +121,7 @@ struct MeshFile {
 ///
 /// # Errors
 /// [`ProofError`].
-pub fn proof(fields: &Fields<'_>) -> Result<Vec<u8>, ProofError> {
+pub fn proof<'a>(fields: &Fields<'a>) -> Result<Vec<u8>, ProofError> {
     let (problem, dual) = fields.stress;
     let scene = &problem.scene;
     let path = scene.path.display().to_string();
@@ -107,6 +135,8 @@ pub fn proof(fields: &Fields<'_>) -> Result<Vec<u8>, ProofError> {
     if !again.is_some_and(same) {
         return Err(ProofError::Changed { path });
     }
+    let claim =
+        |&Adjoint { name, claim: [lower, upper], step, .. }: &Adjoint<'a>| QuantityClaim { name, lower, upper, step };
     let manifest = Manifest {
         format: FORMAT,
         program: format!("hypercircle {}", env!("CARGO_PKG_VERSION")),
@@ -116,6 +146,7 @@ pub fn proof(fields: &Fields<'_>) -> Result<Vec<u8>, ProofError> {
         bodies: scene.bodies.iter().map(|body| body.name.as_str()).collect(),
         contacts: problem.interfaces.iter().map(|interface| interface.name.clone()).collect(),
         claim: Claim { lower: fields.claim[0], upper: fields.claim[1], upper_from: fields.upper_from },
+        quantities: fields.adjoints.iter().map(claim).collect(),
         notes: problem.notes.iter().filter(|note| note.weakens_guarantee).map(|note| note.text.as_str()).collect(),
         mesh_files: mesh_files(problem),
     };
@@ -124,10 +155,15 @@ pub fn proof(fields: &Fields<'_>) -> Result<Vec<u8>, ProofError> {
     archive.array("manifest", &manifest, 0);
     archive.array("scene", &text, 0);
     arrays::mesh(&mut archive, "stress", problem);
-    arrays::stress(&mut archive, problem, dual);
+    arrays::stress(&mut archive, "", problem, dual);
     let (problem, v) = fields.displacement;
     arrays::mesh(&mut archive, "displacement", problem);
-    arrays::displacement(&mut archive, problem, v);
+    arrays::displacement(&mut archive, "", problem, v);
+    for (i, adjoint) in fields.adjoints.iter().enumerate() {
+        let of = format!("quantity{i}_");
+        arrays::stress(&mut archive, &of, adjoint.problem, adjoint.dual);
+        arrays::displacement(&mut archive, &of, adjoint.problem, adjoint.displacement);
+    }
     Ok(archive.finish())
 }
 

@@ -1,6 +1,6 @@
 //! A field, or values of quantities, held against guaranteed bounds.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -8,12 +8,14 @@ use pyo3::types::PyDict;
 
 use super::arrays;
 use super::aside::{aside, threads};
+use super::beside;
 use super::errors::fault;
 use super::line::Line;
 use crate::cli::commands::certify::{Args, judged, read, stress_side};
+use crate::cli::commands::verify;
 use crate::cli::session::{DualRun, Session, refuse_unknown};
 use crate::cli::{CliError, Exit};
-use crate::report;
+use crate::report::{self, Dossier};
 use crate::scene::Scene;
 use crate::study::{FieldArrays, FieldError, ForeignField};
 
@@ -91,6 +93,34 @@ pub fn certify(py: Python<'_>, scene: &Scene, claimed: Claimed, solved: Option<&
     Ok(Certificate { report: super::from_json(py, Ok(text))?.unbind(), residual })
 }
 
+/// Solves `scene` twice and compares, with the options of `hypercircle verify`.
+///
+/// # Errors
+/// `InputError`, `InfeasibleError`, `SolveError`.
+pub fn verify(py: Python<'_>, scene: &Scene, how: Line) -> PyResult<Certificate> {
+    let args: verify::Args = how.parsed()?;
+    let count = threads(args.solve.threads);
+    let text = aside(py, count, || {
+        let session = Session::new("verify", scene.clone(), count, &args.solve, true)?;
+        let folder = args.run.out.is_some().then(|| args.run.report_folder(scene)).transpose()?;
+        args.judge.refuse_early(scene, args.fields(), &args.job)?;
+        let verify::Verified { run, comparison, particulars, failure } =
+            verify::verified(&args, &session, folder.as_deref())?;
+        let text = session.with_dossier(&run, &comparison, particulars, |dossier| written(&dossier, folder.as_deref()));
+        failure.map_or(text, |error| Err(verify::unanswered(&error)))
+    })??;
+    Ok(Certificate { report: super::from_json(py, Ok(text))?.unbind(), residual: None })
+}
+
+/// The report as text, and in `folder`, where there is one.
+fn written(dossier: &Dossier<'_>, folder: Option<&Path>) -> Result<String, CliError> {
+    let failed = |error: String| CliError::stopped(Exit::Failed, error, "");
+    if let Some(folder) = folder {
+        report::write(dossier, folder).map_err(|error| failed(error.to_string()))?;
+    }
+    serde_json::to_string(&dossier.report).map_err(|error| failed(error.to_string()))
+}
+
 fn held(
     scene: &Scene,
     claimed: Claimed,
@@ -122,11 +152,7 @@ fn held(
     let (comparison, particulars) = judged(&args, &session, run, field.as_ref(), &given, 0.0)?;
     let residual = particulars.residual.clone();
     session.with_dossier(run, &comparison, particulars, |dossier| {
-        let failed = |error: String| CliError::stopped(Exit::Failed, error, "");
-        if let Some(folder) = &folder {
-            report::write(&dossier, folder).map_err(|error| failed(error.to_string()))?;
-        }
-        let text = serde_json::to_string(&dossier.report).map_err(|error| failed(error.to_string()))?;
+        let text = written(&dossier, folder.as_deref())?;
         Ok((text, residual))
     })
 }
@@ -135,7 +161,7 @@ fn refused(FieldError { file, what, remedy }: FieldError) -> CliError {
     CliError::stopped(Exit::BadInput, format!("{}: {what}", file.display()), remedy)
 }
 
-/// What a field, or values, are worth.
+/// What a field, values, or the displacement models of `Scene.verify` are worth.
 #[pyclass(frozen, module = "hypercircle")]
 pub struct Certificate {
     report: Py<PyAny>,
@@ -221,6 +247,17 @@ impl Certificate {
     #[getter]
     fn report(&self, py: Python<'_>) -> Py<PyAny> {
         self.report.clone_ref(py)
+    }
+
+    /// A list of the report as a dictionary of columns, as `pandas.DataFrame` takes it: `checks`, `remarks`, `quantities`, `contacts`,
+    /// `primal`, `history`. Parts of an entry have dots in their names.
+    fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        beside::table(self.report.bind(py), name)
+    }
+
+    /// Verdict and intervals, for a notebook.
+    fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        beside::page(self.report.bind(py))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

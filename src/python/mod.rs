@@ -6,6 +6,7 @@
 mod answers;
 mod arrays;
 mod aside;
+mod beside;
 mod certificate;
 mod element;
 mod errors;
@@ -13,6 +14,7 @@ mod kinematics;
 mod line;
 mod own_element;
 mod problem;
+mod program;
 mod scene;
 mod solution;
 mod workbench;
@@ -34,6 +36,9 @@ fn hypercircle(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answers::Quantity>()?;
     module.add_class::<answers::ContactAnswer>()?;
     module.add_class::<certificate::Certificate>()?;
+    module.add_function(wrap_pyfunction!(beside::field, module)?)?;
+    module.add_function(wrap_pyfunction!(beside::job, module)?)?;
+    module.add_function(wrap_pyfunction!(program::main, module)?)?;
     module.add_function(wrap_pyfunction!(workbench::workbench, module)?)?;
     module.add_function(wrap_pyfunction!(element::element, module)?)?;
     module.add_function(wrap_pyfunction!(element::flexibility, module)?)?;

@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyType};
 
 use super::aside::{aside, threads};
-use super::certificate::{Certificate, Claims, certify};
+use super::beside;
+use super::certificate::{Certificate, Claims, certify, verify};
 use super::errors::fault;
 use super::line::Line;
 use super::own_element::{balanced, spanned};
@@ -43,6 +44,19 @@ impl Scene {
     fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
         let path = folder.unwrap_or_default().join(format!("{name}.toml"));
         Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from)?) })
+    }
+
+    /// A scene from dictionaries and lists with the names that tables and keys have in the file: `{"model": {"kinematics": "plane-strain"},
+    /// "bodies": {"block": {"young": 1.0, "poisson": 0.3}}, …}`. Arrays are lists, and what is `None` is left out.
+    #[classmethod]
+    #[pyo3(signature = (data, name = "scene", folder = None))]
+    fn from_dict(
+        class: &Bound<'_, PyType>,
+        data: &Bound<'_, PyDict>,
+        name: &str,
+        folder: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        Self::from_text(class, &beside::toml(data)?, name, folder)
     }
 
     /// Its name, that of the file.
@@ -207,6 +221,46 @@ impl Scene {
         let arrays = [points, triangles, displacement];
         let claims = Claims { arrays, file, field, name, solution, values, allow, tolerance, out };
         certify(py, &self.of, claims.made(how)?, None)
+    }
+
+    /// Solves twice, in stresses and with FEniCSx in displacements of each `primal_degree`, and compares, as `hypercircle verify` does.
+    /// `allow` maps checks to tolerances; the other options are those of `solve`. With `out`, the report goes into that folder.
+    ///
+    /// Raises as `solve` does; `SolveError` also where FEniCSx is not installed.
+    #[pyo3(signature = (*, primal_degree = vec![1, 2], allow = None, method = "condensed", degree = None, refine = 0, tolerance = None,
+        tolerance_of = None, max_triangles = None, max_seconds = None, max_memory = None, threads = 1, out = None))]
+    #[allow(clippy::too_many_arguments)]
+    fn verify(
+        &self,
+        py: Python<'_>,
+        primal_degree: Vec<i64>,
+        allow: Option<&Bound<'_, PyDict>>,
+        method: &str,
+        degree: Option<i64>,
+        refine: i64,
+        tolerance: Option<f64>,
+        tolerance_of: Option<&Bound<'_, PyDict>>,
+        max_triangles: Option<i64>,
+        max_seconds: Option<f64>,
+        max_memory: Option<&str>,
+        threads: i64,
+        out: Option<PathBuf>,
+    ) -> PyResult<Certificate> {
+        let degrees: Vec<String> = primal_degree.iter().map(i64::to_string).collect();
+        let line = Line::default()
+            .value("primal-degree", Some(degrees.join(",")))
+            .items("allow", allow)?
+            .value("method", Some(method))
+            .value("degree", degree)
+            .value("refine", Some(refine))
+            .value("tolerance", tolerance)
+            .items("tolerance-of", tolerance_of)?
+            .value("max-triangles", max_triangles)
+            .value("max-seconds", max_seconds)
+            .value("max-memory", max_memory)
+            .value("threads", Some(threads))
+            .path("out", out.as_deref());
+        verify(py, &self.of, line)
     }
 
     /// Which mistake explains that a displacement is not the discrete solution of its mesh: a dictionary with `sentence`,

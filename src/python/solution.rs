@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 
 use super::answers::{ContactAnswer, Quantity};
 use super::arrays;
+use super::beside;
 use super::certificate::{Certificate, Claims, certify};
 use super::line::Line;
 use crate::cli::commands::solve::{Args, Solved};
@@ -288,6 +289,46 @@ impl Solution {
         claimed.args.solve = SolveOptions { tolerance: claimed.args.solve.tolerance, ..own };
         claimed.args.limits = self.args.limits.clone();
         certify(py, &self.session.scene, claimed, Some(&self.solved.run))
+    }
+
+    /// Numbers on triangles, m of each by name: von Mises stresses of the means, and what each triangle adds to the gap and to the
+    /// intervals of the quantities.
+    #[getter]
+    fn maps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let maps = py.detach(|| self.with_dossier(|dossier| dossier.maps));
+        let out = PyDict::new(py);
+        for map in maps {
+            out.set_item(map.key, PyArray1::from_vec(py, map.values))?;
+        }
+        Ok(out)
+    }
+
+    /// A list of the report as a dictionary of columns, as `pandas.DataFrame` takes it: `checks`, `remarks`, `quantities`, `contacts`,
+    /// `history`. Parts of an entry have dots in their names.
+    fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        beside::table(&self.report(py)?, name)
+    }
+
+    /// Draws a number on each triangle with matplotlib, and returns the axes: `value` is `xx`, `yy` or `xy` of the mean stress, a name in
+    /// `maps`, or an array of m numbers; the von Mises stress where it is missing. `deformed` is the scale of the displacement. More keywords go to `Axes.tripcolor`.
+    ///
+    /// Raises `ImportError` without matplotlib.
+    #[pyo3(signature = (value = None, *, ax = None, deformed = 0.0, colorbar = true, **options))]
+    fn plot<'py>(
+        this: &Bound<'py, Self>,
+        value: Option<&Bound<'py, PyAny>>,
+        ax: Option<&Bound<'py, PyAny>>,
+        deformed: f64,
+        colorbar: bool,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let usual = PyString::new(this.py(), "von_mises_dual").into_any();
+        beside::plot(this.as_any(), value.unwrap_or(&usual), ax, deformed, colorbar, options)
+    }
+
+    /// Verdict and intervals, for a notebook.
+    fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        beside::page(&self.report(py)?)
     }
 
     fn __repr__(&self) -> String {

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 pub use super::guarantee::{Guarantee, GuaranteeLevel};
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::cause::{Cause, Place};
-pub use crate::compare::{Check, ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
+pub use crate::compare::{
+    Check, ComponentDifference, ContactSummary, FrictionState, FrictionSummary, Profile, StressSummary, TwoSides,
+};
 pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
 use crate::element::{Displacement, StressField};
@@ -149,12 +151,17 @@ pub struct Energy {
     /// reactions on prescribed displacements and gaps.
     pub enclosed_work: [f64; 2],
     /// Two numbers between which the compliance ∫F·u + ∫P·u lies, twice the elastic energy; `null` where prescribed
-    /// displacements or gaps take part in the work.
+    /// displacements, gaps or friction take part in the work.
     pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
     /// On whose word it holds.
     pub guarantee: Guarantee,
+    /// What it holds for: the `scene`.
+    pub guaranteed_for: String,
+    /// ∫ τ̄ |v_t' − v_t''| ds, what friction takes up of the work of the loads, of the displacement that gives `upper`; `null` without
+    /// friction.
+    pub friction_work: Option<f64>,
 }
 
 /// What is guaranteed for all data of a scene some of whose numbers are known as ranges: the lower bound of the ends with the

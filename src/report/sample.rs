@@ -239,6 +239,7 @@ fn pair(mesh: &Triangulation, n: usize, k: usize) -> ContactPair {
         arc: [k as f64 * h, (k + 1) as f64 * h],
         gap: [0.0; 2],
         bow: Bow::default(),
+        friction: None,
         stiffness: None,
     }
 }

@@ -28,6 +28,8 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         compliance: Some([-2.0 * upper, -2.0 * lower]),
         guaranteed: true,
         guarantee: Guarantee::of_notes(&[]),
+        guaranteed_for: "scene".to_string(),
+        friction_work: None,
     };
     let primal = |name: &str, degree, energy: f64| PrimalSummary {
         name: name.into(),
@@ -142,6 +144,7 @@ fn contact(failed: bool) -> ContactSummary {
         open_fraction_primal: Some(0.375),
         contact_ends: vec![0.5],
         pressure_l2_difference: Some(0.034),
+        friction: None,
         length: 1.0,
         profiles: vec![
             profile("dual", steps),

@@ -12,9 +12,9 @@ use toml::Value;
 use super::keys::range::{DataRange, Ranged};
 use super::keys::selection::written;
 use super::{
-    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, Gap, Holder, Kinematics,
-    Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene, SceneError, Shape,
-    Support, SupportKind, Target, Touching, Traction,
+    Affine, Body, BodyCells, Bond, Boundary, Component, Contact, ContactSides, Edges, Extent, FrictionBound, Gap,
+    Holder, Kinematics, Load, MeshSource, Normals, Obstacle, Part, PointValue, Polygon, Quantity, Region, Scene,
+    SceneError, Shape, Support, SupportKind, Target, Term, Touching, Traction,
 };
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, Orthotropic};
 use crate::load::{BodyForce, Rotation};
@@ -138,11 +138,7 @@ impl Draft {
             ("tractions", self.tractions.iter().map(traction).collect()),
             (
                 "contacts",
-                self.contacts
-                    .iter()
-                    .enumerate()
-                    .map(|(i, c)| contact(c, [Ranged::Gap(i), Ranged::Contact(i)].map(|of| self.range_of(of))))
-                    .collect(),
+                self.contacts.iter().enumerate().map(|(i, c)| contact(c, |of| self.range_of(of(i)))).collect(),
             ),
             (
                 "bonds",
@@ -387,24 +383,32 @@ fn force(force: &BodyForce) -> String {
     }
 }
 
-fn traction(Traction { on, load }: &Traction) -> String {
+fn traction(Traction { on, load, terms }: &Traction) -> String {
     let on = quoted(on);
+    let term = |term: &Term| {
+        let [i, j] = term.powers;
+        format!("{{ powers = [{i}, {j}], value = {} }}", list(&term.value))
+    };
+    let terms = match terms[..] {
+        [] => String::new(),
+        _ => format!(", terms = [{}]", terms.iter().map(term).collect::<Vec<_>>().join(", ")),
+    };
     match load {
         Load::Affine(Affine { value, gradient }) => {
-            format!("on = {on}, value = {}, gradient = {}", list(value), rows(gradient))
+            format!("on = {on}, value = {}, gradient = {}{terms}", list(value), rows(gradient))
         }
         Load::Pressure(pressure) => format!("on = {on}, pressure = {}", number(*pressure)),
     }
 }
 
-fn contact(contact: &Contact, [range, stiff]: [Option<String>; 2]) -> String {
-    let Contact { sides, gap, normals, direction, obstacle, stiffness } = contact;
+fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<String>) -> String {
+    let Contact { sides, gap, normals, direction, obstacle, stiffness, friction } = contact;
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
     };
     let gap = match gap {
-        Gap::Constant(g) => range.unwrap_or_else(|| number(*g)),
+        Gap::Constant(g) => range(Ranged::Gap).unwrap_or_else(|| number(*g)),
         Gap::Table(table) => rows(table),
         Gap::Circle(Touching { radius, at }) => format!("{{ circle = {}, at = {} }}", number(*radius), number(*at)),
         Gap::Parabola(Touching { radius, at }) => format!("{{ parabola = {}, at = {} }}", number(*radius), number(*at)),
@@ -414,8 +418,16 @@ fn contact(contact: &Contact, [range, stiff]: [Option<String>; 2]) -> String {
         Normals::Facets => ", normals = \"facets\"",
     };
     let direction = direction.map(|d| format!(", direction = {}", list(&d))).unwrap_or_default();
-    let stiffness =
-        stiffness.map(|k| format!(", stiffness = {}", stiff.unwrap_or_else(|| number(k)))).unwrap_or_default();
+    let stiffness = stiffness
+        .map(|k| format!(", stiffness = {}", range(Ranged::Contact).unwrap_or_else(|| number(k))))
+        .unwrap_or_default();
+    let friction = friction.as_ref().map_or_else(String::new, |bound| {
+        let bound = match bound {
+            FrictionBound::Constant(bound) => range(Ranged::Friction).unwrap_or_else(|| number(*bound)),
+            FrictionBound::Table(table) => rows(table),
+        };
+        format!(", friction = {{ bound = {bound} }}")
+    });
     if let Some(Obstacle { shape, moved }) = obstacle {
         let shape = match shape {
             Shape::Line(ends) => format!("line = {}", rows(ends)),
@@ -424,9 +436,9 @@ fn contact(contact: &Contact, [range, stiff]: [Option<String>; 2]) -> String {
                 format!("circle = {{ centre = {}, radius = {}, side = \"{side}\" }}", list(centre), number(*radius))
             }
         };
-        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{stiffness}", list(moved));
+        return format!("{sides}, obstacle = {{ {shape} }}, move = {}{stiffness}{friction}", list(moved));
     }
-    format!("{sides}, gap = {gap}{normals}{direction}{stiffness}")
+    format!("{sides}, gap = {gap}{normals}{direction}{stiffness}{friction}")
 }
 
 fn bond(Bond { sides: [a, b], stiffness, direction }: &Bond, range: impl Fn(usize) -> Option<String>) -> String {

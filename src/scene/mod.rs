@@ -23,6 +23,7 @@ pub use keys::bonds::Bond;
 pub(crate) use keys::bonds::Joint;
 pub use keys::circle::Circle;
 pub use keys::files::Part;
+pub use keys::friction::FrictionBound;
 pub use keys::obstacle::{Obstacle, Shape};
 pub use keys::range::{DataRange, Ranged};
 pub use keys::selection::{BodyCells, Boundary, Edges, Group};
@@ -192,6 +193,27 @@ pub struct Traction {
     pub on: String,
     /// The load.
     pub load: Load,
+    /// What it has beyond an affine one.
+    pub terms: Vec<Term>,
+}
+
+/// A term value · xⁱ yʲ of a traction, in coordinates as written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// i and j.
+    pub powers: [u8; 2],
+    /// Its factor.
+    pub value: [f64; 2],
+}
+
+impl Term {
+    /// The highest degree of terms.
+    pub const HIGHEST: u8 = 6;
+
+    /// i + j.
+    pub fn degree(&self) -> usize {
+        usize::from(self.powers[0]) + usize::from(self.powers[1])
+    }
 }
 
 /// Load on Γ_τ.
@@ -203,7 +225,7 @@ pub enum Load {
     Pressure(f64),
 }
 
-/// A frictionless unilateral contact.
+/// A unilateral contact, without friction or with a given bound of the tangential traction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// The two boundaries, or the one that meets a rigid obstacle.
@@ -216,6 +238,8 @@ pub struct Contact {
     pub direction: Option<[f64; 2]>,
     /// A rigid obstacle that is not of the shape of the boundary.
     pub obstacle: Option<Obstacle>,
+    /// Bound of the tangential traction; `None` without friction.
+    pub friction: Option<FrictionBound>,
     /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
     pub stiffness: Option<f64>,
 }
@@ -242,7 +266,8 @@ pub enum ContactSides {
 impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
-        Contact { sides, gap, normals: Normals::default(), direction: None, obstacle: None, stiffness: None }
+        let (normals, direction, obstacle) = (Normals::default(), None, None);
+        Contact { sides, gap, normals, direction, obstacle, stiffness: None, friction: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.
@@ -291,17 +316,7 @@ impl Gap {
     pub fn at(&self, s: f64) -> f64 {
         match self {
             Gap::Constant(g) => *g,
-            Gap::Table(rows) => {
-                let after = rows.partition_point(|row| row[0] <= s);
-                if after == 0 {
-                    rows[0][1]
-                } else if after == rows.len() {
-                    rows[after - 1][1]
-                } else {
-                    let ([s0, g0], [s1, g1]) = (rows[after - 1], rows[after]);
-                    g0 + (g1 - g0) * ((s - s0) / (s1 - s0))
-                }
-            }
+            Gap::Table(rows) => keys::table::at(rows, s),
             Gap::Circle(circle) => circle.distance(s - circle.at),
             Gap::Parabola(Touching { radius, at }) => (s - at).powi(2) / (2.0 * radius),
         }

@@ -89,13 +89,13 @@ impl Sketch {
     /// P = (a + b y, 0) on `on`.
     pub fn push(mut self, on: &str, a: f64, b: f64) -> Self {
         let load = Load::Affine(Affine { value: [a, 0.0], gradient: [[0.0, b], [0.0, 0.0]] });
-        self.scene.tractions.push(Traction { on: on.into(), load });
+        self.scene.tractions.push(Traction { on: on.into(), load, terms: Vec::new() });
         self
     }
 
     /// Pressure on `on`.
     pub fn pressure(mut self, on: &str, pressure: f64) -> Self {
-        self.scene.tractions.push(Traction { on: on.into(), load: Load::Pressure(pressure) });
+        self.scene.tractions.push(Traction { on: on.into(), load: Load::Pressure(pressure), terms: Vec::new() });
         self
     }
 

@@ -4,6 +4,7 @@ use super::StaticsError;
 use super::cone;
 use super::cone::few::DenseCone;
 use super::cone::many::SparseCone;
+use super::friction;
 use super::lasting::{Lasting, Question};
 use super::loads::LoadResultants;
 use super::restraint::{Group, Part, Points};
@@ -70,8 +71,13 @@ impl Verdict {
         let tolerance = total * round_off(group);
 
         let rollers = group.rollers(problem);
+        let rubs = group.runs.iter().any(|run| run.friction > 0.0);
+        let given = load.clone();
+        if rubs {
+            load -= friction::relieved(group, &rollers, &load, total);
+        }
         let question = Question::new(group, &rollers, &load, total);
-        if let Some(known) = before.iter().find(|known| known.answers(&question)) {
+        if let Some(known) = before.iter().find(|known| !rubs && known.answers(&question)) {
             let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &load, tolerance).map_err(undecided)?;
             let Lasting { held, one_way, .. } = known.clone();
             let lasting = Some(known.clone());
@@ -87,11 +93,21 @@ impl Verdict {
             no_rotation.extend((0..group.members.len()).map(|m| (m, Vector3::z())));
             let translations = cone(&no_rotation, Points::Ends).unbalanced(&load).map_err(undecided)?;
             let work_free = both.norm() <= tolerance;
+            // What friction takes up depends on the motion: that of all is the one it was found for.
+            let translations = if rubs { [&given * 0.0, &given * 0.0] } else { translations };
             let driven = translations.into_iter().chain(parts).find(|part| part.norm() >= 0.7 * size).map(|part| {
                 let work = part.norm_squared();
-                let motion = if work_free { allowed.without_sliding(part) } else { part };
-                Driven { motion, work }
+                let motion = if work_free && !rubs { allowed.without_sliding(part) } else { part };
+                let resisted = friction::resistance(group, &motion);
+                Driven { work: work + resisted, motion, resisted }
             });
+            // Forces that balance the load less well than others prove nothing.
+            if let Some(driven) = &driven
+                && rubs
+                && given.dot(&driven.motion) <= driven.resisted + 0.5 * (driven.work - driven.resisted)
+            {
+                return Err(undecided(cone::Unsettled));
+            }
             return Ok(Verdict { held: allowed.held(), driven, one_way: None, beyond_mesh: None, lasting: None });
         }
 
@@ -99,7 +115,8 @@ impl Verdict {
         let one_way = borderline(&*allowed, &load, total).map_err(undecided)?;
         let one_way = one_way.map(|motion| allowed.without_sliding(motion));
         let held = allowed.held();
-        let lasting = Some(Lasting { question, held: held.clone(), one_way: one_way.clone() });
+        // On another mesh friction has another sum, and so has what it leaves of the loads.
+        let lasting = (!rubs).then(|| Lasting { question, held: held.clone(), one_way: one_way.clone() });
         Ok(Verdict { held, driven: None, one_way, beyond_mesh, lasting })
     }
 }
@@ -118,6 +135,8 @@ fn beyond_mesh(
 pub(super) struct Driven {
     pub motion: DVector<f64>,
     pub work: f64,
+    /// What friction takes up of it.
+    pub resisted: f64,
 }
 
 /// The cone of allowed motions of a group.

@@ -9,7 +9,7 @@ use super::balance::{RANK, Verdict};
 use super::cone::span::Span;
 use super::loads::LoadResultants;
 use super::restraint::{Group, Run};
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 use nalgebra::DVector;
 
 /// Groups of more pieces than this are not asked: nobody reads what would be told.
@@ -20,7 +20,9 @@ const AT_REST: f64 = 1e-9;
 
 /// Whether the contact of `run` has a gap all along.
 fn is_apart(problem: &Problem, run: &Run) -> bool {
-    problem.interfaces[run.interface].pairs.iter().all(|pair| pair.gap.iter().all(|g| *g > 0.0))
+    // Friction acts across a gap, too.
+    let apart = |pair: &ContactPair| pair.friction.is_none() && pair.gap.iter().all(|g| *g > 0.0);
+    problem.interfaces[run.interface].pairs.iter().all(apart)
 }
 
 /// `group` without the contacts that have a gap all along.

@@ -6,10 +6,14 @@
 //! anything is solved: the loads are split into a part the contact forces can balance and the motion they drive
 //! (see `cone`). A motion allowed both ways must see no work at all; it then leaves the stress unique and the displacement
 //! not, and pins choose one displacement.
+//!
+//! With friction L(y) may be as large as ∫ τ̄ |y_t' − y_t''|, what a given bound of the traction takes up (see `friction`), and a motion that
+//! slides against friction is no free one.
 
 mod balance;
 mod components;
 pub(crate) mod cone;
+mod friction;
 mod gaps;
 mod lasting;
 mod loads;
@@ -173,9 +177,9 @@ pub fn check_after(
         if let Some(driven) = found.driven {
             let (motion, factor) = motion(&group, &driven.motion);
             // Summing force times displacement instead would lose small differences.
-            let work = factor * driven.work;
+            let [work, resisted] = [driven.work, driven.resisted].map(|work| factor * work);
             let moving = words(&motion);
-            let sentence = words::impossible(&components, &moving, work);
+            let sentence = words::impossible(&components, &moving, work, resisted);
             impossible.push((motion, work, moving, sentence));
         }
         if let Some(direction) = &found.one_way {

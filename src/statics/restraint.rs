@@ -33,6 +33,8 @@ pub(super) struct Run {
     pub reach: [[f64; 2]; 2],
     /// The degree of the pressure on the edges at the two ends.
     pub degree: [usize; 2],
+    /// The largest force of friction, ∫ τ̄ ds times the thickness; zero without friction.
+    pub friction: f64,
 }
 
 impl Run {
@@ -139,9 +141,11 @@ fn run(
     let sign = (across[0] * head.normal[0] + across[1] * head.normal[1]).signum();
     let normal = if along_line(head) { head.direction.ends[0] } else { across.map(|x| sign * x) };
     let degree = [head, tail].map(|pair| pressure_degree(problem, pair, degree));
+    let resists = |pair: &ContactPair| pair.friction.map_or(0.0, |f| 0.5 * pair.length * (f.bound[0] + f.bound[1]));
+    let friction = problem.scene.thickness * pairs.iter().map(resists).sum::<f64>();
     let reach = [reach(ends[0], point(head.first[1]), degree[0]), reach(ends[1], point(tail.first[0]), degree[1])];
     if head.direction.is_constant() {
-        return Run { interface, sides, normal, turning: None, ends, reach, degree };
+        return Run { interface, sides, normal, turning: None, ends, reach, degree, friction };
     }
     // Force and line of action of B_j n̂, n̂ linear, are those of n̂ at the centroid of B_j. Where t is constant both ends have
     // the same, the middle.
@@ -149,7 +153,7 @@ fn run(
     let reach = if degree[0] == 0 { [middle; 2] } else { reach };
     let [x, y] = head.direction.at(0.5);
     let normal = [x / x.hypot(y), y / x.hypot(y)];
-    Run { interface, sides, normal, turning: Some(head.direction.ends), ends, reach, degree }
+    Run { interface, sides, normal, turning: Some(head.direction.ends), ends, reach, degree, friction }
 }
 
 /// Pieces that can only move together or against each other: linked by contacts, clamped ones taken away. Unknowns are
@@ -248,8 +252,16 @@ impl Group<'_> {
 
     /// The rows that vanish when `run` keeps closed: relative displacement of its middle and relative rotation. Unlike
     /// the jumps at its two ends they stay independent however short the run is. Where the direction turns, a rotation may
-    /// keep it closed, and the jumps at the ends say whether it does.
-    pub fn ties(&self, run: &Run) -> [Vec<Part>; 2] {
+    /// keep it closed, and the jumps at the ends say whether it does. With friction the run does not slide either.
+    pub fn ties(&self, run: &Run) -> Vec<Vec<Part>> {
+        let mut ties = self.closing_ties(run).to_vec();
+        if run.friction > 0.0 {
+            ties.push(unit(self.slip(run, run.ends[0])));
+        }
+        ties
+    }
+
+    fn closing_ties(&self, run: &Run) -> [Vec<Part>; 2] {
         let [p, q] = run.ends;
         if run.turning.is_some() {
             return [self.jump(run, p), self.jump(run, q)];

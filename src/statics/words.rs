@@ -126,9 +126,26 @@ fn on_roller(problem: &Problem, components: &Components, c: usize) -> bool {
 }
 
 /// One sentence: which piece moves how, and what work the loads do.
-pub(super) fn impossible(components: &Components, moving: &[Moving], work: f64) -> String {
+pub(super) fn impossible(components: &Components, moving: &[Moving], work: f64, resisted: f64) -> String {
     let Some((lead, others)) = moving.split_first() else { return String::new() };
     let motion = clause(components, lead);
+    if resisted > 0.0 {
+        let by = |unit: f64| [short(work / unit), short(resisted / unit)];
+        let length = lead.displacement[0].hypot(lead.displacement[1]);
+        let ([work, resisted], of) = match (others, lead.rotation) {
+            ([], 0.0) => (by(length), "the load in this direction is"),
+            ([], turn) => (by(turn.abs()), "the moment of its load about that point is"),
+            _ => (by(1.0), "the work of the loads on this motion (largest displacement 1) is"),
+        };
+        let names: Vec<_> = others.iter().map(|other| name(components, other.component)).collect();
+        let with = match names.len() {
+            0 => String::new(),
+            1 => format!("{} moves with it, ", names[0]),
+            _ => format!("{} move with it, ", list(&names)),
+        };
+        let lead = capital(&name(components, lead.component));
+        return format!("{lead} {motion}: {with}friction resists with {resisted}, and {of} {work}.");
+    }
     let reason = if !others.is_empty() {
         let others: Vec<_> = others.iter().map(|other| name(components, other.component)).collect();
         let verb = if others.len() == 1 { "moves" } else { "move" };

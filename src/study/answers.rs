@@ -1,11 +1,14 @@
 //! The quantities of a scene and their intervals.
 
-use super::Certified;
+use super::{Certified, slopes};
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::{Displacement, Elements, StressField};
 use crate::problem::Problem;
 use crate::quantity::{Form, Interval, Kind, Known, NoTip, NotBounded, displaced};
 use crate::scene::Quantity;
+
+/// Why a quantity of a body that is free to move has no value.
+const MOVES: &str = "a motion that neither supports nor closed contacts resist changes it";
 
 /// A quantity and what is guaranteed of it.
 #[derive(Debug, Clone)]
@@ -65,6 +68,23 @@ pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -
 fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -> Vec<Answer> {
     let Certified { problem, statics, dual, bracket } = certified;
     let motions = statics.held_at_vertices(problem);
+    let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
+    if problem.has_elastic_contact() || problem.has_polynomial_tractions() {
+        let of_slopes = |quantity: &&Quantity| {
+            let name = quantity.name.clone();
+            match Form::new(problem, quantity) {
+                Ok(form) if motions.iter().any(|motion| changes(problem, &form, motion)) => {
+                    Answer::unknown(name, form.kind(), MOVES)
+                }
+                Ok(form) => {
+                    let interval = slopes::interval(certified, &form, options);
+                    Answer { name, kind: form.kind(), sensitivity: sensitivity(&interval, gap), interval }
+                }
+                Err(error) => Answer::unknown(name, Kind::Force, &error.to_string()),
+            }
+        };
+        return quantities.iter().map(of_slopes).collect();
+    }
     let own;
     let factorised: Result<&Factorised, String> = match &dual.factorised {
         Some(kept) => Ok(kept),
@@ -78,16 +98,11 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
         let free = bracket.free.as_ref().map_err(|error| error.to_string())?;
         Known::new(problem, dual, bracket, free, factorised, options)
     });
-    let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
     let answer = |quantity: &&Quantity| {
         let name = quantity.name.clone();
-        if problem.has_elastic_contact() {
-            return Answer::unknown(name, Kind::Force, "the scene has elastic contact");
-        }
         match (Form::new(problem, quantity), &known) {
             (Ok(form), _) if motions.iter().any(|motion| changes(problem, &form, motion)) => {
-                let reason = "a motion that neither supports nor closed contacts resist changes it";
-                Answer::unknown(name, form.kind(), reason)
+                Answer::unknown(name, form.kind(), MOVES)
             }
             (Ok(form), Ok(known)) => {
                 let interval = form.interval(known);

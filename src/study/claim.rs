@@ -37,6 +37,9 @@ pub fn claim(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
+    if problem.has_polynomial_tractions() {
+        return Ok(not_held(problem, POLYNOMIAL));
+    }
     let problem = &*problem.softened();
     let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored())?;
     let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
@@ -49,6 +52,20 @@ pub fn claim(
     let at_nodes = checks.iter_mut().filter(|check| check.name.ends_with("/penetration-at-nodes"));
     at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), notes, checks })
+}
+
+/// Why a field is not held against the loads of a polynomial traction.
+const POLYNOMIAL: &str = "A traction has `terms`: the nodal forces of another program are those of the polynomial, and of the nearest affine \
+                          tractions here. Leave out --solution: the energy of the field is held against the bracket all the same.";
+
+/// A claim that is held against nothing, for this reason.
+fn not_held(problem: &Problem, why: &str) -> Claim {
+    Claim {
+        checks: vec![Check::not_made("solution/residual", ADMISSIBLE, Basis::Claimed, why.to_string())],
+        diagnosis: None,
+        residual: vec![0.0; problem.mesh.triangles.len()],
+        notes: Vec::new(),
+    }
 }
 
 fn weak_notes(solution: &Solution<'_>, energies: impl Fn() -> Energies) -> Vec<Note> {
@@ -82,13 +99,10 @@ pub fn claim_before_contact(
     if problem.has_elastic_contact() {
         let why = "Elastic contact of sides with different vertices is not held against the pressures that it asks for: export the field \
                    on the mesh of `hypercircle mesh`, where they match.";
-        let check = Check::not_made("solution/residual", ADMISSIBLE, Basis::Claimed, why.to_string());
-        return Ok(Claim {
-            checks: vec![check],
-            diagnosis: None,
-            residual: vec![0.0; problem.mesh.triangles.len()],
-            notes: Vec::new(),
-        });
+        return Ok(not_held(problem, why));
+    }
+    if problem.has_polynomial_tractions() {
+        return Ok(not_held(problem, POLYNOMIAL));
     }
     // Which rule a program used on quadrilaterals shows once its contact forces are taken away.
     let made = |points| {

@@ -2,6 +2,7 @@
 
 mod accepted;
 mod adaptive;
+mod adjoint;
 mod answers;
 mod certified;
 mod claim;
@@ -11,6 +12,7 @@ mod field;
 mod primal;
 mod quantity_checks;
 mod ranges;
+mod slopes;
 
 pub use accepted::baseline::{Baseline, BaselineError};
 pub use accepted::date::today;
@@ -22,6 +24,7 @@ pub use adaptive::sharpen::{Sharpened, sharpen};
 pub use adaptive::stage::certify_divided;
 pub use adaptive::warm_start::{closed_coefficients, guess_refined};
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
+pub use adjoint::{Adjoint, adjoint};
 pub use answers::{Answer, answers, refuse_quantities, sharper};
 pub use certified::{Certified, StudyError, certify};
 pub use claim::{Claim, claim, claim_before_contact, diagnoses, error_check, weak_contact};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::compare::{Candidate, QuadrilateralSolution, Reactions};
+use crate::compare::{Candidate, FrictionForces, QuadrilateralSolution, Reactions};
 use crate::element::{OnQuadrilaterals, PlainDisplacement};
 use crate::mesh::Edge;
 use crate::primal::{Cells, PrimalContact, PrimalSolution, Space};
@@ -81,5 +81,6 @@ fn candidate(problem: &Problem, solution: PrimalSolution) -> Candidate {
 
 fn reactions(contact: PrimalContact) -> Reactions {
     let PrimalContact { vertices, vertex_reaction: vertex, edge_reaction: edge, resultant, .. } = contact;
-    Reactions { vertices, vertex, edge, resultant }
+    let friction = contact.vertex_friction.map(|vertex| FrictionForces { vertex, edge: contact.edge_friction });
+    Reactions { vertices, vertex, edge, friction, resultant }
 }

@@ -24,7 +24,7 @@ impl OtherEnd {
         let upper = certified.bracket.free.as_ref().ok().map(|free| free.upper());
         OtherEnd {
             bracket: upper.map(|upper| [certified.bracket.lower(), upper]),
-            is_cone: certified.problem.is_cone(),
+            is_cone: certified.problem.is_cone() && !certified.problem.has_friction(),
         }
     }
 }
@@ -44,7 +44,7 @@ pub(super) fn data_range(problem: &Problem, lowest: &Bracket, other: &OtherEnd) 
         lower,
         upper,
         compliance: upper
-            .filter(|_| problem.is_cone() && other.is_cone)
+            .filter(|_| problem.is_cone() && !problem.has_friction() && other.is_cone)
             .map(|upper| [0.0 - 2.0 * upper, 0.0 - 2.0 * lower]),
         other_end: other.bracket,
     }

@@ -30,7 +30,7 @@ def hypercircle(*words, code):
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory):
-    """The folder of all results: agree, drop, fine, job; and chart and stability."""
+    """The folder of all results: agree, drop, fine, odd, proved, job."""
     folder = tmp_path_factory.mktemp("made")
     scene, odd = folder / "two_blocks.toml", folder / "odd.toml"
     scene.write_text(TWO_BLOCKS + QUANTITY)
@@ -39,6 +39,7 @@ def made(tmp_path_factory):
     hypercircle("verify", scene, "--sabotage", "drop-row", "--out", folder / "drop", code=1)
     hypercircle("verify", scene, "--refine", 3, "--out", folder / "fine", code=0)
     hypercircle("solve", odd, "--out", folder / "odd", code=0)
+    hypercircle("solve", scene, "--proof", "--out", folder / "proved", code=0)
     scenes = folder / "scenes"
     scenes.mkdir()
     for name in ("patch", "gap"):
@@ -55,7 +56,7 @@ def pages(made):
     charts = {name: REDUCED / name / f"{name}.html" for name in ("chart", "stability")}
     for path in charts.values():
         assert path.exists(), f"{path} is missing: run ci/figures reduced"
-    return {**kinds, "job": made / "job" / "index.html", **charts}
+    return {**kinds, "why": made / "proved" / "why.html", "job": made / "job" / "index.html", **charts}
 
 
 @pytest.fixture(scope="session")

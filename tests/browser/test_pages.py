@@ -3,7 +3,7 @@
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
-PAGES = ["agree", "drop", "fine", "odd", "job", "chart", "stability"]
+PAGES = ["agree", "drop", "fine", "odd", "why", "job", "chart", "stability"]
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -46,6 +46,7 @@ fn exact(problem: &Problem) -> Candidate {
             vertices,
             vertex,
             edge: Some(vec![vec![third]; pairs.len()]),
+            friction: None,
             resultant: [-1.0, 0.0],
         }]),
         iterations: Some(1),

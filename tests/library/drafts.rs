@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use hypercircle::elasticity::Elasticity;
 use hypercircle::scene::{
-    Affine, Body, Bond, Component, Contact, ContactSides, Draft, Extent, Gap, Holder, Kinematics, Load, MeshSource,
-    Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Traction,
+    Affine, Body, Bond, Component, Contact, ContactSides, Draft, Extent, FrictionBound, Gap, Holder, Kinematics, Load,
+    MeshSource, Polygon, Quantity, Region, Scene, SceneError, Support, SupportKind, Target, Term, Traction,
 };
 
 use crate::support::scenes::sample;
@@ -31,8 +31,12 @@ fn square() -> Draft {
         tractions: vec![Traction {
             on: "top".into(),
             load: Load::Affine(Affine { value: [0.0, -1e20], gradient: [[0.0, 1.0], [2.0, -0.0]] }),
+            terms: vec![Term { powers: [2, 1], value: [1e-3, -0.0] }],
         }],
-        contacts: vec![Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))],
+        contacts: vec![Contact {
+            friction: Some(FrictionBound::Table(vec![[0.0, 0.5], [0.75, 0.0]])),
+            ..Contact::new(ContactSides::Rigid("ground".into()), Gap::Table(vec![[0.0, 0.1], [0.5, 0.0]]))
+        }],
         bonds: vec![Bond {
             sides: ["left".into(), "right".into()],
             stiffness: Some([2.5, 0.1]),

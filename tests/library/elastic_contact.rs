@@ -167,9 +167,6 @@ fn what_elastic_contact_cannot_be_is_refused() {
         let found = said(base().table(&format!("[[contacts]]\non = \"foot\"\nstiffness = {k}")));
         assert!(found.contains(word), "{k}: {found}");
     }
-    let asked = "[[quantities]]\nname = \"f\"\nforce = \"foot|rigid\"";
-    let found = said(touching(base(), "on = \"foot\"", "0.0", 1.0).table(asked));
-    assert!(found.contains("quantities"), "{found}");
     let sides = "between = [\"foot\", \"top\"]\ndirection = [0.0, 1.0]";
     let found = said(touching(base(), sides, "0.0", 1.0));
     assert!(found.contains("direction"), "{found}");

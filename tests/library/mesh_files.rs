@@ -17,7 +17,7 @@ fn scene(mesh: PathBuf, bodies: [&str; 2], [first, second, load, wall]: [&str; 4
     let draft = Draft {
         bodies: bodies.map(body).into(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],
-        tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
+        tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0), terms: Vec::new() }],
         contacts: vec![Contact::new(
             ContactSides::Between([first.into(), second.into()]),
             Gap::Table(vec![[0.0, 0.0], [0.25, 0.0], [1.0, 0.1]]),

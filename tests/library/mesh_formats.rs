@@ -14,7 +14,7 @@ fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
     let draft = Draft {
         bodies: bodies.iter().map(body).collect(),
         supports: vec![Support { on: wall.into(), kind: SupportKind::CLAMPED }],
-        tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0) }],
+        tractions: vec![Traction { on: load.into(), load: Load::Pressure(1.0), terms: Vec::new() }],
         ..Draft::new("plate", Kinematics::PlaneStrain, MeshSource::File(mesh))
     };
     Scene::new(draft).expect("a valid scene")

@@ -29,7 +29,7 @@ impl Random {
             3 => Law::Between { lower: -self.positive(), upper: self.next().abs() },
             4 => Law::Spring { stiffness: self.positive() },
             5 => Law::Elastic { gap: self.next(), stiffness: 10.0 * self.positive() },
-            _ => Law::Friction { threshold: self.next().abs() },
+            _ => Law::Friction { threshold: self.next().abs(), centre: self.next() },
         }
     }
 
@@ -54,8 +54,8 @@ fn planted(random: &mut Random, a: &dyn Quadratic, laws: &[Law]) -> Vec<f64> {
             Law::Between { lower, upper } => (0.5 * (lower + upper), 0.0),
             Law::Spring { stiffness } => (free, stiffness * free),
             Law::Elastic { gap, stiffness } => (free, stiffness * (free - gap).max(0.0)),
-            Law::Friction { threshold } if at_kink => (0.0, threshold * free),
-            Law::Friction { threshold } => (free, threshold.copysign(free)),
+            Law::Friction { threshold, centre } if at_kink => (centre, threshold * free),
+            Law::Friction { threshold, centre } => (centre + free, threshold.copysign(free)),
             Law::Free => (free, 0.0),
         };
         x.push(own);
@@ -72,7 +72,7 @@ fn miss(law: Law, x: f64, q: f64) -> f64 {
         Law::Between { lower, upper } => (x.clamp(lower, upper), q),
         Law::Spring { .. } => (x, q),
         Law::Elastic { .. } => (x, q.max(0.0)),
-        Law::Friction { threshold } => (x, q.clamp(-threshold, threshold)),
+        Law::Friction { threshold, .. } => (x, q.clamp(-threshold, threshold)),
     };
     // An unknown that is not bounded carries no force.
     let force = if law == (Law::AtMost { bound: f64::INFINITY }) { 0.0 } else { force };

@@ -29,6 +29,7 @@ fn scene(supports: Vec<Support>, loads: &[(&str, Parts)], forces: [[f64; 2]; 2])
             .map(|(on, (value, gradient))| Traction {
                 on: on.to_string(),
                 load: Load::Affine(Affine { value: *value, gradient: *gradient }),
+                terms: Vec::new(),
             })
             .collect(),
         contacts: vec![Contact::new(

@@ -56,7 +56,9 @@ fn energies_of_data_between_lie_between() {
                             draft.bodies[body].elasticity = Elasticity::Isotropic { young: value, poisson };
                         }
                         Ranged::Gap(contact) => draft.contacts[contact].gap = Gap::Constant(value),
-                        Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => unreachable!("none here"),
+                        Ranged::Friction(_) | Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => {
+                            unreachable!("none here")
+                        }
                     })
                     .expect("a scene");
             }

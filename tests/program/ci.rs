@@ -63,6 +63,8 @@ impl Checkout {
         for name in ["sudo", "cargo"] {
             script(programs.join(name), &format!("echo \"$@\" >> '{}'", folder.path().join(name).display()));
         }
+        // There is no release of the present commit.
+        script(programs.join("curl"), "exit 22");
         Checkout { folder, programs }
     }
 
@@ -79,7 +81,7 @@ impl Checkout {
         for name in ["GITHUB_OUTPUT", "GITHUB_PATH", "GITHUB_STEP_SUMMARY"] {
             shell.env(name, self.folder.path().join(name));
         }
-        shell.env("GITHUB_ACTION_PATH", root()).env("RUNNER_TEMP", "/tmp/runner");
+        shell.env("GITHUB_ACTION_PATH", root()).env("RUNNER_TEMP", self.folder.path().join("runner"));
         shell.envs(variables.iter().copied()).output().expect("bash")
     }
 }
@@ -99,6 +101,20 @@ fn the_action_installs_builds_and_runs() {
     std::fs::rename(checkout.programs.join("hypercircle"), checkout.folder.path().join("aside")).expect("writable");
     ended("built", &checkout.run(build, &[]), 0, &[]);
     assert!(checkout.read("cargo").starts_with("install ") && checkout.read("GITHUB_PATH").contains("/bin"));
+    // A release has the program, and nothing is built.
+    std::fs::remove_file(checkout.folder.path().join("cargo")).expect("written");
+    let archive = format!(
+        "echo \"$@\" > '{0}/curl'; tar -cz -C '{0}' --transform s/aside/hypercircle/ aside",
+        checkout.folder.path().display()
+    );
+    script(checkout.programs.join("curl"), &archive);
+    let release = [("REPOSITORY", "https://github.com/OWNER/hypercircle"), ("HYPERCIRCLE_COMMIT", "v1.2.3")];
+    ended("released", &checkout.run(build, &release), 0, &[]);
+    assert!(
+        checkout.read("curl").contains("OWNER/hypercircle/releases/download/v1.2.3/hypercircle-x86_64-linux.tar.gz")
+    );
+    let taken = checkout.folder.path().join("runner/hypercircle/bin/hypercircle");
+    assert!(taken.is_file() && !checkout.folder.path().join("cargo").exists());
     std::fs::rename(checkout.folder.path().join("aside"), checkout.programs.join("hypercircle")).expect("writable");
 
     let inputs = [

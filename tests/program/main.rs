@@ -15,6 +15,7 @@ mod decks;
 mod diff;
 mod element;
 mod fields;
+mod friction;
 mod hostile;
 mod jobs;
 mod labels;

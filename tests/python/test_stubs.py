@@ -2,6 +2,9 @@
 
 import ast
 import inspect
+import json
+import subprocess
+import sys
 from pathlib import Path
 
 STUBS = Path(__file__).resolve().parents[2] / "hypercircle.pyi"
@@ -22,6 +25,7 @@ def arguments(function):
     kind = inspect.Parameter
     found = [(x.arg, kind.POSITIONAL_ONLY if x in a.posonlyargs else kind.POSITIONAL_OR_KEYWORD, d) for x, d in zip(usual, defaults)]
     found += [(x.arg, kind.KEYWORD_ONLY, required if d is None else d) for x, d in zip(a.kwonlyargs, a.kw_defaults)]
+    found += [(a.kwarg.arg, kind.VAR_KEYWORD, required)] if a.kwarg else []
     value = lambda d: d if d is required else ast.literal_eval(d)
     return [(name, kind, value(default)) for name, kind, default in found if name not in ("self", "cls")]
 
@@ -62,3 +66,14 @@ def test_stubs_and_module_agree(hypercircle):
 def test_types_come_with_the_package(hypercircle):
     folder = Path(hypercircle.__file__).parent
     assert (folder / "py.typed").exists() and (folder / "__init__.pyi").read_text() == STUBS.read_text()
+
+
+def test_the_tables_of_the_stubs_have_keys_of_scenes(hypercircle):
+    """Completion offers nothing that a scene does not take."""
+    schema = json.loads(subprocess.run([Path(sys.executable).parent / "hypercircle", "schema", "scene"], capture_output=True, check=True).stdout)
+    known = {"_Scene": schema} | {f"_{name}": table for name, table in schema["$defs"].items()}
+    tables = [node for node in TREE.body if isinstance(node, ast.ClassDef) and [getattr(base, "id", "") for base in node.bases] == ["TypedDict"]]
+    assert len(tables) > 10
+    for table in tables:
+        keys = {field.target.id for field in table.body}
+        assert keys <= set(known[table.name]["properties"]), table.name

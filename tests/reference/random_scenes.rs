@@ -94,6 +94,7 @@ fn every_random_scene_is_valid_and_every_kind_of_condition_occurs() {
         "obstacle = { circle",
         "side = \"inside\"",
         "move = ",
+        "friction = { bound",
         "type = \"spring\"",
         "[[bonds]]",
         "stiffness = [",

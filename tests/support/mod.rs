@@ -70,6 +70,7 @@ impl Blocks {
                     value: [self.load.0, 0.0],
                     gradient: [[0.0, self.load.1 / self.size], [0.0, 0.0]],
                 }),
+                terms: Vec::new(),
             }],
             contacts: vec![Contact::new(
                 ContactSides::Between(["left_east".to_string(), "right_west".to_string()]),

@@ -87,6 +87,15 @@ impl Toml {
         self
     }
 
+    /// The same scene with each table of a contact as `change` has it.
+    pub fn with_contacts(&self, mut change: impl FnMut(&str) -> String) -> Self {
+        let text = format!("\n{}", self.conditions);
+        let tables = text.split("\n[[").skip(1).map(|table| format!("[[{}", table.trim_end()));
+        let changed = tables.map(|table| if table.starts_with("[[contacts]]") { change(&table) } else { table });
+        let conditions = changed.map(|table| table + "\n").collect();
+        Toml { conditions, ..self.clone() }
+    }
+
     pub fn clamp(self, on: &str) -> Self {
         self.table(&format!("[[supports]]\non = \"{on}\"\ntype = \"clamped\""))
     }

@@ -53,7 +53,7 @@ pub struct UpperTerms {
     pub widening: f64,
     /// ½‖c e(v) − λ‖²_a on each triangle; zero where it is not counted.
     pub triangles: Vec<f64>,
-    /// ∫ (−t)(g − (v' − v'')·n̂) ds on each contact pair, one interface after the other; zero where it is not counted.
+    /// As [`super::LocalGap::pairs`] on each contact pair, one interface after the other; zero where it is not counted.
     pub pairs: Vec<f64>,
     /// ½ ∫ (k j + t)²/k on each pair of springs, one after the other; zero where it is not counted.
     pub springs: Vec<f64>,
@@ -76,15 +76,15 @@ impl UpperTerms {
 
     /// The numbers of the energy, as another process takes them.
     pub fn numbers(&self) -> [f64; 6] {
-        let Potential { strain, springs, work, magnitude, sensitivity } = self.potential;
+        let Potential { strain, springs, friction: _, work, magnitude, sensitivity } = self.potential;
         [strain, springs, work, magnitude, sensitivity, self.widening]
     }
 
     /// The sum of the terms of all ranks, each given by the numbers of its energy, and the terms of the gap.
     pub fn sum<'a>(ranks: impl Iterator<Item = &'a [f64]> + Clone, triangles: Vec<f64>, pairs: Vec<f64>) -> Self {
         let [strain, springs, work, magnitude, sensitivity, widening] = summed(ranks);
-        let potential = Potential { strain, springs, work, magnitude, sensitivity };
-        // Ranks share no scene that has springs.
+        // Ranks share no scene that has springs or friction.
+        let potential = Potential { strain, springs, friction: 0.0, work, magnitude, sensitivity };
         UpperTerms { potential, widening, triangles, pairs, springs: Vec::new() }
     }
 }

@@ -19,6 +19,7 @@ pub use self::admissible::holds::{Hold, Holds, holds, holds_at, supports_agree};
 pub use self::admissible::nearest::Nearest;
 pub use self::admissible::nodes::{NodalValues, Nodes};
 pub use self::admissible::rows::{Row, bernstein, of_pair, sides};
+use self::admissible::sliding::Sliding;
 pub(super) use self::admissible::yielded::yielded;
 use self::admissible::{contact, edges, ends, fit, lift, nodes, rows};
 pub use self::energy::pull::{Beside, Pull};
@@ -88,9 +89,10 @@ pub fn admissible_on(
     let mut ground = ground;
     let problem = &*problem.softened();
     let relaxed = relaxed(&mut ground, problem, (&dual.stress, &dual.moments), floor, start, &Whole)?;
+    let sliding = Sliding::of(problem, &dual.stress, &dual.moments);
     let Groundwork { holds, rows, made, .. } = ground;
-    let displacement =
-        energy::interior::fill(problem, &restricted(problem, &holds, &rows, relaxed, &Whole)?.0, &made.model);
+    let field = restricted(problem, (&holds, &rows, &sliding), relaxed, &Whole)?.0;
+    let displacement = energy::interior::fill(problem, &field, &made.model);
     let prepared = if keep { Prepared::holding(made) } else { Prepared::default() };
     Ok((displacement, prepared))
 }
@@ -107,6 +109,8 @@ fn relaxed(
 ) -> Result<NodalValues, NoUpperBound> {
     let mesh = &problem.mesh;
     let Groundwork { nodes, holds, rows, made } = ground;
+    let sliding = Sliding::of(problem, stress, moments);
+    made.model.rub(problem, nodes, &sliding);
     let mut field = NodalValues::zeros(nodes.clone());
     field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
     share.refresh(&mut field.values);
@@ -115,7 +119,9 @@ fn relaxed(
     for (value, hold) in vertex.iter_mut().zip(&holds.vertices) {
         *value = hold.impose(*value);
     }
-    ends::draw(&ends::ends_near(problem, moments, nodes), &holds.vertices, vertex, share);
+    let mut near = ends::ends_near(problem, moments, nodes);
+    near.extend(sliding.ends(problem));
+    ends::draw(&near, &holds.vertices, vertex, share);
     ends::restrict(problem, rows, &holds.vertices, vertex, share)?;
     for e in 0..mesh.edges.len() {
         let ends = mesh.edges[e].vertices.map(|v| field.values[v]);
@@ -135,12 +141,13 @@ fn relaxed(
         }
     }
     contact::match_means(problem, moments, &mut field);
+    sliding.settle(problem, holds, &mut field);
     contact::restrict_inside(problem, rows, &mut field, share);
     // Where the dual solve leaves a body's motion open the fit may put it anywhere; bodies at rest are nowhere wild.
-    let at_rest = || Ok(restricted(problem, holds, rows, NodalValues::zeros(nodes.clone()), share)?.0);
+    let at_rest = || Ok(restricted(problem, (holds, rows, &sliding), NodalValues::zeros(nodes.clone()), share)?.0);
     let mut candidates = vec![field];
     if let Some(start) = start {
-        candidates.push(restricted(problem, holds, rows, start.on(mesh, nodes), share)?.0);
+        candidates.push(restricted(problem, (holds, rows, &sliding), start.on(mesh, nodes), share)?.0);
     }
     let floor = floor / problem.scene.thickness;
     let stored = made.model.touch(&candidates[0].values);
@@ -173,8 +180,7 @@ const WORTH_A_TOUCH: f64 = 0.01;
 /// The nearest values that supports and contact allow, and the largest distance of a value from what supports allow.
 fn restricted(
     problem: &Problem,
-    holds: &Holds,
-    rows: &[Vec<Row>],
+    (holds, rows, sliding): (&Holds, &[Vec<Row>], &Sliding),
     mut field: NodalValues,
     share: &dyn Share,
 ) -> Result<(NodalValues, f64), NoUpperBound> {
@@ -184,6 +190,11 @@ fn restricted(
         let held = hold.impose(*value);
         farthest = farthest.max((held[0] - value[0]).hypot(held[1] - value[1]));
         *value = held;
+    }
+    if problem.has_friction() {
+        let ends: Vec<_> = sliding.ends(problem).collect();
+        ends::draw(&ends, &holds.vertices, field.vertices_mut(), share);
+        sliding.settle(problem, holds, &mut field);
     }
     ends::restrict(problem, rows, &holds.vertices, field.vertices_mut(), share)?;
     contact::restrict_inside(problem, rows, &mut field, share);
@@ -236,14 +247,14 @@ pub fn repaired(
     let start = NodalValues::quadratic(&problem.mesh, vertex, middle);
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
     let rows = rows::rows(problem, &start.nodes);
-    let (field, farthest) = restricted(problem, &holds, &rows, start, &Whole)?;
+    let (field, farthest) = restricted(problem, (&holds, &rows, &Sliding::default()), start, &Whole)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
     let nearest = quadratic(problem, field);
     if repair == Repair::OfLeastEnergy
         && penetration > WORTH_LIFTING
         && let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, 2)
     {
-        let lifted = quadratic(problem, restricted(problem, &holds, &rows, lifted, &Whole)?.0);
+        let lifted = quadratic(problem, restricted(problem, (&holds, &rows, &Sliding::default()), lifted, &Whole)?.0);
         if potential(problem, &lifted).total() < potential(problem, &nearest).total() {
             return Ok((lifted, violation));
         }
@@ -270,7 +281,7 @@ pub fn lifted_within(
     let holds = holds(problem)?;
     let Some(lifted) = lift::lifted(problem, &holds, vertex, middle, degree) else { return Ok(None) };
     let rows = rows::rows(problem, &lifted.nodes);
-    let field = restricted(problem, &holds, &rows, lifted, &Whole)?.0;
+    let field = restricted(problem, (&holds, &rows, &Sliding::default()), lifted, &Whole)?.0;
     let nodes = Nodes::new(field.nodes.vertices(), std::iter::repeat_n(2, field.nodes.edges()));
     Ok(Some(quadratic(problem, field.on(&problem.mesh, &nodes))))
 }
@@ -291,7 +302,7 @@ pub fn repaired_at_contact(
     let start = NodalValues { values: field.boundary().to_vec(), nodes };
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
     let rows = rows::rows(problem, &start.nodes);
-    let (nearest, farthest) = restricted(problem, &holds, &rows, start, &Whole)?;
+    let (nearest, farthest) = restricted(problem, (&holds, &rows, &Sliding::default()), start, &Whole)?;
     let violation = Violation { support: farthest / size, penetration, at_vertices };
     Ok((field.clone().with_boundary(&nearest.values).split(mesh), violation))
 }

@@ -149,6 +149,10 @@ fn held(
     reading: f64,
 ) -> Result<(Comparison, Particulars), CliError> {
     let certified = &run.certified;
+    if certified.problem.has_friction() && args.contact.is_some() {
+        let what = "--contact weak: the law of contact in the mean is not told apart from friction";
+        return Err(CliError::stopped(Exit::BadInput, what, "leave --contact weak out, or `friction` of the scene"));
+    }
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 
     let before = if args.solution { before_contact(&certified.problem, &candidate, field)? } else { None };
@@ -304,6 +308,11 @@ fn before_contact(
     field: &ForeignField,
 ) -> Result<Option<(Problem, Candidate)>, CliError> {
     if candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut) {
+        if problem.has_friction() {
+            let what = "--solution: contact with friction between sides of unlike meshes is not held to a claim";
+            let help = "leave --solution out, or mesh both sides with the same points";
+            return Err(CliError::stopped(Exit::BadInput, what, help));
+        }
         let help = "along a bond of unlike meshes the claim to be a discrete solution cannot be held: leave out --solution, or mesh both \
                     sides with the same points";
         let help = if problem.scene.bonds.is_empty() { "" } else { help };

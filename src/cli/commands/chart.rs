@@ -7,13 +7,14 @@ use std::str::FromStr;
 use clap::{ValueEnum, value_parser};
 
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
+use crate::cli::given::friction::refuse_friction;
 use crate::cli::given::methods::MethodOptions;
 use crate::cli::given::options::{MemoryOptions, NamedTolerance, RunOptions, positive, tolerance};
 use crate::cli::given::revolved::refuse_unsupported;
 use crate::cli::session::refuse_unknown;
 use crate::cli::words::progress::Progress;
 use crate::cli::words::say;
-use crate::cli::{CliError, Exit};
+use crate::cli::{CliError, Exit, this_program};
 use crate::measure::Method;
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
@@ -173,6 +174,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     for path in &args.scenes {
         let scene = Scene::read(path)?;
         refuse_unsupported("chart", &scene)?;
+        refuse_friction("chart", &scene)?;
         refuse_unknown(&scene, args.quantities().iter().map(String::as_str))?;
         if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
             let message = format!("{} and {} have the same name", other.path.display(), path.display());
@@ -183,7 +185,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let folder = args.run.folder_named(scenes.first().filter(|_| scenes.len() == 1).map_or("chart", |s| &s.name));
     let failed = |e: CampaignError| CliError::stopped(Exit::Failed, e.to_string(), "");
     let kept = if args.resume { chart::read(&folder).map_err(|e| failed(e.into()))? } else { None };
-    let program = this_program()?;
+    let (program, _) = this_program()?;
     let progress = Progress::new(args.run.quiet);
     let plan = args.plan();
     let campaign = Campaign {
@@ -202,13 +204,6 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         say::line(&format!("chart: {}", Path::new(&folder).join("chart.html").display()));
     }
     Ok(Exit::Agree)
-}
-
-/// The file that this process runs.
-pub(in crate::cli) fn this_program() -> Result<PathBuf, CliError> {
-    std::env::current_exe().map_err(|e| {
-        CliError::stopped(Exit::Failed, format!("the program cannot find itself to start its runs: {e}"), "")
-    })
 }
 
 /// What an adaptive run was told to refine, and to reach.

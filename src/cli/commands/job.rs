@@ -11,7 +11,7 @@ use crate::cli::given::Given;
 use crate::cli::given::options::{JudgeOptions, MemoryOptions, RunOptions, positive};
 use crate::cli::words::progress::Progress;
 use crate::cli::words::{ci, say};
-use crate::cli::{CliError, Exit};
+use crate::cli::{CliError, Exit, this_program};
 use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Shard};
 use crate::process::limit;
 use crate::process::signals::LastWords;
@@ -139,11 +139,11 @@ fn several(order: &Order<'_>) -> Result<Exit, CliError> {
     let shard = order.job.shard.unwrap_or(Shard::WHOLE);
     let own = (0..plan.scenes.len()).filter(|i| shard.has(*i)).count();
     plan.write(&out).map_err(refused)?;
-    let program = std::env::current_exe()
-        .map_err(|e| CliError::stopped(Exit::Failed, format!("this program does not find itself: {e}"), ""))?;
+    let (program, code) = this_program()?;
     let processes = processes(order, own);
     let runner = Runner {
         program: &program,
+        code: &code,
         out: &out,
         processes,
         limit: limit(order.job.scene_seconds),

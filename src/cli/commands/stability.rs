@@ -2,12 +2,12 @@
 
 use clap::value_parser;
 
-use super::chart::{quoted, this_program};
+use super::chart::quoted;
 use crate::cli::given::methods::MethodOptions;
 use crate::cli::given::options::{MemoryOptions, RunOptions, positive};
 use crate::cli::words::progress::Progress;
 use crate::cli::words::say;
-use crate::cli::{CliError, Exit};
+use crate::cli::{CliError, Exit, this_program};
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
@@ -97,7 +97,7 @@ fn regimes() -> String {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     args.refuse_unrun()?;
     let folder = args.run.folder_named("stability");
-    let program = this_program()?;
+    let (program, _) = this_program()?;
     let progress = Progress::new(args.run.quiet);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let all = || REGIMES.iter().copied().flatten().collect();

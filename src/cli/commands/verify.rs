@@ -81,7 +81,7 @@ impl Args {
     }
 
     /// The names of the displacement solutions that are compared; a solver of the user's tells its own later.
-    fn fields(&self) -> Option<Vec<String>> {
+    pub fn fields(&self) -> Option<Vec<String>> {
         // Which of the two is known when the mesh is.
         let letters = if self.primal_cells == WantedCells::File { "PQ" } else { "P" };
         let named = |letter: char| self.degrees().into_iter().map(move |degree| format!("FEniCSx {letter}{degree}"));

@@ -8,11 +8,12 @@ use super::options::ProofOptions;
 use crate::cli::session::Session;
 use crate::cli::{CliError, Exit};
 use crate::compare::Comparison;
+use crate::dual::Options;
 use crate::problem::Note;
 use crate::process::{Outcome, Scratch, python, supervise};
-use crate::proof::{Fields, NAME, proof, unknown};
+use crate::proof::{self, Fields, NAME, proof, unknown};
 use crate::report::{Dossier, Guarantee};
-use crate::study::Certified;
+use crate::study::{Adjoint, Certified, adjoint};
 
 /// The program that verifies proofs.
 const CHECKER: &str = "hypercircle-check";
@@ -72,11 +73,42 @@ impl Session {
         };
         // The free displacement belongs to the mesh of the bracket, others to the mesh as given.
         let of = if from == "free" { &sharpest.problem } else { &certified.problem };
+        let options = Options { threads: self.threads, ..Options::default() };
+        let solved: Vec<_> = match from {
+            "free" => sharpest
+                .problem
+                .scene
+                .quantities
+                .iter()
+                .filter_map(|quantity| {
+                    let row = dossier.report.quantities.iter().find(|row| row.name == quantity.name)?;
+                    let claim = [row.lower, row.upper];
+                    claim.iter().all(|end| end.is_finite()).then_some(())?;
+                    Some((&quantity.name, claim, adjoint(sharpest, quantity, &options)?))
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        let adjoints: Vec<_> = solved
+            .iter()
+            .filter_map(|(name, claim, Adjoint { certified, step })| {
+                let displacement = &certified.bracket.free.as_ref().ok()?.displacement;
+                Some(proof::Adjoint {
+                    name,
+                    claim: *claim,
+                    step: *step,
+                    problem: &certified.problem,
+                    dual: &certified.dual,
+                    displacement,
+                })
+            })
+            .collect();
         let fields = Fields {
             stress: (&sharpest.problem, &sharpest.dual),
             displacement: (of, &upper.displacement),
             claim: [energy.lower, energy.upper],
             upper_from: from,
+            adjoints: &adjoints,
         };
         match proof(&fields) {
             Ok(bytes) => {

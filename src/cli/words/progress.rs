@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::measure::Step;
+use crate::process::stop_if_unwanted;
 
 /// Runs shorter than this show nothing.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -56,8 +57,9 @@ impl Progress {
         Progress { bar, quiet, began, told }
     }
 
-    /// Names the present phase.
+    /// Names the present phase. One that nobody wants any more does not begin.
     pub fn phase(&self, what: impl Into<std::borrow::Cow<'static, str>>) {
+        stop_if_unwanted();
         let what = what.into();
         if let Some(told) = &self.told {
             *told.lock().unwrap_or_else(PoisonError::into_inner) = what.to_string();

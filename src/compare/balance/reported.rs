@@ -7,6 +7,7 @@ use super::higher::Asked;
 use super::{End, HELD, Solution, dot, inner_reactions};
 use crate::bounds::Hold;
 use crate::compare::candidate::Reactions;
+use crate::compare::contact::slides::{Slide, inside};
 use crate::problem::{ContactPair, Interface};
 
 impl Solution<'_> {
@@ -32,13 +33,30 @@ impl Solution<'_> {
                     2 => asked_in_the_middle(pair, left[vertices + e]),
                     degree => self.asked_inside(pair, degree, left),
                 };
+                // With friction along a direction that turns a node does not tell which of its forces is which.
+                let told = pair.friction.is_none() || pair.direction.is_constant();
                 for (i, asked) in asked.into_iter().enumerate() {
                     let r = r.get(i).copied().unwrap_or(0.0);
-                    worst = worst.max((r - asked.reaction).abs());
+                    worst = worst.max(if told { (r - asked.reaction).abs() } else { 0.0 });
                     add(asked.moved.map(|n| -r * n));
                 }
             }
         }
+        if let Some(friction) = &reported.friction {
+            let inside = interface.pairs.iter().zip(friction.edge.iter().flatten());
+            for (pair, forces) in inside {
+                let asked = self.asked_of_friction(pair, left);
+                let Some(friction) = pair.friction else { continue };
+                let steps = (forces.len() + 1) as f64;
+                for (i, force) in forces.iter().enumerate() {
+                    let told = pair.direction.is_constant();
+                    worst = worst.max(if told { (force - asked.get(i).copied().unwrap_or(0.0)).abs() } else { 0.0 });
+                    add(friction.tangent.at((i + 1) as f64 / steps).map(|t| force * t));
+                }
+            }
+        }
+        let rubbed = self.rubbed(index, reported, rest);
+        worst = worst.max(rubbed.worst);
         let mut meetings = self.meetings(index, interface);
         let mut comparable = true;
         for (v, &r) in reported.vertices.iter().zip(&reported.vertex) {
@@ -53,6 +71,7 @@ impl Solution<'_> {
                         worst = worst.max((r - self.asked(&end, rest)).abs());
                     }
                     add(end.normal.map(|n| -r * n));
+                    add(rubbed.at.get(v).copied().unwrap_or_default());
                 }
                 // The force on a vertex that nothing else holds is that of the contact, whatever its directions.
                 Meeting::Several if self.holds.vertices[*v] == Hold::Free => add(rest[*v]),
@@ -75,7 +94,9 @@ impl Solution<'_> {
     fn meetings(&self, index: usize, interface: &Interface) -> HashMap<usize, Meeting> {
         let others = self.problem.interfaces.iter().enumerate().filter(|(other, _)| *other != index);
         let ends = others.flat_map(|(_, other)| &other.pairs).flat_map(End::of);
-        let elsewhere: HashSet<usize> = ends.flat_map(|end| [Some(end.first), end.second]).flatten().collect();
+        let mut elsewhere: HashSet<usize> = ends.flat_map(|end| [Some(end.first), end.second]).flatten().collect();
+        // Where friction does not act for itself, what presses cannot be told from what rubs.
+        elsewhere.extend(self.slides.iter().filter(|(_, coupled)| *coupled).map(|(slide, _)| slide.first));
         let mut meetings: HashMap<usize, Meeting> = HashMap::new();
         let mut facing: HashMap<usize, usize> = HashMap::new();
         for end in interface.pairs.iter().flat_map(End::of) {
@@ -107,6 +128,47 @@ impl Solution<'_> {
             square += dot(d, d);
         }
         if square > HELD * HELD { -pull / square } else { 0.0 }
+    }
+}
+
+/// What friction is reported to put on the vertices of an interface, and by how much that misses what the displacement asks for.
+struct Rubbed {
+    at: HashMap<usize, [f64; 2]>,
+    worst: f64,
+}
+
+impl Solution<'_> {
+    /// The forces of friction at vertices; those of a law that is coupled with others are added up and not compared.
+    fn rubbed(&self, index: usize, reported: &Reactions, rest: &[[f64; 2]]) -> Rubbed {
+        let mut rubbed = Rubbed { at: HashMap::new(), worst: 0.0 };
+        let Some(friction) = &reported.friction else { return rubbed };
+        let forces: HashMap<usize, f64> =
+            reported.vertices.iter().copied().zip(friction.vertex.iter().copied()).collect();
+        for (slide, coupled) in self.slides.iter().filter(|(slide, _)| slide.interface == index) {
+            let force = forces.get(&slide.first).copied().unwrap_or(0.0);
+            let end = End { first: slide.first, second: slide.second, normal: slide.tangent, gap: 0.0 };
+            if !coupled {
+                rubbed.worst = rubbed.worst.max((force + self.asked(&end, rest)).abs());
+            }
+            rubbed.at.insert(slide.first, slide.tangent.map(|t| force * t));
+        }
+        rubbed
+    }
+
+    /// The forces of friction inside a pair that those on the nodes of its first side ask for.
+    fn asked_of_friction(&self, pair: &ContactPair, left: &[[f64; 2]]) -> Vec<f64> {
+        let degree = self.candidate.degree;
+        let first = pair.edges[0].map_or(0..0, |e| {
+            let begin = self.problem.mesh.points.len() + e * (degree - 1);
+            begin..begin + degree - 1
+        });
+        let asked = |slide: Slide| {
+            let own = || slide.row.terms().iter().filter(|(node, _)| first.contains(node));
+            let pull: f64 = own().map(|(node, factor)| dot(left[*node], *factor)).sum();
+            let square: f64 = own().map(|(_, factor)| dot(*factor, *factor)).sum();
+            if square > 0.0 { pull / square } else { 0.0 }
+        };
+        inside(self.problem, pair, degree).into_iter().map(asked).collect()
     }
 }
 

@@ -1,12 +1,16 @@
 //! Contact checks, interface by interface.
 
+pub(super) mod friction;
 pub(super) mod mean;
 pub(super) mod nodal;
 pub(super) mod peak;
 pub(super) mod piece;
 pub mod pressure;
 pub(super) mod resultant;
+pub(super) mod slides;
 
+use self::friction::on_contact;
+use self::slides::{friction_resultant, reported_moment, trace_friction};
 use super::candidate::{Judged, Reactions};
 use super::ceiling::{Allowance, Ceilings};
 use super::outcome::{ContactSummary, Profile, TwoSides};
@@ -81,6 +85,9 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
+        let friction = on_contact(problem, self.dual, interface, (own, threshold));
+        let (tangential, turning) = friction.as_ref().map_or(([0.0; 2], 0.0), |friction| friction.resultant);
+        let (force, moment) = ([force[0] + tangential[0], force[1] + tangential[1]], moment + turning);
         // Of elastic contact no displacement moves the pressure alone.
         let bounded = !problem.section().is_revolved() && !is_elastic(interface);
         let around = || mean::around(problem, (index, interface), own, at, length - open, self.gap);
@@ -95,6 +102,7 @@ impl Sides<'_> {
             open_fraction_primal: None,
             contact_ends: contact_ends(interface, own, threshold),
             pressure_l2_difference: None,
+            friction: friction.map(|friction| friction.summary),
             length,
             profiles: vec![Profile { model: "dual".to_string(), points: profile(interface, own) }],
         }
@@ -125,9 +133,11 @@ impl Sides<'_> {
             Some(reactions) => reaction_pressure(problem, interface, reactions),
             None => trace_pressure(problem, interface, best),
         };
-        let (force, moment) = resultant(problem, interface, &pieces);
+        let along = friction_resultant(problem, interface, &trace_friction(problem, interface, best));
+        let (force, moment) = together(resultant(problem, interface, &pieces), along);
         let force = reactions.map_or(force, |r| without_radial(problem, r.resultant));
-        let moment = reactions.map_or(moment, |r| reaction_moment(problem, interface, r));
+        let of_reactions = |r| reaction_moment(problem, interface, r) + reported_moment(problem, interface, r);
+        let moment = reactions.map_or(moment, of_reactions);
         let (largest, at) = maximum(problem, interface, &pieces);
         let (norm, difference) = l2(interface, own, &pieces);
         // Reactions are zero or not; a trace is never quite zero.
@@ -265,6 +275,11 @@ impl Sides<'_> {
             ),
         ]
     }
+}
+
+/// The sum of forces and moments.
+fn together((force, moment): ([f64; 2], f64), (other, more): ([f64; 2], f64)) -> ([f64; 2], f64) {
+    ([force[0] + other[0], force[1] + other[1]], moment + more)
 }
 
 /// Pressures of a field that brings no reactions: theory does not limit their difference.

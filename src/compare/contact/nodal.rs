@@ -162,7 +162,9 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
     for pair in &interface.pairs {
         for (v, direction) in pair.first.into_iter().zip(pair.direction.ends) {
             let n = *normals.entry(v).or_insert(direction);
-            if dot(n, direction) < (1.0 - ALIGNED) * dot(n, n) {
+            // Where t̂ turns, a motion along one n̂ is one along the sides too.
+            let rubs = pair.friction.is_some() && !pair.direction.is_constant();
+            if rubs || dot(n, direction) < (1.0 - ALIGNED) * dot(n, n) {
                 held.insert(v);
             }
         }
@@ -176,7 +178,10 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
                 Condition::Clamped(_) | Condition::Axis | Condition::Elastic { .. } => true,
                 Condition::Contact { interface, side: 0, .. } if *interface == index => false,
                 Condition::Roller { direction, .. } => across(*direction),
-                Condition::Contact { .. } => across(problem.mesh.edge_frame(e).1),
+                Condition::Contact { interface, pair, .. } => {
+                    problem.interfaces[*interface].pairs[*pair].friction.is_some()
+                        || across(problem.mesh.edge_frame(e).1)
+                }
             };
             if stops {
                 held.insert(v);

@@ -86,6 +86,13 @@ impl Piece {
         points
     }
 
+    /// The value at `s`.
+    pub fn at(&self, s: f64) -> f64 {
+        let count = self.parts.len();
+        let which = ((s * count as f64) as usize).min(count - 1);
+        side::value(&self.parts[which], s * count as f64 - which as f64)
+    }
+
     /// The coefficients on [from, to], which lies in one part.
     fn within(&self, [from, to]: [f64; 2]) -> Vec<f64> {
         let count = self.parts.len() as f64;

@@ -98,6 +98,16 @@ pub fn reaction_pressure(problem: &Problem, interface: &Interface, reactions: &R
 
 /// −σ_n(u_h) on the first side.
 pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged) -> Vec<Piece> {
+    trace_along(problem, interface, judged, |pair| pair.normal.map(|n| -n))
+}
+
+/// d·σ(u_h)n' on the first side, with the direction d of each pair.
+pub fn trace_along(
+    problem: &Problem,
+    interface: &Interface,
+    judged: &Judged,
+    direction: impl Fn(&ContactPair) -> [f64; 2],
+) -> Vec<Piece> {
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let trace = |pair: &ContactPair| {
@@ -110,7 +120,7 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
         let mut strains = Strains::default();
         let material = &materials[mesh.body[t]];
         strains.elastic(mesh.corners(t), &judged.field.displacement, t, sub, material);
-        let n = pair.normal;
+        let (n, d) = (pair.normal, direction(pair));
         let revolved = problem.section().revolved();
         let pressure = |e: [f64; 3], l: [f64; 3]| {
             let s = match revolved {
@@ -120,7 +130,7 @@ pub fn trace_pressure(problem: &Problem, interface: &Interface, judged: &Judged)
                     [rr, zz, rz]
                 }
             };
-            -(s[0] * n[0] * n[0] + 2.0 * s[2] * n[0] * n[1] + s[1] * n[1] * n[1])
+            d[0] * (s[0] * n[0] + s[2] * n[1]) + d[1] * (s[2] * n[0] + s[1] * n[1])
         };
         // Of degree k − 1 on the edge, from corner to corner of the subtriangle.
         let degree = elastic_degree(judged.field.displacement.degree(t), material);

@@ -130,7 +130,9 @@ fn translation_norm(
                 Condition::Roller { direction, .. } => along(w[v], *direction),
                 // Other contacts of the piece must not be moved in their normal direction.
                 Condition::Contact { interface, pair, .. } if *interface != index => {
-                    along(w[v], direction_at(&problem.interfaces[*interface].pairs[*pair], v))
+                    let pair = &problem.interfaces[*interface].pairs[*pair];
+                    // Nor along it, where there is friction.
+                    if pair.friction.is_some() { [0.0; 2] } else { along(w[v], direction_at(pair, v)) }
                 }
                 _ => continue,
             };
@@ -149,8 +151,9 @@ fn translation_norm(
             Condition::Clamped(_) => w[*v] == [0.0; 2],
             Condition::Roller { direction: n, .. } => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
             Condition::Contact { interface, pair, .. } if *interface != index => {
-                let n = direction_at(&problem.interfaces[*interface].pairs[*pair], *v);
-                (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9
+                let pair = &problem.interfaces[*interface].pairs[*pair];
+                let n = direction_at(pair, *v);
+                (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9 && (pair.friction.is_none() || w[*v] == [0.0; 2])
             }
             _ => true,
         })

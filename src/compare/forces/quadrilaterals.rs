@@ -68,6 +68,6 @@ impl NodalForces {
         pulls.iter().for_each(|(weight, held, nodes, gradients)| forces.add_initial(*weight, *held, nodes, gradients));
         forces.take_loads();
         let sensitivity = forces.size.iter().zip(values).map(|(f, u)| f * u[0].hypot(u[1])).sum();
-        (forces, Potential { strain, springs, work, magnitude, sensitivity })
+        (forces, Potential { strain, springs, friction: 0.0, work, magnitude, sensitivity })
     }
 }

@@ -227,7 +227,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
         }
     }
     let magnitude = strain + springs + rounded;
-    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs })
+    (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs, friction: 0.0 })
 }
 
 /// Adds ∫ T·φ along an edge, T by its Bernstein coefficients.

@@ -40,6 +40,7 @@ impl Solution<'_> {
                 forces,
                 format!("Contact carries a force only where it is closed: the sum of the nodal forces at open nodes{opened}, relative to all forces."),
             ));
+            checks.extend(self.friction_check(index, &name("friction")));
         }
         allow.apply(&mut checks);
         checks
@@ -153,7 +154,8 @@ impl Solution<'_> {
         let gaps: f64 =
             distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum::<f64>() + self.on_gaps;
         let beside: f64 = self.beside.iter().enumerate().map(|(n, f)| dot(*f, self.candidate.value(n))).sum();
-        let (left, right) = (2.0 * self.strain, work + supports - gaps + beside);
+        let rubbed: f64 = self.rubbing.iter().zip(&self.slip).map(|(force, slip)| force * slip).sum();
+        let (left, right) = (2.0 * self.strain, work + supports - gaps + beside + rubbed);
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
         self.with_digits(self.of_forces(), |part| {
             Check::equal(
@@ -162,8 +164,16 @@ impl Solution<'_> {
                 right,
                 scale * part + self.of_the_rule + scales.round_off.energy,
                 Basis::Claimed,
-                "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
-                 prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g.",
+                match self.problem.has_friction() {
+                    false => {
+                        "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
+                         prescribe and of contacts on their gaps: a(u, u) = L(u) + ∫T·u0 + ∫T_n g."
+                    }
+                    true => {
+                        "The work that stresses of a discrete solution do on its displacement is that of loads, of supports on what they \
+                         prescribe, of contacts on their gaps and of friction on what slides: a(u, u) = L(u) + ∫T·u0 + ∫T_n g − ∫τ̄|j_t|."
+                    }
+                },
             )
         })
     }

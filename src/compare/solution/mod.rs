@@ -9,10 +9,12 @@
 mod checks;
 mod digits;
 mod nonmatching;
+mod rubbing;
 mod sites;
 mod weak;
 
 pub use nonmatching::Nonmatching;
+pub use rubbing::{Ask, Rubbed};
 pub use sites::{Site, Sites, Span};
 pub use weak::{Law, Shape, Station, Weak};
 
@@ -86,6 +88,10 @@ pub struct Solution<'a> {
     pub pressing: Vec<f64>,
     /// At each of them (v' − v'')·n̂ − g.
     pub excess: Vec<f64>,
+    /// At each of them the force of friction on the first side along t̂, zero without friction.
+    pub rubbing: Vec<f64>,
+    /// At each of them (v' − v'')·t̂, zero without friction.
+    pub slip: Vec<f64>,
     /// What the residual is relative to, as the root of an energy.
     pub scale: f64,
     /// Half of a(u, u).
@@ -182,10 +188,11 @@ impl<'a> Solution<'a> {
         let sites = Sites::new(problem, candidate.degree, &holds);
         let mut rest = forces.unsupported(&holds, &nodes);
         let unsupported = rest.clone();
-        let pressing = sites.pressing(&rest);
+        let (pressing, rubbing) = sites.acting(&rest);
         sites.take(&mut rest);
         let value = |node: usize| candidate.value(node);
         let excess = sites.list.iter().map(|site| site.excess(value)).collect();
+        let slip = sites.list.iter().map(|site| site.slip(value)).collect();
         let balance = Balance::of_forces(problem, candidate, strain, &forces)?;
         // A product is rounded several times, a value of the file once.
         let written = if candidate.precision > f64::EPSILON { candidate.precision } else { 0.0 };
@@ -196,6 +203,8 @@ impl<'a> Solution<'a> {
             holds,
             pressing,
             excess,
+            rubbing,
+            slip,
             scale: balance.scale.max(f64::MIN_POSITIVE),
             strain,
             largest: candidate.largest(),

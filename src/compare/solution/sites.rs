@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::bounds::{Hold, Holds};
 use crate::problem::Problem;
 use crate::sets::DisjointSets;
+use crate::statics::cone::balanced;
 use crate::vector::{cross, dot};
 
 /// Directions whose cross product is smaller are one.
@@ -31,12 +32,23 @@ pub struct Site {
     pub weight: f64,
     /// Where the direction turns along the edge, the other direction of a midpoint.
     turned: Option<[f64; 2]>,
+    /// t̂, where friction resists sliding.
+    pub tangent: Option<[f64; 2]>,
 }
 
 impl Site {
     /// (v' − v'')·n̂ − g: a penetration where it is positive, an opening where it is negative.
     pub fn excess(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
-        dot(value(self.first), self.normal) - self.second.map_or(0.0, |s| dot(value(s), self.normal)) - self.gap
+        self.jump(self.normal, value) - self.gap
+    }
+
+    /// (v' − v'')·t̂, zero without friction.
+    pub fn slip(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
+        self.tangent.map_or(0.0, |t| self.jump(t, value))
+    }
+
+    fn jump(&self, direction: [f64; 2], value: impl Fn(usize) -> [f64; 2]) -> f64 {
+        dot(value(self.first), direction) - self.second.map_or(0.0, |s| dot(value(s), direction))
     }
 
     /// The component of a pair of nodal forces along the contact, counted as pressing the two sides together.
@@ -78,6 +90,7 @@ struct Group {
     nodes: Vec<usize>,
     sites: Vec<usize>,
     rows: DMatrix<f64>,
+    tangents: Vec<Option<DVector<f64>>>,
     basis: Vec<DVector<f64>>,
 }
 
@@ -99,15 +112,28 @@ impl Sites {
                     let (first, second) = (pair.first[end], pair.second.map(|s| s[end]));
                     let weight = part * at_end([from, to][end]);
                     let normal = pair.direction.ends[end];
+                    let tangent = pair.friction.map(|friction| friction.tangent.ends[end]);
                     let same = known.entry((first, second)).or_default();
                     let found = same.iter().copied().find(|s| cross(sites.list[*s].normal, normal).abs() < PARALLEL);
                     *at = found.unwrap_or(sites.list.len());
                     match found {
-                        Some(s) => sites.list[s].weight += weight,
+                        Some(s) => {
+                            sites.list[s].weight += weight;
+                            sites.list[s].tangent = sites.list[s].tangent.or(tangent);
+                        }
                         None => {
                             same.push(sites.list.len());
                             let gap = pair.gap[end];
-                            sites.list.push(Site { interface, first, second, normal, gap, weight, turned: None });
+                            sites.list.push(Site {
+                                interface,
+                                first,
+                                second,
+                                normal,
+                                gap,
+                                weight,
+                                turned: None,
+                                tangent,
+                            });
                         }
                     }
                 }
@@ -129,6 +155,7 @@ impl Sites {
                     gap: pair.gap_at(0.5),
                     weight: 4.0 * part * mean,
                     turned,
+                    tangent: pair.friction.map(|friction| friction.tangent.at(0.5)),
                 });
             }
         }
@@ -152,18 +179,49 @@ impl Sites {
 
     /// The force at each place that presses the two sides together, from what supports leave of the nodal forces.
     pub fn pressing(&self, forces: &[[f64; 2]]) -> Vec<f64> {
-        let mut pressing = vec![0.0; self.list.len()];
+        self.acting(forces).0
+    }
+
+    /// The same, and the force of friction on the first side along t̂.
+    pub fn acting(&self, forces: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
+        let (mut pressing, mut rubbing) = (vec![0.0; self.list.len()], vec![0.0; self.list.len()]);
         for group in &self.groups {
             let local = group.gather(forces);
             if let [site] = group.sites[..] {
                 let row = group.rows.column(0);
                 let square = row.norm_squared();
                 pressing[site] = if square > SPENT * SPENT { -row.dot(&local) / square } else { 0.0 };
+                if let Some(tangent) = group.tangents[0].as_ref().filter(|t| t.norm() > SPENT) {
+                    // What a support leaves of both directions may be one.
+                    let across = tangent.dot(&row) / tangent.norm_squared();
+                    let left = if square > SPENT * SPENT {
+                        1.0 - across * across * tangent.norm_squared() / square
+                    } else {
+                        1.0
+                    };
+                    if left > SPENT {
+                        let own = tangent.dot(&local) / tangent.norm_squared();
+                        let normal = if square > SPENT * SPENT { row.dot(&local) / square } else { 0.0 };
+                        rubbing[site] = (own - across * normal) / left;
+                        pressing[site] += rubbing[site] * tangent.dot(&row) / square.max(f64::MIN_POSITIVE);
+                    }
+                }
+            } else if group.tangents.iter().any(Option::is_some) {
+                group.share(&local, &mut pressing, &mut rubbing);
             } else if let Ok(found) = group.rows.clone().svd(true, true).solve(&local, SPENT) {
                 group.sites.iter().zip(found.iter()).for_each(|(site, force)| pressing[*site] = -force);
             }
         }
-        pressing
+        (pressing, rubbing)
+    }
+
+    /// Whether the force of friction at a place is its own: supports leave both sides free to slide, and no other place shares their nodes.
+    pub fn rubs_alone(&self, site: usize) -> bool {
+        let own = |group: &&Group| group.sites == [site];
+        let group = self.groups.iter().find(own);
+        group.is_some_and(|g| {
+            g.tangents[0].as_ref().is_some_and(|t| t.norm() > SPENT && t.dot(&g.rows.column(0)).abs() < SPENT)
+        })
     }
 
     /// Whether supports hold both sides of a place along the direction of contact, so that nothing shows its force.
@@ -191,6 +249,32 @@ impl Sites {
 }
 
 impl Group {
+    /// Shares forces out to places that press and rub, as long as any such forces make them; what is left is shared out to all that press,
+    /// either way.
+    fn share(&self, local: &DVector<f64>, pressing: &mut [f64], rubbing: &mut [f64]) {
+        let mut rows: Vec<(usize, f64, DVector<f64>)> = Vec::new();
+        for (place, site) in self.sites.iter().enumerate() {
+            let normal = self.rows.column(place).into_owned();
+            let tangent = self.tangents[place].iter().flat_map(|t| [(1.0, t.clone()), (-1.0, -t)]);
+            rows.push((*site, 0.0, -normal));
+            rows.extend(tangent.map(|(sign, t)| (*site, sign, t)));
+        }
+        rows.retain(|(_, _, row)| row.norm() > SPENT);
+        let unit: Vec<DVector<f64>> = rows.iter().map(|(_, _, row)| row / row.norm()).collect();
+        let mut left = local.clone();
+        if let Ok((rest, forces)) = balanced(local, &unit) {
+            left = rest;
+            for (row, force) in forces {
+                let (site, sign, own) = &rows[row];
+                let force = force / own.norm();
+                if *sign == 0.0 { pressing[*site] += force } else { rubbing[*site] += sign * force }
+            }
+        }
+        if let Ok(found) = self.rows.clone().svd(true, true).solve(&left, SPENT) {
+            self.sites.iter().zip(found.iter()).for_each(|(site, force)| pressing[*site] -= force);
+        }
+    }
+
     fn gather(&self, forces: &[[f64; 2]]) -> DVector<f64> {
         DVector::from_iterator(2 * self.nodes.len(), self.nodes.iter().flat_map(|n| forces[*n]))
     }
@@ -226,9 +310,11 @@ fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
         };
         let columns: Vec<DVector<f64>> = sites.iter().map(|s| row(&list[*s], list[*s].normal)).collect();
         let rows = DMatrix::from_columns(&columns);
+        let tangents: Vec<Option<DVector<f64>>> =
+            sites.iter().map(|s| Some(row(&list[*s], list[*s].tangent?))).collect();
         let turned = sites.iter().filter_map(|s| Some(row(&list[*s], list[*s].turned?)));
         let mut basis: Vec<DVector<f64>> = Vec::new();
-        for mut row in columns.into_iter().chain(turned) {
+        for mut row in columns.into_iter().chain(turned).chain(tangents.iter().flatten().cloned()) {
             let long = row.norm();
             for known in &basis {
                 let part = known.dot(&row);
@@ -239,7 +325,7 @@ fn groups(list: &[Site], holds: &Holds) -> Vec<Group> {
                 basis.push(row / left);
             }
         }
-        Group { nodes, sites, rows, basis }
+        Group { nodes, sites, rows, tangents, basis }
     };
     members.into_values().map(group).collect()
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::response::{Response, Responses};
 use crate::dual::DualError;
+use crate::dual::contact::states::{bounded, held, states};
 use crate::dual::hybrid::{parameters, residual};
 use crate::dual::refinement::{Refined, Refinement};
 use crate::dual::system::System;
@@ -190,16 +191,16 @@ impl<'a> Loaded<'a> {
         let mut s = parameters(&self.problem, system, &x, false);
         s.iter_mut().zip(&self.start.s).for_each(|(s, start)| *s += start);
         let r = residual(&self.problem, system, &s);
-        Refined { x, s, r }
+        Refined { x, s, r, resistance: Vec::new() }
     }
 
     /// Wins back on the stresses what rounding has cost, with the jumps of `held` coefficients as they are.
     fn refine(&self, system: &System, held: &[bool], begun: Refined) -> Result<Refined, DualError> {
         let (reduced, contact) = (self.responses.reduced(), &self.responses.contact);
-        let no_move = vec![0.0; held.len()];
+        let (no_move, states) = (bounded(&vec![0.0; held.len()]), states(held));
         let correction = |r: &[f64]| {
             let (y, c) = reduced.condense(r);
-            let jumps = contact.with_closed(&c, &no_move, held).ok_or(DualError::ContactUndetermined)?;
+            let jumps = contact.in_states(&c, &no_move, &states).ok_or(DualError::ContactUndetermined)?;
             Ok(reduced.expand(y, &jumps))
         };
         let fixed = reduced.fixed(held);
@@ -286,7 +287,7 @@ impl<'a> Loaded<'a> {
             let load = |(i, c): (usize, &f64)| if released.get(i) == Some(&true) { c + sign * floor[i] } else { *c };
             let loaded: Vec<f64> = self.start.c.iter().enumerate().map(load).collect();
             let held: Vec<bool> = closed.iter().zip(&released).map(|(closed, let_go)| *closed && !let_go).collect();
-            let Some(jumps) = contact.with_closed(&loaded, &self.start.held, &held) else { break };
+            let Some(jumps) = contact.in_states(&loaded, &bounded(&self.start.held), &states(&held)) else { break };
             let traction = contact.gradient(&self.start.c, &jumps);
             let next: Vec<bool> = (0..closed.len())
                 .map(|i| {
@@ -318,8 +319,8 @@ impl<'a> Loaded<'a> {
         let load: Vec<f64> = self.start.c.iter().enumerate().map(|(i, c)| -sign * c - floored(i)).collect();
         let bound = |i: usize| if closed[i] { -sign * self.start.held[i] } else { f64::INFINITY };
         let bound: Vec<f64> = (0..closed.len()).map(bound).collect();
-        let state = self.responses.contact.solve(&load, &bound, None)?;
-        let released = closed.iter().zip(&state.closed).map(|(closed, held)| *closed && !held).collect();
+        let state = self.responses.contact.solve(&load, &bounded(&bound), None)?;
+        let released = closed.iter().zip(held(&state.states)).map(|(closed, held)| *closed && !held).collect();
         Ok((released, state.jumps.into_iter().map(|j| -sign * j).collect()))
     }
 }

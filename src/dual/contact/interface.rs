@@ -51,8 +51,10 @@ impl Interface {
         for (contact, piece) in contacts() {
             let clique: &mut Vec<usize> = &mut cliques[piece];
             if contact.side == 0 {
-                let first = contact.jump - unknowns.first_jump;
-                clique.extend(first..first + len(contact.jump));
+                for jump in [Some(contact.jump), contact.slide].into_iter().flatten() {
+                    let first = jump - unknowns.first_jump;
+                    clique.extend(first..first + len(jump));
+                }
             }
             if let Some(second) = contact.second {
                 let start = *seconds.entry(second).or_insert_with(|| {

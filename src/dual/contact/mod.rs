@@ -7,3 +7,4 @@ pub(super) mod moments;
 pub(super) mod rigid;
 pub(super) mod schur;
 pub(super) mod settling;
+pub(super) mod states;

@@ -5,9 +5,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::dual::system::unknowns::Unknowns;
+use crate::dual::system::unknowns::{UnknownBlock, Unknowns};
 use crate::element::polynomial::side;
-use crate::problem::{Condition, Problem};
+use crate::problem::{Condition, ContactPair, Direction, Problem};
 use crate::statics::Components;
 
 /// Squares of displacements at the supports, relative to the largest, that are zero.
@@ -89,31 +89,34 @@ fn left_by_supports(problem: &Problem, pieces: &Components) -> Vec<Vec<Vector3<f
 /// The jump moments of a motion of one piece.
 fn jumps(problem: &Problem, unknowns: &Unknowns, pieces: &Components, piece: usize, motion: &Vector3<f64>) -> Vec<f64> {
     let mesh = &problem.mesh;
-    let pairs = problem.pairs();
-    pairs
-        .zip(unknowns.jump_blocks())
-        .flat_map(|(pair, block)| {
-            let mut jump = vec![0.0; block.len];
-            for (edge, sign) in pair.edges.into_iter().zip([1.0, -1.0]) {
-                let t = edge.and_then(|e| mesh.edges[e].triangles[0]);
-                if t.is_none_or(|t| pieces.of_triangle[t] != piece) {
-                    continue;
-                }
-                // Opposite vertices lie on one line along the direction of contact, where a rigid motion is the same along it.
-                let u = pair.first.map(|v| at(pieces, piece, motion, mesh.points[v]));
-                let along = |end: usize, other: usize| {
-                    let n = pair.direction.ends[other];
-                    sign * (u[end][0] * n[0] + u[end][1] * n[1])
-                };
-                let (first, last) = (along(0, 0), along(1, 1));
-                let moments = if pair.direction.is_constant() {
-                    side::moments(&[first, last], block.len - 1)
-                } else {
-                    side::moments(&[first, 0.5 * (along(0, 1) + along(1, 0)), last], block.len - 1)
-                };
-                jump.iter_mut().zip(moments).for_each(|(j, m)| *j += pair.length * m);
+    let along_direction = |pair: &ContactPair, direction: &Direction, block: &UnknownBlock| {
+        let mut jump = vec![0.0; block.len];
+        for (edge, sign) in pair.edges.into_iter().zip([1.0, -1.0]) {
+            let t = edge.and_then(|e| mesh.edges[e].triangles[0]);
+            if t.is_none_or(|t| pieces.of_triangle[t] != piece) {
+                continue;
             }
-            jump
-        })
+            // Opposite vertices lie on one line along the direction of contact, where a rigid motion is the same along it.
+            let u = pair.first.map(|v| at(pieces, piece, motion, mesh.points[v]));
+            let along = |end: usize, other: usize| {
+                let n = direction.ends[other];
+                sign * (u[end][0] * n[0] + u[end][1] * n[1])
+            };
+            let (first, last) = (along(0, 0), along(1, 1));
+            let moments = if direction.is_constant() {
+                side::moments(&[first, last], block.len - 1)
+            } else {
+                side::moments(&[first, 0.5 * (along(0, 1) + along(1, 0)), last], block.len - 1)
+            };
+            jump.iter_mut().zip(moments).for_each(|(j, m)| *j += pair.length * m);
+        }
+        jump
+    };
+    let normal = problem.pairs().zip(unknowns.jump_blocks());
+    let tangential =
+        problem.pairs().filter_map(|pair| Some((pair, pair.friction?.tangent))).zip(unknowns.slide_blocks());
+    normal
+        .flat_map(|(pair, block)| along_direction(pair, &pair.direction, block))
+        .chain(tangential.flat_map(|((pair, tangent), block)| along_direction(pair, &tangent, block)))
         .collect()
 }

@@ -1,4 +1,5 @@
-//! The contact problem on Γ_K: min ½ jᵀSj − cᵀj over jumps j ≤ g, with S what elimination leaves of K.
+//! The contact problem on Γ_K: min ½ jᵀSj − cᵀj over jumps j ≤ g along n̂, with τ̄|j| for those along t̂ where there is friction, and S
+//! what elimination leaves of K.
 //!
 //! S is a dense matrix where a few bodies touch, sparse where many do (see [`super::interface`]), and only applied where a contact is
 //! too long for either. All are given to [`crate::optimise`] in units in which the diagonal is about one: what they give are then
@@ -30,8 +31,8 @@ const MOST_CLEARING: usize = 1_000_000_000;
 pub struct ContactState {
     /// Jumps, and what other unknowns of interfaces there are.
     pub jumps: Vec<f64>,
-    /// Which of the jumps are at their bound: closed.
-    pub closed: Vec<bool>,
+    /// Where each jump is on its law.
+    pub states: Vec<State>,
     /// Steps taken.
     pub steps: usize,
 }
@@ -93,16 +94,16 @@ impl<'a> Schur<'a> {
         Schur { form: Box::new(matrix), cleared, unit, jumps }
     }
 
-    /// The jumps of least energy within `bound`, which may be infinite; `warm` is a first guess of the closed ones (all that have
-    /// a bound, where there is none).
+    /// The jumps of least energy under their `laws`; `warm` is a first guess of their states (those that resist most, where there is
+    /// none).
     ///
     /// # Errors
     /// [`DualError::ContactUndetermined`] where the energy has no minimum.
-    pub fn solve(&self, c: &[f64], bound: &[f64], warm: Option<&[bool]>) -> Result<ContactState, DualError> {
-        let (load, laws) = (times(c, &self.unit), self.laws(bound));
+    pub fn solve(&self, c: &[f64], laws: &[Law], warm: Option<&[State]>) -> Result<ContactState, DualError> {
+        let (load, laws) = (times(c, &self.unit), self.laws(laws));
         let form = self.cleared.as_ref().map_or(&*self.form as &dyn Quadratic, |cleared| cleared);
         let program = Program { form, load: &load, laws: &laws };
-        let start = warm.map(|closed| self.states(closed));
+        let start = warm.map(|states| self.states(states));
         let mut found = optimise::solve(&program, start).ok_or(DualError::ContactUndetermined)?;
         if self.cleared.is_some() {
             // The values of the state as the factor has them; what is loose may be elsewhere only where that changes no state.
@@ -113,8 +114,8 @@ impl<'a> Schur<'a> {
                 found.x = x;
             }
         }
-        let closed = found.states[..self.jumps].iter().map(|state| *state == State::Held).collect();
-        Ok(ContactState { jumps: times(&found.x, &self.unit), closed, steps: found.steps })
+        found.states.truncate(self.jumps);
+        Ok(ContactState { jumps: times(&found.x, &self.unit), states: found.states, steps: found.steps })
     }
 
     /// S j − c of the jumps.
@@ -124,19 +125,19 @@ impl<'a> Schur<'a> {
         forces
     }
 
-    /// Jumps with the `closed` ones at their bound and all others in equilibrium, held by weak springs where nothing else holds
+    /// Jumps in these `states` of their laws, in equilibrium where they are not held, by weak springs where nothing else holds
     /// them: the stress of the result is right to the stiffness of these, and refinement takes that error away.
-    pub fn with_closed(&self, c: &[f64], bound: &[f64], closed: &[bool]) -> Option<Vec<f64>> {
-        let (load, laws) = (times(c, &self.unit), self.laws(bound));
+    pub fn in_states(&self, c: &[f64], laws: &[Law], states: &[State]) -> Option<Vec<f64>> {
+        let (load, laws) = (times(c, &self.unit), self.laws(laws));
         let program = Program { form: &*self.form, load: &load, laws: &laws };
-        let x = program.in_state(&self.states(closed), None)?;
+        let x = program.in_state(&self.states(states), None)?;
         Some(times(&x, &self.unit))
     }
 
     /// Penetration that is `part` of the largest jump or gap, end by end.
-    pub fn allowed(&self, jumps: &[f64], bound: &[f64], part: f64) -> Vec<f64> {
+    pub fn allowed(&self, jumps: &[f64], laws: &[Law], part: f64) -> Vec<f64> {
         let unit = &self.unit[..self.jumps];
-        let extent = self.laws(bound).iter().fold(largest(&over(jumps, unit)), |most, law| most.max(law.extent()));
+        let extent = self.laws(laws).iter().fold(largest(&over(jumps, unit)), |most, law| most.max(law.extent()));
         let depth = part * extent;
         unit.iter().map(|u| u * depth).collect()
     }
@@ -158,14 +159,14 @@ impl<'a> Schur<'a> {
         )]
     }
 
-    fn laws(&self, bound: &[f64]) -> Vec<Law> {
-        let bounds = bound.iter().zip(&self.unit).map(|(g, u)| Law::AtMost { bound: g / u });
-        bounds.chain(std::iter::repeat_n(Law::Free, self.unit.len() - self.jumps)).collect()
+    fn laws(&self, of_jumps: &[Law]) -> Vec<Law> {
+        let scaled = of_jumps.iter().zip(&self.unit).map(|(law, u)| law.in_unit(*u));
+        scaled.chain(std::iter::repeat_n(Law::Free, self.unit.len() - self.jumps)).collect()
     }
 
-    fn states(&self, closed: &[bool]) -> Vec<State> {
-        let state = |closed: &bool| if *closed { State::Held } else { State::Below };
-        closed.iter().map(state).chain(std::iter::repeat_n(State::Below, self.unit.len() - self.jumps)).collect()
+    fn states(&self, of_jumps: &[State]) -> Vec<State> {
+        let rest = std::iter::repeat_n(State::Below, self.unit.len() - self.jumps);
+        of_jumps.iter().copied().chain(rest).collect()
     }
 }
 

@@ -5,8 +5,9 @@
 //! and jumps tell, and the same S with the remainder for a load gives the change of state: an error of S in the hundredth
 //! part costs a step, and no accuracy.
 
-use super::ends::{Ends, next_state};
+use super::ends::Ends;
 use super::schur::{ContactState, Schur};
+use super::states::{bounded, held};
 use crate::dual::DualError;
 use crate::dual::equilibrium::{Equilibrium, load_scale};
 use crate::dual::hybrid::parameters;
@@ -14,6 +15,7 @@ use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
 use crate::dual::system::System;
 use crate::dual::system::reduced::Reduced;
 use crate::element::{SideValues, StressField};
+use crate::optimise::State;
 use crate::problem::{Problem, Scales};
 
 /// Changes of the contact state at most.
@@ -46,24 +48,25 @@ impl Settling<'_> {
     /// # Errors
     /// [`DualError::ContactUndetermined`], also where ends keep opening and closing, or what the contact problem returns.
     pub fn run(&self, mut now: Refined, state: &mut ContactState) -> Result<Refined, DualError> {
-        now = self.refined(now, &state.closed)?;
+        now = self.refined(now, &state.states)?;
         for _ in 0..MOST_CHANGES {
-            let next = next_state(&state.closed, &self.misses(&now, &state.closed));
-            if next == state.closed || self.most_steps == 0 {
+            let next = self.ends.next(&now, &state.states, &self.misses(&now, &state.states));
+            if next == state.states || self.most_steps == 0 {
                 return Ok(now);
             }
-            let jumps = &now.x[self.system.unknowns.first_jump..];
-            let room: Vec<f64> = self.system.jump_bound.iter().zip(jumps).map(|(g, j)| g - j).collect();
+            // The laws tell what resists the change.
+            now = now.resisted(self.system, Vec::new());
+            let room = self.system.laws_of_change(&now.x[self.system.unknowns.first_jump..]);
             let (y, c) = self.reduced.condense(&now.r);
             let change = self.contact.solve(&c, &room, Some(&next))?;
             let d = self.reduced.expand(y, &change.jumps);
             let ds = parameters(self.problem, self.system, &d, false);
             now.add(self.problem, self.system, 1.0, &d, &ds);
             state.steps += change.steps;
-            state.closed = change.closed;
-            now = self.refined(now, &state.closed)?;
+            state.states = change.states;
+            now = self.refined(now, &state.states)?;
         }
-        let left = self.misses(&now, &state.closed).into_iter().fold(0.0, f64::max);
+        let left = self.misses(&now, &state.states).into_iter().fold(0.0, f64::max);
         if left <= UNSETTLED {
             return Ok(now);
         }
@@ -82,10 +85,11 @@ impl Settling<'_> {
         state: &ContactState,
         allowed: f64,
     ) -> Result<(), DualError> {
-        let fixed = self.reduced.fixed(&state.closed);
-        let first = self.system.unknowns.first_jump;
+        let fixed = self.reduced.fixed(&held(&state.states));
+        let (first, first_slide) = (self.system.unknowns.first_jump, self.system.unknowns.first_slide);
         let left = now.r.iter().zip(&fixed).enumerate().fold(0.0_f64, |m, (i, (r, fixed))| match (fixed, i >= first) {
             (false, _) => m.max(r.abs()),
+            (true, true) if i >= first_slide => m.max(r.abs() - self.system.slide_bound[i - first_slide]),
             (true, true) => m.max(-r),
             (true, false) => m,
         });
@@ -111,17 +115,21 @@ impl Settling<'_> {
     }
 
     /// The least energy with the present contact state.
-    fn refined(&self, now: Refined, closed: &[bool]) -> Result<Refined, DualError> {
-        let no_move = vec![0.0; closed.len()];
+    fn refined(&self, now: Refined, states: &[State]) -> Result<Refined, DualError> {
+        let now = now.resisted(self.system, self.system.resistance(states));
+        let no_move = bounded(&vec![0.0; states.len()]);
+        // What slides moves freely beside its resistance.
+        let held = held(states);
+        let free = super::states::states(&held);
         let correction = |r: &[f64]| {
             let (y, c) = self.reduced.condense(r);
-            let jumps = self.contact.with_closed(&c, &no_move, closed).ok_or(DualError::ContactUndetermined)?;
+            let jumps = self.contact.in_states(&c, &no_move, &free).ok_or(DualError::ContactUndetermined)?;
             Ok(self.reduced.expand(y, &jumps))
         };
         let refinement = Refinement {
             problem: self.problem,
             system: self.system,
-            fixed: &self.reduced.fixed(closed),
+            fixed: &self.reduced.fixed(&held),
             solve: &correction,
             enough: ROUND_OFF,
             most_steps: self.most_steps,
@@ -130,8 +138,8 @@ impl Settling<'_> {
     }
 
     /// By how much each end misses its state, penetration relative to the largest jump or gap.
-    fn misses(&self, now: &Refined, closed: &[bool]) -> Vec<f64> {
+    fn misses(&self, now: &Refined, states: &[State]) -> Vec<f64> {
         let jumps = &now.x[self.system.unknowns.first_jump..];
-        self.ends.misses(now, closed, &self.contact.allowed(jumps, &self.system.jump_bound, 1.0))
+        self.ends.misses(now, states, &self.contact.allowed(jumps, &self.system.laws(), 1.0))
     }
 }

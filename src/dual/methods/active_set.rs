@@ -5,14 +5,17 @@ use std::time::Instant;
 
 use faer::sparse::SparseColMat;
 
-use crate::dual::contact::ends::{Ends, GRAZING, next_state};
+use crate::dual::contact::ends::{Ends, GRAZING};
+use crate::dual::contact::states::held as are_held;
 use crate::dual::equilibrium::Equilibrium;
 use crate::dual::factor::Factor;
 use crate::dual::hybrid::{Motion, explain, held_unknowns};
 use crate::dual::refinement::{ROUND_OFF, Refined, Refinement};
 use crate::dual::system::{Structured, System, isolate};
 use crate::dual::{DualError, DualMethod, Found, Options, Phases, Size};
+use crate::optimise::{Law, State};
 use crate::problem::Problem;
+use crate::process::stop_if_unwanted;
 
 /// Active set with refactorisation, started from closed contact.
 #[derive(Debug, Clone, Copy)]
@@ -51,21 +54,21 @@ impl DualMethod for ActiveSet {
 }
 
 impl ActiveSet {
-    /// Solves where another method came to the state `closed` and no further, in a limited number of steps, none of which
+    /// Solves where another method came to these `states` and no further, in a limited number of steps, none of which
     /// begins after the deadline of `options`.
     pub(in crate::dual) fn rescue(
         &self,
         problem: &Problem,
         motions: &[Motion],
         options: &Options,
-        closed: Option<Vec<bool>>,
+        states: Option<Vec<State>>,
     ) -> Result<Found, DualError> {
-        self.step_from(closed, STEPS_OF_A_RESCUE, problem, motions, options)
+        self.step_from(states, STEPS_OF_A_RESCUE, problem, motions, options)
     }
 
     fn step_from(
         &self,
-        from: Option<Vec<bool>>,
+        from: Option<Vec<State>>,
         most_steps: usize,
         problem: &Problem,
         motions: &[Motion],
@@ -83,20 +86,22 @@ impl ActiveSet {
         let symbolic = structure?;
         seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
-        let mut closed = from.unwrap_or_else(|| system.jump_bound.iter().map(|g| g.is_finite()).collect());
-        let most_steps = most_steps.min(self.most_steps + 4 * closed.len());
+        let laws = system.laws();
+        let mut states = from.unwrap_or_else(|| laws.iter().map(|law| law.stiffest()).collect());
+        let most_steps = most_steps.min(self.most_steps + 4 * states.len());
         let mut symbolic = Some(symbolic);
         let ends = Ends::new(problem, &system);
         let (mut seen, mut careful, mut from_closed) = (HashSet::new(), false, true);
         let (mut left, mut steps) = (f64::INFINITY, 0);
         let (mut nearest, mut is_back) = ((f64::INFINITY, Vec::new()), false);
         for step in 1..=most_steps {
+            stop_if_unwanted();
             if step > 1 && options.deadline.is_some_and(|end| Instant::now() > end) {
                 break;
             }
             steps = step;
             let start = Instant::now();
-            let (matrix, fixed) = constrained(&system, &held, &closed);
+            let (matrix, fixed) = constrained(&system, &held, (&laws, &states));
             let structure = symbolic.take().ok_or(DualError::ContactUndetermined)?;
             let par = options.par(structure.numbers());
             let factor = Factor::of_semidefinite(structure, matrix.as_ref(), par).map_err(broken)?;
@@ -108,6 +113,8 @@ impl ActiveSet {
             for (value, k) in load.iter_mut().zip(system.multiply(&x)) {
                 *value -= k;
             }
+            let resistance = system.resistance(&states);
+            load[first_jump..].iter_mut().zip(&resistance).for_each(|(load, resistance)| *load -= resistance);
             clear(&mut load, &fixed);
             let dx = factor.solve(&load);
             x.iter_mut().zip(&dx).for_each(|(a, b)| *a += b);
@@ -126,21 +133,21 @@ impl ActiveSet {
                 enough: ROUND_OFF,
                 most_steps: self.most_refinements,
             };
-            let now = refinement.run(Refined::new(problem, &system, x))?;
+            let now = refinement.run(Refined::new(problem, &system, x).resisted(&system, resistance))?;
             let bounds = system.jump_bound.iter().filter(|g| g.is_finite());
             let depth = now.x[first_jump..].iter().chain(bounds).fold(0.0_f64, |m, j| m.max(j.abs()));
-            let misses = ends.misses(&now, &closed, &vec![depth; closed.len()]);
-            let mut next = next_state(&closed, &misses);
+            let misses = ends.misses(&now, &states, &vec![depth; states.len()]);
+            let mut next = ends.next(&now, &states, &misses);
             left = misses.iter().fold(0.0, |m, by| by.max(m));
             if left < nearest.0 {
-                nearest = (left, closed.clone());
+                nearest = (left, states.clone());
             }
             let mut round = false;
-            if !seen.insert(closed.clone()) {
+            if !seen.insert(states.clone()) {
                 // One end at a time leads from a state to always the same next one.
                 round = careful;
                 careful = true;
-                seen = HashSet::from([closed.clone()]);
+                seen = HashSet::from([states.clone()]);
             }
             let at_rounding = careful && left <= self.accuracy();
             if round && !from_closed && !at_rounding {
@@ -149,26 +156,29 @@ impl ActiveSet {
                     break;
                 }
                 is_back = true;
-                closed.clone_from(&nearest.1);
+                states.clone_from(&nearest.1);
                 symbolic = Some(factor.into_symbolic());
                 continue;
             }
-            let anew = from_closed && (round || at_rounding && next != closed);
+            let anew = from_closed && (round || at_rounding && next != states);
             if anew {
                 // What misses is rounding of jumps that nothing holds: with open contact nothing presses them either.
                 from_closed = false;
-                next = vec![false; closed.len()];
+                next = laws
+                    .iter()
+                    .map(|law| if let Law::Friction { .. } = law { State::Held } else { State::Below })
+                    .collect();
                 seen.clear();
-            } else if careful && next != closed {
+            } else if careful && next != states {
                 // Back in a state it has been in: from here on one end at a time, which cannot cycle.
-                next.clone_from(&closed);
+                let asked = std::mem::replace(&mut next, states.clone());
                 if let Some(last) = misses.iter().rposition(|by| *by > GRAZING) {
-                    next[last] = !next[last];
+                    next[last] = asked[last];
                 }
             }
             seconds.contact += start.elapsed().as_secs_f64();
             // In a state that it has been in, what misses by no more than the result may is rounding.
-            if next == closed || (at_rounding && !anew) {
+            if next == states || (at_rounding && !anew) {
                 let start = Instant::now();
                 let stress = system.modes.stresses(problem, &now.s);
                 let moments = system.unknowns.moments(&now.x);
@@ -188,7 +198,7 @@ impl ActiveSet {
                 return Ok(Found {
                     stress,
                     moments,
-                    closed: system.unknowns.by_pair(closed),
+                    closed: system.unknowns.by_pair(are_held(&states)),
                     unknowns: system.unknowns.count,
                     iterations: step,
                     seconds,
@@ -197,7 +207,7 @@ impl ActiveSet {
                     divided: None,
                 });
             }
-            closed = next;
+            states = next;
             symbolic = Some(factor.into_symbolic());
         }
         Err(DualError::NotConverged {
@@ -222,16 +232,18 @@ fn clear(values: &mut [f64], fixed: &[Option<f64>]) {
     }
 }
 
-/// K with the rows and columns of held unknowns and closed jumps taken out, and the values these have.
-fn constrained(system: &System, held: &[usize], closed: &[bool]) -> (SparseColMat<usize, f64>, Vec<Option<f64>>) {
+/// K with the rows and columns of held unknowns and jumps taken out, and the values these have.
+fn constrained(
+    system: &System,
+    held: &[usize],
+    (laws, states): (&[Law], &[State]),
+) -> (SparseColMat<usize, f64>, Vec<Option<f64>>) {
     let mut fixed = vec![None; system.unknowns.count];
     for &d in held {
         fixed[d] = Some(0.0);
     }
-    for (i, &closed) in closed.iter().enumerate() {
-        if closed {
-            fixed[system.unknowns.first_jump + i] = Some(system.jump_bound[i]);
-        }
+    for (i, (law, state)) in laws.iter().zip(states).enumerate() {
+        fixed[system.unknowns.first_jump + i] = law.kink(*state);
     }
     let mut matrix = (*system.matrix).clone();
     isolate(&mut matrix, |d| fixed[d].is_some());
@@ -253,7 +265,7 @@ mod tests {
         let (problem, options) = (two_blocks(), Options::default());
         let whole = ActiveSet::default().solve(&problem, &[], &options).expect("an answer");
         assert!(whole.iterations > 2);
-        let closed: Vec<bool> = whole.closed.values().to_vec();
+        let closed = crate::dual::contact::states::states(whole.closed.values());
         let rescued = ActiveSet::default().rescue(&problem, &[], &options, Some(closed)).expect("an answer");
         assert_eq!((rescued.iterations, &rescued.closed), (1, &whole.closed));
     }

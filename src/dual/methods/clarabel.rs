@@ -14,7 +14,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 
-use super::method::{plane_only, without_springs};
+use super::method::{contact_alone, plane_only};
 use crate::dual::equilibrium::Equilibrium;
 use crate::dual::hybrid::{Motion, parameters, residual};
 use crate::dual::system::System;
@@ -63,7 +63,7 @@ impl DualMethod for Clarabel {
         let mut seconds = Phases::default();
         plane_only(problem, self.name())?;
         let start = Instant::now();
-        without_springs(problem, self.name())?;
+        contact_alone(problem, self.name())?;
         let system = System::new(problem, options);
         let program = ConicProgram::new(problem, &system);
         seconds.assemble = start.elapsed().as_secs_f64();

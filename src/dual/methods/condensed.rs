@@ -14,13 +14,15 @@ use crate::dual::contact::ends::Ends;
 use crate::dual::contact::rigid::unsupported;
 use crate::dual::contact::schur::{ContactState, Schur};
 use crate::dual::contact::settling::Settling;
+use crate::dual::contact::states::held;
 use crate::dual::hybrid::Motion;
 use crate::dual::refinement::Refined;
 use crate::dual::system::reduced::Reduced;
 use crate::dual::system::{Structured, System};
 use crate::dual::{ActiveSet, DualError, DualMethod, Factorised, Found, Options, Phases, Size};
-use crate::element::SideValues;
+use crate::optimise::State;
 use crate::problem::Problem;
+use crate::process::stop_if_unwanted;
 
 /// The default method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,7 +57,7 @@ impl DualMethod for Condensed {
             // each step.
             Err(Unsettled {
                 error: first @ (DualError::ContactUndetermined | DualError::NotConverged { .. }),
-                closed,
+                states,
             }) => {
                 let why = match first {
                     DualError::ContactUndetermined => "the Schur complement on the contact did not determine its state",
@@ -63,7 +65,7 @@ impl DualMethod for Condensed {
                 };
                 let rescue = |from| ActiveSet::default().rescue(problem, motions, options, from);
                 // What was reached may be a state that its own stresses bear out and that leaves too much of equilibrium.
-                let from_there = closed.map(|closed| rescue(Some(closed)));
+                let from_there = states.map(|states| rescue(Some(states)));
                 match from_there.filter(Result::is_ok).unwrap_or_else(|| rescue(None)) {
                     Ok(mut found) => {
                         found.notes.push(format!("{why}; contact was found by active sets"));
@@ -81,12 +83,12 @@ impl DualMethod for Condensed {
 /// Why no answer came of it, and the contact state that it came to.
 struct Unsettled {
     error: DualError,
-    closed: Option<Vec<bool>>,
+    states: Option<Vec<State>>,
 }
 
 impl From<DualError> for Unsettled {
     fn from(error: DualError) -> Self {
-        Unsettled { error, closed: None }
+        Unsettled { error, states: None }
     }
 }
 
@@ -97,20 +99,22 @@ impl Condensed {
         let Structured { mut system, structure, seconds_of_structure } = System::structured(problem, options);
         seconds.assemble = (start.elapsed().as_secs_f64() - seconds_of_structure).max(0.0);
 
+        stop_if_unwanted();
         let start = Instant::now();
         let reduced = Reduced::new(problem, &mut system, structure?, motions, options)?;
         seconds.factor = seconds_of_structure + start.elapsed().as_secs_f64();
 
+        stop_if_unwanted();
         let start = Instant::now();
         let contact = Schur::new(&system, &reduced, self.longest_dense, options.budget, |most| {
             unsupported(problem, &system.unknowns, most)
         });
         let (y, c) = reduced.condense(&system.rhs);
-        let warm =
-            options.closed.as_ref().map(SideValues::values).filter(|closed| closed.len() == system.jump_bound.len());
-        let mut state = contact.solve(&c, &system.jump_bound, warm)?;
+        let warm = options.closed.as_ref().and_then(|closed| system.states_from(closed.values()));
+        let mut state = contact.solve(&c, &system.laws(), warm.as_deref())?;
         seconds.contact = start.elapsed().as_secs_f64();
 
+        stop_if_unwanted();
         let start = Instant::now();
         let x = reduced.expand(y, &state.jumps);
         let traction = contact.gradient(&c, &state.jumps);
@@ -124,7 +128,7 @@ impl Condensed {
             most_steps: self.most_refinements,
         };
         let now = Refined::new(problem, &system, x);
-        let reached = |error, state: &ContactState| Unsettled { error, closed: Some(state.closed.clone()) };
+        let reached = |error, state: &ContactState| Unsettled { error, states: Some(state.states.clone()) };
         let now = settling.run(now, &mut state).map_err(|error| reached(error, &state))?;
         let stress = system.modes.stresses(problem, &now.s);
         let moments = system.unknowns.moments(&now.x);
@@ -134,7 +138,7 @@ impl Condensed {
         }
         seconds.recover = start.elapsed().as_secs_f64();
         let (notes, unknowns) = (contact.notes(state.steps), system.unknowns.count);
-        let closed = system.unknowns.by_pair(state.closed);
+        let closed = system.unknowns.by_pair(held(&state.states));
         drop(contact);
         Ok(Found {
             stress,

@@ -10,7 +10,7 @@ use faer::Par;
 use crate::budget::Budget;
 use crate::dual::{Divided, Factorised, Motion, Phases, Size};
 use crate::element::{Block, Elements, SideValues, StressField};
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
 ///
@@ -61,17 +61,19 @@ pub trait DualMethod: Sync {
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError>;
 }
 
-/// Refuses springs and elastic layers to a method that has no words for them.
+/// Refuses springs, elastic layers and friction to a method that has no words for them.
 ///
 /// # Errors
 /// [`DualError::NotExpressible`].
-pub(in crate::dual) fn without_springs(problem: &Problem, method: &'static str) -> Result<(), DualError> {
-    let elastic = problem.interfaces.iter().find(|contact| contact.pairs.iter().any(|pair| pair.stiffness.is_some()));
-    let what = match (problem.beds.first(), elastic) {
-        (Some(bed), _) if bed.is_layer() => format!("the elastic layer {}", bed.name),
-        (Some(bed), _) => format!("the springs on {}", bed.name),
-        (None, Some(contact)) => format!("the stiffness of contact {}", contact.name),
-        (None, None) => return Ok(()),
+pub(in crate::dual) fn contact_alone(problem: &Problem, method: &'static str) -> Result<(), DualError> {
+    let with = |has: fn(&ContactPair) -> bool| problem.interfaces.iter().find(|contact| contact.pairs.iter().any(has));
+    let (elastic, rubbing) = (with(|pair| pair.stiffness.is_some()), with(|pair| pair.friction.is_some()));
+    let what = match (problem.beds.first(), elastic, rubbing) {
+        (Some(bed), ..) if bed.is_layer() => format!("the elastic layer {}", bed.name),
+        (Some(bed), ..) => format!("the springs on {}", bed.name),
+        (None, Some(contact), _) => format!("the stiffness of contact {}", contact.name),
+        (None, None, Some(contact)) => format!("the friction of contact {}", contact.name),
+        (None, None, None) => return Ok(()),
     };
     let remedy = "use --method condensed or active-set, without --engine";
     Err(DualError::NotExpressible { method, what, remedy })

@@ -10,11 +10,12 @@ use std::time::Instant;
 use super::program::Program;
 use super::rows::SparseRows;
 use crate::dual::equilibrium::{Equilibrium, LEAST_STRESS};
-use crate::dual::methods::method::{plane_only, without_springs};
+use crate::dual::methods::method::{contact_alone, plane_only};
 use crate::dual::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
 use crate::element::SideValues;
 use crate::element::polynomial::side;
 use crate::problem::{ContactPair, Problem, Sizes};
+use crate::process::stop_if_unwanted;
 
 /// The paper's method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +79,7 @@ impl DualMethod for Uzawa {
         let step = self.step_length.unwrap_or(if self.accelerate { 1.0 } else { 1.9 } / norm);
         notes.push(format!("uzawa: step length {step:.4e}, largest allowed {:.4e}", 2.0 / norm));
         let report = |k: usize, r: f64| {
+            stop_if_unwanted();
             if let Some(progress) = &options.progress {
                 progress(k, r);
             }
@@ -136,7 +138,7 @@ fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Re
             remedy: "use another method, or --degree 1",
         });
     }
-    without_springs(problem, method)?;
+    contact_alone(problem, method)?;
     let normal = |pair: &ContactPair| pair.direction.is_constant() && pair.direction.ends[0] == pair.normal;
     let Some(interface) = problem.interfaces.iter().find(|i| !i.pairs.iter().all(normal)) else { return Ok(()) };
     Err(DualError::NotExpressible {

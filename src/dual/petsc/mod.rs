@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::equilibrium::Equilibrium;
-use super::methods::method::{plane_only, without_springs};
+use super::methods::method::{contact_alone, plane_only};
 use super::modes::ModeTable;
 use super::system::unknowns::Unknowns;
 use super::{DualError, DualMethod, Found, Motion, Options, Phases, Size};
@@ -118,7 +118,7 @@ impl DualMethod for Petsc {
     fn solve(&self, problem: &Problem, motions: &[Motion], options: &Options) -> Result<Found, DualError> {
         plane_only(problem, self.name())?;
         let start = Instant::now();
-        without_springs(problem, self.name())?;
+        contact_alone(problem, self.name())?;
         let modes = ModeTable::new(problem, options.elements.clone());
         let unknowns = Unknowns::new(problem, modes.elements());
         let scratch = Scratch::new().map_err(|source| DualError::Exchange { path: env::temp_dir(), source })?;

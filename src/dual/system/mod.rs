@@ -48,8 +48,10 @@ pub struct System {
     pub rhs: Vec<f64>,
     /// The part of f that comes from applied tractions.
     pub external: Vec<f64>,
-    /// Upper bound ∫ g B_k of each jump.
+    /// Upper bound ∫ g B_k of each jump along n̂.
     pub jump_bound: Vec<f64>,
+    /// The coefficient of the friction bound of each jump along t̂.
+    pub slide_bound: Vec<f64>,
     /// −∫ τ_k:ε0 of each mode; empty where no body has an initial strain.
     pub initial: Arc<[f64]>,
 }
@@ -97,9 +99,10 @@ impl System {
         let external = load_of_tractions(problem, &unknowns, problem.tractions());
         rhs.iter_mut().zip(&external).for_each(|(r, e)| *r += e);
         let jump_bound = jump_bounds(problem, &unknowns);
+        let slide_bound = slide_bounds(problem, &unknowns);
         let matrix = Arc::new(SparseColMat::new(pattern.symbolic, values));
         let (unknowns, modes, springs) = (Arc::new(unknowns), Arc::new(modes), Arc::new(springs));
-        (System { unknowns, modes, springs, matrix, rhs, external, jump_bound, initial }, done)
+        (System { unknowns, modes, springs, matrix, rhs, external, jump_bound, slide_bound, initial }, done)
     }
 
     /// Number of parameters of triangles and springs.
@@ -159,7 +162,7 @@ fn entries(
     (values, rhs)
 }
 
-/// ∫ g B_k of each jump.
+/// ∫ g B_k of each jump along n̂.
 pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
     let gaps: Vec<Vec<f64>> = problem.pairs().map(ContactPair::gap_polynomial).collect();
     let mut bounds = jump_moments(problem, unknowns, gaps.iter().map(Vec::as_slice));
@@ -175,7 +178,7 @@ pub fn jump_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
     bounds
 }
 
-/// ∫ f B_k of each jump, f by its Bernstein coefficients on every pair: none where it vanishes.
+/// ∫ f B_k of each jump along n̂, f by its Bernstein coefficients on every pair: none where it vanishes.
 pub fn jump_moments<'a>(problem: &Problem, unknowns: &Unknowns, f: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
     let of_pair = |((pair, jumps), f): ((&ContactPair, &UnknownBlock), &[f64])| {
         let length = pair.length;
@@ -183,6 +186,15 @@ pub fn jump_moments<'a>(problem: &Problem, unknowns: &Unknowns, f: impl Iterator
         moments.into_iter().map(move |moment| length * moment)
     };
     problem.pairs().zip(unknowns.jump_blocks()).zip(f).flat_map(of_pair).collect()
+}
+
+/// The coefficient of the friction bound of each jump along t̂.
+fn slide_bounds(problem: &Problem, unknowns: &Unknowns) -> Vec<f64> {
+    let with_friction = problem.pairs().filter_map(|pair| pair.friction);
+    with_friction
+        .zip(unknowns.slide_blocks())
+        .flat_map(|(friction, slides)| friction.coefficients(slides.len - 1))
+        .collect()
 }
 
 /// Takes the given unknowns out of a symmetric matrix: their rows and columns become those of a diagonal matrix.

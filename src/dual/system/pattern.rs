@@ -24,7 +24,7 @@ impl Pattern {
         let block_of = unknowns.block_of();
         let mut touching: Vec<(u32, u32)> = Vec::new();
         for edges in &problem.mesh.triangle_edges {
-            let mut all = [0; 9];
+            let mut all = [0; 12];
             let mut n = 0;
             for &e in edges {
                 let (list, len) = unknowns.blocks_of_edge(e, &block_of);

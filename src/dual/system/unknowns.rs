@@ -4,10 +4,10 @@
 //! polynomials of each edge, conjugate to the coefficients of its traction. An edge has the larger degree of its two
 //! triangles, a contact pair the larger one of both sides. Moments given by a support drop out; on Γ_K the moments of the
 //! first side along the direction of contact are replaced by the jumps j_k = ∫(v' − v'')·n̂ B_k ds (see
-//! [`crate::dual::contact::moments`]), and all jumps are numbered last.
+//! [`crate::dual::contact::moments`]), where there is friction those along t̂ too, and all jumps are numbered last, first those along n̂.
 
 use super::beds::BedEdge;
-use crate::dual::contact::moments::ContactEdge;
+use crate::dual::contact::moments::{ContactEdge, ContactUnknowns, columns_along};
 use crate::element::polynomial::side;
 use crate::element::{Elements, SideValues};
 use crate::problem::{Condition, ContactPair, Problem};
@@ -108,6 +108,8 @@ pub struct Unknowns {
     pub count: usize,
     /// First jump; all unknowns from here on are jumps.
     pub first_jump: usize,
+    /// First jump along t̂; all from here on are such jumps.
+    pub first_slide: usize,
 }
 
 impl Unknowns {
@@ -136,10 +138,12 @@ impl Unknowns {
                 Condition::Clamped(_) | Condition::Axis => {}
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
-                    let jumps = matched.direction.columns(of_pair(matched));
+                    let jumps: usize = columns_along(matched, of_pair(matched)).iter().sum();
                     // Stretches of an elastic contact follow the moments of its first side.
                     let stretches = if side == 0 && matched.stiffness.is_some() { jumps } else { 0 };
-                    first_block[e] = push(2 * coefficients - jumps + stretches);
+                    if 2 * coefficients + stretches > jumps {
+                        first_block[e] = push(2 * coefficients - jumps + stretches);
+                    }
                     if side == 1 {
                         second[interface][pair] = Some(push(jumps));
                     }
@@ -148,8 +152,13 @@ impl Unknowns {
         }
         let pairs = problem.interfaces.iter().map(|i| i.pairs.iter());
         let jump_blocks: Vec<Vec<usize>> =
-            pairs.map(|pairs| pairs.map(|p| push(p.direction.columns(of_pair(p)))).collect()).collect();
-        let first_jump = jump_blocks.iter().flatten().next().map_or(next, |&b| blocks[b].start);
+            pairs.clone().map(|pairs| pairs.map(|p| push(p.direction.columns(of_pair(p)))).collect()).collect();
+        let slides = |p: &ContactPair| columns_along(p, of_pair(p))[1];
+        let mut with_friction = |p| Some(slides(p)).filter(|count| *count > 0).map(&mut push);
+        let slide_blocks: Vec<Vec<Option<usize>>> =
+            pairs.map(|pairs| pairs.map(&mut with_friction).collect()).collect();
+        let first_slide = slide_blocks.iter().flatten().flatten().next().map_or(next, |&b| blocks[b].start);
+        let first_jump = jump_blocks.iter().flatten().next().map_or(first_slide, |&b| blocks[b].start);
         let edges = problem
             .conditions
             .iter()
@@ -174,24 +183,23 @@ impl Unknowns {
                 Condition::Contact { interface, pair, side } => {
                     let matched = &problem.interfaces[interface].pairs[pair];
                     let own = if side == 0 { matched.first } else { matched.second.unwrap_or(matched.first) };
-                    let across = blocks[first_block[e]].start;
-                    let mut edge = ContactEdge::new(
-                        &matched.direction,
-                        degree[e].into(),
-                        side,
-                        own[0] != problem.mesh.edges[e].vertices[0],
-                        across,
-                        blocks[jump_blocks[interface][pair]].start,
-                        second[interface][pair].map(|b| blocks[b].start),
-                    );
+                    let reversed = own[0] != problem.mesh.edges[e].vertices[0];
+                    let start = |b: usize| blocks[b].start;
+                    let contact = ContactUnknowns {
+                        across: blocks.get(first_block[e]).map_or(usize::MAX, |block| block.start),
+                        jump: start(jump_blocks[interface][pair]),
+                        slide: slide_blocks[interface][pair].map(start),
+                        second: second[interface][pair].map(start),
+                    };
+                    let mut edge = ContactEdge::new(matched, degree[e].into(), side, reversed, contact);
                     let coefficients = usize::from(degree[e]) + 1;
                     let is_elastic = side == 0 && matched.stiffness.is_some();
-                    edge.stretch = is_elastic.then_some(across + coefficients);
+                    edge.stretch = is_elastic.then(|| contact.across + coefficients);
                     EdgeMoments::Contact(Box::new(edge))
                 }
             })
             .collect();
-        Unknowns { blocks, edges, degree, count: next, first_jump }
+        Unknowns { blocks, edges, degree, count: next, first_jump, first_slide }
     }
 
     /// Degree of the traction on edge `e`.
@@ -226,21 +234,19 @@ impl Unknowns {
     }
 
     /// Blocks that the moments of edge `e` depend on, and how many.
-    pub fn blocks_of_edge(&self, e: usize, block_of: &[u32]) -> ([usize; 3], usize) {
-        let block = |first: usize| block_of[first] as usize;
+    pub fn blocks_of_edge(&self, e: usize, block_of: &[u32]) -> ([usize; 4], usize) {
+        let mut all = ([0; 4], 0);
+        let mut add = |first: usize| {
+            all.0[all.1] = block_of[first] as usize;
+            all.1 += 1;
+        };
         match &self.edges[e] {
-            EdgeMoments::Given(_) => ([0; 3], 0),
-            EdgeMoments::Free(first) | EdgeMoments::Across { first, .. } => ([block(*first), 0, 0], 1),
-            EdgeMoments::Elastic(edge) => match edge.second() {
-                Some(second) => ([block(edge.first()), block(second), 0], 2),
-                None => ([block(edge.first()), 0, 0], 1),
-            },
-            EdgeMoments::Contact(edge) => match (edge.side, edge.second) {
-                (0, Some(other)) => ([block(edge.across), block(edge.jump), block(other)], 3),
-                (1, Some(own)) => ([block(edge.across), block(own), 0], 2),
-                _ => ([block(edge.across), block(edge.jump), 0], 2),
-            },
+            EdgeMoments::Given(_) => {}
+            EdgeMoments::Free(first) | EdgeMoments::Across { first, .. } => add(*first),
+            EdgeMoments::Elastic(edge) => [Some(edge.first()), edge.second()].into_iter().flatten().for_each(add),
+            EdgeMoments::Contact(edge) => edge.first_unknowns().for_each(add),
         }
+        all
     }
 
     /// The Cartesian moments of every edge, from the values of the unknowns.
@@ -309,13 +315,24 @@ impl Unknowns {
         }
     }
 
-    /// The blocks of jumps, one for each pair.
+    /// The blocks of jumps along n̂, one for each pair.
     pub fn jump_blocks(&self) -> impl Iterator<Item = &UnknownBlock> {
-        self.blocks.iter().filter(|b| b.start >= self.first_jump)
+        self.blocks.iter().filter(|b| b.start >= self.first_jump && b.start < self.first_slide)
     }
 
-    /// Flags of all jumps, pair by pair.
-    pub fn by_pair(&self, flags: Vec<bool>) -> SideValues<bool> {
+    /// The blocks of jumps along t̂, one for each pair with friction.
+    pub fn slide_blocks(&self) -> impl Iterator<Item = &UnknownBlock> {
+        self.blocks.iter().filter(|b| b.start >= self.first_slide)
+    }
+
+    /// Number of jumps along n̂.
+    pub fn normal_jumps(&self) -> usize {
+        self.first_slide - self.first_jump
+    }
+
+    /// Flags of the jumps along n̂, pair by pair.
+    pub fn by_pair(&self, mut flags: Vec<bool>) -> SideValues<bool> {
+        flags.truncate(self.normal_jumps());
         SideValues::new(self.jump_blocks().map(|b| b.len), flags)
     }
 }

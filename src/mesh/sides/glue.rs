@@ -200,8 +200,14 @@ fn insert_breaks(
         .with_inserted(&inserted, &mut record.parent)
         .map_err(|p| too_flat(scene, format!("contact '{}'", contact.name()), p))?;
     let of_gap = inner_points(&side, &links, &contact.gap.breaks()).len();
-    for (count, place) in [(of_gap, "the gap bends or touches"), (points.len() - of_gap, "windows of quantities bend")]
-    {
+    let mut of_friction = contact.gap.breaks();
+    of_friction.extend(scene.friction_breaks(index));
+    let with_friction = inner_points(&side, &links, &of_friction).len();
+    for (count, place) in [
+        (of_gap, "the gap bends or touches"),
+        (with_friction - of_gap, "the friction bound bends"),
+        (points.len() - with_friction, "windows of quantities bend"),
+    ] {
         if count > 0 {
             let text = format!("contact {}: {} inserted where {place}", contact.name(), counted(count, "vertex"));
             record.notes.push(Note { weakens_guarantee: false, text });

@@ -78,6 +78,7 @@ pub(in crate::problem) fn pair_along(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc),
+            friction: None,
             stiffness: contact.stiffness,
         });
     }

@@ -79,6 +79,7 @@ pub(in crate::problem) fn pair_around(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc),
+            friction: None,
             stiffness: contact.stiffness,
         });
         faced.push(*link);

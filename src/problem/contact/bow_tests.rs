@@ -20,6 +20,7 @@ fn pair(gap: &Gap, arc: [f64; 2]) -> ContactPair {
         arc,
         gap: arc.map(|s| gap.at(s)),
         bow: Bow::of(gap, arc),
+        friction: None,
         stiffness: None,
     }
 }

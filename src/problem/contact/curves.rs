@@ -2,7 +2,7 @@
 
 use crate::mesh::Curved;
 use crate::problem::{Condition, ContactPair, Problem, Refinement};
-use crate::scene::{Circle, Gap, MeshSource, Normals, Scene};
+use crate::scene::{Circle, FrictionBound, Gap, MeshSource, Normals, Scene};
 
 /// Part of the radius within which vertices of a contact lie on a circle.
 const ON_CIRCLE: f64 = 1e-6;
@@ -30,6 +30,7 @@ pub(in crate::problem) fn curved(problem: &Problem) -> Curved {
         let stays = contact.normals == Normals::Facets
             || contact.direction.is_some()
             || contact.obstacle.is_some()
+            || matches!(contact.friction, Some(FrictionBound::Table(_)))
             || !matches!(contact.gap, Gap::Constant(_));
         if stays {
             continue;

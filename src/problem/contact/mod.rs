@@ -4,6 +4,7 @@ pub(super) mod around;
 pub(super) mod bow;
 pub(super) mod curves;
 pub(super) mod direction;
+pub(super) mod friction;
 pub(super) mod normals;
 pub(super) mod softened;
 
@@ -99,6 +100,7 @@ pub(in crate::problem) fn pair_up(
             arc: link.arc,
             gap,
             bow: Bow::of(&contact.gap, link.arc.map(on_break)),
+            friction: None,
             stiffness: contact.stiffness,
         });
     }

@@ -47,7 +47,6 @@ pub(in crate::problem) fn refuse(
     matched: &Interface,
     section: Section,
     mesh: &Triangulation,
-    asks_for_quantities: bool,
 ) -> Result<(), ProblemError> {
     if contact.stiffness.is_none() {
         return Ok(());
@@ -58,10 +57,6 @@ pub(in crate::problem) fn refuse(
     if section.is_revolved() {
         let what = "`stiffness` is given, and elastic contact is one of plane scenes";
         return fault(what, "leave `stiffness` out of axisymmetric scenes");
-    }
-    if asks_for_quantities {
-        let what = "`stiffness` is given, and the scene asks for quantities, for which there is no interval with elastic contact";
-        return fault(what, "delete [[quantities]], or `stiffness`");
     }
     if matched.pairs.iter().any(|pair| !pair.direction.is_constant()) {
         let what = "`stiffness` is given, and the direction of contact turns along its edges";

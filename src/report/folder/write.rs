@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::proof;
+use crate::report::html::why;
 use crate::report::text::csv::{TABLES, tables};
 use crate::report::text::{json, junit, markdown};
 use crate::report::{Dossier, folder, html, vtu};
@@ -68,7 +69,7 @@ pub enum ReportError {
 pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 
 /// Writes `report.json`, `report.html`, `junit.xml`, `summary.md` and `fields.vtu` into `dir`, which is made if need be, and
-/// `checks.csv`, `contacts.csv` and `quantities.csv` where they have rows, and `proof.npz` where there is one; those of an earlier run go where they have none.
+/// `checks.csv`, `contacts.csv` and `quantities.csv` where they have rows, and `proof.npz` and `why.html` where there is a proof; those of an earlier run go where they have none.
 ///
 /// All are rendered before the first is written, and they take the place of an earlier run's at once (see
 /// [`folder`]): a reader sees neither half a file nor the files of two runs.
@@ -80,7 +81,10 @@ pub fn write(dossier: &Dossier, dir: &Path) -> Result<(), ReportError> {
     let tables = TABLES.iter().zip(&headers);
     let passing: Vec<folder::Passing> = tables
         .map(|(table, header)| folder::Passing { name: table.name, begins: header.as_bytes() })
-        .chain([folder::Passing { name: proof::NAME, begins: proof::BEGINS }])
+        .chain([
+            folder::Passing { name: proof::NAME, begins: proof::BEGINS },
+            folder::Passing { name: why::NAME, begins: why::BEGINS.as_bytes() },
+        ])
         .collect();
     folder::replace(dir, &render(dossier)?, &passing)
 }
@@ -97,7 +101,10 @@ pub(in crate::report) fn render(dossier: &Dossier) -> Result<Vec<(&'static str, 
         ("fields.vtu", vtu::vtu(dossier).map_err(|e| fail("fields.vtu", e.to_string()))?),
     ];
     files.extend(tables(report).into_iter().map(|(name, text)| (name, text.into_bytes())));
-    files.extend(dossier.proof.iter().map(|bytes| (proof::NAME, bytes.clone())));
+    if let Some(proof) = &dossier.proof {
+        files.push((proof::NAME, proof.clone()));
+        files.extend(why::why(report).map(|page| (why::NAME, page.into_bytes())));
+    }
     Ok(files)
 }
 

@@ -11,6 +11,7 @@ mod style;
 mod tables;
 mod values;
 mod verdict;
+pub(crate) mod why;
 
 use maud::{Markup, PreEscaped, html};
 

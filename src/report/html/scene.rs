@@ -81,6 +81,10 @@ fn loads(scene: &Scene) -> Markup {
                     Load::Pressure(p) => { "pressure " (significant(p, 5)) }
                     Load::Affine(load) => (affine(load)),
                 }
+                @for term in &traction.terms {
+                    " + (" (significant(term.value[0], 5)) ", " (significant(term.value[1], 5)) ") "
+                    "x" sup { (term.powers[0]) } "y" sup { (term.powers[1]) }
+                }
             } } }
         }
     }

@@ -34,12 +34,16 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
     let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
     let (work, meaning) = match energy.compliance {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
+        None if energy.friction_work.is_some() => (
+            "enclosed work",
+            "encloses the work of the loads less that of friction and of the reactions on prescribed displacements and gaps",
+        ),
         None => (
             "enclosed work",
             "encloses the work of the loads less that of the reactions on prescribed displacements and gaps",
         ),
     };
-    let rows = [
+    let mut rows = vec![
         ("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"),
         ("upper bound", significant(energy.upper, digits), upper.as_str()),
         ("gap", significant(energy.gap, 6), "upper − lower"),
@@ -64,6 +68,10 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
         ("guarantee", clean(&energy.guarantee.words), "on whose word the bracket holds for the scene as written"),
     ];
+    if energy.friction_work.is_some() {
+        let meaning = "∫ τ̄ |v_t' − v_t''| of the upper bound, which nothing stores";
+        rows.insert(7, ("work of friction", optional(energy.friction_work, digits), meaning));
+    }
     let across = report.data_range.as_ref().map(|range| {
         let digits = range.upper.map_or(6, |upper| digits_to_tell(range.lower, upper).max(6));
         let upper = range.upper.map_or("∞".to_string(), |upper| significant(upper, digits));
@@ -86,12 +94,6 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
                         tr {
                             td { "𝓛 of " (clean(&primal.name)) } td.n { (significant(primal.energy, digits)) }
                             td.why { (primal_meaning(primal)) }
-                        }
-                    }
-                    @if let Some(across) = &across {
-                        tr {
-                            td { "for all data" } td.n { (across) }
-                            td.why { "encloses the exact energies for all data in the ranges of the scene: it is as wide as these, however fine the mesh" }
                         }
                     }
                     @if let Some(across) = &across {

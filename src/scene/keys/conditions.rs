@@ -4,17 +4,20 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use super::bonds::{Bond, bond};
+use super::friction::friction;
 use super::obstacle::obstacle;
 use super::range::ordered;
 use super::springs::{no_stiffness, spring, stiffness_of};
+use super::table::table_of;
 use crate::scene::reading::error::{Fault, SceneError};
 use crate::scene::reading::fault::names;
 use crate::scene::reading::raw::{
-    At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTraction, Table,
+    At, RawAffine, RawContact, RawCurve, RawDisplacement, RawGap, RawScene, RawSupport, RawTerm, RawTraction, Table,
 };
 use crate::scene::reading::source::{Source, counted};
 use crate::scene::{
-    Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Touching, Traction,
+    Affine, Boundary, Contact, ContactSides, Gap, Load, MeshSource, Normals, Support, SupportKind, Term, Touching,
+    Traction,
 };
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
@@ -192,7 +195,26 @@ fn traction(raw: &At<Table<RawTraction>>, table: &str, taken: &mut Taken) -> Res
             Load::Affine(Affine { value, gradient: gradient.unwrap_or_default() })
         }
     };
-    Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load })
+    if let (Some(terms), Load::Pressure(_)) = (&traction.terms, load) {
+        let (table, other) = (table.to_owned(), "`pressure`, which is constant");
+        let remedy = "write the load as `value` and `terms`";
+        return Err(source.error(terms.span(), Fault::Misplaced { key: "terms", table, other, remedy }));
+    }
+    let terms = traction.terms.iter().flat_map(|terms| &terms.value);
+    let terms = terms.map(|raw| term(raw, table, source)).collect::<Result<_, _>>()?;
+    Ok(Traction { on: taken.claim(&traction.on, table, "on")?, load, terms })
+}
+
+fn term(raw: &RawTerm, table: &str, source: &Source) -> Result<Term, SceneError> {
+    let powers: [f64; 2] = source.vector(&raw.powers, (table, "terms.powers"))?;
+    let total = powers[0] + powers[1];
+    if !powers.iter().all(|p| *p >= 0.0 && p.fract() == 0.0) || !(2.0..=f64::from(Term::HIGHEST)).contains(&total) {
+        let (table, key, found) = (table.to_owned(), "terms.powers".to_owned(), source.written(raw.powers.span()));
+        let rule = "powers are whole numbers that add up to 2 … 6";
+        let remedy = "write what is constant or linear as `value` and `gradient`";
+        return Err(source.error(raw.powers.span(), Fault::Number { key, table, found, rule, remedy }));
+    }
+    Ok(Term { powers: powers.map(|p| p as u8), value: source.vector(&raw.value, (table, "terms.value"))? })
 }
 
 fn matrix(
@@ -228,12 +250,18 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     };
     let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    let stiffness = stiffness_of(contact, table, source)?;
+    let (stiffness, friction) = (stiffness_of(contact, table, source)?, friction(contact, table, source)?);
+    if let (Some(raw), Some(_), Some(_)) = (&contact.friction, &friction, stiffness) {
+        let remedy = "delete one of the two: elastic contact slides freely";
+        let (table, other) = (table.to_owned(), "`stiffness`, elastic contact");
+        return Err(source.error(raw.span(), Fault::Misplaced { key: "friction", table, other, remedy }));
+    }
     Ok(Contact {
         normals: normals(contact, table, source)?,
         direction,
         obstacle,
         stiffness,
+        friction,
         ..Contact::new(sides, gap)
     })
 }
@@ -269,21 +297,10 @@ fn normals(contact: &RawContact, table: &str, source: &Source) -> Result<Normals
     }
 }
 
-/// Least distance of two rows of a gap table, in parts of the last arc length: both become vertices of the mesh.
-const CLOSEST: f64 = 1e-9;
-const CLOSE: (&str, &str) = (
-    "no mesh can have vertices as close together as this row and the one before it",
-    "move the two apart, or leave out one of them",
-);
-
 fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> Result<Gap, SceneError> {
     const NEGATIVE: (&str, &str) = (
         "the sides must not overlap at the start",
         "write a gap of zero or more; an interference fit is one number below zero, between two sides",
-    );
-    const ARC: (&str, &str) = (
-        "an arc length is not negative",
-        "measure s along the first side, from its end that comes first in (x, y) order",
     );
     let rows = match &raw.value {
         RawGap::Constant(g) => {
@@ -305,35 +322,7 @@ fn gap(raw: &At<RawGap>, contact: &RawContact, table: &str, source: &Source) -> 
         RawGap::Curve(curve) => return touching(curve, raw, table, source),
         RawGap::Table(rows) => rows,
     };
-    if rows.is_empty() {
-        let remedy = "write at least one row [s, g], or a number";
-        let (key, found, expected) = ("gap".to_owned(), "0 rows".to_owned(), "at least one".to_owned());
-        return Err(source.error(raw.span(), Fault::Count { key, table: table.to_owned(), found, expected, remedy }));
-    }
-    let mut checked: Vec<[f64; 2]> = Vec::with_capacity(rows.len());
-    for (i, row) in rows.iter().enumerate() {
-        let key = format!("gap[{i}]");
-        let [s, g] = source.vector(row, (table, &key))?;
-        for (value, words) in [(s, ARC), (g, NEGATIVE)] {
-            let number = At { value, start: row.start, end: row.end };
-            source.number(&number, (table, &key), |x| x >= 0.0, words)?;
-        }
-        if let Some([before, _]) = checked.last()
-            && s <= *before
-        {
-            let relation = if s == *before { "the same as" } else { "less than" };
-            let fault = Fault::GapOrder { row: i + 1, table: table.to_owned(), s: format!("{s:?}"), relation };
-            return Err(source.error(row.span(), fault));
-        }
-        checked.push([s, g]);
-    }
-    let length = checked.last().map_or(0.0, |row| row[0]);
-    if let Some(i) = (1..checked.len()).find(|&i| checked[i][0] - checked[i - 1][0] < CLOSEST * length) {
-        let (key, found) = (format!("gap[{i}]"), source.written(rows[i].span()));
-        let fault = Fault::Number { key, table: table.to_owned(), found, rule: CLOSE.0, remedy: CLOSE.1 };
-        return Err(source.error(rows[i].span(), fault).with_related(rows[i - 1].span(), "the row before"));
-    }
-    Ok(Gap::Table(checked))
+    table_of(rows, raw.span(), (table, "gap"), NEGATIVE, source).map(Gap::Table)
 }
 
 fn touching(curve: &RawCurve, raw: &At<RawGap>, table: &str, source: &Source) -> Result<Gap, SceneError> {

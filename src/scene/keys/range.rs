@@ -1,6 +1,6 @@
 //! Numbers that are known between two ends alone, and the two scenes that enclose the energies of all that lie between.
 //!
-//! The least energy min 𝓛 grows with Young's moduli and the stiffness of springs and falls with gaps: 𝓛(v) does so for every v, or the set of admissible v
+//! The least energy min 𝓛 grows with Young's moduli, the stiffness of springs and friction bounds, and falls with gaps: 𝓛(v) does so for every v, or the set of admissible v
 //! shrinks. It does neither with Poisson's ratio, so that a range of it is refused. A scene with ranges holds the ends with the lowest
 //! energy; [`Scene::of_highest_energy`] is the scene of the other ends.
 
@@ -12,9 +12,9 @@ use serde::de::{Deserialize, Deserializer, SeqAccess, Visitor};
 use crate::elasticity::Elasticity;
 use crate::scene::reading::error::SceneError;
 use crate::scene::reading::fault::Fault;
-use crate::scene::reading::raw::{At, RawContact, RawGap, RawScene, RawStiffness, Table};
+use crate::scene::reading::raw::{At, RawBound, RawContact, RawGap, RawScene, RawStiffness, Table};
 use crate::scene::reading::source::Source;
-use crate::scene::{Body, Gap, Scene, SupportKind};
+use crate::scene::{Body, FrictionBound, Gap, Scene, SupportKind};
 
 /// A number of the scene that is known between two ends alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,8 @@ pub enum Ranged {
     Young(usize),
     /// The gap of a contact, by its index.
     Gap(usize),
+    /// The friction bound of a contact, by its index.
+    Friction(usize),
     /// The stiffness of the springs of a support, by its index, normal (0) or tangential (1).
     Spring(usize, usize),
     /// That of the elastic layer of a bond.
@@ -50,7 +52,9 @@ impl DataRange {
     pub fn softest(&self) -> f64 {
         match self.of {
             Ranged::Gap(_) => self.high,
-            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => self.low,
+            Ranged::Young(_) | Ranged::Friction(_) | Ranged::Contact(_) | Ranged::Spring(..) | Ranged::Layer(..) => {
+                self.low
+            }
         }
     }
 
@@ -58,7 +62,9 @@ impl DataRange {
     pub fn stiffest(&self) -> f64 {
         match self.of {
             Ranged::Gap(_) => self.low,
-            Ranged::Young(_) | Ranged::Spring(..) | Ranged::Layer(..) | Ranged::Contact(_) => self.high,
+            Ranged::Young(_) | Ranged::Friction(_) | Ranged::Contact(_) | Ranged::Spring(..) | Ranged::Layer(..) => {
+                self.high
+            }
         }
     }
 }
@@ -69,6 +75,7 @@ impl Scene {
         match range.of {
             Ranged::Young(body) => format!("Young's modulus of {}", self.bodies[body].name),
             Ranged::Gap(contact) => format!("the gap of {}", self.contacts[contact].name()),
+            Ranged::Friction(contact) => format!("the friction bound of {}", self.contacts[contact].name()),
             Ranged::Contact(contact) => format!("the stiffness of {}", self.contacts[contact].name()),
             Ranged::Spring(support, c) => {
                 format!("the {} stiffness of the springs on {}", DIRECTIONS[c], self.supports[support].on)
@@ -94,6 +101,9 @@ impl Scene {
                     }
                 }
                 Ranged::Gap(contact) => scene.draft.contacts[contact].gap = Gap::Constant(range.stiffest()),
+                Ranged::Friction(contact) => {
+                    scene.draft.contacts[contact].friction = Some(FrictionBound::Constant(range.stiffest()));
+                }
                 Ranged::Contact(contact) => scene.draft.contacts[contact].stiffness = Some(range.stiffest()),
                 Ranged::Spring(support, c) => {
                     if let SupportKind::Spring { stiffness } = &mut scene.draft.supports[support].kind {
@@ -240,6 +250,13 @@ pub(in crate::scene) fn ranges(raw: &RawScene, bodies: &[Body]) -> Vec<DataRange
         RawGap::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Gap(i), low, high }),
         _ => None,
     };
+    let bound = |(i, contact): (usize, &At<Table<RawContact>>)| {
+        let Table(friction) = &contact.value.0.friction.as_ref()?.value;
+        match &friction.bound.as_ref()?.value {
+            RawBound::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Friction(i), low, high }),
+            _ => None,
+        }
+    };
     let stiffness = |(i, contact): (usize, &At<Table<RawContact>>)| match &contact.value.0.stiffness.as_ref()?.value {
         RawNumber::Range(ends) => two(ends).map(|[low, high]| DataRange { of: Ranged::Contact(i), low, high }),
         RawNumber::One(_) => None,
@@ -253,6 +270,7 @@ pub(in crate::scene) fn ranges(raw: &RawScene, bodies: &[Body]) -> Vec<DataRange
     };
     let mut all: Vec<DataRange> = bodies.iter().enumerate().filter_map(young).collect();
     all.extend(raw.contacts.iter().enumerate().filter_map(gap));
+    all.extend(raw.contacts.iter().enumerate().filter_map(bound));
     all.extend(raw.contacts.iter().enumerate().filter_map(stiffness));
     for (i, support) in raw.supports.iter().enumerate() {
         if let Some(At { value: RawStiffness::Both(both), .. }) = &support.value.0.stiffness {

@@ -240,11 +240,18 @@ impl Quantity {
 
 impl Scene {
     /// The arc lengths of the first side of `contacts[contact]` that have to be vertices: those of its gap
-    /// ([`super::Gap::breaks`]), then those at which the windows of quantities bend.
+    /// ([`super::Gap::breaks`]), those of its friction, then those at which the windows of quantities bend.
     pub fn contact_breaks(&self, contact: usize) -> Vec<f64> {
         let mut breaks = self.contacts.get(contact).map_or_else(Vec::new, |contact| contact.gap.breaks());
+        breaks.extend(self.friction_breaks(contact));
         breaks.extend(self.window_breaks(contact));
         breaks
+    }
+
+    /// The arc lengths at which the friction bound of `contacts[contact]` bends.
+    pub(crate) fn friction_breaks(&self, contact: usize) -> Vec<f64> {
+        let bound = self.contacts.get(contact).and_then(|contact| contact.friction.as_ref());
+        bound.map_or_else(Vec::new, super::FrictionBound::breaks)
     }
 
     /// The arc lengths at which windows of quantities on `contacts[contact]` bend.

@@ -208,11 +208,13 @@ pub enum Fault {
         /// The contact.
         table: String,
     },
-    /// A gap table out of order.
-    #[error("row {row} of the gap table in {table} has s = {s}, {relation} the row before it")]
+    /// A table of a function of the arc length out of order.
+    #[error("row {row} of the {key} table in {table} has s = {s}, {relation} the row before it")]
     GapOrder {
         /// Row, from 1.
         row: usize,
+        /// What is given by rows.
+        key: &'static str,
         /// The contact.
         table: String,
         /// Arc length, as written.

@@ -105,7 +105,7 @@ pub(in crate::scene) struct RawScene {
     /// Boundaries that are loaded.
     #[serde(default)]
     pub tractions: Vec<At<Table<RawTraction>>>,
-    /// Boundaries that may touch, without friction.
+    /// Boundaries that may touch.
     #[serde(default)]
     pub contacts: Vec<At<Table<RawContact>>>,
     /// Boundaries that are glued to each other.
@@ -470,11 +470,26 @@ pub(in crate::scene) struct RawTraction {
     /// Rows of the constant gradient: P(x) = value + gradient · x.
     #[schemars(with = "Option<[[f64; 2]; 2]>")]
     pub gradient: Option<At<Vec<Pair>>>,
+    /// Terms of a polynomial beyond it: P(x, y) = value + gradient · (x, y) + Σ term.value · xⁱ yʲ.
+    pub terms: Option<At<Vec<RawTerm>>>,
     /// Pressure along the inward normal.
     pub pressure: Option<At<f64>>,
 }
 
-/// A frictionless contact, `between` two boundaries or `on` one against a rigid obstacle.
+/// A term of a traction: value · xⁱ yʲ.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Term")]
+pub(in crate::scene) struct RawTerm {
+    /// i and j, whole numbers that add up to 2 … 6.
+    #[schemars(with = "[u8; 2]")]
+    pub powers: Pair,
+    /// The factor.
+    #[schemars(with = "[f64; 2]")]
+    pub value: Pair,
+}
+
+/// A contact, `between` two boundaries or `on` one against a rigid obstacle.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Contact", extend("oneOf" = [{"required": ["between"]}, {"required": ["on"]}]))]
@@ -499,9 +514,74 @@ pub(in crate::scene) struct RawContact {
     #[serde(rename = "move")]
     #[schemars(with = "Option<[f64; 2]>")]
     pub moved: Option<Pair>,
+    /// What resists sliding; nothing where it is missing.
+    pub friction: Option<At<Table<RawFriction>>>,
     /// Elastic contact: force per area and penetration beyond the gap, or the two ends of a range; rigid where it is missing.
     #[schemars(with = "Option<RawNumber>")]
     pub stiffness: Option<At<RawNumber>>,
+}
+
+/// Friction of a contact, with a given `bound` of the tangential traction. A `coefficient`, Coulomb's, is not solved yet.
+#[derive(Debug, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Friction", extend("oneOf" = [{"required": ["bound"]}, {"required": ["coefficient"]}]))]
+pub(in crate::scene) struct RawFriction {
+    /// The largest tangential traction, wherever the contact has one, whether it is open or closed.
+    pub bound: Option<At<RawBound>>,
+    /// The largest ratio of tangential to normal traction.
+    #[schemars(extend("minimum" = 0))]
+    pub coefficient: Option<At<f64>>,
+}
+
+/// A number, or the two ends [low, high] between which it is known to lie, or rows [s, bound]: piecewise linear in the arc length s of the first side, as of a gap.
+#[derive(Debug, JsonSchema)]
+#[serde(untagged)]
+#[schemars(rename = "Bound")]
+pub(in crate::scene) enum RawBound {
+    /// The same everywhere.
+    Constant(#[schemars(extend("minimum" = 0))] f64),
+    /// The ends of a number that is known as a range, the lower first.
+    Range(#[schemars(with = "[f64; 2]")] Vec<f64>),
+    /// Rows [s, bound] with s increasing.
+    Table(#[schemars(with = "Vec<[f64; 2]>", length(min = 1))] Vec<Pair>),
+}
+
+impl<'de> Deserialize<'de> for RawBound {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberOrRows;
+        impl<'de> Visitor<'de> for NumberOrRows {
+            type Value = RawBound;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number or rows [[s, bound], ...]")
+            }
+            fn visit_f64<E>(self, number: f64) -> Result<RawBound, E> {
+                Ok(RawBound::Constant(number))
+            }
+            fn visit_i64<E>(self, number: i64) -> Result<RawBound, E> {
+                Ok(RawBound::Constant(number as f64))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<RawBound, A::Error> {
+                let (table, ends) = rows_or_ends(rows)?;
+                Ok(if ends.is_empty() { RawBound::Table(table) } else { RawBound::Range(ends) })
+            }
+        }
+        deserializer.deserialize_any(NumberOrRows)
+    }
+}
+
+/// The entries of a list, all of them rows of two numbers or all of them the ends of a range.
+fn rows_or_ends<'de, A: SeqAccess<'de>>(mut rows: A) -> Result<(Vec<Pair>, Vec<f64>), A::Error> {
+    let (mut table, mut ends) = (Vec::new(), Vec::new());
+    while let Some(entry) = rows.next_element::<At<RawNumber>>()? {
+        match entry.value {
+            RawNumber::One(end) if table.is_empty() => ends.push(end),
+            RawNumber::Range(value) if ends.is_empty() => {
+                table.push(At { value, start: entry.start, end: entry.end });
+            }
+            _ => return Err(serde::de::Error::custom("rows of two numbers and numbers in one list")),
+        }
+    }
+    Ok((table, ends))
 }
 
 /// Two boundaries that are glued to each other. Their vertices need not be the same.
@@ -598,17 +678,8 @@ impl<'de> Deserialize<'de> for RawGap {
             fn visit_i64<E>(self, number: i64) -> Result<RawGap, E> {
                 Ok(RawGap::Constant(number as f64))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut rows: A) -> Result<RawGap, A::Error> {
-                let (mut table, mut ends) = (Vec::new(), Vec::new());
-                while let Some(entry) = rows.next_element::<At<RawNumber>>()? {
-                    match entry.value {
-                        RawNumber::One(end) if table.is_empty() => ends.push(end),
-                        RawNumber::Range(value) if ends.is_empty() => {
-                            table.push(At { value, start: entry.start, end: entry.end });
-                        }
-                        _ => return Err(serde::de::Error::custom("rows [s, g] and numbers in one list")),
-                    }
-                }
+            fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<RawGap, A::Error> {
+                let (table, ends) = rows_or_ends(rows)?;
                 Ok(if ends.is_empty() { RawGap::Table(table) } else { RawGap::Range(ends) })
             }
         }

@@ -54,7 +54,7 @@ fn bore(couple: f64, normals: Normals) -> Result<Problem, String> {
     let area = 0.375 * FACETS as f64 * (TAU / FACETS as f64).sin();
     model.scene.bodies[0].body_force = [0.0, -WEIGHT / area].into();
     let turning = Load::Affine(Affine { value: [0.0; 2], gradient: [[0.0, -couple], [couple, 0.0]] });
-    model.scene.tractions.push(Traction { on: "hub".into(), load: turning });
+    model.scene.tractions.push(Traction { on: "hub".into(), load: turning, terms: Vec::new() });
     let mut model = model.clamp("wall").contact("rim", "bore", Gap::Table(vec![[0.0, 0.0]]));
     model.scene.contacts[0].normals = normals;
     model.problem()

@@ -86,7 +86,11 @@ fn crack(slope: f64) -> Result<Problem, String> {
     model.scene.bodies.truncate(1);
     model.raw.triangles.iter_mut().for_each(|(_, body)| *body = "low".into());
     model.raw.segments.retain(|(_, name)| name != "low_top" && name != "high_bottom");
-    model.scene.tractions.push(crate::scene::Traction { on: "high_top".into(), load: Load::Pressure(1.0) });
+    model.scene.tractions.push(crate::scene::Traction {
+        on: "high_top".into(),
+        load: Load::Pressure(1.0),
+        terms: Vec::new(),
+    });
     model.problem()
 }
 

@@ -92,6 +92,7 @@ fn slit(shear: f64) -> Result<Problem, String> {
     model.scene.tractions.push(crate::scene::Traction {
         on: "upper_top".into(),
         load: crate::scene::Load::Affine(crate::scene::Affine { value: [shear, -1.0], gradient: [[0.0; 2]; 2] }),
+        terms: Vec::new(),
     });
     // Names that bonded edges no longer need would only be remarked on.
     model.raw.segments.retain(|(_, name)| name != "lower_top" && name != "upper_bottom");

@@ -206,6 +206,7 @@ impl Build {
                         arc: first.map(key),
                         gap: [0.0; 2],
                         bow: Bow::default(),
+                        friction: None,
                         stiffness: None,
                     }
                 })

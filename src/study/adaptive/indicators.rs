@@ -1,6 +1,6 @@
 //! Local terms of the gap as refinement indicators.
 
-use crate::bounds::UpperBound;
+use crate::bounds::{UpperBound, oscillation};
 use crate::problem::Problem;
 
 /// Part of the largest term below which terms wait.
@@ -9,7 +9,7 @@ const STANDS_OUT: f64 = 0.1;
 /// Terms whose relative difference is smaller count as equal.
 const EQUAL: f64 = 1e-7;
 
-/// One non-negative number per triangle; together they are the gap.
+/// One non-negative number per triangle; together they are the gap, with what tractions of higher degrees add to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indicators {
     terms: Vec<f64>,
@@ -33,6 +33,8 @@ impl Indicators {
             let sides: Vec<usize> = pair.sides().filter_map(|(_, e)| problem.mesh.edges[e].triangles[0]).collect();
             sides.iter().for_each(|&t| terms[t] += value.max(0.0) / sides.len() as f64);
         }
+        let of_tractions = oscillation::shares(problem, &upper.displacement, &upper.local.triangles);
+        of_tractions.into_iter().for_each(|(t, share)| terms[t] += share);
         Indicators { terms }
     }
 

@@ -206,9 +206,11 @@ fn energy(
             _ => in_numbers(mid_error / (2.0 * energy).sqrt()),
         },
         enclosed_work: enclosed_work(upper, sharpest),
-        compliance: problem.is_cone().then(|| enclosed_work(upper, sharpest)),
+        compliance: (problem.is_cone() && !problem.has_friction()).then(|| enclosed_work(upper, sharpest)),
         guaranteed,
         guarantee,
+        guaranteed_for: "scene".to_string(),
+        friction_work: problem.has_friction().then_some(upper.potential.friction),
     }
 }
 

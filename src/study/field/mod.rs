@@ -1,6 +1,7 @@
 //! A displacement field from a file: read, and brought onto the mesh of a scene.
 
 mod cells;
+mod content;
 mod curved;
 mod digits;
 mod displaced;
@@ -9,32 +10,9 @@ mod places;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use serde::Deserialize;
-
-use super::dossier::provenance::hash;
 use crate::compare::Candidate;
-use crate::mesh::files::meshio;
 use crate::problem::{Note, Problem};
-
-const SCRIPT: &str = concat!(
-    include_str!("../../mesh/files/readers/found.py"),
-    include_str!("../../mesh/files/readers/unv.py"),
-    include_str!("../../mesh/files/readers/text.py"),
-    include_str!("../../mesh/files/readers/exodus.py"),
-    include_str!("../../mesh/files/readers/med.py"),
-    include_str!("../../mesh/files/readers/frd.py"),
-    include_str!("../../mesh/files/readers/dat.py"),
-    include_str!("../../mesh/files/readers/choose.py"),
-    include_str!("own.py"),
-    include_str!("read.py")
-);
-const INSTEAD: &str = "write it as VTU, with triangles or quadrilaterals and the displacement as point data";
-/// What programs call a displacement, in lower case.
-const USUAL: [&str; 3] = ["displacement", "u", "disp"];
-/// Largest third component, in parts of the largest displacement, that counts as none.
-const FLAT: f64 = 1e-9;
 
 /// A displacement file that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -95,152 +73,7 @@ pub struct FieldArrays {
     pub single: bool,
 }
 
-#[derive(Deserialize)]
-struct Content {
-    points: Vec<Vec<Option<f64>>>,
-    single: bool,
-    /// Whether it is a file of this program, where a linear field has no values at the middles of edges.
-    #[serde(default)]
-    own: bool,
-    cells: Vec<Vec<usize>>,
-    others: Vec<String>,
-    fields: BTreeMap<String, Data>,
-}
-
-#[derive(Deserialize)]
-struct Data {
-    values: Option<Vec<Vec<Option<f64>>>>,
-    single: bool,
-}
-
 impl ForeignField {
-    /// Reads triangles and displacement of `file`, in any format that meshio reads. `name` is the name of the point
-    /// data; without it, point data called `displacement`, `u` or `disp` in any case is looked for, and the exact
-    /// `displacement` has precedence. meshio is given at most `limit`.
-    ///
-    /// # Errors
-    /// [`FieldError`] when the file cannot be read, or does not hold one plane displacement on triangles.
-    pub fn read(file: &Path, name: Option<&str>, limit: Duration) -> Result<Self, FieldError> {
-        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
-        let kind = std::fs::metadata(file)
-            .map_err(|e| fault(format!("cannot be opened: {e}"), "check the path given with --displacement"))?;
-        if kind.is_dir() {
-            return Err(fault("this is a directory".into(), "give the path of the file in it"));
-        }
-        if !kind.is_file() {
-            return Err(fault("this is not a regular file".into(), "write the field into a file"));
-        }
-        let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
-        let text = meshio::run(SCRIPT, file, INSTEAD, limit).map_err(|f| fault(f.what, &f.remedy))?;
-        Self::parse(&text, file, hash(&bytes), name)
-    }
-
-    /// The field in the arrays of `file` as meshio gave them, in JSON; `sha256` is that of the file.
-    ///
-    /// # Errors
-    /// As [`ForeignField::read`], without those of the file.
-    pub fn parse(text: &[u8], file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
-        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
-        let content =
-            serde_json::from_slice(text).map_err(|e| fault(format!("meshio gave no cells ({e})"), INSTEAD))?;
-        Self::checked(content, file, sha256, name)
-    }
-
-    /// The field in `arrays`, which have no file: `name` stands in its place.
-    ///
-    /// # Errors
-    /// As [`ForeignField::read`], without those of the file.
-    pub fn of_arrays(name: &str, arrays: FieldArrays) -> Result<Self, FieldError> {
-        let finite = |rows: Vec<Vec<f64>>| -> Vec<Vec<Option<f64>>> {
-            rows.into_iter().map(|row| row.into_iter().map(|x| Some(x).filter(|x| x.is_finite())).collect()).collect()
-        };
-        let FieldArrays { points, triangles, displacement, single } = arrays;
-        let numbers = points.iter().chain(&displacement).flatten().flat_map(|x| x.to_le_bytes());
-        let indices = triangles.iter().flatten().flat_map(|n| (*n as u64).to_le_bytes());
-        let sha256 = hash(&numbers.chain(indices).collect::<Vec<u8>>());
-        let values = finite(displacement);
-        if let Some(i) = values.iter().position(|row| ![2, 3].contains(&row.len())) {
-            let what = format!("the displacement has {} components at point {}", values[i].len(), i + 1);
-            let remedy = "give one row of two or three components for every point".to_string();
-            return Err(FieldError { file: name.into(), what, remedy });
-        }
-        let fields = BTreeMap::from([("displacement".to_string(), Data { values: Some(values), single })]);
-        let content =
-            Content { points: finite(points), single: false, own: false, cells: triangles, others: Vec::new(), fields };
-        Self::checked(content, Path::new(name), sha256, None)
-    }
-
-    fn checked(mut content: Content, file: &Path, sha256: String, name: Option<&str>) -> Result<Self, FieldError> {
-        let fault = |what: String, remedy: &str| FieldError { file: file.into(), what, remedy: remedy.into() };
-        if let Some(kind) = content.others.first() {
-            let what = format!("it has cells of the kind '{kind}'");
-            return Err(fault(
-                what,
-                "write the field on triangles with three or six nodes, or quadrilaterals with four, eight or nine",
-            ));
-        }
-        if content.cells.is_empty() {
-            return Err(fault("there is no triangle and no quadrilateral in it".into(), INSTEAD));
-        }
-        let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
-        let rows = data.values.as_deref().unwrap_or_default();
-        if content.own && rows.len() < content.points.len() {
-            // A linear field: vertices come first.
-            content.points.truncate(rows.len());
-            content.cells.iter_mut().for_each(|nodes| nodes.truncate(3));
-        }
-        let points: Option<Vec<[f64; 2]>> =
-            content.points.iter().map(|p| Some([*p.first()?.as_ref()?, *p.get(1)?.as_ref()?])).collect();
-        let Some(points) = points else {
-            return Err(fault("a point has no finite coordinates".into(), "write the file again"));
-        };
-        if rows.len() != points.len() {
-            let what = format!("'{name}' has {} values for {} points", rows.len(), points.len());
-            return Err(fault(what, "write one value for every point"));
-        }
-        if let Some(nodes) = content.cells.iter().find(|nodes| ![3, 4, 6, 8, 9].contains(&nodes.len())) {
-            let what = format!("it has a cell with {} nodes", nodes.len());
-            return Err(fault(what, INSTEAD));
-        }
-        let damaged = content.cells.iter().position(|nodes| nodes.iter().any(|&n| n >= points.len()));
-        if let Some(t) = damaged {
-            let what = format!("cell {} refers to a point beyond the {} of the file", t + 1, points.len());
-            return Err(fault(what, "write the file again"));
-        }
-        let triangles = cells::parts(&mut content.cells, &points).map_err(|what| fault(what, cells::REMEDY))?;
-        let size = rows.iter().flatten().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
-        if let Some(i) = rows.iter().position(|r| matches!(r.get(2), Some(Some(w)) if w.abs() > FLAT * size)) {
-            let what = format!("'{name}' has a third component at point {} that is not zero", i + 1);
-            return Err(fault(what, "this program is plane: write a displacement in the plane z = 0"));
-        }
-        let far = points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let third = || content.points.iter().filter_map(|p| p.get(2).copied().flatten());
-        let (low, high) = third().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
-        let extent = third().fold(far, |m, z| m.max(z.abs()));
-        if high - low > if content.single { f64::from(f32::EPSILON) } else { FLAT } * extent {
-            let what = format!("its points are not in one plane z = constant: z goes from {low} to {high}");
-            return Err(fault(what, "this program is plane: write the field in the plane z = 0"));
-        }
-        let values: Vec<Option<[f64; 2]>> =
-            rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
-        let single = data.single || content.single;
-        let numbers = values.iter().flatten().flatten().copied();
-        let precision = digits::precision(numbers, single).max(digits::of_format(file));
-        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-        Ok(ForeignField {
-            files: vec![(name, [0; 2])],
-            file: file.into(),
-            sha256,
-            points,
-            triangles,
-            cells: content.cells,
-            values,
-            single,
-            precision,
-            far,
-        })
-    }
-
     /// This field and that of another file, which has other bodies of the scene.
     pub fn and(mut self, other: ForeignField) -> Self {
         let first = [self.points.len(), self.cells.len()];
@@ -348,62 +181,5 @@ impl ForeignField {
 
     fn fault(&self, what: String, remedy: impl Into<String>) -> FieldError {
         FieldError { file: self.file.clone(), what, remedy: remedy.into() }
-    }
-}
-
-type Chosen<'a> = (&'a str, &'a Data);
-
-/// The point data that is the displacement.
-fn choose<'a>(fields: &'a BTreeMap<String, Data>, wanted: Option<&str>) -> Result<Chosen<'a>, (String, &'static str)> {
-    let all: Vec<&str> = fields.keys().map(String::as_str).collect();
-    let listed = |names: &[&str]| if names.is_empty() { "none".to_string() } else { names.join(", ") };
-    let vectors: Vec<Chosen> =
-        fields.iter().filter(|(_, d)| d.values.is_some()).map(|(name, d)| (name.as_str(), d)).collect();
-    let exact = wanted.unwrap_or("displacement");
-    if let Some(found) = vectors.iter().find(|(name, _)| *name == exact) {
-        return Ok(*found);
-    }
-    if let Some(wanted) = wanted {
-        let what =
-            format!("it has no point data '{wanted}' with two or three components (point data: {})", listed(&all));
-        return Err((what, "give one of these with --field, or write the displacement as point data"));
-    }
-    let usual: Vec<Chosen> =
-        vectors.into_iter().filter(|(name, _)| USUAL.contains(&name.to_lowercase().as_str())).collect();
-    match usual.as_slice() {
-        [one] => Ok(*one),
-        [] => Err((
-            format!("it has no vector field on points called displacement, u or disp (point data: {})", listed(&all)),
-            "write the displacement as point data of that name with two or three components, or name it with --field",
-        )),
-        several => {
-            let names: Vec<&str> = several.iter().map(|(name, _)| *name).collect();
-            Err((format!("several fields may be the displacement: {}", names.join(", ")), "choose one with --field"))
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn named(names: &[(&str, bool)]) -> BTreeMap<String, Data> {
-        let data = |vector: bool| Data { values: vector.then(Vec::new), single: false };
-        names.iter().map(|(name, vector)| (name.to_string(), data(*vector))).collect()
-    }
-
-    #[test]
-    fn the_displacement_is_found_by_name_and_doubt_is_told() {
-        let choice = |names: &[(&str, bool)], wanted| choose(&named(names), wanted).map(|c| c.0.to_string());
-        assert_eq!(choice(&[("U", true), ("p", false)], None), Ok("U".into()));
-        assert_eq!(choice(&[("u", true), ("displacement", true)], None), Ok("displacement".into()));
-        assert_eq!(choice(&[("u", true), ("f", true)], Some("f")), Ok("f".into()));
-        let several = choice(&[("U", true), ("u", true), ("disp", true)], None).unwrap_err().0;
-        assert!(several.contains("U, disp, u"), "{several}");
-        for wanted in [None, Some("u")] {
-            let (what, _) = choice(&[("u", false), ("traction", true)], wanted).unwrap_err();
-            assert!(what.contains("traction, u"), "{what}");
-        }
-        assert!(choice(&[], None).unwrap_err().0.contains("none"));
     }
 }

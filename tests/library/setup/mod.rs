@@ -212,6 +212,7 @@ impl Setup {
                     arc: [arc, arc + length],
                     gap: [gap(arc), gap(arc + length)],
                     bow: Bow::default(),
+                    friction: None,
                     stiffness: None,
                 });
                 arc += length;

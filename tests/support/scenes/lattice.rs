@@ -48,6 +48,16 @@ pub fn shapes(random: &mut Random) -> Made {
     scene(random, true)
 }
 
+/// Blocks or polygons, with the size of their tractions and of the scene.
+pub fn loaded(random: &mut Random) -> (Made, f64, f64) {
+    let aside = random.aside();
+    let frame = Frame::random(random);
+    let (traction, length) = (frame.young * frame.load, frame.length);
+    let general = random.chance(0.4);
+    let layout = Layout::random(random, general);
+    (complete(random, aside, frame, layout, Drawn { general, sheared: false, cells: None }), traction, length)
+}
+
 /// Bodies of any material, some of them warm or with initial stress.
 pub fn matter(random: &mut Random) -> Made {
     let aside = random.aside();

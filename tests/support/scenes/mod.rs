@@ -14,6 +14,7 @@ mod mixed;
 mod moved;
 mod msh;
 mod obstacles;
+mod rough;
 pub mod stack;
 mod turned;
 
@@ -68,7 +69,7 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 9] = [
+const LATER: [(&str, f64, Family); 10] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
@@ -76,6 +77,7 @@ const LATER: [(&str, f64, Family); 9] = [
     ("obstacles", 0.16, obstacles::obstacles),
     ("matter", 0.15, lattice::matter),
     ("heavy", 0.08, stack::heavy),
+    ("rough", 0.12, rough::rough),
     ("mixed", 0.2, mixed::mixed),
     ("turned", 0.1, turned::turned),
 ];

@@ -27,6 +27,13 @@ pub struct End<'a> {
     give: [f64; 2],
 }
 
+impl<'a> End<'a> {
+    /// Bounds of the jump along a direction at one end of a pair.
+    pub fn along(pair: &'a ContactPair, end: usize, normal: [f64; 2], [low, high]: [f64; 2], give: [f64; 2]) -> Self {
+        End { pair, first: pair.first[end], second: pair.second.map(|s| s[end]), normal, low, high, give }
+    }
+}
+
 /// Sweeps over all ends; ends that share no vertex are settled by the first.
 const MOST_SWEEPS: usize = 200;
 /// How far inside a bound a jump is moved, relative to the size of the displacement.

@@ -10,4 +10,5 @@ pub(super) mod minimum;
 pub(super) mod nearest;
 pub(super) mod nodes;
 pub(super) mod rows;
+pub(super) mod sliding;
 pub(super) mod yielded;

@@ -13,7 +13,7 @@ use crate::bounds::upper::energy::model::Model;
 use crate::bounds::upper::prepared::{Made, Prepared};
 use crate::bounds::upper::relaxation::patches::Patches;
 use crate::bounds::upper::relaxation::share::Whole;
-use crate::bounds::upper::{Holds, NoUpperBound, Pull, Until, holds_at, relaxation, restricted};
+use crate::bounds::upper::{Holds, NoUpperBound, Pull, Sliding, Until, holds_at, relaxation, restricted};
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -84,7 +84,9 @@ impl<'a> Nearest<'a> {
             rows.iter().cloned().zip(bounds).map(|(row, bound)| row.bounded(*bound)).collect()
         };
         let rows: Vec<Vec<Row>> = self.rows.iter().zip(bounds).map(bounded).collect();
-        let admissible = |field: NodalValues| Ok(restricted(self.problem, &self.holds, &rows, field, &Whole)?.0);
+        let admissible = |field: NodalValues| {
+            Ok(restricted(self.problem, (&self.holds, &rows, &Sliding::default()), field, &Whole)?.0)
+        };
         let candidates = vec![admissible(start)?];
         let at_rest = || admissible(NodalValues::zeros(self.nodes.clone()));
         self.pulled(pull, &rows, |model, patches| {

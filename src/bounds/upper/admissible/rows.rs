@@ -5,7 +5,7 @@
 
 use super::nodes::Nodes;
 use crate::mesh::Triangulation;
-use crate::problem::{ContactPair, Problem};
+use crate::problem::{ContactPair, Direction, Problem};
 
 /// One coefficient.
 #[derive(Debug, Clone)]
@@ -60,17 +60,25 @@ pub fn rows(problem: &Problem, nodes: &Nodes) -> Vec<Vec<Row>> {
 
 /// The coefficients of a pair from end to end.
 pub fn of_pair(pair: &ContactPair, sides: &[Option<Vec<usize>>; 2]) -> Vec<Row> {
-    let [first, last] = pair.direction.ends;
+    let mut rows = along_pair(&pair.direction, sides, 1.0);
+    if let Some(degree) = rows.len().checked_sub(1) {
+        rows.iter_mut().zip(pair.gap_below(degree)).for_each(|(row, gap)| row.gap = gap);
+    }
+    rows
+}
+
+/// The coefficients of `sense` (v' − v'') along a direction, without a gap.
+pub fn along_pair(direction: &Direction, sides: &[Option<Vec<usize>>; 2], sense: f64) -> Vec<Row> {
+    let [first, last] = direction.ends.map(|n| n.map(|n| sense * n));
     let Some(k) = sides.iter().flatten().map(|nodes| nodes.len() - 1).min() else { return Vec::new() };
     let jump = |j: usize, n: [f64; 2], factor: f64| {
         let term =
             move |(side, sign): (&Option<Vec<usize>>, f64)| Some((side.as_ref()?[j], n.map(|n| sign * factor * n)));
         sides.iter().zip([1.0, -1.0]).filter_map(term)
     };
-    let degree = if pair.direction.is_constant() { k } else { k + 1 };
-    let gap = pair.gap_below(degree);
+    let degree = if direction.is_constant() { k } else { k + 1 };
     let row = |j: usize| {
-        let terms = if pair.direction.is_constant() {
+        let terms = if direction.is_constant() {
             jump(j, first, 1.0).collect()
         } else {
             // The product with a linear function: (k + 1 − j) V_j·n̂_0 + j V_{j − 1}·n̂_1 over k + 1.
@@ -79,7 +87,7 @@ pub fn of_pair(pair: &ContactPair, sides: &[Option<Vec<usize>>; 2]) -> Vec<Row> 
             let before = (j > 0).then(|| jump(j - 1, last, part(j))).into_iter().flatten();
             own.chain(before).collect()
         };
-        Row { terms, gap: gap[j] }
+        Row { terms, gap: 0.0 }
     };
     (0..=degree).map(row).collect()
 }

@@ -54,6 +54,18 @@ pub fn reload(beds: &mut [BedEnergy], springs: Option<&OnSprings>) {
 }
 
 impl BedEnergy {
+    /// No springs, and the work ∫ f j of a force along a pair, x and y by coefficients of degree 2.
+    pub fn of_force(sides: [Vec<usize>; 2], length: f64, [x, y]: [[f64; 3]; 2]) -> Self {
+        let k = sides[0].len() - 1;
+        let along = |i: usize, f: &[f64; 3]| -> f64 {
+            length * f.iter().enumerate().map(|(m, f)| f * product(k, i, 2, m)).sum::<f64>()
+        };
+        let load = (0..=k).map(|i| [along(i, &x), along(i, &y)]).collect();
+        let axes = [[1.0, 0.0], [0.0, 1.0]];
+        let weight = EdgeWeight::default();
+        BedEnergy { sides, axes, stiffness: [0.0; 2], load, length, weight, gap: None, constant: 0.0 }
+    }
+
     /// All nodes, with the sign that their values have in the jump, and their place along the edge.
     pub fn nodes(&self) -> impl Iterator<Item = (usize, f64, usize)> + '_ {
         let sides = self.sides.iter().zip([1.0, -1.0]);

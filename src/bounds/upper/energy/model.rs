@@ -6,9 +6,10 @@ use super::pull::Pull;
 use crate::bounds::upper::admissible::holds::{Hold, Holds};
 use crate::bounds::upper::admissible::nodes::Nodes;
 use crate::bounds::upper::admissible::rows::Row;
+use crate::bounds::upper::admissible::sliding::Sliding;
 use crate::bounds::upper::relaxation::groups::Group;
 use crate::bounds::upper::relaxation::share::Share;
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// What does not change while patches move.
 #[derive(Debug)]
@@ -30,6 +31,8 @@ pub struct Model {
     /// The ends of the edge of each node beyond the vertices.
     ends: Vec<[usize; 2]>,
     vertices: usize,
+    /// The numbers of rows and springs that are not those of friction.
+    without_friction: [usize; 2],
     /// As [`crate::element::Section::translations`].
     pub translations: [f64; 2],
 }
@@ -61,7 +64,9 @@ impl Model {
         let rows_at = rows_at(problem, groups);
         let mut beds = energies(problem, nodes);
         reload(&mut beds, pull.springs);
+        let without_friction = [groups.iter().map(Vec::len).sum(), beds.len()];
         Model {
+            without_friction,
             energies: TriangleEnergies::new(problem, nodes, pull, like),
             free: directions(holds, nodes),
             rows: groups.iter().flatten().cloned().collect(),
@@ -80,8 +85,27 @@ impl Model {
     /// The same with another load and other bounds on the jumps.
     pub fn with(&mut self, problem: &Problem, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
         self.energies.reload(problem, nodes, pull);
+        let [rows, beds] = self.without_friction;
+        self.beds.truncate(beds);
+        self.rows_at.iter_mut().for_each(|at| at.retain(|row| *row < rows));
+        self.beds_at.iter_mut().for_each(|at| at.retain(|bed| *bed < beds));
         reload(&mut self.beds, pull.springs);
         self.rows = groups.iter().flatten().cloned().collect();
+    }
+
+    /// The same with the friction of contacts that slide and stick like this.
+    pub fn rub(&mut self, problem: &Problem, nodes: &Nodes, sliding: &Sliding) {
+        let pairs: Vec<&ContactPair> = problem.pairs().collect();
+        let ends = |number: usize| pairs[number].first.iter().chain(pairs[number].second.iter().flatten()).copied();
+        for (number, rows) in sliding.rows(problem, nodes) {
+            let numbers = self.rows.len()..self.rows.len() + rows.len();
+            ends(number).for_each(|v| self.rows_at[v].extend(numbers.clone()));
+            self.rows.extend(rows);
+        }
+        for (number, energy) in sliding.energies(problem, nodes) {
+            ends(number).for_each(|v| self.beds_at[v].push(self.beds.len()));
+            self.beds.push(energy);
+        }
     }
 
     /// Takes every elastic contact for the springs that it is at `values`, and gives the energy that these store beside the one that is

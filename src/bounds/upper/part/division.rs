@@ -16,7 +16,7 @@ use crate::bounds::upper::relaxation::fronts::Fronts;
 use crate::bounds::upper::relaxation::groups::Group;
 use crate::bounds::upper::relaxation::patches::{grouped, size};
 use crate::bounds::upper::relaxation::share::Whole;
-use crate::bounds::upper::{NoUpperBound, restricted};
+use crate::bounds::upper::{NoUpperBound, Sliding, restricted};
 use crate::element::displacement::split_len;
 use crate::element::{Displacement, SideValues, StressField, parts, starts};
 use crate::problem::Problem;
@@ -260,7 +260,13 @@ impl<'a> Division<'a> {
                 rest = behind;
             }
         }
-        let field = restricted(self.problem, &self.holds, &rows(self.problem, &self.nodes), field, &Whole)?.0;
+        let field = restricted(
+            self.problem,
+            (&self.holds, &rows(self.problem, &self.nodes), &Sliding::default()),
+            field,
+            &Whole,
+        )?
+        .0;
         Ok(Some(interior::filled_with(self.problem, &field, |t| &inside[start[t]..start[t + 1]])))
     }
 }

@@ -265,6 +265,8 @@ fn read_contacts(from: &mut Reader<impl Read>) -> io::Result<Vec<Interface>> {
             arc: [begin, end],
             gap: [g, h],
             bow: Bow::from_numbers(bow)?,
+            // Ranks share no scene that has friction.
+            friction: None,
             stiffness: None,
         })
     };

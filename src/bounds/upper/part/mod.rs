@@ -27,7 +27,7 @@ use super::relaxation::fronts::Fronts;
 use super::relaxation::groups::Group;
 use super::relaxation::patches::Patches;
 use super::relaxation::share::Share;
-use super::{Groundwork, NoUpperBound, Pull, relaxed, restricted};
+use super::{Groundwork, NoUpperBound, Pull, Sliding, relaxed, restricted};
 use crate::bounds::ranks::Ranks;
 use crate::bounds::rounding::counted::Counted;
 use crate::bounds::rounding::sum::Sum;
@@ -104,7 +104,7 @@ impl Part {
         let mut ground = Groundwork { nodes, holds: holds.clone(), rows, made };
         let field = relaxed(&mut ground, problem, (stress, moments), floor, None, &share)?;
         let values = self.own_nodes.iter().map(|node| field.values[*node]).collect();
-        let field = restricted(problem, holds, &ground.rows, field, &share)?.0;
+        let field = restricted(problem, (holds, &ground.rows, &Sliding::default()), field, &share)?.0;
         let filled = interior::fill(problem, &field, &ground.made.model);
         let own = (0..filled.len()).filter(|t| own_triangles[*t]);
         let inside = own.flat_map(|t| &filled.block(t)[3 * filled.degree(t)..]).copied().collect();

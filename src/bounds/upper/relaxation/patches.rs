@@ -11,6 +11,7 @@ use super::share::Share;
 use crate::bounds::upper::admissible::nodes::Nodes;
 use crate::bounds::upper::energy::model::Model;
 use crate::problem::Problem;
+use crate::process::stop_if_unwanted;
 
 /// Patches with more unknowns than this for quadratics, at vertices with scores of triangles, are left as they are.
 const MOST_IN_PATCH: usize = 300;
@@ -94,6 +95,7 @@ impl Patches {
         values: &mut [[f64; 2]],
         share: &dyn Share,
     ) -> f64 {
+        stop_if_unwanted();
         let all: Vec<usize>;
         let which_of_all = match which {
             Some(which) => which,

@@ -102,7 +102,8 @@ impl Solution<'_> {
     pub(super) fn recognise(&mut self) {
         let of = |interface: usize| {
             let limits = self.limits(interface);
-            if self.is_nodal(interface, &limits) {
+            // The laws known here are those of contact that slides freely.
+            if self.problem.has_friction() || self.is_nodal(interface, &limits) {
                 return None;
             }
             let shapes: &[Shape] =

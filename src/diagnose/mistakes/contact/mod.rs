@@ -1,6 +1,7 @@
 //! Contact that is no unilateral, frictionless contact: penalties, gaps, friction, glue.
 
 mod penalty;
+mod rubbing;
 mod tangential;
 mod weak;
 
@@ -23,7 +24,11 @@ const CONSTANT: f64 = 1e-3;
 /// What the forces along each contact say where it penetrates, pulls or pushes while open.
 pub fn findings(solution: &Solution<'_>, energies: Energies) -> Vec<Finding> {
     let interfaces = 0..solution.problem.interfaces.len();
-    interfaces.filter_map(|index| Along::new(solution, index).finding(energies)).collect()
+    let of = |index: usize| {
+        let along = Along::new(solution, index);
+        [along.finding(energies), along.friction()]
+    };
+    interfaces.flat_map(of).flatten().collect()
 }
 
 /// The nodes of one contact.

@@ -1,0 +1,91 @@
+//! What tractions of a higher degree than one cost the bracket.
+//!
+//! With r the rest of the traction that its nearest affine one leaves on the edges, and σ_r the stress of least energy that balances it
+//! on the triangles beside them, v is admissible for both loads, and λ + σ_r for the polynomial. So the exact energy lies above
+//! −Π(λ) − ∫ r·v − Σ √(2 gap_T) ‖σ_r‖_T − ½ ‖σ_r‖², because ∫ (aλ + ε0 − e(v)):σ_r is no larger than the third term and ∫ e(v):σ_r = ∫ r·v,
+//! and below 𝓛(v) − ∫ r·v, both with 𝓛 and Π of the affine loads.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::energy::work_on_edges;
+use crate::element::{Displacement, block};
+use crate::load::BodyForce;
+use crate::problem::{Oscillation, Problem};
+
+/// What rounding may leave of the balance of a rest, relative to the traction.
+const BALANCED: f64 = 1e-9;
+
+/// What it costs the upper bound of `v`, thickness included.
+pub fn above(problem: &Problem, v: &Displacement) -> f64 {
+    if problem.has_polynomial_tractions() { (-work(problem, &problem.oscillations(), v)).max(0.0) } else { 0.0 }
+}
+
+/// What it costs the lower bound; `free` has a displacement and its gap on every triangle. Nothing is left without one.
+pub fn below(problem: &Problem, free: Option<(&Displacement, &[f64])>) -> f64 {
+    if !problem.has_polynomial_tractions() {
+        return 0.0;
+    }
+    let Some((v, gaps)) = free else { return f64::INFINITY };
+    work(problem, &problem.oscillations(), v).max(0.0) + balanced(problem, gaps).values().sum::<f64>()
+}
+
+/// What the rests of tractions add to the width of the bracket, by the triangles beside them.
+pub fn shares(problem: &Problem, v: &Displacement, gaps: &[f64]) -> Vec<(usize, f64)> {
+    if !problem.has_polynomial_tractions() {
+        return Vec::new();
+    }
+    let beside = |rest: Oscillation| {
+        let t = problem.mesh.edges[rest.edge].triangles[0]?;
+        Some((t, work(problem, &[rest], v).abs()))
+    };
+    let works = problem.oscillations().into_iter().filter_map(beside);
+    works.chain(balanced(problem, gaps)).collect()
+}
+
+/// √(2 gap_T) ‖σ_r‖_T + ½ ‖σ_r‖²_T of the triangles beside loaded edges, thickness included.
+fn balanced(problem: &Problem, gaps: &[f64]) -> BTreeMap<usize, f64> {
+    let mut beside = BTreeMap::<usize, Vec<Oscillation>>::new();
+    for rest in problem.oscillations() {
+        if let Some(t) = problem.mesh.edges[rest.edge].triangles[0] {
+            beside.entry(t).or_default().push(rest);
+        }
+    }
+    let of_triangle = |(t, rests): (usize, Vec<Oscillation>)| {
+        let square = problem.scene.thickness * least_square(problem, t, &rests);
+        (t, (2.0 * gaps[t].max(0.0) * square).sqrt() + 0.5 * square)
+    };
+    beside.into_iter().map(of_triangle).collect()
+}
+
+/// ∫ r·v.
+fn work(problem: &Problem, rests: &[Oscillation], v: &Displacement) -> f64 {
+    let tractions: Vec<_> = rests.iter().map(|rest| (rest.edge, rest.rest.clone())).collect();
+    problem.scene.thickness * work_on_edges(problem, v, &tractions)
+}
+
+/// ‖σ_r‖²_a of the stress of least energy on triangle `t`; of a block of the degree of the rest, which has every self-equilibrated traction.
+fn least_square(problem: &Problem, t: usize, rests: &[Oscillation]) -> f64 {
+    let degree = rests.iter().map(|rest| rest.rest.len() - 1).max().unwrap_or(1);
+    let element = block(degree);
+    let material = problem.material(problem.mesh.body[t]).without_initial();
+    let modes = element.modes(problem.mesh.corners(t), &material, &BodyForce::NONE);
+    let count = element.tractions();
+    let mut wanted = DVector::<f64>::zeros(count);
+    for rest in rests {
+        let Some(side) = problem.mesh.triangle_edges[t].iter().position(|e| *e == rest.edge) else { continue };
+        for (k, value) in rest.rest.iter().enumerate() {
+            (0..2).for_each(|c| wanted[2 * (degree + 1) * side + 2 * k + c] = value[c]);
+        }
+    }
+    // Modes are orthonormal in energy, and their tractions are independent.
+    let tractions = DMatrix::from_row_slice(modes.parameters(), count, modes.traction());
+    let normal = &tractions * tractions.transpose();
+    let parameters = normal.cholesky().map(|factor| factor.solve(&(&tractions * &wanted)));
+    let Some(parameters) = parameters else { return f64::INFINITY };
+    // A rest is in balance but for rounding.
+    let left = (tractions.transpose() * &parameters - &wanted).norm();
+    let size = rests.iter().fold(0.0_f64, |m, rest| m.max(rest.size));
+    if left > BALANCED * size { f64::INFINITY } else { parameters.norm_squared() * (1.0 + BALANCED) }
+}

@@ -1,0 +1,126 @@
+//! The law of friction at the nodes of a field: a force along the contact that is no larger than its bound, and that against the slip.
+//!
+//! A method may ask for it at its nodes, in Bernstein coefficients, or under the integral of τ̄|j_t|: along an edge whose jump keeps its
+//! sign these are one in coefficients of its degree, and where the sign changes the integral may leave less. What one of them explains
+//! is explained.
+
+use super::{SOLVER, Solution, Span};
+use crate::compare::Check;
+use crate::compare::contact::slides::limits;
+use crate::problem::ContactPair;
+
+/// What friction does at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rubbed {
+    /// Index into [`super::Sites::list`].
+    pub site: usize,
+    /// Force on the first side along t̂, thickness included.
+    pub force: f64,
+    /// (v' − v'')·t̂.
+    pub slip: f64,
+    /// What friction carries at most.
+    pub limit: f64,
+    /// By how much the force misses what the law asks for.
+    pub miss: f64,
+}
+
+/// How a method asks for the law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    /// Of every node with its share of τ̄.
+    AtNodes,
+    /// Of Bernstein coefficients.
+    InCoefficients,
+}
+
+impl Solution<'_> {
+    /// Jumps along the contact below which the sides stick.
+    pub fn sticks_below(&self) -> f64 {
+        let rounding = self.of_displacements(1.0);
+        2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference
+    }
+
+    /// What friction does along contact `interface`, in the way that comes nearest to the law; at places alone where nothing else shares
+    /// its force.
+    pub fn rubbed(&self, interface: usize) -> Vec<Rubbed> {
+        let asked = [Ask::AtNodes, Ask::InCoefficients].map(|ask| self.rubbed_as(interface, ask));
+        let missed = |list: &[Rubbed]| list.iter().map(|r| r.miss).sum::<f64>();
+        let [nodes, coefficients] = asked;
+        if missed(&nodes) <= missed(&coefficients) { nodes } else { coefficients }
+    }
+
+    /// What friction does along contact `interface`, held to the law as one way of methods asks for it.
+    pub fn rubbed_as(&self, interface: usize, ask: Ask) -> Vec<Rubbed> {
+        let (mut force, mut slip) = (self.rubbing.clone(), self.slip.clone());
+        if ask == Ask::InCoefficients {
+            (force, slip) = self.sites.in_coefficients(&self.rubbing, &self.slip);
+        }
+        let sticks = self.sticks_below();
+        let count = self.sites.list.len();
+        let (mut least, mut most, mut limit) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        for span in self.sites.edges.iter().filter(|span| span.interface == interface) {
+            let pair = &self.problem.interfaces[interface].pairs[span.pair];
+            let shares = self.shares(span, pair, ask);
+            let any = |sign: f64| shares.iter().any(|(site, _)| sign * slip[*site] > sticks);
+            let turns = any(1.0) && any(-1.0);
+            for (site, share) in shares {
+                limit[site] += share;
+                let slides = slip[site].abs() > sticks;
+                let against = -share * slip[site].signum();
+                let [low, high] = if slides && !turns { [against; 2] } else { [-share, share] };
+                least[site] += low;
+                most[site] += high;
+            }
+        }
+        let own = (0..count).filter(|s| limit[*s] > 0.0 && self.sites.rubs_alone(*s));
+        let rubbed = |site: usize| Rubbed {
+            site,
+            force: force[site],
+            slip: slip[site],
+            limit: limit[site],
+            miss: (least[site] - force[site]).max(force[site] - most[site]).max(0.0),
+        };
+        own.map(rubbed).collect()
+    }
+
+    /// What friction carries at most at the places of a pair, thickness included.
+    pub fn shares(&self, span: &Span, pair: &ContactPair, ask: Ask) -> Vec<(usize, f64)> {
+        let degree = if span.middle.is_some() { 2 } else { 1 };
+        let mut shares = limits(self.problem, pair, degree);
+        if let ([a, m, b], Ask::AtNodes) = (&mut shares[..], ask) {
+            // Simpson's rule.
+            *a -= 0.5 * *m;
+            *b -= 0.5 * *m;
+            *m *= 2.0;
+        }
+        let sites = [Some(span.ends[0]), span.middle, Some(span.ends[1])].into_iter().flatten();
+        sites.zip(shares).collect()
+    }
+
+    /// The check of the law along contact `interface`; `None` without friction.
+    pub(super) fn friction_check(&self, interface: usize, name: &str) -> Option<Check> {
+        let pairs = &self.problem.interfaces[interface].pairs;
+        if pairs.iter().all(|pair| pair.friction.is_none()) {
+            return None;
+        }
+        let rubbed = if self.is_pushed() { Vec::new() } else { self.rubbed(interface) };
+        let total = self.applied().max(self.larger * self.carried(interface));
+        let missed: f64 = rubbed.iter().map(|r| r.miss).sum();
+        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss)).filter(|r| r.miss > 0.0);
+        let place = worst.map_or(String::new(), |r| {
+            format!(
+                " It is missed most at {}: a force of {:.3e} where friction carries at most {:.3e}, and the sides slide by {:.3e}.",
+                self.named(self.sites.list[r.site].first),
+                r.force,
+                r.limit,
+                r.slip
+            )
+        });
+        let part = if total > 0.0 { missed / total } else { missed };
+        let why = format!(
+            "Friction carries no more than its bound, and that much against the slip where the sides slide: the sum of the nodal forces \
+             that are missing or too many, relative to all forces.{place}"
+        );
+        Some(self.claimed(name, part, self.of_forces(), why))
+    }
+}

@@ -1,0 +1,284 @@
+//! Friction that is not that of the scene: left out, along the slip, of another bound, a spring, or smoothed.
+
+use std::f64::consts::FRAC_2_PI;
+
+use super::Along;
+use crate::compare::solution::{Ask, Rubbed, Shape};
+use crate::diagnose::Finding;
+use crate::diagnose::words::{near, number};
+use crate::problem::{ContactPair, Friction};
+use crate::scene::counted;
+
+/// How well forces have to follow a law, relative to all of them.
+const FOLLOWS: f64 = 0.03;
+/// Degrees of the rules by which other programs may integrate a law.
+const RULES: [usize; 3] = [2, 4, 8];
+/// Values of a parameter that are tried between the smallest and the largest slip, and how far beyond them.
+const TRIED: usize = 120;
+/// Decades beyond.
+const BEYOND: f64 = 3.0;
+/// A force this far above the bound, relative to it, is more than friction carries.
+const ABOVE: f64 = 1e-3;
+
+/// A tangential force per area as a function of the slip, with one parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Smooth {
+    /// min(k |j|, τ̄), k = τ̄ of the whole contact over the parameter: a spring up to the bound.
+    Spring,
+    /// τ̄ tanh(j/ε).
+    Tanh,
+    /// τ̄ j/√(j² + ε²).
+    Root,
+    /// τ̄ (2/π) arctan(j/ε).
+    Arctan,
+}
+
+impl Smooth {
+    const ALL: [Smooth; 4] = [Smooth::Spring, Smooth::Tanh, Smooth::Root, Smooth::Arctan];
+
+    /// The force against a slip `j` where the bound is `bound`; the spring has the stiffness `top`/`parameter`.
+    fn force(self, j: f64, bound: f64, top: f64, parameter: f64) -> f64 {
+        let x = j / parameter;
+        -match self {
+            Smooth::Spring => (top * x).clamp(-bound, bound),
+            Smooth::Tanh => bound * x.tanh(),
+            Smooth::Root => bound * x / (1.0 + x * x).sqrt(),
+            Smooth::Arctan => bound * FRAC_2_PI * x.atan(),
+        }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Smooth::Spring => "a spring",
+            Smooth::Tanh => "τ̄ tanh(j/ε)",
+            Smooth::Root => "τ̄ j/√(j² + ε²)",
+            Smooth::Arctan => "τ̄ (2/π) arctan(j/ε)",
+        }
+    }
+}
+
+/// A law with the parameter that fits best.
+struct Fit {
+    law: Smooth,
+    parameter: f64,
+    miss: f64,
+}
+
+impl Along<'_> {
+    /// What is wrong with the friction of this contact; `None` where nothing is, or where there is none.
+    pub(super) fn friction(&self) -> Option<Finding> {
+        let rubbed = self.solution.rubbed(self.interface);
+        let missed: f64 = rubbed.iter().map(|r| r.miss).sum();
+        if self.solution.is_pushed() || missed <= self.least {
+            return None;
+        }
+        let sticks = self.solution.sticks_below();
+        let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
+        let total: f64 = rubbed.iter().map(|r| r.force.abs()).sum();
+        if total <= self.least {
+            let sentence = format!(
+                "friction of contact {} is left out: it carries no force along its sides, which slide at {} of {} nodes",
+                self.name,
+                sliding.len(),
+                rubbed.len()
+            );
+            return Some(self.found("frictionless", Some(0.0), None, sentence));
+        }
+        let over: Vec<&Rubbed> = rubbed.iter().filter(|r| r.force.abs() > (1.0 + ABOVE) * r.limit).collect();
+        if sliding.is_empty() {
+            let most = over.iter().map(|r| r.force.abs() / r.limit).fold(0.0, f64::max);
+            let sentence = format!(
+                "contact {} sticks where it should slide: nowhere do its sides slide, and at {} the force along them is larger than friction \
+                 carries, up to {} times",
+                self.name,
+                counted(over.len(), "node"),
+                number(most)
+            );
+            return Some(self.found("sticks", Some(most), Some(1.0), sentence));
+        }
+        let ways = [Ask::AtNodes, Ask::InCoefficients];
+        let bound =
+            ways.into_iter().find_map(|ask| self.other_bound(ask, sticks).or_else(|| self.turned_bound(ask, sticks)));
+        let smooth = || {
+            let nodes = self.solution.rubbed_as(self.interface, Ask::AtNodes);
+            self.smooth(&nodes).map(|fit| self.told(&fit, &nodes))
+        };
+        bound.or_else(smooth).or_else(|| Some(self.unlike(&rubbed)))
+    }
+
+    fn found(&self, what: &str, value: Option<f64>, expected: Option<f64>, sentence: String) -> Finding {
+        Finding::new(format!("contact/{}/{what}", self.name), value, expected, sentence)
+    }
+
+    /// Forces against the slip, or along it, that are one number times the bound wherever the sides slide, and no larger where they stick.
+    fn other_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
+        let rubbed = self.solution.rubbed_as(self.interface, ask);
+        let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
+        let against = |r: &Rubbed| r.limit * r.slip.signum();
+        let (product, square) =
+            sliding.iter().fold((0.0, 0.0), |(p, s), r| (p - r.force * against(r), s + r.limit * r.limit));
+        let times = product / square;
+        let miss: f64 = sliding.iter().map(|r| (r.force + times * against(r)).powi(2)).sum();
+        let size: f64 = sliding.iter().map(|r| r.force * r.force).sum();
+        let within = |r: &Rubbed| r.slip.abs() > sticks || r.force.abs() <= (times.abs() + ABOVE) * r.limit;
+        let follows = (miss / size).sqrt() <= ABOVE && rubbed.iter().all(within);
+        if !follows || (times - 1.0).abs() <= ABOVE {
+            return None;
+        }
+        if near(times, -1.0) {
+            let sentence = format!(
+                "friction of contact {} acts along the slip and not against it: its force has the opposite sign at {}",
+                self.name,
+                counted(sliding.len(), "sliding node")
+            );
+            return Some(self.found("friction-sign", Some(times), Some(1.0), sentence));
+        }
+        let thousands = times.abs().log10() / 3.0;
+        let how = match () {
+            () if near(times, 2.0) || near(times, 0.5) => ", as if one of the two sides counted twice or half",
+            () if thousands.round() != 0.0 && (thousands - thousands.round()).abs() < ABOVE => {
+                ", which is another unit"
+            }
+            () => "",
+        };
+        let sentence =
+            format!("the friction bound of contact {} is {} times what the scene says{how}", self.name, number(times));
+        Some(self.found("friction-bound", Some(times), Some(1.0), sentence))
+    }
+
+    /// The bound of the scene counted from the other end of the contact.
+    fn turned_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
+        let rubbed = self.solution.rubbed_as(self.interface, ask);
+        let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
+        let pairs = &self.solution.problem.interfaces[self.interface].pairs;
+        let (begin, end) = (pairs.first()?.arc[0], pairs.last()?.arc[1]);
+        let bound = |s: f64| {
+            let pair = pairs.iter().find(|pair| pair.arc[0] <= s && s <= pair.arc[1])?;
+            let [a, b] = pair.friction.map_or([0.0; 2], |friction| friction.bound);
+            let part = (s - pair.arc[0]) / (pair.arc[1] - pair.arc[0]);
+            Some(a + part * (b - a))
+        };
+        let mut limit = vec![0.0; self.solution.sites.list.len()];
+        for span in self.solution.sites.edges.iter().filter(|span| span.interface == self.interface) {
+            let pair = &pairs[span.pair];
+            let bound = pair.arc.map(|s| bound(begin + end - s).unwrap_or(0.0));
+            let friction = pair.friction.map(|friction| Friction { bound, ..friction });
+            let turned = ContactPair { friction, ..*pair };
+            self.solution.shares(span, &turned, ask).into_iter().for_each(|(site, share)| limit[site] += share);
+        }
+        let miss: f64 = sliding.iter().map(|r| (r.force + limit[r.site] * r.slip.signum()).powi(2)).sum();
+        let size: f64 = sliding.iter().map(|r| r.force * r.force).sum();
+        ((miss / size).sqrt() <= ABOVE).then(|| {
+            let sentence =
+                format!("the friction bound of contact {} is counted from the other end of its first side", self.name);
+            self.found("friction-turned", None, None, sentence)
+        })
+    }
+
+    /// The smooth law, with its parameter, that the forces follow best.
+    fn smooth(&self, rubbed: &[Rubbed]) -> Option<Fit> {
+        let slips = rubbed.iter().map(|r| r.slip.abs()).filter(|j| *j > 0.0);
+        let (low, high) = slips.fold((f64::INFINITY, 0.0_f64), |(a, b), j| (a.min(j), b.max(j)));
+        let decades = (high / low).log10().min(12.0) + 2.0 * BEYOND;
+        let at = |i: f64| high * 10f64.powf(BEYOND - decades * i / TRIED as f64);
+        let mut best: Option<Fit> = None;
+        for law in Smooth::ALL {
+            for rule in [None].into_iter().chain(RULES.map(Some)) {
+                let miss = |parameter: f64| self.missed(rubbed, law, parameter, rule);
+                let coarse = (0..=TRIED).map(|i| (i as f64, miss(at(i as f64)))).min_by(|a, b| a.1.total_cmp(&b.1))?;
+                let (place, left) = sharpened(coarse, |i| miss(at(i)));
+                if best.as_ref().is_none_or(|fit| left < fit.miss) {
+                    best = Some(Fit { law, parameter: at(place), miss: left });
+                }
+            }
+        }
+        best.filter(|fit| fit.miss <= FOLLOWS)
+    }
+
+    /// What forces miss of a law, relative to all of them: at the nodes, or integrated by a rule.
+    fn missed(&self, rubbed: &[Rubbed], law: Smooth, parameter: f64, rule: Option<usize>) -> f64 {
+        let solution = self.solution;
+        let top = self.largest_bound();
+        let mut made = vec![0.0; solution.sites.list.len()];
+        match rule {
+            None => {
+                for r in rubbed {
+                    let area = solution.problem.scene.thickness * solution.sites.list[r.site].weight;
+                    made[r.site] = law.force(solution.slip[r.site], r.limit / area, top, parameter) * area;
+                }
+            }
+            Some(degree) => {
+                for station in solution.stations(self.interface, degree, Shape::Chords) {
+                    let span = &solution.sites.edges[station.edge];
+                    let friction = solution.problem.interfaces[self.interface].pairs[span.pair].friction;
+                    let bound = friction.map_or(0.0, |f| f.bound[0] + station.at * (f.bound[1] - f.bound[0]));
+                    let slip: f64 = station.sites.iter().map(|(site, value)| value * solution.slip[*site]).sum();
+                    let force = station.weight * law.force(slip, bound, top, parameter);
+                    station.sites.iter().for_each(|(site, value)| made[*site] += value * force);
+                }
+            }
+        }
+        let (mut miss, mut size) = (0.0, 0.0);
+        for r in rubbed {
+            let force = solution.rubbing[r.site];
+            miss += (force - made[r.site]).powi(2);
+            size += force * force;
+        }
+        (miss / size).sqrt()
+    }
+
+    fn largest_bound(&self) -> f64 {
+        let pairs = &self.solution.problem.interfaces[self.interface].pairs;
+        pairs.iter().filter_map(|pair| pair.friction).map(|friction| friction.largest()).fold(0.0, f64::max)
+    }
+
+    fn told(&self, fit: &Fit, rubbed: &[Rubbed]) -> Finding {
+        let gives = rubbed.iter().filter(|r| r.force.abs() < 0.99 * r.limit).map(|r| r.slip.abs()).fold(0.0, f64::max);
+        let gives = format!("below the bound it gives way by up to {}", number(gives));
+        if fit.law == Smooth::Spring {
+            let stiffness = self.largest_bound() / fit.parameter;
+            let sentence = format!(
+                "contact {} is held along its sides by a penalty with the stiffness {} for each unit of area; {gives}",
+                self.name,
+                number(stiffness)
+            );
+            return self.found("tangential-penalty", Some(stiffness), None, sentence);
+        }
+        let sentence = format!(
+            "friction of contact {} is regularised: its force follows {} with ε = {}; {gives}",
+            self.name,
+            fit.law.in_words(),
+            number(fit.parameter)
+        );
+        self.found("regularised", Some(fit.parameter), Some(0.0), sentence)
+    }
+
+    /// What can be said where no law is recognised.
+    fn unlike(&self, rubbed: &[Rubbed]) -> Finding {
+        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss));
+        let place = worst.map_or(String::new(), |r| {
+            format!(
+                ", most at {}: the force along the sides is {} where friction carries {}, and they slide by {}",
+                self.solution.named(self.solution.sites.list[r.site].first),
+                number(r.force),
+                number(r.limit),
+                number(r.slip)
+            )
+        });
+        let sentence = format!("friction of contact {} does not follow its law{place}", self.name);
+        self.found("friction-law", worst.map(|r| r.miss), Some(0.0), sentence)
+    }
+}
+
+/// The lowest of a function near a place on a grid of steps of one, by golden sections.
+fn sharpened((place, value): (f64, f64), f: impl Fn(f64) -> f64) -> (f64, f64) {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let (mut low, mut high) = (place - 1.0, place + 1.0);
+    for _ in 0..30 {
+        let [a, b] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
+        if f(a) < f(b) { high = b } else { low = a }
+    }
+    let found = 0.5 * (low + high);
+    let left = f(found);
+    if left < value { (found, left) } else { (place, value) }
+}

@@ -1,0 +1,140 @@
+//! Tractions of a higher degree than one: on every edge the nearest affine one stands for them, and what is left is known.
+//!
+//! What is left on an edge is orthogonal to all affine functions on it, so it has neither a resultant nor a moment: a stress on
+//! the one triangle beside it balances it. What that costs is part of the bracket ([`crate::bounds`]).
+
+use super::{Note, Problem};
+use crate::element::polynomial::side;
+use crate::mesh::Triangulation;
+use crate::scene::{Load, Scene, Term, Traction};
+
+/// What the affine traction of an edge leaves of that of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Oscillation {
+    /// The edge.
+    pub edge: usize,
+    /// Bernstein coefficients of the rest, from the first vertex of the edge to its second.
+    pub rest: Vec<[f64; 2]>,
+    /// The largest coefficient of the traction that it was taken from: what rounding in it is relative to.
+    pub size: f64,
+}
+
+impl Problem {
+    /// Whether a traction of the scene is of a higher degree than one.
+    pub fn has_polynomial_tractions(&self) -> bool {
+        self.scene.tractions.iter().any(|traction| !traction.terms.is_empty())
+    }
+
+    /// What is left of tractions on the edges of this mesh.
+    pub fn oscillations(&self) -> Vec<Oscillation> {
+        let of = |traction: &Traction| -> Vec<Oscillation> {
+            let edges = self.mesh.boundary(&traction.on).into_iter();
+            edges
+                .map(|edge| {
+                    let whole = along(&self.scene, &self.mesh, edge, &traction.terms);
+                    let nearest = nearest(&whole);
+                    let degree = whole.len() - 1;
+                    let linear: [Vec<f64>; 2] =
+                        [0, 1].map(|c| side::linear([nearest[0][c], nearest[1][c]], degree).collect());
+                    let size = whole.iter().flatten().fold(0.0_f64, |m, p| m.max(p.abs()));
+                    let rest = whole.iter().enumerate().map(|(k, p)| [0, 1].map(|c| p[c] - linear[c][k])).collect();
+                    Oscillation { edge, rest, size }
+                })
+                .collect()
+        };
+        self.scene.tractions.iter().filter(|traction| !traction.terms.is_empty()).flat_map(of).collect()
+    }
+}
+
+/// P at the ends of edge `e`: of the affine traction that is nearest to the one that is given.
+pub(super) fn ends(scene: &Scene, mesh: &Triangulation, e: usize, traction: &Traction) -> [[f64; 2]; 2] {
+    let own = match traction.load {
+        Load::Pressure(p) => {
+            let (_, normal) = mesh.edge_frame(e);
+            [normal.map(|n| 0.0 - p * n); 2]
+        }
+        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
+    };
+    if traction.terms.is_empty() {
+        return own;
+    }
+    let more = nearest(&along(scene, mesh, e, &traction.terms));
+    [0, 1].map(|end| [0, 1].map(|c| own[end][c] + more[end][c]))
+}
+
+/// Bernstein coefficients of terms along edge `e`.
+fn along(scene: &Scene, mesh: &Triangulation, e: usize, terms: &[Term]) -> Vec<[f64; 2]> {
+    let ends = mesh.edges[e].vertices.map(|v| [0, 1].map(|c| mesh.points[v][c] + scene.origin[c]));
+    let degree = terms.iter().map(Term::degree).max().unwrap_or(1);
+    let mut out = vec![[0.0; 2]; degree + 1];
+    for term in terms {
+        let mut power = vec![1.0];
+        for (c, times) in term.powers.into_iter().enumerate() {
+            (0..times).for_each(|_| power = product(&power, &[ends[0][c], ends[1][c]]));
+        }
+        for (sum, own) in out.iter_mut().zip(side::elevate(&power, degree)) {
+            (0..2).for_each(|c| sum[c] += own * term.value[c]);
+        }
+    }
+    out
+}
+
+/// The product of two polynomials by their coefficients.
+fn product(f: &[f64], g: &[f64]) -> Vec<f64> {
+    let (p, q) = (f.len() - 1, g.len() - 1);
+    let mut out = vec![0.0; p + q + 1];
+    for (i, f) in f.iter().enumerate() {
+        for (j, g) in g.iter().enumerate() {
+            out[i + j] += side::binomial(p, i) * side::binomial(q, j) / side::binomial(p + q, i + j) * f * g;
+        }
+    }
+    out
+}
+
+/// The ends of the nearest affine function.
+fn nearest(whole: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let along = |c: usize| {
+        let own: Vec<f64> = whole.iter().map(|p| p[c]).collect();
+        side::from_moments(&side::moments(&own, 1))
+    };
+    let [x, y] = [along(0), along(1)];
+    [[x[0], y[0]], [x[1], y[1]]]
+}
+
+/// How remarks on polynomials begin.
+const REMARK: &str = "The polynomial traction on '";
+
+/// Whether a note is one of [`remarks`], of this mesh or a coarser one.
+pub(super) fn is_remark(note: &Note) -> bool {
+    note.text.starts_with(REMARK)
+}
+
+/// Says of every polynomial traction how much of it the mesh does not hold.
+pub(super) fn remarks(problem: &Problem) -> Vec<Note> {
+    let all = problem.oscillations();
+    let of = |traction: &Traction| {
+        let name = problem.mesh.boundary(&traction.on);
+        let size = |p: &[[f64; 2]]| {
+            let square = |c: usize| {
+                let own: Vec<f64> = p.iter().map(|p| p[c]).collect();
+                side::integral(&own, &own)
+            };
+            square(0) + square(1)
+        };
+        let (mut left, mut whole) = (0.0, 0.0);
+        for Oscillation { edge, rest, .. } in all.iter().filter(|rest| name.contains(&rest.edge)) {
+            let length = problem.mesh.edge_frame(*edge).0;
+            left += length * size(rest);
+            whole += length * size(&ends(&problem.scene, &problem.mesh, *edge, traction));
+        }
+        let part = 100.0 * (left / (left + whole)).sqrt();
+        let degree = traction.terms.iter().map(Term::degree).max().unwrap_or(1);
+        let text = format!(
+            "{REMARK}{}' is of degree {degree}: on every edge the nearest affine one stands for it, and what is left, {part:.2e} % of it in \
+             the mean square, is part of the bracket, which is guaranteed for the polynomial.",
+            traction.on
+        );
+        Note { weakens_guarantee: false, text }
+    };
+    problem.scene.tractions.iter().filter(|traction| !traction.terms.is_empty()).map(of).collect()
+}

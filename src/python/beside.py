@@ -1,0 +1,193 @@
+"""What the module does in Python's own words: fields of other programs, tables, pages in notebooks, pictures, jobs."""
+
+import html
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sysconfig
+
+import numpy as np
+
+
+def field(of, values=None, name=None):
+    """Points, triangles and displacement of an object of another program."""
+    if hasattr(of, "function_space") and hasattr(of, "x"):
+        return _of_dolfinx(of)
+    if hasattr(of, "doflocs") and hasattr(of, "nodal_dofs"):
+        return _of_skfem(of, values)
+    if hasattr(of, "cells_dict") and hasattr(of, "point_data"):
+        return _of_meshio(of, name)
+    kinds = "a dolfinx.fem.Function, a skfem basis with its values, or a meshio.Mesh"
+    raise TypeError(f"a field is {kinds}, not {type(of).__name__}; give points, triangles and displacement as arrays")
+
+
+def _of_dolfinx(function):
+    space = function.function_space
+    dofmap, size = space.dofmap, space.dofmap.index_map_bs
+    mesh = space.mesh
+    local = mesh.topology.index_map(mesh.topology.dim).size_local
+    if mesh.comm.size > 1:
+        raise ValueError("the function is divided among MPI ranks; gather it, or solve on one")
+    cells = np.array([dofmap.cell_dofs(c) for c in range(local)])
+    # Edges of a triangle are counted by the corner that they lie opposite to.
+    order = {3: [0, 1, 2], 6: [0, 1, 2, 5, 3, 4]}.get(cells.shape[1] if mesh.topology.dim == 2 else 0)
+    if size != 2 or order is None:
+        raise ValueError("the function is no Lagrange vector of degree 1 or 2 on triangles; interpolate it into one")
+    points = space.tabulate_dof_coordinates()[:, :2]
+    return points, cells[:, order], np.real(function.x.array).reshape(-1, 2)[: len(points)]
+
+
+def _of_skfem(basis, values):
+    if values is None:
+        raise TypeError("a basis needs its values: field(basis, u)")
+    values, cells = np.asarray(values), basis.mesh.t.T
+    if cells.shape[1] != 3 or basis.nodal_dofs.shape[0] != 2 or basis.interior_dofs.size:
+        raise ValueError("the basis is no vector of degree 1 or 2 on triangles; interpolate into one")
+    points, displacement = basis.mesh.p.T, values[basis.nodal_dofs].T
+    if basis.facet_dofs.size:
+        if basis.facet_dofs.shape[0] != 2:
+            raise ValueError("the basis is no vector of degree 1 or 2 on triangles; interpolate into one")
+        # Facets of a triangle: (0, 1), (1, 2), (0, 2).
+        cells = np.hstack([cells, len(points) + basis.mesh.t2f.T])
+        points = np.vstack([points, basis.mesh.p[:, basis.mesh.facets].mean(axis=1).T])
+        displacement = np.vstack([displacement, values[basis.facet_dofs].T])
+    return points, cells, displacement
+
+
+def _of_meshio(mesh, name):
+    cells = [mesh.cells_dict[kind] for kind in ("triangle", "triangle6") if kind in mesh.cells_dict]
+    if len(cells) != 1:
+        raise ValueError(f"the mesh has the cells {', '.join(mesh.cells_dict)}; one kind of triangles is taken")
+    name = name or next((found for found in mesh.point_data if found.lower() in ("displacement", "u", "disp")), None)
+    if name not in mesh.point_data:
+        raise ValueError(f"the mesh has the point data {', '.join(mesh.point_data) or 'none'}; say which is the displacement with name")
+    return mesh.points[:, :2], cells[0], mesh.point_data[name][:, :2]
+
+
+def toml(data):
+    """The text of a scene whose tables are dictionaries; what is None is left out."""
+    return "".join(f"{json.dumps(str(key), ensure_ascii=False)} = {_toml(value, [key])}\n" for key, value in data.items() if value is not None)
+
+
+def _toml(value, place):
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, os.PathLike)):
+        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, dict):
+        entries = (f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v, [*place, k])}" for k, v in value.items() if v is not None)
+        return "{ " + ", ".join(entries) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(v, [*place, i]) for i, v in enumerate(value)) + "]"
+    raise ValueError(f"{'.'.join(map(str, place))} is a {type(value).__name__}; a scene has numbers, text, lists, arrays and dictionaries")
+
+
+def _flat(entry, prefix=""):
+    """The numbers and words of an entry by name: parts with dots between, x and y of a vector, ends of an interval; no curves."""
+    found = {}
+    for key, value in entry.items():
+        if isinstance(value, dict):
+            found |= _flat(value, f"{prefix}{key}.")
+        elif isinstance(value, list):
+            if len(value) == 2 and all(x is None or isinstance(x, (int, float)) for x in value):
+                found |= {f"{prefix}{key}.{i}": x for i, x in enumerate(value)}
+        else:
+            found[prefix + key] = value
+    return found
+
+
+def table(report, name):
+    """A list of the report as columns."""
+    named = {"contacts": "contact"}.get(name, name)
+    lists = [key for key, value in report.items() if isinstance(value, list)]
+    if named not in lists:
+        raise ValueError(f"there is no table '{name}'; use one of {', '.join('contacts' if key == 'contact' else key for key in lists)}")
+    rows = [_flat(entry) for entry in report[named]]
+    columns = list(dict.fromkeys(key for row in rows for key in row))
+    return {key: [row.get(key) for row in rows] for key in columns}
+
+
+def _number(x):
+    return "–" if x is None else f"{x:.6g}".replace("-", "−")
+
+
+def page(report):
+    """A verdict and its numbers for a notebook."""
+    colour = {"agree": "#1a7f37", "disagree": "#b3261e"}.get(report["status"], "#8a6100")
+    verdict = html.escape(report["verdict"])
+    text = [f'<div><p><b style="color:{colour}">{html.escape(report["status"])}</b> {verdict}</p>']
+    rows = [(q["name"], q["kind"], q["lower"], q["value"], q["upper"]) for q in report["quantities"]]
+    if report["energy"]:
+        energy = report["energy"]
+        rows.insert(0, ("energy", "𝓛(u)", energy["lower"], None, energy["upper"]))
+    if rows:
+        head = "".join(f"<th>{x}</th>" for x in ("", "", "no less than", "value", "no more than"))
+        cell = lambda x: f"<td>{html.escape(x) if isinstance(x, str) else _number(x)}</td>"
+        body = "".join("<tr>" + "".join(map(cell, row)) + "</tr>" for row in rows)
+        text.append(f"<table><tr>{head}</tr>{body}</table>")
+    failed = [check for check in report["checks"] if not check["passed"]]
+    if failed:
+        items = "".join("<li><code>" + html.escape(check["name"]) + "</code> " + html.escape(check["why"]) + "</li>" for check in failed[:10])
+        text.append(f"<ul>{items}</ul>")
+    return "".join(text) + "</div>"
+
+
+def plot(solution, value, ax, deformed, colorbar, options):
+    """Draws one number a triangle."""
+    if isinstance(value, str):
+        known = {name: i for i, name in enumerate(("xx", "yy", "xy"))}
+        maps = solution.maps
+        if value in known:
+            numbers, label = solution.mean_stress[:, known[value]], f"stress {value}"
+        elif value in maps:
+            numbers, label = maps[value], value.replace("_", " ")
+        else:
+            raise ValueError(f"there is no value '{value}'; use one of {', '.join([*known, *maps])}, or an array with a number for each triangle")
+    else:
+        numbers, label = np.asarray(value, dtype=float), ""
+        if numbers.shape != (len(solution.triangles),):
+            raise ValueError(f"the array has the shape {numbers.shape}; give one number for each of the {len(solution.triangles)} triangles")
+    if ax is None:
+        try:
+            import matplotlib.pyplot as plt
+        except ImportError as error:
+            raise ImportError("plot needs matplotlib; pip install matplotlib") from error
+        ax = plt.subplots()[1]
+    points = np.array(solution.points)
+    if deformed:
+        if solution.displacement is None:
+            raise ValueError("there is no displacement to draw: the scene has no upper bound")
+        points = points + deformed * solution.displacement
+    drawn = ax.tripcolor(*points.T, solution.triangles, facecolors=numbers, **options)
+    ax.set_aspect("equal")
+    if colorbar and getattr(ax, "figure", None) is not None:
+        ax.figure.colorbar(drawn, ax=ax, label=label)
+    return ax
+
+
+def program():
+    """The command that was installed beside this module."""
+    beside = pathlib.Path(sysconfig.get_path("scripts")) / "hypercircle"
+    found = str(beside) if beside.is_file() else shutil.which("hypercircle")
+    if found is None:
+        raise FileNotFoundError("the command hypercircle is not installed beside this module; install it with pip")
+    return found
+
+
+def job(scenes, command, out, jobs, options):
+    """Exit code, what was said, and the content of job.json, `None` where the command was refused."""
+    if isinstance(scenes, (str, os.PathLike)):
+        scenes = [scenes]
+    out = pathlib.Path(out)
+    kept = out / "job.json"
+    before = kept.stat().st_mtime_ns if kept.is_file() else None
+    words = [program(), command, "--out", out, "--jobs", str(jobs), "--shard", "1/1", "--quiet", *options, "--", *scenes]
+    done = subprocess.run([os.fspath(word) for word in words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    made = kept.is_file() and kept.stat().st_mtime_ns != before
+    return done.returncode, done.stderr.strip(), json.loads(kept.read_text(encoding="utf-8")) if made else None

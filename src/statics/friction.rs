@@ -1,0 +1,65 @@
+//! Friction in the balance of rigid pieces: forces along contacts, none of them larger than its bound.
+//!
+//! Along a straight run a rigid motion slides everywhere alike, and a given bound of the traction resists it with one force f of at most
+//! F = ∫ τ̄ ds. The forces that contacts can balance are then Σ μ g + Σ f h with μ ≥ 0 and |f| ≤ F: what is left of the load beside those
+//! nearest to it is a motion r on which the loads do more work than friction takes up, L(r) − Σ F |h · r| = |r|², and none is left
+//! exactly where L(y) ≤ Σ F |h · y| for all motions y that contact allows. The nearest forces are the minimum of a quadratic program;
+//! they are then part of the load, and the rest is balanced as without friction.
+
+use faer::Mat;
+use nalgebra::DVector;
+
+use super::balance::RANK;
+use super::cone::span::Span;
+use super::restraint::{Group, Part, Points};
+use crate::optimise::{Law, Program, solve};
+
+/// Forces of this many times the loads are as good as any: levers make no more of them.
+const MOST: f64 = 1e6;
+
+/// The forces of friction that leave least of a `load`, as a load, where `vanishing` rows do not move.
+pub(super) fn relieved(group: &Group, vanishing: &[Part], load: &DVector<f64>, total: f64) -> DVector<f64> {
+    let mut supports = Span::empty(group.dimension());
+    let rows: Vec<_> = vanishing.iter().map(|part| group.dense(std::slice::from_ref(part))).collect();
+    supports.extend(&rows, RANK);
+    let left = |row: &DVector<f64>| supports.residual(row);
+    let rubbing = group.runs.iter().filter(|run| run.friction > 0.0);
+    let slips: Vec<(DVector<f64>, f64)> = rubbing
+        .map(|run| (group.dense(&group.slip(run, run.ends[0])), run.friction.min(MOST * total)))
+        .filter(|(row, most)| left(row).norm() > RANK && *most > 0.0)
+        .collect();
+    let jumps =
+        group.runs.iter().flat_map(|run| Points::Ends.of(run).map(|point| group.dense(&group.jump(run, point))));
+    let jumps: Vec<DVector<f64>> = jumps.map(|row| left(&row)).filter(|row| row.norm() > RANK).collect();
+    let none = DVector::zeros(group.dimension());
+    if slips.is_empty() || load.amax() == 0.0 {
+        return none;
+    }
+    let all: Vec<DVector<f64>> = jumps.iter().cloned().chain(slips.iter().map(|(row, _)| left(row))).collect();
+    let form = Mat::from_fn(all.len(), all.len(), |i, k| all[i].dot(&all[k]));
+    let load = left(load);
+    // Unknowns are −μ and f.
+    let pulls: Vec<f64> =
+        all.iter().enumerate().map(|(i, row)| row.dot(&load) * if i < jumps.len() { -1.0 } else { 1.0 }).collect();
+    let form = Mat::from_fn(all.len(), all.len(), |i, k| {
+        let sign = if (i < jumps.len()) == (k < jumps.len()) { 1.0 } else { -1.0 };
+        sign * form[(i, k)]
+    });
+    let laws: Vec<Law> = jumps
+        .iter()
+        .map(|_| Law::AtMost { bound: 0.0 })
+        .chain(slips.iter().map(|(_, most)| Law::Between { lower: -most, upper: *most }))
+        .collect();
+    let Some(found) = solve(&Program { form: &form, load: &pulls, laws: &laws }, None) else { return none };
+    let forces = found.x[jumps.len()..].iter().zip(&slips);
+    forces.fold(none, |sum, (f, (row, most))| sum + row * f.clamp(-most, *most))
+}
+
+/// What friction takes up in a `motion` of the group.
+pub(super) fn resistance(group: &Group, motion: &DVector<f64>) -> f64 {
+    let of = |run: &&super::restraint::Run| {
+        let slip = group.dense(&group.slip(run, run.ends[0])).dot(motion);
+        run.friction * slip.abs()
+    };
+    group.runs.iter().filter(|run| run.friction > 0.0).map(of).sum()
+}

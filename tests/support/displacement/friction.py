@@ -1,0 +1,174 @@
+"""Writes displacement fields of a scene with friction: `friction.py problem.json FOLDER DEGREE NAME...`.
+
+`right` is the solution of a displacement method with its law at the nodes, `integrated` one whose law is under the integral; every other
+name is a mistake, or a method that only comes near to the law.
+"""
+
+import json
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from model import Model, null_space, particular  # noqa: E402
+
+import numpy as np  # noqa: E402
+import scipy.sparse as sp  # noqa: E402
+import scipy.sparse.linalg as sla  # noqa: E402
+
+PENALTY, EPSILON = 30.0, 2e-3
+
+
+class Rubbing(Model):
+    """The method with friction; places of contact are matched nodes."""
+
+    def __init__(self, problem, degree):
+        super().__init__(problem, degree)
+        self.places, self.sides = {}, []
+        for contact in problem["contacts"]:
+            for pair in contact["pairs"]:
+                self._pair(pair)
+        keys = list(self.places)
+        self.normal = self.matrix([self._row(key, 0) for key in keys])
+        self.tangent = self.matrix([self._row(key, 1) for key in keys])
+        self.limit = np.array([self.places[key][2] for key in keys])
+        self.size = np.array([self.places[key][3] for key in keys])
+
+    def _pair(self, pair):
+        friction = pair.get("friction") or {"bound": [0.0, 0.0], "tangent": [[0.0, 0.0]] * 2}
+        (a, b), (s, t) = pair["first"], friction["bound"]
+        c, d = pair["second"] or (None, None)
+        whole = np.linalg.norm(self.points[b] - self.points[a]) * self.problem["thickness"]
+        keys, parts, bounds = [(a, c), (b, d)], [1 / 2, 1 / 2], [(2 * s + t) / 6, (s + 2 * t) / 6]
+        if self.degree == 2:
+            keys.append(tuple(None if e is None else self.vertices + e for e in pair["edges"]))
+            parts, bounds = [1 / 6, 1 / 6, 4 / 6], [s / 6, t / 6, (s + t) / 3]
+        self.sides.append((keys, whole, (s, t)))
+        for key, part, bound in zip(keys, parts, bounds):
+            place = self.places.setdefault(key, [np.array(pair["normal"]), np.array(friction["tangent"][0]), 0.0, 0.0])
+            place[2] += whole * bound
+            place[3] += whole * part
+
+    def _row(self, key, which):
+        row = {}
+        for node, sign in zip(key, (1.0, -1.0)):
+            if node is not None:
+                x, y = sign * self.places[key][which]
+                row.update({2 * node: x, 2 * node + 1: y})
+        return row
+
+    def rubbed(self, law="exact", times=1.0, limit=None):
+        """Values at the nodes: the closed places do not penetrate, the others are free, and what rubs has the law."""
+        held = self.held()
+        supports = self.matrix([row for row, _ in held])
+        self.free, self.start = null_space(supports), particular(supports, np.array([value for _, value in held]))
+        self.k, self.f = self.stiffness(), self.loads()
+        scale = self.k.diagonal().max()
+        limit = times * (self.limit if limit is None else limit)
+        count = len(limit)
+        closed, state = np.ones(count, bool), np.zeros(count, int)
+        if law == "none":
+            limit = 0.0 * limit
+        if callable(law):
+            return self._smooth(law, closed, scale)
+        if law == "along":
+            state = -np.sign(self.tangent @ self.rubbed("none").ravel()).astype(int)
+        for _ in range(300):
+            sticks = np.ones(count, bool) if law == "sticks" else state == 0
+            rows = sp.vstack([self.normal[closed], self.tangent[sticks]])
+            pull = np.where(sticks, 0.0, limit * state)
+            u, force = self._solve(self.k, self.f - self.tangent.T @ pull, rows)
+            pressure, along = np.zeros(count), pull.copy()
+            pressure[closed], along[sticks] = np.split(force, [closed.sum()])
+            now = pressure + scale * (self.normal @ u) > 0
+            z = along + scale * (self.tangent @ u)
+            if law == "along":
+                then = -np.sign(self.tangent @ u).astype(int)
+            else:
+                then = np.where(np.abs(z) <= limit, 0, np.sign(z)).astype(int)
+            if (now == closed).all() and (law == "sticks" or (then == state).all()):
+                return u.reshape(-1, 2)
+            closed, state = now, then
+        raise RuntimeError("the state of the contact does not settle")
+
+    def _solve(self, k, f, rows):
+        a, b = self.free.T @ k @ self.free, rows @ self.free
+        right = np.concatenate([self.free.T @ (f - k @ self.start), -rows @ self.start])
+        # Rows that supports have taken say nothing.
+        nothing = np.asarray(abs(b).sum(axis=1)).ravel() < 1e-12
+        system = sp.bmat([[a, b.T], [b, sp.diags(nothing.astype(float))]], format="csc")
+        found = sla.splu(system).solve(right)
+        return self.start + self.free @ found[: a.shape[0]], found[a.shape[0] :]
+
+    def _smooth(self, law, closed, scale):
+        """Newton's method on nodal forces c g(j), which ``law(j, limit, size)`` gives with their slopes; softer laws of the smooth ones first."""
+        u = None
+        for softer in [1.0] if law is penalty else 2.0 ** np.arange(14, -1, -1):
+            for _ in range(100):
+                jump = np.zeros(len(closed)) if u is None else self.tangent @ u
+                force, slope = law(jump / softer, self.limit, self.size)
+                stiff = self.k + self.tangent.T @ sp.diags(slope / softer) @ self.tangent
+                load = self.f - self.tangent.T @ (force - slope / softer * jump)
+                new, pressure = self._solve(stiff, load, self.normal[closed])
+                if law is not penalty and u is not None and np.abs(new - u).max() > 0.5 * np.abs(u).max() + 1e-300:
+                    new = 0.5 * (new + u)
+                all_of_it = np.zeros(len(closed))
+                all_of_it[closed] = pressure
+                now = all_of_it + scale * (self.normal @ new) > 0
+                done = u is not None and np.abs(new - u).max() < 1e-12 * np.abs(new).max() and (now == closed).all()
+                u, closed = new, now
+                if done:
+                    break
+        if not done:
+            raise RuntimeError("Newton's method does not settle")
+        return u.reshape(-1, 2)
+
+
+def penalty(j, limit, size):
+    k = PENALTY * size
+    inside = np.abs(k * j) < limit
+    return np.clip(k * j, -limit, limit), np.where(inside, k, 0.0)
+
+
+def tanh(j, limit, _):
+    return limit * np.tanh(j / EPSILON), limit / EPSILON / np.cosh(np.clip(j / EPSILON, -300, 300)) ** 2
+
+
+def root(j, limit, _):
+    size = np.sqrt(j**2 + EPSILON**2)
+    return limit * j / size, limit * EPSILON**2 / size**3
+
+
+def turned(model):
+    """The bound as if it were counted from the other end."""
+    other = [bound for _, _, bound in model.sides][::-1]
+    limit, keys = np.zeros(len(model.places)), {key: i for i, key in enumerate(model.places)}
+    for (own, whole, _), (t, s) in zip(model.sides, other):
+        parts = [(2 * s + t) / 6, (s + 2 * t) / 6] if model.degree == 1 else [s / 6, t / 6, (s + t) / 3]
+        for key, part in zip(own, parts):
+            limit[keys[key]] += whole * part
+    return model.rubbed(limit=limit)
+
+
+WAYS = {
+    "right": lambda model: model.rubbed(),
+    "frictionless": lambda model: model.rubbed("none"),
+    "sticks": lambda model: model.rubbed("sticks"),
+    "along": lambda model: model.rubbed("along"),
+    "bound_unit": lambda model: model.rubbed(times=1e-3),
+    "bound_half": lambda model: model.rubbed(times=0.5),
+    "bound_more": lambda model: model.rubbed(times=1.3),
+    "turned": turned,
+    "penalty": lambda model: model.rubbed(penalty),
+    "tanh": lambda model: model.rubbed(tanh),
+    "root": lambda model: model.rubbed(root),
+}
+
+
+def main():
+    problem, folder, degree = json.loads(pathlib.Path(sys.argv[1]).read_text()), pathlib.Path(sys.argv[2]), int(sys.argv[3])
+    for name in sys.argv[4:]:
+        model = Rubbing(problem, degree)
+        (folder / f"{name}.vtk").write_text(model.vtk(WAYS[name](model)))
+
+
+main()
