@@ -232,7 +232,7 @@ pub(in crate::scene) struct RawBody {
     pub expansion: Option<At<RawExpansion>>,
     /// Temperature above the one without stress: a number, or affine in x.
     pub temperature: Option<At<RawTemperature>>,
-    /// Initial stress xx, yy, xy, and a fourth that is out of the plane.
+    /// Initial stress xx, yy, xy, and a fourth that is out of the plane; rr, zz, rz and tt of a body of revolution.
     #[schemars(with = "Option<Vec<f64>>", extend("minItems" = 3, "maxItems" = 4))]
     pub initial_stress: Option<Pair>,
     /// Force per volume, none where it is missing: the same everywhere, or value + gradient · x.

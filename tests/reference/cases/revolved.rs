@@ -1,4 +1,4 @@
-//! Bodies of revolution: Lamé's tube and sphere, a press fit, a turning spindle, Hertz's sphere.
+//! Bodies of revolution: Lamé's tube and sphere, a warm tube, a press fit, a turning spindle, Hertz's sphere.
 
 use std::f64::consts::PI;
 
@@ -36,6 +36,28 @@ fn tube() {
     let u = |r: f64| (1.0 + nu) * k * ((1.0 - 2.0 * nu) * r + b * b / r);
     let report = sound("tube");
     holds(&report, -PI * pressure * a * u(a), 1e-3);
+    answers(&report, 0, u(a), 1e-3);
+    answers(&report, 1, u(b), 1e-3);
+}
+
+#[test]
+fn warm_tube() {
+    let (a, b, nu, alpha): (f64, f64, _, _) = (1.0, 2.0, 0.3, 0.01);
+    let warm = |r: f64| 1.0 + 2.0 * r;
+    let i = |r: f64| 0.5 * (r * r - a * a) + 2.0 / 3.0 * (r.powi(3) - a.powi(3));
+    let c = (1.0 + nu) / (1.0 - nu) * alpha * i(b) / (b * b - a * a);
+    let u = |r: f64| (1.0 + nu) / (1.0 - nu) * alpha * i(r) / r + c * ((1.0 - 2.0 * nu) * r + a * a / r);
+    // σ_r + σ_θ is the same everywhere but for the temperature, and σ_z = ν (σ_r + σ_θ) − αT.
+    let both = |r: f64| 2.0 * c / (1.0 + nu) - alpha * warm(r) / (1.0 - nu);
+    let density = |r: f64| alpha * warm(r) * ((1.0 + nu) * both(r) - alpha * warm(r)) * r;
+    let mut sum = 0.0;
+    let steps = 1000;
+    for k in 0..steps {
+        let [p, q] = [k, k + 1].map(|k| a + (b - a) * f64::from(k) / f64::from(steps));
+        sum += (q - p) / 6.0 * (density(p) + 4.0 * density(0.5 * (p + q)) + density(q));
+    }
+    let report = sound("warm_tube");
+    holds(&report, -PI * sum, 1e-3);
     answers(&report, 0, u(a), 1e-3);
     answers(&report, 1, u(b), 1e-3);
 }
