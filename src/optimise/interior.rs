@@ -13,7 +13,9 @@ use crate::vector::long::{axpy, largest};
 const MOST: usize = 80;
 /// Steps that win nothing, neither of the equations nor of all that is asked, before it ends where it is.
 const PATIENCE: usize = 3;
-/// A step that leaves more than this part of the mean product, where the equations hold better than that, wins nothing …
+/// Equations that hold to this part of the mean product of room and force hold: a step that leaves more than `WORSE` of the products wins
+/// nothing there …
+const HELD: f64 = 1e-3;
 const WORSE: f64 = 0.9;
 /// … and one towards this part of it is taken in its place.
 const CENTRED: f64 = 0.3;
@@ -92,7 +94,7 @@ pub fn interior_point(program: &Program<'_>, enough: f64) -> Option<Solution> {
         let target = mu * (after / mu).powi(3).min(1.0);
         let (mut dx, mut reach) = toward(&mut all, target, true);
         let product = all.iter().map(|b| b.product_after(reach)).sum::<f64>() / count;
-        if unbalanced <= mu && product > WORSE * mu {
+        if unbalanced <= HELD * mu && product > WORSE * mu {
             // The products of a long step can lead in circles; a step towards the centre without them does not.
             (dx, reach) = toward(&mut all, CENTRED * mu, false);
         }

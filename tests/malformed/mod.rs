@@ -44,7 +44,7 @@ pub const MALFORMED: &[Malformed] = &[
     at("unknown_key_support.toml", 34, &["`where` in [[supports]] number 2", "`type`"]),
     at("unknown_key_traction.toml", 37, &["`values` in [[tractions]] number 1", "did you mean `value`?"]),
     at("unknown_key_contact.toml", 40, &["`betwen` in [[contacts]] number 1", "did you mean `between`?"]),
-    at("unknown_key_friction.toml", 41, &["`friction` in [[contacts]] number 1", "`gap`"]),
+    at("friction_is_a_number.toml", 41, &["`friction` in [[contacts]] number 1", "write a table"]),
     at("unknown_table.toml", 27, &["`support` in the scene", "did you mean `supports`?"]),
     at("missing_model.toml", 1, &["no `model`", "add [model]"]),
     at("missing_kinematics.toml", 3, &["[model] has no `kinematics`", "\"plane-stress\""]),
