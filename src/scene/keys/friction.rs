@@ -11,7 +11,7 @@ use crate::scene::reading::source::Source;
 pub enum FrictionBound {
     /// The same everywhere.
     Constant(f64),
-    /// Piecewise linear: (s, bound) with s ascending, s being the arc length along the first side as in [`super::Gap::Table`].
+    /// Piecewise linear: (s, bound) with s ascending, s being the arc length along the first side as in [`crate::scene::Gap::Table`].
     /// Constant beyond the first and the last entry.
     Table(Vec<[f64; 2]>),
 }
