@@ -206,7 +206,11 @@ def test_ctrl_c_ends_a_solve():
         except KeyboardInterrupt:
             print("interrupted", scene.solve().status, flush=True)
         """
-    process = subprocess.Popen([sys.executable, "-c", textwrap.dedent(body)], stdout=subprocess.PIPE, text=True)
+    # What a shell starts in the background ignores the signal, and so does all that comes of it.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(body)], stdout=subprocess.PIPE, text=True, preexec_fn=heard
+    )
     assert process.stdout.readline() == "ready\n"
     time.sleep(1.0)
     began = time.monotonic()
