@@ -8,6 +8,9 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, MietteHandler, 
 /// Columns of a report that no terminal limits; lines are not wrapped there, so that they can be searched.
 const UNLIMITED: usize = 10_000;
 
+/// Words of the standard library where the system refuses a thread or what one starts with.
+const NO_THREAD: [&str; 2] = ["failed to spawn thread", "failed to allocate an alternative stack"];
+
 /// Draws the error on stderr.
 pub fn error(error: &dyn Diagnostic) {
     let handler = if std::io::stderr().is_terminal() { Handler::terminal() } else { Handler::plain() };
@@ -55,7 +58,7 @@ pub fn install_panic_message() {
         let payload = panic.payload();
         let text = payload.downcast_ref::<&str>().copied();
         let what = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
-        if what.contains("failed to spawn thread") {
+        if NO_THREAD.iter().any(|refusal| what.contains(refusal)) {
             let _ = writeln!(
                 std::io::stderr(),
                 "  x a thread could not be started ({what})\n  help: allow more threads or memory (ulimit -u, ulimit -v)"
