@@ -50,7 +50,12 @@ const APPROACH: f64 = 0.05;
 const POISSON: f64 = 0.3;
 
 impl Row {
-    /// All rows; loads and weights are small against Young's modulus of one.
+    /// Every `step`-th row, or all where the environment has `HYPERCIRCLE_SCENES`; loads and weights are small against Young's modulus of one.
+    fn some(start: usize, step: usize) -> Vec<Row> {
+        let step = if std::env::var_os("HYPERCIRCLE_SCENES").is_some() { 1 } else { step };
+        Row::all().into_iter().skip(start).step_by(step).collect()
+    }
+
     fn all() -> Vec<Row> {
         let mut all = Vec::new();
         for squares in 1..=3 {
@@ -217,15 +222,14 @@ fn all_agree(rows: &[Row], frame: Frame) {
 
 #[test]
 fn every_row_is_answered_alike_by_all_methods() {
-    all_agree(&Row::all(), UPRIGHT);
+    all_agree(&Row::some(0, 7), UPRIGHT);
 }
 
 #[test]
 fn direction_and_units_change_nothing() {
-    let rows = Row::all();
+    // No step has a factor in common with what rows are made of.
     for (frame, start) in [((1e-3, 1e9, 30.0), 0), ((1e3, 1e-3, 45.0), 2), ((1.0, 1e9, 45.0), 4), ((1e3, 1.0, 30.0), 6)]
     {
-        let some: Vec<Row> = rows.iter().skip(start).step_by(8).copied().collect();
-        all_agree(&some, frame);
+        all_agree(&Row::some(start, 31), frame);
     }
 }

@@ -101,12 +101,12 @@ fn every_mistake_is_found_and_named() {
     if !prepared(folder.path(), &names) {
         return;
     }
-    let queue = Mutex::new(MISTAKES.iter().flat_map(|m| ["P1", "P2"].map(|degree| (degree, *m))).collect::<Vec<_>>());
+    let queue = Mutex::new(MISTAKES.iter().zip(["P1", "P2"].iter().cycle()).collect::<Vec<_>>());
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
                 loop {
-                    let Some((degree, (name, expected))) = queue.lock().expect("unpoisoned").pop() else { break };
+                    let Some((&(name, expected), degree)) = queue.lock().expect("unpoisoned").pop() else { break };
                     let (code, report) = certified(folder.path(), &format!("{degree}/{name}"), &[]);
                     let Some((finding, number)) = expected else {
                         assert_eq!(code, 0, "{degree} {name}: {}", report["verdict"]);

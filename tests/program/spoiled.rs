@@ -94,7 +94,7 @@ value = [5.0, 2.0]
 "#;
 
 /// Of every scene, so many fields that are none beside those that are.
-const FIELDS: usize = 11;
+const FIELDS: usize = 6;
 /// A field may be this far from the solution in energy norm, and in displacements relative to the largest, and pass.
 const NEAR: f64 = 0.03;
 

@@ -133,7 +133,7 @@ fn ranks_make_the_upper_bound_of_one_process() {
         same_on_ranks("two_blocks", &[]);
         same_on_ranks("two_blocks", &["--degree", "3"]);
         same_on_ranks("ring", &[]);
-        same_on_ranks("stack", &["--refine", "1"]);
+        same_on_ranks("stack", &[]);
     }
 }
 
@@ -246,7 +246,7 @@ fn a_killed_part_ends_the_run_and_leaves_no_other() {
     let body = "rank=$OMPI_COMM_WORLD_RANK\ncase \"$*\" in *--bracket*) echo $$ >$here/rank-$rank\n\
                 (until pgrep -P $$ -x hypercircle >$here/part-$rank; do sleep 0.01; done\n\
                 if [ $rank = 1 ]; then kill -KILL $(cat $here/part-1); fi) & ;; esac\nexec $python \"$@\"";
-    let (output, folder) = with_interpreter(body, "3");
+    let (output, folder) = with_interpreter(body, "2");
     ended("a killed part", &output, 3, &["the parallel solver failed", "ended before it was done"]);
     assert!(!folder.path().join("out").exists(), "a report of nothing");
     ["rank-0", "rank-1", "part-0", "part-1"].iter().for_each(|process| goes(folder.path(), process));
