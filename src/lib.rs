@@ -80,8 +80,6 @@ pub mod problem;
 pub mod process;
 pub mod proof;
 pub mod published;
-#[cfg(feature = "python")]
-mod python;
 pub mod quantity;
 pub mod report;
 pub mod scene;

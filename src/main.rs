@@ -1,5 +1,3 @@
-// Beside the Python module the library has one.
-#[cfg(not(feature = "python"))]
 #[global_allocator]
 static ALLOCATOR: hypercircle::budget::ExitOnExhaustion = hypercircle::budget::ExitOnExhaustion;
 

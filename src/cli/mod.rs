@@ -155,8 +155,8 @@ fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, Given), cla
     Ok((cli, given))
 }
 
-/// The options of one command, from its words alone.
-pub(crate) fn options_of<A: clap::Args>(words: impl IntoIterator<Item = OsString>) -> Result<A, clap::Error> {
+/// The options of one command, from its words alone; refused as on the command line.
+pub fn options_of<A: clap::Args>(words: impl IntoIterator<Item = OsString>) -> Result<A, clap::Error> {
     let command = A::augment_args(clap::Command::new("hypercircle").no_binary_name(true));
     A::from_arg_matches(&command.try_get_matches_from(words)?)
 }

@@ -9,7 +9,7 @@ read = lambda name: (ROOT / name).read_text(encoding="utf-8")
 
 
 def test_one_version_everywhere(hypercircle):
-    version = tomllib.loads(read("Cargo.toml"))["package"]["version"]
+    version = tomllib.loads(read("Cargo.toml"))["workspace"]["package"]["version"]
     assert hypercircle.__version__ == version
     assert re.search(r"^version: (.*)$", read("CITATION.cff"), re.M)[1] == version
     assert re.search(r'^  version: "(.*)"$', read("packaging/conda/recipe.yaml"), re.M)[1] == version

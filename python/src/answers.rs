@@ -3,8 +3,8 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use super::arrays;
-use crate::report::{ContactSummary, QuantitySummary};
+use crate::arrays;
+use hypercircle::report::{ContactSummary, QuantitySummary};
 
 /// A quantity of the scene, with an interval that holds its exact value.
 #[pyclass(frozen, module = "hypercircle")]

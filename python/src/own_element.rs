@@ -2,11 +2,11 @@
 
 use pyo3::prelude::*;
 
-use super::errors::fault;
-use crate::element::spanned::{Balances, Corners, Nodal};
-use crate::element::{EquilibriumElement, MAX_DEGREE, Spanned};
-use crate::problem::Problem;
-use crate::workbench::stress::{Fields, divergence, inner_jump};
+use crate::errors::fault;
+use hypercircle::element::spanned::{Balances, Corners, Nodal};
+use hypercircle::element::{EquilibriumElement, MAX_DEGREE, Spanned};
+use hypercircle::problem::Problem;
+use hypercircle::workbench::stress::{Fields, divergence, inner_jump};
 
 /// What stresses may miss of equilibrium, relative to their size, where a bound rests on it.
 const BALANCED: f64 = 1e-9;

@@ -4,7 +4,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::cli::{CliError, Exit};
+use hypercircle::cli::{CliError, Exit};
 
 create_exception!(
     hypercircle,
@@ -60,11 +60,10 @@ pub fn raised(exit: Exit, message: String, remedy: &str) -> PyErr {
     })
 }
 
-impl From<CliError> for PyErr {
-    fn from(error: CliError) -> Self {
-        match &error {
-            CliError::Scene(scene) => raised(error.exit(), scene.to_string(), &scene.remedy()),
-            CliError::Stopped { message, remedy, exit } => raised(*exit, message.clone(), remedy),
-        }
+/// The exception for an error of the command line.
+pub fn told(error: CliError) -> PyErr {
+    match &error {
+        CliError::Scene(scene) => raised(error.exit(), scene.to_string(), &scene.remedy()),
+        CliError::Stopped { message, remedy, exit } => raised(*exit, message.clone(), remedy),
     }
 }

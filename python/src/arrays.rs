@@ -10,8 +10,8 @@ use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::True;
 
-use super::errors::{fault, raised};
-use crate::cli::Exit;
+use crate::errors::{fault, raised};
+use hypercircle::cli::Exit;
 
 /// n numbers of an object.
 pub fn numbers<'py, O, T>(owner: &Bound<'py, O>, of: impl FnOnce(&O) -> &[T]) -> PyResult<Bound<'py, PyArray1<T>>>

@@ -7,20 +7,20 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyString};
 
-use super::answers::{ContactAnswer, Quantity};
-use super::arrays;
-use super::beside;
-use super::certificate::{Certificate, Claims, certify};
-use super::line::Line;
-use crate::cli::commands::solve::{Args, Solved};
-use crate::cli::conclude::Particulars;
-use crate::cli::given::options::SolveOptions;
-use crate::cli::session::Session;
-use crate::cli::{CliError, Exit};
-use crate::element::{SideValues, lattice};
-use crate::problem::Problem;
-use crate::report::{self, Dossier};
-use crate::study::summaries;
+use crate::answers::{ContactAnswer, Quantity};
+use crate::arrays;
+use crate::beside;
+use crate::certificate::{Certificate, Claims, certify};
+use crate::line::Line;
+use hypercircle::cli::commands::solve::{Args, Solved};
+use hypercircle::cli::conclude::Particulars;
+use hypercircle::cli::given::options::SolveOptions;
+use hypercircle::cli::session::Session;
+use hypercircle::cli::{CliError, Exit};
+use hypercircle::element::{SideValues, lattice};
+use hypercircle::problem::Problem;
+use hypercircle::report::{self, Dossier};
+use hypercircle::study::summaries;
 
 /// The stress side of a scene: a stress in equilibrium, the interval that holds the exact energy, and the intervals of the
 /// quantities. Arrays show its numbers in place: they are read-only.

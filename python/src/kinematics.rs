@@ -2,8 +2,8 @@
 
 use pyo3::PyResult;
 
-use super::errors::fault;
-use crate::scene::Kinematics;
+use crate::errors::fault;
+use hypercircle::scene::Kinematics;
 
 /// The plane state of that name.
 ///

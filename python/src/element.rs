@@ -3,10 +3,10 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::fault;
-use super::kinematics::kinematics_named;
-use crate::element::subtriangle::{self, Moments};
-use crate::element::{Block, EquilibriumElement, Material};
+use crate::errors::fault;
+use crate::kinematics::kinematics_named;
+use hypercircle::element::subtriangle::{self, Moments};
+use hypercircle::element::{Block, EquilibriumElement, Material};
 
 /// A counter-clockwise triangle with finite corners.
 fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {

@@ -9,8 +9,8 @@ use clap::error::{ContextKind, ContextValue};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::errors::raised;
-use crate::cli::{Exit, options_of};
+use crate::errors::raised;
+use hypercircle::cli::{Exit, options_of};
 
 /// The words of one command.
 #[derive(Default)]

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use nalgebra::DMatrix;
 use pyo3::prelude::*;
 
-use super::errors::fault;
-use super::kinematics::kinematics_named;
-use super::own_element::{is_element, spanned};
-use crate::workbench::stress::SolverElement;
-use crate::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
+use crate::errors::fault;
+use crate::kinematics::kinematics_named;
+use crate::own_element::{is_element, spanned};
+use hypercircle::workbench::stress::SolverElement;
+use hypercircle::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
 /// Rows of numbers as a matrix.
 fn matrix(object: &Bound<'_, PyAny>) -> Result<DMatrix<f64>, String> {
@@ -120,7 +120,7 @@ pub fn workbench<'py>(
     };
     let made = made.map_err(fault)?;
     let usual = made.precision;
-    let said = precision.map(crate::workbench::precision).transpose().map_err(fault)?;
+    let said = precision.map(hypercircle::workbench::precision).transpose().map_err(fault)?;
     let made = made.with_precision(said.unwrap_or(usual));
     // The formula comes back for the interpreter.
     let report = py.detach(move || Report::of_displacement(&made, &options));

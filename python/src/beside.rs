@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyModule};
 
-use super::errors::{fault, raised};
-use crate::cli::Exit;
+use crate::errors::{fault, raised};
+use hypercircle::cli::Exit;
 
 static BESIDE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
 

@@ -6,18 +6,18 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::arrays;
-use super::aside::{aside, threads};
-use super::beside;
-use super::errors::fault;
-use super::line::Line;
-use crate::cli::commands::certify::{Args, judged, read, stress_side};
-use crate::cli::commands::verify;
-use crate::cli::session::{DualRun, Session, refuse_unknown};
-use crate::cli::{CliError, Exit};
-use crate::report::{self, Dossier};
-use crate::scene::Scene;
-use crate::study::{FieldArrays, FieldError, ForeignField};
+use crate::arrays;
+use crate::aside::{aside, threads};
+use crate::beside;
+use crate::errors::{fault, told};
+use crate::line::Line;
+use hypercircle::cli::commands::certify::{Args, judged, read, stress_side};
+use hypercircle::cli::commands::verify;
+use hypercircle::cli::session::{DualRun, Session, refuse_unknown};
+use hypercircle::cli::{CliError, Exit};
+use hypercircle::report::{self, Dossier};
+use hypercircle::scene::Scene;
+use hypercircle::study::{FieldArrays, FieldError, ForeignField};
 
 /// The arguments of `certify`.
 #[derive(Default)]
@@ -89,7 +89,7 @@ impl Claims<'_, '_> {
 /// `InputError`, `InfeasibleError`, `SolveError`.
 pub fn certify(py: Python<'_>, scene: &Scene, claimed: Claimed, solved: Option<&DualRun>) -> PyResult<Certificate> {
     let count = threads(claimed.args.solve.threads);
-    let (text, residual) = aside(py, count, || held(scene, claimed, solved, count))??;
+    let (text, residual) = aside(py, count, || held(scene, claimed, solved, count))?.map_err(told)?;
     Ok(Certificate { report: super::from_json(py, Ok(text))?.unbind(), residual })
 }
 
@@ -108,7 +108,8 @@ pub fn verify(py: Python<'_>, scene: &Scene, how: Line) -> PyResult<Certificate>
             verify::verified(&args, &session, folder.as_deref())?;
         let text = session.with_dossier(&run, &comparison, particulars, |dossier| written(&dossier, folder.as_deref()));
         failure.map_or(text, |error| Err(verify::unanswered(&error)))
-    })??;
+    })?;
+    let text = text.map_err(told)?;
     Ok(Certificate { report: super::from_json(py, Ok(text))?.unbind(), residual: None })
 }
 

@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
-use crate::problem::{Condition, Interface, Problem};
-use crate::scene::Body;
+use hypercircle::elasticity::{Anisotropic, Elasticity, Matrix, Orthotropic};
+use hypercircle::problem::{Condition, Interface, Problem};
+use hypercircle::scene::Body;
 
 /// Everything that is asked on the mesh: see [`super::scene::Scene::problem`].
 pub fn problem_entry<'py>(py: Python<'py>, problem: Problem) -> PyResult<Bound<'py, PyDict>> {

@@ -10,9 +10,9 @@ use std::time::Duration;
 use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
 
-use super::errors::raised;
-use crate::cli::Exit;
-use crate::process::{Interrupted, interruptible};
+use crate::errors::raised;
+use hypercircle::cli::Exit;
+use hypercircle::process::{Interrupted, interruptible};
 
 /// Stack of a thread: that of the first thread of a program.
 const STACK: usize = 8 << 20;

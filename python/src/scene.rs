@@ -6,20 +6,20 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyType};
 
-use super::aside::{aside, threads};
-use super::beside;
-use super::certificate::{Certificate, Claims, certify, verify};
-use super::errors::fault;
-use super::line::Line;
-use super::own_element::{balanced, spanned};
-use super::problem::{body_entry, list, problem_entry};
-use super::solution::Solution;
-use crate::cli::CliError;
-use crate::cli::commands::solve::{Args, solved};
-use crate::cli::session::Session;
-use crate::element::{Elements, MAX_DEGREE};
-use crate::problem::Problem;
-use crate::scene;
+use crate::aside::{aside, threads};
+use crate::beside;
+use crate::certificate::{Certificate, Claims, certify, verify};
+use crate::errors::{fault, told};
+use crate::line::Line;
+use crate::own_element::{balanced, spanned};
+use crate::problem::{body_entry, list, problem_entry};
+use crate::solution::Solution;
+use hypercircle::cli::CliError;
+use hypercircle::cli::commands::solve::{Args, solved};
+use hypercircle::cli::session::Session;
+use hypercircle::element::{Elements, MAX_DEGREE};
+use hypercircle::problem::Problem;
+use hypercircle::scene;
 
 /// A scene: bodies, supports, tractions, contacts, and what it is solved for. `Scene(path)` reads a TOML file,
 /// `Scene.from_text(text)` a text.
@@ -34,7 +34,7 @@ pub struct Scene {
 impl Scene {
     #[new]
     fn new(path: PathBuf) -> PyResult<Self> {
-        Ok(Scene { of: Arc::new(scene::Scene::read(&path).map_err(CliError::from)?) })
+        Ok(Scene { of: Arc::new(scene::Scene::read(&path).map_err(CliError::from).map_err(told)?) })
     }
 
     /// A scene from the text of its TOML file. Messages call it `name`; relative paths of mesh files start in `folder`, the
@@ -43,7 +43,7 @@ impl Scene {
     #[pyo3(signature = (text, name = "scene", folder = None))]
     fn from_text(_class: &Bound<'_, PyType>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
         let path = folder.unwrap_or_default().join(format!("{name}.toml"));
-        Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from)?) })
+        Ok(Scene { of: Arc::new(scene::Scene::parse(text, &path).map_err(CliError::from).map_err(told)?) })
     }
 
     /// A scene from dictionaries and lists with the names that tables and keys have in the file: `{"model": {"kinematics": "plane-strain"},
@@ -287,8 +287,8 @@ impl Scene {
 }
 
 /// Bodies of revolution are solved from the command line, whose reports know weighted stresses.
-fn plane_only(scene: &crate::scene::Scene) -> PyResult<()> {
-    if scene.kinematics == crate::scene::Kinematics::Axisymmetric {
+fn plane_only(scene: &hypercircle::scene::Scene) -> PyResult<()> {
+    if scene.kinematics == hypercircle::scene::Kinematics::Axisymmetric {
         return Err(fault("bodies of revolution are not solved from Python; use the command `hypercircle solve`"));
     }
     Ok(())
@@ -298,15 +298,16 @@ impl Scene {
     fn solve_as(&self, py: Python<'_>, args: Args) -> PyResult<Solution> {
         let count = threads(args.solve.threads);
         let scene = Arc::clone(&self.of);
-        aside(py, count, || {
-            plane_only(&scene)?;
+        plane_only(&scene)?;
+        let solved = aside(py, count, || {
             let folder = args.run.out.is_some().then(|| args.run.report_folder(&scene)).transpose()?;
             let session = Session::new("solve", (*scene).clone(), count, &args.solve, true)?;
             let solved = solved(&args, &session, folder.as_deref())?;
             let solution = Solution::new(args, session, solved);
             folder.map(|folder| solution.write(&folder)).transpose()?;
-            Ok(solution)
-        })?
+            Ok::<_, CliError>(solution)
+        })?;
+        solved.map_err(told)
     }
 }
 

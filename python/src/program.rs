@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 
-use crate::budget::ExitOnExhaustion;
-use crate::cli::{Started, main_of};
+use hypercircle::budget::ExitOnExhaustion;
+use hypercircle::cli::{Started, main_of};
 
 /// A command that the system refuses memory says so, from the module as from the program.
 #[global_allocator]
