@@ -123,7 +123,7 @@ fn every_case_bounds_its_error_between_once_and_three_times() {
         if reached < EXACT {
             continue;
         }
-        let fine = adapt(problem, &method, &options, &Goal::new(0.15 * reached), |_| ())
+        let fine = adapt(problem, &method, &options, &Goal::new(0.3 * reached), |_| ())
             .unwrap_or_else(|e| panic!("{name}: {e}"))
             .certified;
         let [least, most] = [fine.bracket.lower(), upper(&fine)].map(|exact| exact - coarse.bracket.lower());
