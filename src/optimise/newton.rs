@@ -14,6 +14,8 @@ use crate::vector::long::largest;
 
 /// Steps without fewer changes than ever before after which the sets are given up (Júdice & Pires 1994).
 const WITHOUT_GAIN: usize = 4;
+/// Steps in which changes have to halve where every step is a factorisation as dear as one of the interior point, which needs thirty.
+const HALVED_IN: usize = 4;
 /// Solves with the factor of a matrix nearby: each wins back the digits that the other left.
 const CORRECTIONS: usize = 3;
 
@@ -28,6 +30,7 @@ pub fn active_sets(
     let mut seen = HashSet::new();
     let mut x = about.clone().unwrap_or_default();
     let (mut fewest, mut patience) = (usize::MAX, WITHOUT_GAIN);
+    let mut history = Vec::new();
     while seen.len() < most && patience > 0 && seen.insert(states.clone()) {
         let Some(found) = program.in_state(&states, about.as_deref()) else { break };
         x = found;
@@ -38,6 +41,11 @@ pub fn active_sets(
         }
         let changes = next.iter().zip(&states).filter(|(next, now)| next != now).count();
         (fewest, patience) = if changes < fewest { (changes, WITHOUT_GAIN) } else { (fewest, patience - 1) };
+        history.push(changes);
+        let before = history.len().checked_sub(HALVED_IN + 1).map(|k| history[k]);
+        if program.form.is_loose() && before.is_some_and(|before| 2 * changes > before) {
+            break;
+        }
         states = next;
         if let Some(point) = &mut about {
             point.clone_from(&x);
