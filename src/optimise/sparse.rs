@@ -138,7 +138,9 @@ impl Quadratic for SparseForm {
         let numbers = match kept {
             Some(kept) => Arc::clone(kept),
             None => {
-                let values = self.factorise(added, held)?;
+                // The memory of the last one, where nobody holds it any more.
+                let spent = last.take().and_then(|last| Arc::try_unwrap(last).ok());
+                let values = self.factorise(added, held, spent.map(|last| last.values).unwrap_or_default())?;
                 let numbers = Arc::new(Numbers { added: added.to_vec(), held: held.to_vec(), values });
                 Arc::clone(last.insert(numbers))
             }
@@ -148,8 +150,8 @@ impl Quadratic for SparseForm {
 }
 
 impl SparseForm {
-    /// The numbers of the factor of A + diag(`added`) on the unknowns that are not `held`.
-    fn factorise(&self, added: &[f64], held: &[bool]) -> Option<Vec<f64>> {
+    /// The numbers of the factor of A + diag(`added`) on the unknowns that are not `held`, in place of what `numbers` has.
+    fn factorise(&self, added: &[f64], held: &[bool], mut numbers: Vec<f64>) -> Option<Vec<f64>> {
         let Structure { pattern, symbolic } = &*self.structure;
         let mut values = self.values.clone();
         for (k, held_column) in held.iter().enumerate() {
@@ -161,7 +163,8 @@ impl SparseForm {
                 }
             }
         }
-        let mut numbers = vec![0.0; symbolic.len_val()];
+        numbers.clear();
+        numbers.resize(symbolic.len_val(), 0.0);
         let mut memory = MemBuffer::new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()));
         symbolic
             .factorize_numeric_llt(
