@@ -19,7 +19,7 @@ from . import Refused, reference
 from .exact import balls, by_component, cross, dot, length, lower, mean, raised, times, upper, zero
 
 ROUNDING = 1e-7  # changes beyond this part of the largest traction are no rounding
-RIDGES = [*(arb(2) ** -k for k in (60, 70, 80, 90, 100)), 0]  # relative, for balances that nearly depend on each other
+RIDGES = [0, *(arb(2) ** -k for k in (60, 70, 80, 90, 100)), 0]  # relative, for balances that nearly depend on each other
 
 
 def load(mesh, e):
@@ -154,7 +154,8 @@ class Stress:
         for column, (joint, i) in zip(columns, free):
             for e, tau in self._sides(joint, [fmpq(int(i == j)) for j in range(len(joint.pressure))]):
                 column[self.component[mesh.owners[e, 0]]] += self._acting(e, tau)
-        total, matrix = total[1:].ravel(), columns[:, 1:].reshape(len(free), -1).T
+        total = total[1:].ravel()
+        matrix = columns[:, 1:].reshape(len(free), len(total)).T
         rows = [i for i, row in enumerate(matrix) if not zero(*row)]
         solved = not rows or self._solve(matrix[rows], total[rows], free)
         # Balances that nothing takes part in hold exactly, or are left, as an additional load on an edge of each.
@@ -163,27 +164,30 @@ class Stress:
         self._set()
 
     def _solve(self, matrix, total, free):
-        """Changes coefficients by the least that balances, relative to their sizes: nearly, where some may reach zero, at last exactly, as long as
-        changes are of the size of rounding. Whether it came to the exact ones."""
+        """Changes coefficients by the least that balances, relative to their sizes: exactly, or where that makes contacts pull or is more than
+        rounding, nearly. Whether it is exact."""
         start = b = np.array([joint.pressure[i] for joint, i in free], object)
         presses = np.array([joint.presses for joint, _ in free])
         most, solved = ROUNDING * max(arb(self.scale), *abs(b)), False
+        missing = lambda b: total + matrix @ (b - start)
         for ridge in RIDGES:
             weights = [x * x if press else arb(self.scale) ** 2 for x, press in zip(b, presses)]
-            weighted = matrix * np.array(weights, object)
-            normal = weighted @ matrix.T
-            normal[np.diag_indices(len(normal))] *= 1 + ridge
+            weighted = arb_mat((matrix * np.array(weights, object)).tolist())
+            normal = weighted * arb_mat(matrix.T.tolist())
+            for k in range(len(total)):
+                normal[k, k] *= 1 + ridge
             try:
-                y = arb_mat(normal.tolist()).solve(arb_mat([[-x] for x in total + matrix @ (b - start)])).entries()
+                step = weighted.transpose() * normal.solve(arb_mat([[-x] for x in missing(b)]))
             except ZeroDivisionError:
-                break
-            found = b + weighted.T @ np.array(y, object)
-            if not all(abs(x) <= most for x in found - b):
-                break
-            if not zero(ridge):
-                b = np.array([min(x.mid(), arb(0)) if press else x.mid() for x, press in zip(found, presses)], object)
-            elif all(found[presses] <= 0):
+                continue
+            found = b + np.array(step.entries(), object)
+            if not all(abs(found - b) <= most):
+                continue
+            if zero(ridge) and all(found[presses] <= 0):
                 b, solved = found, True
+                break
+            near = np.array([min(x.mid(), arb(0)) if press else x.mid() for x, press in zip(found, presses)], object)
+            b = near if 2 * max(abs(missing(near))) <= max(abs(missing(b))) else b
         for (joint, i), x in zip(free, b):
             joint.pressure[i] = x
         return solved
