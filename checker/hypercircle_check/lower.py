@@ -19,7 +19,6 @@ from . import Refused, reference
 from .exact import balls, by_component, cross, dot, length, lower, mean, raised, times, upper, zero
 
 ROUNDING = 1e-7  # changes beyond this part of the largest traction are no rounding
-RIDGES = [0, *(arb(2) ** -k for k in (60, 70, 80, 90, 100)), 0]  # relative, for balances that nearly depend on each other
 
 
 def load(mesh, e):
@@ -154,40 +153,41 @@ class Stress:
         for column, (joint, i) in zip(columns, free):
             for e, tau in self._sides(joint, [fmpq(int(i == j)) for j in range(len(joint.pressure))]):
                 column[self.component[mesh.owners[e, 0]]] += self._acting(e, tau)
+        for c, (_, e) in enumerate(self.roots, 1):  # moments about an end of the edge that would take what is left
+            for own in (total[c], *columns[:, c]):
+                own[2] -= cross(mesh.x[mesh.edges[e, 0]], own)
         total = total[1:].ravel()
         matrix = columns[:, 1:].reshape(len(free), len(total)).T
-        rows = [i for i, row in enumerate(matrix) if not zero(*row)]
-        solved = not rows or self._solve(matrix[rows], total[rows], free)
+        rows = np.array([any(x != 0 for x in row) for row in matrix])
+        solved = not rows.any() or self._solve(matrix[rows], total[rows], free)
         # Balances that nothing takes part in hold exactly, or are left, as an additional load on an edge of each.
-        if not solved or not zero(*(x for i, x in enumerate(total) if i not in rows)):
+        if not solved or not zero(*total[~rows], *matrix[~rows].ravel()):
             self.parent = [dict(self.roots).get(t, e) for t, e in enumerate(self.parent)]
         self._set()
 
     def _solve(self, matrix, total, free):
         """Changes coefficients by the least that balances, relative to their sizes: exactly, or where that makes contacts pull or is more than
-        rounding, nearly. Whether it is exact."""
+        rounding, nearly, by least squares in floating point. Whether it is exact."""
         start = b = np.array([joint.pressure[i] for joint, i in free], object)
-        presses = np.array([joint.presses for joint, _ in free])
-        most, solved = ROUNDING * max(arb(self.scale), *abs(b)), False
-        missing = lambda b: total + matrix @ (b - start)
-        for ridge in RIDGES:
-            weights = [x * x if press else arb(self.scale) ** 2 for x, press in zip(b, presses)]
-            weighted = arb_mat((matrix * np.array(weights, object)).tolist())
-            normal = weighted * arb_mat(matrix.T.tolist())
-            for k in range(len(total)):
-                normal[k, k] *= 1 + ridge
-            try:
-                step = weighted.transpose() * normal.solve(arb_mat([[-x] for x in missing(b)]))
-            except ZeroDivisionError:
-                continue
-            found = b + np.array(step.entries(), object)
-            if not all(abs(found - b) <= most):
-                continue
-            if zero(ridge) and all(found[presses] <= 0):
-                b, solved = found, True
+        presses, rough = np.array([joint.presses for joint, _ in free]), matrix.astype(float)
+        solved, most, missing = False, ROUNDING * max(arb(self.scale), *abs(b)), lambda b: total + matrix @ (b - start)
+        for exact in (True, False, False, False, True):
+            room = np.where(presses, abs(b).astype(float), self.scale + 1e-300)
+            if exact:
+                weighted = arb_mat((matrix * balls(room**2)).tolist())
+                try:
+                    y = (weighted * arb_mat(matrix.T.tolist())).solve(arb_mat([[-x] for x in missing(b)]))
+                except ZeroDivisionError:
+                    continue
+                found = b + np.array((weighted.transpose() * y).entries(), object)
+            else:
+                norms = np.sqrt(((rough * room) ** 2).sum(1)) + 1e-300
+                step = np.linalg.lstsq(rough * room / norms[:, None], -missing(b).astype(float) / norms, rcond=1e-10)[0] * room
+                found = np.array([min(x, arb(0)) if press else x for x, press in zip(b + balls(step), presses)], object)
+            if all(abs(found - start) <= most) and all(found[presses] <= 0):
+                b, solved = found, exact
+            if solved:
                 break
-            near = np.array([min(x.mid(), arb(0)) if press else x.mid() for x, press in zip(found, presses)], object)
-            b = near if 2 * max(abs(missing(near))) <= max(abs(missing(b))) else b
         for (joint, i), x in zip(free, b):
             joint.pressure[i] = x
         return solved
