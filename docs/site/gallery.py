@@ -33,15 +33,14 @@ def make(page, program, folder):
     """Runs the command of a page and keeps what the page shows of it."""
     line = command(page)
     folder.mkdir(parents=True)
-    path = f"{program.parent}:{os.environ['PATH']}"
-    run = subprocess.run(
-        f"{line} --out '{folder}/out'", shell=True, cwd=ROOT, env={**os.environ, "PATH": path}, capture_output=True, text=True
-    )
-    printed = (run.stdout + run.stderr).replace(f"{folder}/", "")
+    (folder / "cases").symlink_to(ROOT / "cases")
+    environment = os.environ | {"PATH": f"{program.parent}:{os.environ['PATH']}"}
+    run = subprocess.run(line, shell=True, cwd=folder, env=environment, capture_output=True, text=True)
+    printed = run.stdout + run.stderr
     if run.returncode != 0:
         sys.exit(f"{page}: `{line}` ended with {run.returncode}:\n{printed}")
     (folder / "printed.txt").write_text(f"$ {line}\n{printed}", encoding="utf-8")
-    report = (folder / "out/report.html").read_text(encoding="utf-8")
+    report = (folder / re.search(r"^report: (.*)$", printed, re.MULTILINE)[1]).read_text(encoding="utf-8")
     for name in figures(page):
         picture = re.search(FIGURE.format(re.escape(name)), report, re.DOTALL)
         if not picture:
