@@ -22,6 +22,7 @@ from .upper import Displacement
 FORMAT = 1
 PART = arb(fmpq(1, 1000))  # of the width, by which a bracket may be wider than claimed: it is told then
 LEAST = arb(10) ** -250  # and what underflows in double precision
+DATA = arb(2) ** -44  # of the energy, by which the data of two meshes, rounded to doubles each for itself, may contradict each other
 UNREADABLE = (OSError, ValueError, EOFError, NotImplementedError, zipfile.BadZipFile, zipfile.LargeZipFile)
 
 
@@ -72,7 +73,7 @@ class Proof:
 
     def against_claim(self):
         """The ends that are proved: those claimed, or farther out by next to nothing."""
-        if self.lower > self.upper:
+        if self.lower - self.upper > max(self.displacement.grain, DATA * abs(self.upper)):
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
         allowed = max((arb(self.claim[1]) - self.claim[0]) * PART, self.displacement.grain, LEAST)
         self.room = [self.lower - self.claim[0], self.claim[1] - self.upper]
