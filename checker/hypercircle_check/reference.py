@@ -91,10 +91,16 @@ def stresses(p):
     for pivot, row in zip(pivots, reduced.table()):
         if pivot < n:
             special[pivot], basis[pivot] = row[n:], [-row[k] for k in free]
-    shaped = lambda table: np.array([[float(x) for x in row] for row in table]).reshape(3, 3, n // 9, -1)
-    gram, r, z = np.array(mass(p, p).table(), float), shaped(special), shaped(basis)
-    forms = [np.einsum("siaf,ab,sjbg->ijfg", z, gram, other) for other in (z, r)]
-    return arb_mat(special), arb_mat(n, len(free), [x for row in basis for x in row]), forms
+    special, basis = arb_mat(special), arb_mat(n, len(free), [x for row in basis for x in row])
+    shaped = lambda matrix: np.array(matrix.entries(), float).reshape(3, 3, n // 9, matrix.ncols())
+    gram = np.array(mass(p, p).table(), float)
+    weighted = lambda matrix: (np.linalg.cholesky(gram).T @ shaped(matrix)).reshape(n, -1)
+    if free:  # Z orthonormal and R across to it, as nearly as floating point has it: then c is well determined in any degree
+        for _ in range(2):
+            basis *= arb_mat(np.linalg.inv(np.linalg.qr(weighted(basis))[1]).tolist())
+        special -= basis * arb_mat((weighted(basis).T @ weighted(special)).tolist())
+    forms = [np.einsum("siaf,ab,sjbg->ijfg", shaped(basis), gram, shaped(other), optimize=True) for other in (basis, special)]
+    return special, basis, forms
 
 
 def least(p, form, data):

@@ -40,6 +40,7 @@ RUNS = [
     ("tests/scenes/moved_rigidly", []),
     ("tests/scenes/soft_between_stiff", []),
     ("tests/scenes/three_that_meet_in_a_point", []),
+    ("tests/scenes/held_by_a_contact_that_opens", ["--degree", "8"]),
 ]
 
 COARSER = {"cases/rotor": ("size = 0.008", "size = 0.025")}
