@@ -13,6 +13,9 @@ k d^2 / 2 + t^2 / (2 k) - (-t) (j - g) >= 0 with d = max(0, j - g): integrate by
 
 The proof file gives candidates for s and v in floating point. `lower` and `upper` turn them into admissible fields, exactly, by changes
 of the size of rounding errors, and enclose their energies; a candidate that needs more than that is refused.
+
+To read in this order: `exact` (numbers), `material` and `scene` (what is asked), `mesh` (where it holds), `reference` (fields on one triangle),
+`lower`, `upper`, `quantity`, `main`.
 """
 
 VERSION = "0.2.0"

@@ -7,10 +7,10 @@ import json
 import sys
 import time
 import zipfile
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+from flint import arb, fmpq
 
 from . import VERSION, Refused
 from .lower import Stress
@@ -20,13 +20,14 @@ from .scene import Scene
 from .upper import Displacement
 
 FORMAT = 1
-PART = Fraction(1, 1000)  # of the width, by which a bracket may be wider than claimed: it is told then
-LEAST = Fraction(1, 10**250)  # and what underflows in double precision
+PART = arb(fmpq(1, 1000))  # of the width, by which a bracket may be wider than claimed: it is told then
+LEAST = arb(10) ** -250  # and what underflows in double precision
+DATA = arb(2) ** -44  # of the energy, by which the data of two meshes, rounded to doubles each for itself, may contradict each other
 UNREADABLE = (OSError, ValueError, EOFError, NotImplementedError, zipfile.BadZipFile, zipfile.LargeZipFile)
 
 
 def read(path):
-    """The arrays of a proof, held against their digest."""
+    """The arrays of a proof, compared with their digest."""
     try:
         with zipfile.ZipFile(path) as archive:
             files = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
@@ -68,18 +69,18 @@ class Proof:
             premises.append(f"coordinates of the mesh count from {self.manifest['origin']} and were rounded there")
         source = "the polygons of the scene" if scene.polygons else "its file, with the boundaries that it names"
         premises.append(f"the bodies are the triangles in the proof, which hypercircle made from {source}")
-        self.premises, self.claim = list(dict.fromkeys(premises)), [Fraction(self.manifest["claim"][end]) for end in ("lower", "upper")]
+        self.premises, self.claim = list(dict.fromkeys(premises)), [float(self.manifest["claim"][end]) for end in ("lower", "upper")]
 
     def against_claim(self):
         """The ends that are proved: those claimed, or farther out by next to nothing."""
-        if self.lower > self.upper:
+        if self.lower - self.upper > max(self.displacement.grain, DATA * abs(self.upper)):
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
-        allowed = max((self.claim[1] - self.claim[0]) * PART, self.displacement.grain, LEAST)
+        allowed = max((arb(self.claim[1]) - self.claim[0]) * PART, self.displacement.grain, LEAST)
         self.room = [self.lower - self.claim[0], self.claim[1] - self.upper]
         for end, room, found, claimed in zip(("lower", "upper"), self.room, (self.lower, self.upper), self.claim):
-            if room < -allowed:
-                raise Refused(f"the {end} bound {float(claimed)!r} is claimed, and only {float(found)!r} is proved, {float(-room):.2e} from it")
-        self.proved = [min(self.lower, self.claim[0]), max(self.upper, self.claim[1])]
+            if not room >= -allowed:
+                raise Refused(f"the {end} bound {claimed!r} is claimed, and only {float(found)!r} is proved, {float(-room):.2e} from it")
+        self.proved = [min(self.lower, arb(self.claim[0])), max(self.upper, arb(self.claim[1]))]
 
 
 def check(folder, scene=None):
@@ -91,18 +92,19 @@ def check(folder, scene=None):
             raise Refused(f"{scene} is not the scene of the proof")
         shown = json.loads(report.read_text())["energy"] if report.is_file() else proof.manifest["claim"]
         for end, claimed in zip(("lower", "upper"), proof.claim):
-            if Fraction(shown[end]) != claimed:
-                raise Refused(f"report.json has the {end} bound {shown[end]!r}, and the proof is of {float(claimed)!r}")
+            if shown[end] != claimed:
+                raise Refused(f"report.json has the {end} bound {shown[end]!r}, and the proof is of {claimed!r}")
     except (*UNREADABLE, KeyError, TypeError) as error:
         raise Refused(f"the scene or the report cannot be read: {error!r}") from None
     proof.against_claim()
     return proof
 
 
-def outwards(ends):
-    """Doubles that enclose two fractions."""
-    lower, upper = (float(x) for x in ends)
-    return lower if lower <= ends[0] else np.nextafter(lower, -np.inf), upper if upper >= ends[1] else np.nextafter(upper, np.inf)
+def between(ends):
+    """Two numbers in words, as doubles that enclose them."""
+    low, high = (float(x) for x in ends)
+    low, high = low if low <= ends[0] else np.nextafter(low, -np.inf), high if high >= ends[1] else np.nextafter(high, np.inf)
+    return f"between {float(low)!r} and {float(high)!r}"
 
 
 def main(arguments=None):
@@ -118,14 +120,12 @@ def main(arguments=None):
     except Refused as failed:
         print(f"not proved: {failed}.")
         return 1
-    lower, upper = outwards(proof.proved)
     told = [f"{abs(float(room)):.1e} {'inside' if room >= 0 else 'OUTSIDE'} what is claimed" for room in proof.room]
-    print(f"proved: the exact energy of {proof.manifest['scene']} lies between {float(lower)!r} and {float(upper)!r}.")
+    print(f"proved: the exact energy of {proof.manifest['scene']} lies {between(proof.proved)}.")
     print(f"  lower bound: stress in exact equilibrium on {len(proof.stress.mesh.triangles)} triangles, {told[0]}")
     print(f"  upper bound: admissible displacement on {len(proof.displacement.mesh.triangles)} triangles, {told[1]}")
     for name, ends, claimed in proof.quantities:
-        low, high = outwards(ends)
-        print(f"  quantity {name}: between {float(low)!r} and {float(high)!r}, where the report has {claimed[0]!r} to {claimed[1]!r}")
+        print(f"  quantity {name}: {between(ends)}, where the report has {claimed[0]!r} to {claimed[1]!r}")
     for premise in proof.premises:
         print(f"  premise: {premise}")
     print(f"  scene: sha256 {proof.manifest['scene_sha256']}")

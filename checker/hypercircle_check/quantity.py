@@ -5,12 +5,10 @@ from the fields of the scene plus and minus w times those of the problem with th
 of the theorem of Prager and Synge.
 """
 
-from fractions import Fraction as Q
-
 import numpy as np
 
 from . import Refused
-from .ball import root
+from .exact import length, lower, rational, upper
 from .lower import Stress
 from .mesh import Mesh
 from .upper import Displacement
@@ -22,7 +20,7 @@ def interval(data, manifest, scene, index):
     """(name, interval that is proved, interval that is claimed) of a quantity of the manifest; None where the scene has no such mean."""
     claim = manifest["quantities"][index]
     found = [q for q in scene.raw.get("quantities", []) if q.get("name") == claim["name"]]
-    step = Q(claim["step"])
+    step = rational(claim["step"])
     if len(found) != 1 or step <= 0 or (found and scene.pulled(found[0], step) is None):
         raise Refused(f"the quantity '{claim['name']}' of the proof is no mean displacement of the scene that can be verified")
     own, bounds = {name: data[f"quantity{index}_{name}"] for name in FIELDS}, []
@@ -36,18 +34,13 @@ def interval(data, manifest, scene, index):
         stress, displacement = Stress(meshes[0], both), Displacement(meshes[1], both)
         bounds.append((stress.bound(), displacement.bound(stress.extra)))
     on, mesh = found[0]["displacement"], meshes[0]
-    if on in scene.bodies:
-        det = [d for d, b in zip(mesh.exact_det(), mesh.bodies) if mesh.body_names[b] == on]
-        size = (sum(det) / 2,) * 2
+    if on in scene.laws:
+        size = sum(mesh.shape(t)[1] for t in range(len(mesh.triangles)) if mesh.body(t) == on) / 2
     else:
-        normals = [mesh.normal(*mesh.edges[e]) for e, name in enumerate(mesh.names) if name == on and mesh.owners[e, 1] < 0]
-        lengths = [root(x * x + y * y) for x, y in normals]
-        size = [sum(length[end] for length in lengths) for end in (0, 1)]
-    unit = root(sum(Q(x) ** 2 for x in found[0]["direction"]))
+        size = sum(length(mesh.normal(e)) for e, name in enumerate(mesh.names) if name == on and mesh.owners[e, 1] < 0)
+    weight = 2 * step * scene.thickness * size * length([rational(x) for x in found[0]["direction"]])
     (low, high), (back_low, back_high) = bounds
-    ends = [(back_low - high) / (2 * step), (back_high - low) / (2 * step)]
-    weights = [scene.thickness * s * u for s, u in zip(size, unit)]
-    ends = [min(ends[0] / w for w in weights), max(ends[1] / w for w in weights)]
-    if ends[0] > Q(claim["upper"]) or ends[1] < Q(claim["lower"]):
+    ends = [lower((back_low - high) / weight), upper((back_high - low) / weight)]
+    if not (ends[0] <= claim["upper"] and ends[1] >= claim["lower"]):
         raise Refused(f"the quantity '{claim['name']}' lies between {float(ends[0])!r} and {float(ends[1])!r}, and the report claims otherwise")
     return claim["name"], ends, [claim["lower"], claim["upper"]]

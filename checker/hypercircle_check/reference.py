@@ -1,195 +1,115 @@
-"""Polynomials on the reference triangle (0, 0), (1, 0), (0, 1), split at its centroid, in exact rational numbers.
+"""Polynomials on the reference triangle (0, 0), (1, 0), (0, 1), split at its centroid.
 
-Stresses transform by s = B s^ B^T / J (B: the edges from the first corner, J = det B): then div s^ = 0, symmetry and equal tractions across a
-segment hold exactly where they hold for s, and scaled tractions (length times traction) by tau = B tau^. One matrix per degree
-therefore serves every triangle. Subtriangle i has the corners i + 1, i + 2 and the centroid; a polynomial on it is written in xi, eta,
-which are 1, 0 at the first of them and 0, 1 at the second.
+Subtriangle i has the corners i + 1, i + 2 and the centroid; a polynomial on it is the list of its Bernstein coefficients, for the powers
+(a, b, c) of the three barycentric coordinates in the order of `powers`. With B (columns: the edges from the first corner) and J = det B,
+stresses are s = B s^ B^T / J: div s^, equal tractions across a segment and symmetry are then those of s, and tractions times
+lengths are tau = B tau^. One matrix for each degree therefore serves every triangle.
 """
 
-from fractions import Fraction as Q
 from functools import cache
-from math import comb, factorial, prod
+from math import comb, isqrt, prod
 
 import numpy as np
-from flint import fmpq, fmpq_mat
+from flint import arb_mat, fmpq, fmpq_mat
 
-from .ball import EPS, Ball, constants, stack
-
-CORNERS = [(Q(0), Q(0)), (Q(1), Q(0)), (Q(0), Q(1))]
-CENTRE = (Q(1, 3), Q(1, 3))
+CORNERS = [(0, 0), (1, 0), (0, 1)]
+CENTRE = (fmpq(1, 3), fmpq(1, 3))
 
 
-def monomials(p):
-    return [(d - j, j) for d in range(p + 1) for j in range(d + 1)]
+def powers(p):
+    return [(p - rest, rest - c, c) for rest in range(p + 1) for c in range(rest + 1)]
 
 
-def legendre(k, s):
-    return sum((-1) ** (k + j) * comb(k, j) * comb(k + j, j) * s**j for j in range(k + 1))
+def raise_power(power, m):
+    return tuple(x + (i == m) for i, x in enumerate(power))
 
 
 @cache
-def to_legendre(p):
-    """Row k: what the Bernstein coefficients of degree p give to the Legendre coefficient k, (2 k + 1) int L_k B_i."""
-    moment = lambda i, j: Q(comb(p, i) * factorial(i + j) * factorial(p - i), factorial(p + j + 1))  # int B_i s^j
-    power = lambda k, j: (-1) ** (k + j) * comb(k, j) * comb(k + j, j)
-    return [[(2 * k + 1) * sum(power(k, j) * moment(i, j) for j in range(k + 1)) for i in range(p + 1)] for k in range(p + 1)]
+def mass(p, q):
+    """The integrals over a triangle whose area is one half of products of Bernstein polynomials of degrees p and q."""
+    entry = lambda a, b: fmpq(prod(comb(x + y, x) for x, y in zip(a, b)), comb(p + q, p) * (p + q + 1) * (p + q + 2))
+    return arb_mat([[entry(a, b) for b in powers(q)] for a in powers(p)])
+
+
+def integral(x, y):
+    """The matrix of the integrals of x_i y_j over a triangle whose area is one half, for polynomials by rows."""
+    degrees = ((isqrt(8 * matrix.ncols() + 1) - 3) // 2 for matrix in (x, y))  # of (p + 1) (p + 2) / 2 columns
+    return x * mass(*degrees) * y.transpose()
 
 
 @cache
-def elevation(low, high):
-    """Bernstein coefficients of degree `high` from those of degree `low`."""
-    d = high - low
-    return [[Q(comb(low, i) * comb(d, j - i), comb(high, j)) if 0 <= j - i <= d else Q(0) for i in range(low + 1)] for j in range(high + 1)]
+def slopes(sub):
+    """The gradients of the three barycentric coordinates of a subtriangle."""
+    points = [CORNERS[(sub + 1) % 3], CORNERS[(sub + 2) % 3], CENTRE]
+    turned = lambda m: (points[m - 2], points[m - 1])  # the other two, in order
+    return [(3 * (a[1] - b[1]), 3 * (b[0] - a[0])) for a, b in map(turned, range(3))]
 
 
-@cache
-def product(p, i, q, j):
-    """int_0^1 of the product of two Bernstein polynomials."""
-    return Q(comb(p, i) * comb(q, j), comb(p + q, i + j) * (p + q + 1))
-
-
-@cache
-def orthogonal(p):
-    """(T, d): f = sum_j m_j mono_j = sum_k (T m)_k phi_k with orthogonal phi_k on the unit triangle, d_k = int phi_k^2."""
-    mono, n = monomials(p), (p + 1) * (p + 2) // 2
-    gram = [[Q(factorial(a + c) * factorial(b + d), factorial(a + b + c + d + 2)) for c, d in mono] for a, b in mono]
-    low, d = [[Q(int(i == j)) for j in range(n)] for i in range(n)], [Q(0)] * n
-    for j in range(n):
-        d[j] = gram[j][j] - sum(low[j][k] ** 2 * d[k] for k in range(j))
-        for i in range(j + 1, n):
-            low[i][j] = (gram[i][j] - sum(low[i][k] * low[j][k] * d[k] for k in range(j))) / d[j]
-    return [list(column) for column in zip(*low)], d
-
-
-def _forces(p):
-    """How many values the body force has: that of a constant for p = 1, else those of an affine one at the three corners."""
-    return 2 if p == 1 else 6
+def on_split(corners):
+    """Bernstein coefficients of degree 1 on each subtriangle of what is affine on the triangle: lists by component of values at corners."""
+    centres = [sum(row) * fmpq(1, 3) for row in corners]
+    return [arb_mat([[row[(sub + 1) % 3], row[(sub + 2) % 3], centre] for row, centre in zip(corners, centres)]) for sub in range(3)]
 
 
 def _equations(p):
-    """Rows (unknowns, data) of: div s^ + f^ = 0, equal tractions inside, tractions tau^ (Legendre coefficients) on the three sides. Polynomials
-    agree where they agree at enough points."""
-    mono, rows = monomials(p), []
-    value = lambda x, y: [x**i * y**j for i, j in mono]
-    by_xi = lambda x, y: [i * x ** max(i - 1, 0) * y**j for i, j in mono]
-    by_eta = lambda x, y: [j * x**i * y ** max(j - 1, 0) for i, j in mono]
-
-    def row(parts, data):
-        out = [Q(0)] * (9 * len(mono))
-        for sub, comp, weight, values in parts:
-            begin = (3 * sub + comp) * len(mono)
-            out[begin : begin + len(mono)] = [o + weight * v for o, v in zip(out[begin:], values)]
-        rows.append((out, data))
-
-    def traction(sub, c, a, b, at, sign=1):  # component c of s^ times the normal of the segment from a to b
-        return [(sub, (0, 2)[c], sign * (b[1] - a[1]), value(*at)), (sub, (2, 1)[c], sign * (a[0] - b[0]), value(*at))]
-
-    for i in range(3):
-        a, b = CORNERS[(i + 1) % 3], CORNERS[(i + 2) % 3]
-        (ux, uy), (vx, vy) = ([x - c for x, c in zip(corner, CENTRE)] for corner in (a, b))
-        det = ux * vy - uy * vx
-        for c in range(2):
-            for x, y in [(Q(j, p), Q(k, p)) for j, k in monomials(p - 1)]:
-                slopes = by_xi(x, y), by_eta(x, y)
-                dx = [(vy * s - uy * t) / det for s, t in zip(*slopes)]
-                dy = [(ux * t - vx * s) / det for s, t in zip(*slopes)]
-                rest = (1 - x - y) / 3
-                share = {(i + 1) % 3: x + rest, (i + 2) % 3: y + rest, i: rest} if p > 1 else {0: Q(1)}
-                row([(i, (0, 2)[c], 1, dx), (i, (2, 1)[c], 1, dy)], {6 * (p + 1) + 2 * k + c: -w for k, w in share.items()})
-            for s in [Q(j, p) for j in range(p + 1)]:
-                inner = traction((i + 2) % 3, c, CENTRE, CORNERS[i], (s, 0)) + traction((i + 1) % 3, c, CENTRE, CORNERS[i], (0, s), -1)
-                row(inner, {})
-                row(traction(i, c, a, b, (1 - s, s)), {(i * (p + 1) + k) * 2 + c: legendre(k, s) for k in range(p + 1)})
-    return rows
-
-
-def rational(rows):
-    return fmpq_mat(len(rows), len(rows[0]), [fmpq(*x.as_integer_ratio()) for row in rows for x in row])
-
-
-def inverse(rows):
-    return [[Q(int(x.p), int(x.q)) for x in row] for row in rational(rows).inv().table()]
-
-
-def floats(matrix):
-    return np.array([[int(x.p) / int(x.q) for x in row] for row in matrix.table()])
-
-
-def _enclosed(matrix):
-    mid = floats(matrix)
-    return Ball(mid, abs(mid) * EPS + 1e-300)
+    """Rows, as pairs of {unknown: factor} and {datum: factor}, of: equal tractions inside, tractions tau^ on the three sides, div s^ + f^ = 0.
+    Unknowns are (subtriangle, xx or yy or xy, powers); data are (side, coefficient, component) and ("force", corner, component)."""
+    traction = lambda sub, c, n, power, sign=1: {(sub, c, power): sign * n[c], (sub, 2, power): sign * n[1 - c]}
+    for sub, c in ((sub, c) for sub in range(3) for c in range(2)):
+        first, second = (sub + 1) % 3, (sub + 2) % 3
+        (x, y), (u, v), (w, z) = CORNERS[first], CORNERS[second], CORNERS[sub]
+        inner = (CENTRE[1] - z, w - CENTRE[0])  # normal of the segment from corner `sub` to the centroid, between `first` and `second`
+        for j in range(p + 1):
+            yield traction(sub, c, (v - y, x - u), (p - j, j, 0)), {(sub, j, c): 1}
+            yield traction(first, c, inner, (0, p - j, j)) | traction(second, c, inner, (p - j, 0, j), -1), {}
+        for power in powers(p - 1):
+            div = {(sub, comp, raise_power(power, m)): p * s[d] for m, s in enumerate(slopes(sub)) for comp, d in ((c, c), (2, 1 - c))}
+            share = [fmpq(a, p - 1) if p > 1 else CENTRE[0] for a in power]
+            corners = {first: share[0], second: share[1], sub: 0}
+            yield div, {("force", corner, c): -(w + share[2] / 3) for corner, w in corners.items()}
 
 
 @cache
 def stresses(p):
-    """(R, Z, d): the orthogonal coefficients of s^ are R (tau^, f^) + Z c for whatever c; rows by subtriangle, component (xx, yy, xy) and phi_k.
-
-    R is right for data in equilibrium. Which of the fields with the same tractions it gives, and the basis Z of those without, are chosen in
-    floating point and then taken exactly.
-    """
-    rows, data = _equations(p), 6 * (p + 1) + _forces(p)
-    unknowns = len(rows[0][0])
-    reduced, rank = rational([row + [w.get(j, Q(0)) for j in range(data)] for row, w in rows]).rref()
-    pivots = [(next(j for j, x in enumerate(row) if x != 0), row) for row in reduced.table()[:rank]]
-    # Rows without unknowns are what data in equilibrium fulfil: two forces and a moment.
-    assert sum(pivot >= unknowns for pivot, _ in pivots) == 3, "tractions in equilibrium have a field"
-    table, pivots = zip(*((row, pivot) for pivot, row in pivots if pivot < unknowns))
-    free = sorted(set(range(unknowns)) - set(pivots))
-    # One column for each datum, then one for each free coefficient.
-    fields = {pivot: row[unknowns:] + [-row[j] for j in free] for row, pivot in zip(table, pivots)}
-    fields |= {j: [fmpq(int(k == data + i)) for k in range(data + len(free))] for i, j in enumerate(free)}
-    transform, d = orthogonal(p)
-    n, change = len(d), rational(transform)
-    block = lambda b: change * fmpq_mat(n, data + len(free), [x for j in range(b * n, b * n + n) for x in fields[j]])
-    columns = list(zip(*(row for b in range(9) for row in block(b).table())))
-    matrix = lambda these: fmpq_mat(len(these), unknowns, [x for column in these for x in column]).transpose()
-    special = matrix(columns[:data])
-    if not free:
-        return _enclosed(special), None, d
-    weight = np.sqrt(np.array([float(x) * (1, 1, 2)[c] for _ in range(3) for c in range(3) for x in d]))[:, None]
-    basis = matrix(columns[data:])
-    for _ in range(2):
-        basis = basis * rational(np.linalg.inv(np.linalg.qr(floats(basis) * weight)[1]).tolist())
-    least = -(floats(basis) * weight).T @ (floats(special) * weight)
-    return _enclosed(special + basis * rational(least.tolist())), _enclosed(basis), d
-
-
-@cache
-def derivatives(k, affine=False):
-    """(X, Y, d): orthogonal coefficients of degree k - 1, at least 1 where they are to hold something affine too, of the derivatives by xi and
-    eta of a polynomial of Bernstein coefficients of degree k."""
-    low = max(k - 1, int(affine))
-    transform, d = orthogonal(low)
-    place, columns = {m: j for j, m in enumerate(monomials(low))}, ([], [])
-    for a, b, c in bernstein_indices(k):
-        slopes = [[Q(0)] * len(place) for _ in range(2)]
-        for i, j in monomials(c):  # (1 - xi - eta)^c
-            w = Q((-1) ** (i + j) * factorial(k), prod(map(factorial, (a, b, i, j, c - i - j))))
-            for slope, power, down in ((slopes[0], a + i, (a + i - 1, b + j)), (slopes[1], b + j, (a + i, b + j - 1))):
-                if power:
-                    slope[place[down]] += w * power
-        for column, slope in zip(columns, slopes):
-            column.append([sum(t * x for t, x in zip(row, slope)) for row in transform])
-    return *(constants(list(zip(*column))) for column in columns), d
+    """(R, Z, and what the choice of c needs): the coefficients of s^ are R (tau^, f^) + Z c for whatever c, if the data are in equilibrium.
+    Rows by subtriangle, component and powers; data by side, coefficient and component, then forces by corner and component."""
+    unknowns = [(sub, c, power) for sub in range(3) for c in range(3) for power in powers(p)]
+    data = [(i, j, c) for i in range(3) for j in range(p + 1) for c in range(2)] + [("force", i, c) for i in range(3) for c in range(2)]
+    n, m = len(unknowns), len(data)
+    place = {key: i for i, key in enumerate([*unknowns, *data])}
+    rows = []
+    for left, right in _equations(p):
+        rows.append([fmpq(0)] * (n + m))
+        for key, factor in (left | right).items():
+            rows[-1][place[key]] += factor
+    reduced, rank = fmpq_mat(rows).rref()
+    pivots = [next(j for j, x in enumerate(row) if x != 0) for row in reduced.table()[:rank]]
+    # Rows without unknowns are what data in equilibrium fulfil: two forces and a moment; of forces of degree 1 only the constant ones count.
+    assert sum(pivot >= n for pivot in pivots) == 3, "tractions in equilibrium have a field"
+    free = sorted(set(range(n)) - set(pivots))
+    special, basis = [[fmpq(0)] * m for _ in range(n)], [[fmpq(int(j == k)) for k in free] for j in range(n)]
+    for pivot, row in zip(pivots, reduced.table()):
+        if pivot < n:
+            special[pivot], basis[pivot] = row[n:], [-row[k] for k in free]
+    special, basis = arb_mat(special), arb_mat(n, len(free), [x for row in basis for x in row])
+    shaped = lambda matrix: np.array(matrix.entries(), float).reshape(3, 3, n // 9, matrix.ncols())
+    gram = np.array(mass(p, p).table(), float)
+    weighted = lambda matrix: (np.linalg.cholesky(gram).T @ shaped(matrix)).reshape(n, -1)
+    if free:  # Z orthonormal and R across to it, as nearly as floating point has it: then c is well determined in any degree
+        for _ in range(2):
+            basis *= arb_mat(np.linalg.inv(np.linalg.qr(weighted(basis))[1]).tolist())
+        special -= basis * arb_mat((weighted(basis).T @ weighted(special)).tolist())
+    forms = [np.einsum("siaf,ab,sjbg->ijfg", shaped(basis), gram, shaped(other), optimize=True) for other in (basis, special)]
+    return special, basis, forms
 
 
-def on_split(corners):
-    """Orthogonal coefficients of degree 1, on each subtriangle, of a function that is affine on a triangle, by its values at the corners."""
-    centre = (corners[0] + corners[1] + corners[2]) * constants([[Q(1, 3)]])[0, 0]
-    change, _ = orthogonal(1)
-    for sub in range(3):
-        first, second = corners[(sub + 1) % 3], corners[(sub + 2) % 3]
-        yield stack([centre, first - centre, second - centre]).times(constants(change))
-
-
-@cache
-def shares(k):
-    """Integrals over the unit triangle of Bernstein polynomials times the barycentric coordinates, by rows."""
-    return [[Q(m[i] + 1, (k + 1) * (k + 2) * (k + 3)) for m in bernstein_indices(k)] for i in range(3)]
-
-
-def bernstein_indices(k):
-    return [(k - rest, rest - l, l) for rest in range(k + 1) for l in range(rest + 1)]
+def least(p, form, data):
+    """The c that makes sum_ij form_ij int s^_i s^_j small, in floating point: nothing is claimed of it."""
+    hessian, gradient = (np.tensordot(form, own, 2) for own in stresses(p)[2])
+    try:
+        return np.linalg.solve(hessian, -gradient @ data).tolist()
+    except np.linalg.LinAlgError:
+        return [0.0] * len(hessian)
 
 
 @cache
@@ -203,5 +123,20 @@ def split_nodes(k):
         known |= {(k - j, j, 0): 2 + sub * (k - 1) + j for j in range(1, k)}
         known |= {(k - j, 0, j): centre + first * (k - 1) + j for j in range(1, k)}
         known |= {(0, k - j, j): centre + second * (k - 1) + j for j in range(1, k)}
-        subs.append([known[m] if m in known else next(inside) for m in bernstein_indices(k)])
+        subs.append([known[power] if power in known else next(inside) for power in powers(k)])
     return subs
+
+
+@cache
+def gradients(k):
+    """The matrix from the coefficients on the split triangle to those of the derivatives by xi and eta: rows by subtriangle, derivative, powers."""
+    rows = []
+    for sub, nodes in enumerate(split_nodes(k)):
+        place = dict(zip(powers(k), nodes))
+        for d in range(2):
+            for power in powers(k - 1):
+                row = [fmpq(0)] * (3 * (k * k + k) // 2 + 1)
+                for m, slope in enumerate(slopes(sub)):
+                    row[place[raise_power(power, m)]] += k * slope[d]
+                rows.append(row)
+    return arb_mat(rows)

@@ -3,9 +3,9 @@
 import copy
 import tomllib
 from dataclasses import dataclass
-from fractions import Fraction as Q
 
 from . import Refused, material
+from .exact import rational, zero
 
 KNOWN = {  # every key that has a meaning here, and the values of those that name a kind
     "": "title model mesh geometry bodies boundaries supports tractions contacts bonds quantities",
@@ -33,18 +33,18 @@ def known(place, table):
     return table
 
 
-def stiffnesses(given):
-    """Along the normal and along the edge."""
-    both = vector(given) if isinstance(given, list) else [Q(given), Q(0)]
-    if len(both) != 2 or min(both) < 0 or not any(both):
-        raise Refused(f"a stiffness is {given!r}")
-    return both
-
-
 def vector(values):
     if not isinstance(values, (list, tuple)):
         raise Refused(f"this checker knows constant vectors, not {values!r}")
-    return [Q(x) for x in values]
+    return [rational(x) for x in values]
+
+
+def stiffnesses(given):
+    """Along the normal and along the edge."""
+    both = vector(given) if isinstance(given, list) else [rational(given), rational(0)]
+    if len(both) != 2 or min(both) < 0 or not any(both):
+        raise Refused(f"a stiffness is {given!r}")
+    return both
 
 
 @dataclass
@@ -66,11 +66,20 @@ class Affine:
     def at(self, x):
         return [v + g[0] * x[0] + g[1] * x[1] for v, g in zip(self.value, self.gradient)]
 
+    def varies(self):
+        return not zero(*(x for row in self.gradient for x in row))
+
+    def __bool__(self):
+        return self.varies() or not zero(*self.value)
+
+    def plus(self, value):
+        return Affine([x + y for x, y in zip(self.value, value)], self.gradient)
+
 
 @dataclass
 class Condition:
     """`clamped`: u = data(x). `roller`: u . direction = data, the outward normal where there is none. `load`: a pressure and an Affine.
-    `spring`: data is the stiffness along the normal and along the edge, or their names where they are a layer's. `contact`, `bond`: a name."""
+    `spring`: data is the stiffness along the normal and along the edge. `contact`, `bond`: data is a name."""
 
     kind: str
     data: object
@@ -86,65 +95,64 @@ class Scene:
             raise Refused(f"the scene cannot be read: {error!r}") from None
 
     def _read(self, model, bodies, supports=(), tractions=(), contacts=(), bonds=(), geometry=None, **_):
-        self.kinematics, self.thickness = known("model", model)["kinematics"], Q(model.get("thickness", 1))
-        self.bodies, self.forces, self.strains = {}, {}, {}
+        self.kinematics, self.thickness = known("model", model)["kinematics"], rational(model.get("thickness", 1))
+        self.laws, self.forces, self.strains = {}, {}, {}
         for name, body in bodies.items():
             self._body(name, known("bodies", body))
         self.conditions, self.contacts, self.bonds, self.sides = {}, {}, {}, {}
         self.polygons = [known("polygons", polygon) for polygon in (geometry or {}).get("polygons", [])]
         for support in supports:
             u, direction = known("supports", support).get("displacement"), support.get("direction")
-            if support["type"] == "clamped":
-                self._hold(support["on"], Condition("clamped", Affine.read("body_force", u)))
-            elif support["type"] == "spring":
-                self._hold(support["on"], Condition("spring", stiffnesses(support["stiffness"])))
-            else:
-                self._hold(support["on"], Condition("roller", Q(u or 0), direction and vector(direction)))
+            by_kind = {
+                "clamped": lambda: Condition("clamped", Affine.read("body_force", u)),
+                "spring": lambda: Condition("spring", stiffnesses(support["stiffness"])),
+                "roller": lambda: Condition("roller", rational(u or 0), direction and vector(direction)),
+            }
+            self._hold(support["on"], by_kind[support["type"]]())
         for load in tractions:
-            pressed = "pressure" in known("tractions", load)
-            self._hold(load["on"], Condition("load", (Q(load.get("pressure", 0)), Affine.of() if pressed else Affine.of(load["value"], load.get("gradient")))))
+            pressure, given = known("tractions", load).get("pressure"), (load.get("value"), load.get("gradient"))
+            traction = Affine.of(*given) if pressure is None else Affine.of()
+            self._hold(load["on"], Condition("load", (rational(pressure or 0), traction)))
         for place, joints, own in (("contacts", contacts, self.contacts), ("bonds", bonds, self.bonds)):
             for joint in joints:
                 sides = known(place, joint).get("between") or [joint["on"]]
                 name = "|".join([*sides, "rigid"][:2])
-                of = stiffnesses if place == "bonds" else Q
-                own[name] = {key: of(value) if key == "stiffness" else value for key, value in joint.items()}
+                read = stiffnesses if place == "bonds" else rational
+                own[name] = joint | ({"stiffness": read(joint["stiffness"])} if "stiffness" in joint else {})
                 for side, boundary in enumerate(sides):
                     self._hold(boundary, Condition(place[:-1], name))
                     self.sides[boundary] = (name, side)
+
+    def _hold(self, boundary, condition):
+        if boundary in self.conditions:
+            raise Refused(f"the boundary '{boundary}' has two conditions")
+        self.conditions[boundary] = condition
+
+    def _body(self, name, body):
+        known("orthotropic", body.get("orthotropic", {}))
+        *self.laws[name], warm, cold = material.law(body, self.kinematics == "plane-strain")
+        heat, force = body.get("temperature", 0), Affine.read("body_force", body.get("body_force"))
+        heat = known("temperature", heat) if isinstance(heat, dict) else {"value": heat}
+        t, slope = rational(heat.get("value", 0)), vector(heat.get("gradient", [0, 0]))
+        self.strains[name] = Affine([w * t + c for w, c in zip(warm, cold)], [[w * g for g in slope] for w in warm])
+        if "rotation" in body:
+            turning, about = known("rotation", body["rotation"]), vector(body["rotation"]["about"])
+            by = rational(turning["density"]) * rational(turning["omega"]) ** 2
+            turned = [[g + by * (i == j) for j, g in enumerate(row)] for i, row in enumerate(force.gradient)]
+            force = Affine([v - by * c for v, c in zip(force.value, about)], turned)
+        self.forces[name] = force
 
     def pulled(self, quantity, by):
         """The same scene with `by` times a constant load along the direction of a mean displacement; None where it is no such quantity."""
         on, direction = quantity.get("displacement"), quantity.get("direction")
         if on is None or direction is None or "point" in quantity or self.contacts:
             return None
-        held = self.conditions.get(on, Condition("load", (Q(0), Affine.of())))
-        if (on in self.bodies) == (on in self.conditions) and on in self.bodies or held.kind != "load":
+        held = self.conditions.get(on, Condition("load", (rational(0), Affine.of())))
+        if (on in self.forces and on in self.conditions) or held.kind != "load":
             return None
         out, add = copy.copy(self), [by * x for x in vector(direction)]
-        more = lambda f: Affine([x + y for x, y in zip(f.value, add)], f.gradient)
-        if on in self.bodies:
-            out.forces = self.forces | {on: more(self.forces[on])}
+        if on in self.forces:
+            out.forces = self.forces | {on: self.forces[on].plus(add)}
         else:
-            out.conditions = self.conditions | {on: Condition("load", (held.data[0], more(held.data[1])))}
+            out.conditions = self.conditions | {on: Condition("load", (held.data[0], held.data[1].plus(add)))}
         return out
-
-    def _body(self, name, body):
-        self.bodies[name] = material.law(body, self.kinematics == "plane-strain")
-        *_, warm, cold = self.bodies[name]
-        known("orthotropic", body.get("orthotropic", {}))
-        heat, force = body.get("temperature", 0), Affine.read("body_force", body.get("body_force"))
-        heat = known("temperature", heat) if isinstance(heat, dict) else {"value": heat}
-        t, slope = Q(heat.get("value", 0)), vector(heat.get("gradient", [0, 0]))
-        self.strains[name] = Affine([w * t + c for w, c in zip(warm, cold)], [[w * g for g in slope] for w in warm])
-        if "rotation" in body:
-            turning, about = known("rotation", body["rotation"]), vector(body["rotation"]["about"])
-            by = Q(turning["density"]) * Q(turning["omega"]) ** 2
-            force.value = [v - by * c for v, c in zip(force.value, about)]
-            force.gradient = [[g + by * (i == j) for j, g in enumerate(row)] for i, row in enumerate(force.gradient)]
-        self.forces[name] = force
-
-    def _hold(self, boundary, condition):
-        if boundary in self.conditions:
-            raise Refused(f"the boundary '{boundary}' has two conditions")
-        self.conditions[boundary] = condition

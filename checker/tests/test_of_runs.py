@@ -40,15 +40,22 @@ RUNS = [
     ("tests/scenes/moved_rigidly", []),
     ("tests/scenes/soft_between_stiff", []),
     ("tests/scenes/three_that_meet_in_a_point", []),
+    ("tests/scenes/held_by_a_contact_that_opens", ["--degree", "8"]),
 ]
+
+COARSER = {"cases/rotor": ("size = 0.008", "size = 0.025")}
 
 
 @needs_program
 @pytest.mark.parametrize("scene, options", RUNS, ids=[Path(scene).name for scene, _ in RUNS])
 def test_scene(tmp_path, scene, options):
-    line = [PROGRAM, "solve", ROOT / f"{scene}.toml", "--proof", "--quiet", "--out", tmp_path, *options]
-    subprocess.run(line, check=True, timeout=300)
-    proof = check(tmp_path, ROOT / f"{scene}.toml")
+    path = ROOT / f"{scene}.toml"
+    if scene in COARSER:
+        text, path = path.read_text(), tmp_path / "scene.toml"
+        assert COARSER[scene][0] in text
+        path.write_text(text.replace(*COARSER[scene]))
+    subprocess.run([PROGRAM, "solve", path, "--proof", "--quiet", "--out", tmp_path / "out", *options], check=True, timeout=300)
+    proof = check(tmp_path / "out", path)
     assert proof.lower <= proof.upper
 
 
