@@ -1,4 +1,5 @@
-"""Elastic contact: ½ ∫ k (j − g)₊² of the jump j of an edge along its normal beyond the gap g, times the thickness.
+"""Elastic contact: ½ ∫ k (j − g)₊² of the jump j of an edge along its normal beyond the gap g, times the thickness; of a body of revolution
+with the weight r.
 
 The energy is convex and once differentiable. Newton's method has the minimum of its second-order model, under whatever else bounds the
 displacement, as its next step, and shortens a step that does not lower the energy itself. Where the jump exceeds the gap is found from
@@ -41,6 +42,9 @@ class Touching:
         self.problem, self.degree, self.springs = problem, degree, springs
         self.first, self.second, self.length = sides(problem, self.springs, degree)
         self.weight = problem.thickness * self.length * self.springs.stiffness[:, 0]
+        self.radius = np.ones((len(self.length), 2))
+        if problem.revolution is not None:
+            self.radius = problem.points[problem.edges[springs.edges]][:, :, 0] - problem.revolution.axis
         self.back = np.linalg.inv(bernstein(degree))
 
     def jumps(self, displacement: np.ndarray) -> np.ndarray:
@@ -52,20 +56,21 @@ class Touching:
 
     def points(self, displacement: np.ndarray):
         """For each edge a rule over where the jump exceeds the gap: weights (n,), shape functions (n, k + 1) and gap (n,)."""
-        for jump, gap in zip(self.jumps(displacement), self.springs.gaps):
+        for jump, gap, radius in zip(self.jumps(displacement), self.springs.gaps, self.radius):
             count = max(self.degree, len(gap) - 1) + 1
             depth = _powers(self.back @ jump, count) - _powers(gap, count)
             zeros = np.roots(depth[::-1]) if np.any(depth[1:]) else np.zeros(0)
             inside = np.sort(zeros.real[(np.abs(zeros.imag) < 1e-12) & (zeros.real > 0.0) & (zeros.real < 1.0)])
             ends = np.concatenate([[0.0], inside, [1.0]])
             closed = np.polyval(depth[::-1], 0.5 * (ends[:-1] + ends[1:])) > 0.0
-            yield self._rule(ends, gap, closed)
+            yield self._rule(ends, gap, radius, closed)
 
-    def _rule(self, ends: np.ndarray, gap: np.ndarray, which: np.ndarray = np.array([True])):
+    def _rule(self, ends: np.ndarray, gap: np.ndarray, radius: np.ndarray, which: np.ndarray = np.array([True])):
         at, weight = np.polynomial.legendre.leggauss(self.degree + len(gap))
         length = (ends[1:] - ends[:-1])[which, None]
         s = (ends[:-1][which, None] + 0.5 * length * (1.0 + at)).reshape(-1)
-        return (0.5 * length * weight).reshape(-1), _basis(self.degree, s) @ self.back, _basis(len(gap) - 1, s) @ gap
+        weight = (0.5 * length * weight).reshape(-1) * (radius[0] + s * (radius[1] - radius[0]))
+        return weight, _basis(self.degree, s) @ self.back, _basis(len(gap) - 1, s) @ gap
 
     def energy(self, displacement: np.ndarray) -> float:
         """½ ∫ k (j − g)₊²."""
@@ -79,7 +84,7 @@ class Touching:
         count, k = len(self.length), self.degree
         products, pull = np.zeros((count, k + 1, k + 1)), np.zeros((Lattice.of(self.problem, k).ends[2], 2))
         if displacement is None:
-            rules = (self._rule(np.array([0.0, 1.0]), gap) for gap in self.springs.gaps)
+            rules = (self._rule(np.array([0.0, 1.0]), *of) for of in zip(self.springs.gaps, self.radius))
         else:
             rules = self.points(displacement)
         for i, (weight, basis, gap) in enumerate(rules):

@@ -2,7 +2,8 @@
 //!
 //! With the jump j = (v' − v'')·t̂ along a pair and the traction t along t̂ on the first side, |t| ≤ τ̄, the potential energy has ∫ τ̄ |j|, the
 //! complementary energy nothing, and the gap ∫ (τ̄ |j| + t j), which is never negative. Where the jump changes its sign along a
-//! pair the integral of its absolute value is bounded from above, so that 𝓛(v) is no less than the energy.
+//! pair the integral of its absolute value is bounded from above, so that 𝓛(v) is no less than the energy. On bodies of revolution τ̄ and t
+//! are those times the distance from the axis.
 
 use super::jump::jumps_along;
 use super::rounding::counted::Counted;
@@ -33,9 +34,10 @@ pub fn potential_of_friction(problem: &Problem, v: &Displacement, counted: Count
     let (mut value, mut sensitivity) = (Sum::default(), 0.0);
     for (pair, friction) in with_friction(problem, counted) {
         let (jump, size) = slides(problem, v, pair, &friction);
-        value.add(pair.length * absolute(&jump, &friction.bound));
+        let bound = friction.weighted();
+        value.add(pair.length * absolute(&jump, &bound));
         if jump.iter().any(|j| *j != 0.0) {
-            sensitivity += pair.length * size * side::integral(&friction.bound, &[1.0]);
+            sensitivity += pair.length * size * side::integral(&bound, &[1.0]);
         }
     }
     let t = problem.scene.thickness;
@@ -47,7 +49,7 @@ pub fn friction_error(problem: &Problem, stress: &StressField, v: &Displacement,
     let Some(friction) = pair.friction else { return 0.0 };
     let (jump, _) = slides(problem, v, pair, &friction);
     let [_, t] = contact_tractions(problem, stress, pair);
-    problem.scene.thickness * pair.length * (absolute(&jump, &friction.bound) + side::integral(&t, &jump))
+    problem.scene.thickness * pair.length * (absolute(&jump, &friction.weighted()) + side::integral(&t, &jump))
 }
 
 fn with_friction<'a>(
@@ -58,20 +60,19 @@ fn with_friction<'a>(
     pairs.filter_map(|(_, pair)| Some((pair, pair.friction?)))
 }
 
-/// ∫₀¹ w |f| for a linear w ≥ 0 by its end values, from above where f changes its sign.
-pub fn absolute(f: &[f64], weight: &[f64; 2]) -> f64 {
-    bounded(f, *weight, HALVINGS)
+/// ∫₀¹ w |f| for a w ≥ 0 by its Bernstein coefficients, from above where f changes its sign.
+pub fn absolute(f: &[f64], weight: &[f64]) -> f64 {
+    bounded(f, weight, HALVINGS)
 }
 
-fn bounded(f: &[f64], weight: [f64; 2], halvings: usize) -> f64 {
+fn bounded(f: &[f64], weight: &[f64], halvings: usize) -> f64 {
     let one_sign = f.iter().all(|c| *c >= 0.0) || f.iter().all(|c| *c <= 0.0);
     if one_sign || halvings == 0 {
         let sizes: Vec<f64> = f.iter().map(|c| c.abs()).collect();
-        return side::integral(&sizes, &weight);
+        return side::integral(&sizes, weight);
     }
-    let middle = 0.5 * (weight[0] + weight[1]);
-    let [left, right] = halves(f);
-    0.5 * (bounded(&left, [weight[0], middle], halvings - 1) + bounded(&right, [middle, weight[1]], halvings - 1))
+    let ([left, right], [of_left, of_right]) = (halves(f), halves(weight));
+    0.5 * (bounded(&left, &of_left, halvings - 1) + bounded(&right, &of_right, halvings - 1))
 }
 
 /// The coefficients on both halves of the interval (de Casteljau).

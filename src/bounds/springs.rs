@@ -3,6 +3,8 @@
 //! With the traction t = T(λ)·d on the first side and the jump j = (v' − v'')·d along each direction d of stiffness k, their potential
 //! energy is ½ ∫ k j², their complementary energy ∫ t²/2k, and their part of the gap ½ ∫ (k j + t)²/k, which is never negative.
 //!
+//! Beside an axis of revolution tractions are those times its distance r, and k counts r times: ½ ∫ k r j², ∫ t²/2kr, ½ ∫ (k r j + t)²/kr.
+//!
 //! Elastic contact resists what the jump exceeds the gap g by: with d = j − g these are ½ ∫ k d₊², ∫ t²/2k − ∫ t g, and
 //! ½ ∫ (k d₊ + t)²/k + ∫ (−t)(d₊ − d).
 
@@ -48,8 +50,9 @@ pub fn potential_of_springs(problem: &Problem, v: &Displacement, counted: Counte
         if let Some(contact) = &pair.contact {
             let (beyond, k) = (penetration(&jump[0], contact), stiffness[0]);
             let mut moved = 0.0;
-            positive::points(&beyond, beyond.len() - 1, |_, d, weight| moved += weight * d);
-            return vec![[0.5 * pair.length * k * positive::square(&beyond), pair.length * k * size[0] * moved]];
+            positive::points(&beyond, beyond.len(), |at, d, weight| moved += weight * pair.weight.at(at) * d);
+            let stored = positive::square(&beyond, pair.weight.ends());
+            return vec![[0.5 * pair.length * k * stored, pair.length * k * size[0] * moved]];
         }
         let along = jump.iter().zip(size).zip(stiffness).filter(|(_, k)| *k > 0.0);
         along
@@ -89,7 +92,7 @@ pub fn spring_error(problem: &Problem, stress: &StressField, v: &Displacement, c
 
 /// The Fenchel gap of an elastic contact along its edge; zero on a pair of another kind.
 pub fn elastic_contact_error(problem: &Problem, stress: &StressField, v: &Displacement, pair: &ContactPair) -> f64 {
-    let Some((pair, [k, _])) = BedPair::of_contact(pair, &problem.mesh) else { return 0.0 };
+    let Some((pair, [k, _])) = BedPair::of_contact(pair, problem.section(), &problem.mesh) else { return 0.0 };
     let Some(contact) = &pair.contact else { return 0.0 };
     let ([t, _], ([jump, _], _)) = (spring_tractions(problem, stress, &pair), spring_jumps(problem, v, &pair));
     problem.scene.thickness * one_sided_error(&pair, &t, &penetration(&jump, contact), k)
@@ -103,12 +106,17 @@ fn penetration(jump: &[f64], contact: &OneSided) -> Vec<f64> {
     jump.iter().zip(&gap).map(|(jump, gap)| jump - gap).collect()
 }
 
+/// ∫ ((k r d₊ + t)²/2kr − t (d₊ − d)) along an edge for a weighted traction t, r being what its points count and d the jump beyond the gap.
 fn one_sided_error(pair: &BedPair, t: &[f64], beyond: &[f64], k: f64) -> f64 {
     let mut sum = 0.0;
-    positive::points(beyond, 2 * (t.len().max(beyond.len()) - 1), |at, d, weight| {
-        let (t, open) = (side::value(t, at), d - side::value(beyond, at));
-        sum += weight * (0.5 * (k * d + t).powi(2) / k - t * open.max(0.0));
-    });
+    for part in positive::parts(beyond) {
+        for p in pair.weight.rule([part.from, part.to], 2 * t.len().max(beyond.len() + 1) - 2) {
+            let (t, d) = (side::value(t, p.at), part.value(p.at));
+            let open = d - side::value(beyond, p.at);
+            let off = (k * p.radius * d + t).powi(2) / (k * p.radius);
+            sum += p.weight * (0.5 * (1.0 + p.excess) * off - t * open.max(0.0));
+        }
+    }
     pair.length * sum
 }
 
@@ -119,7 +127,7 @@ fn summed(
 ) -> SpringEnergy {
     let (mut value, mut sensitivity) = (Sum::default(), 0.0);
     let own = problem.bed_pairs().map(|(pair, k)| (*pair, k, false));
-    let elastic = problem.pairs().filter_map(|pair| BedPair::of_contact(pair, &problem.mesh));
+    let elastic = problem.pairs().filter_map(|pair| BedPair::of_contact(pair, problem.section(), &problem.mesh));
     let all = own.chain(elastic.map(|(pair, k)| (pair, k, true)));
     for (pair, stiffness, is_contact) in all.filter(|(pair, ..)| counted.boundary_edge(&problem.mesh, pair.edge)) {
         for [energy, moved] in of(&pair, stiffness, is_contact) {

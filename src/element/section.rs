@@ -9,7 +9,7 @@ use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
 use super::polynomial::quadrature::triangle_rule;
 use super::polynomial::triangle;
-use super::revolved::{Held, Ring, Tensor, Weighted, rule, work};
+use super::revolved::{Held, Ring, Tensor, Weighted, rule};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
     lattice_len,
@@ -318,29 +318,26 @@ impl Revolved {
         let g = sub_gradients(corners, sub);
         let area = sub_area(corners);
         let mut sum = vec![[0.0; 4]; n * n];
+        // Slopes along r and z, and the value over r, of all functions.
+        let mut all = vec![[0.0; 3]; n];
         for point in rule(self.radii(corners, sub), 2 * k, super::revolved::ROUGH) {
             let weight = point.weight * area * point.radius;
-            let values: Vec<f64> = triangle::basis(k, point.bary).collect();
-            let mut slopes = vec![[0.0; 2]; n];
+            for (own, value) in all.iter_mut().zip(triangle::basis(k, point.bary)) {
+                *own = [0.0, 0.0, value / point.radius];
+            }
             for (beta, b) in triangle::indices(k - 1).zip(triangle::basis(k - 1, point.bary)) {
                 for (i, g) in g.iter().enumerate() {
-                    let slope = &mut slopes[triangle::number(triangle::raised(beta, i))];
-                    (0..2).for_each(|c| slope[c] += k as f64 * b * g[c]);
+                    let own = &mut all[triangle::number(triangle::raised(beta, i))];
+                    (0..2).for_each(|c| own[c] += k as f64 * b * g[c]);
                 }
             }
-            let strain = |a: usize| {
-                let [gr, gz] = slopes[a];
-                [[gr, 0.0, values[a] / point.radius, 0.5 * gz], [0.0, gz, 0.0, 0.5 * gr]]
-            };
-            let strains: Vec<[Tensor; 2]> = (0..n).map(strain).collect();
-            for a in 0..n {
-                let stress = strains[a].map(|e| law.stress(e).map(|s| weight * s));
-                for b in 0..=a {
-                    let entry = &mut sum[a * n + b];
-                    entry[0] += work(strains[b][0], stress[0]);
-                    entry[1] += work(strains[b][1], stress[0]);
-                    entry[2] += work(strains[b][0], stress[1]);
-                    entry[3] += work(strains[b][1], stress[1]);
+            for (a, [r, z, hoop]) in all.iter().copied().enumerate() {
+                let [along, up] =
+                    [[r, 0.0, hoop, 0.5 * z], [0.0, z, 0.0, 0.5 * r]].map(|e| law.stress(e).map(|s| weight * s));
+                for (entry, [r, z, hoop]) in sum[a * n..=a * n + a].iter_mut().zip(&all) {
+                    let work = |s: &Tensor| [r * s[0] + hoop * s[2] + z * s[3], z * s[1] + r * s[3]];
+                    let [[rr, rz], [zr, zz]] = [work(&along), work(&up)];
+                    *entry = [entry[0] + rr, entry[1] + rz, entry[2] + zr, entry[3] + zz];
                 }
             }
         }

@@ -7,7 +7,7 @@
 use super::{ContactPair, ProblemError};
 use crate::element::Section;
 use crate::element::polynomial::side;
-use crate::element::revolved::{NEAR, side_rule};
+use crate::element::revolved::{NEAR, SidePoint, side_rule};
 use crate::mesh::Triangulation;
 use crate::mesh::sides::bonded::opposite;
 use crate::scene::{Bond, Scene, Support, SupportKind};
@@ -49,7 +49,22 @@ pub struct EdgeWeight(Option<[f64; 2]>);
 impl EdgeWeight {
     /// On an edge of the mesh.
     fn on(section: Section, mesh: &Triangulation, edge: usize) -> Self {
-        EdgeWeight(section.is_revolved().then(|| mesh.edges[edge].vertices.map(|v| section.weight(mesh.points[v]))))
+        EdgeWeight::between(section, mesh.edges[edge].vertices.map(|v| mesh.points[v]))
+    }
+
+    /// On an edge between two points.
+    pub fn between(section: Section, points: [[f64; 2]; 2]) -> Self {
+        EdgeWeight(section.is_revolved().then(|| points.map(|p| section.weight(p))))
+    }
+
+    /// At both of its ends.
+    pub fn ends(&self) -> [f64; 2] {
+        self.0.unwrap_or([1.0; 2])
+    }
+
+    /// At a part of the way from the first end to the second.
+    pub fn at(&self, s: f64) -> f64 {
+        self.0.map_or(1.0, |[a, b]| a + s * (b - a))
     }
 
     /// The mean along the edge.
@@ -69,20 +84,33 @@ impl EdgeWeight {
 
     /// Bernstein coefficients of a function times the weight.
     pub fn times(&self, f: &[f64]) -> Vec<f64> {
-        let Some([a, b]) = self.0 else { return f.to_vec() };
-        let n = f.len();
-        let of = |i: usize| {
-            let low = if i < n { (n - i) as f64 / n as f64 * a * f[i] } else { 0.0 };
-            low + if i > 0 { i as f64 / n as f64 * b * f[i - 1] } else { 0.0 }
-        };
-        (0..=n).map(of).collect()
+        self.0.map_or_else(|| f.to_vec(), |radii| side::times_linear(f, radii))
     }
 
     /// ∫ f² over the weight, from above, for a weighted function on an edge of length one.
     pub fn square_over(&self, f: &[f64]) -> f64 {
-        let Some(radii) = self.0 else { return side::integral(f, f) };
-        let points = side_rule(radii, 2 * (f.len() - 1), NEAR);
-        points.iter().map(|p| p.weight * (1.0 + p.excess) * side::value(f, p.at).powi(2) / p.radius).sum()
+        if self.0.is_none() {
+            return side::integral(f, f);
+        }
+        let square = |p: &SidePoint| p.weight * (1.0 + p.excess) * side::value(f, p.at).powi(2) / p.radius;
+        self.rule([0.0, 1.0], 2 * (f.len() - 1)).iter().map(square).sum()
+    }
+
+    /// A rule on a part of an edge of length one, exact for polynomials of degree `degree`, and with [`SidePoint::excess`] for those over the
+    /// weight.
+    pub fn rule(&self, [from, to]: [f64; 2], degree: usize) -> Vec<SidePoint> {
+        let whole = |p: SidePoint| SidePoint { at: from + p.at * (to - from), weight: p.weight * (to - from), ..p };
+        let radii = self.0.map_or([1.0; 2], |_| [self.at(from), self.at(to)]);
+        side_rule(radii, degree, NEAR).into_iter().map(whole).collect()
+    }
+
+    /// A weighted function over the weight at an end of the edge; on the axis of revolution, where both vanish, its limit.
+    pub fn unweighted_at_end(&self, f: &[f64], end: usize) -> f64 {
+        let (own, next) = if end == 0 { (0, 1) } else { (f.len() - 1, f.len().saturating_sub(2)) };
+        match self.at_end(end) {
+            0.0 if f.len() > 1 => (f.len() - 1) as f64 * f[next] / self.at_end(1 - end),
+            weight => f[own] / weight,
+        }
     }
 
     /// ∫ B_i B_j times the weight, for polynomials of degree `k` on an edge of length one.
@@ -124,12 +152,13 @@ impl BedPair {
     }
 
     /// The springs that an elastic contact is where it is closed, and their stiffness; `None` of a rigid one.
-    pub fn of_contact(pair: &ContactPair, mesh: &Triangulation) -> Option<(Self, [f64; 2])> {
+    pub fn of_contact(pair: &ContactPair, section: Section, mesh: &Triangulation) -> Option<(Self, [f64; 2])> {
         let (k, edge) = (pair.stiffness?, pair.edges[0]?);
         let [x, y] = pair.direction.unit(0);
         let reversed = mesh.edges[edge].vertices[0] != pair.first[0];
         let contact = Some(OneSided { pair: *pair, reversed });
-        let own = BedPair { axes: [[x, y], [-y, x]], contact, ..BedPair::new(mesh, edge, pair.edges[1]) };
+        let weight = EdgeWeight::on(section, mesh, edge);
+        let own = BedPair { axes: [[x, y], [-y, x]], contact, weight, ..BedPair::new(mesh, edge, pair.edges[1]) };
         Some((own, [k, 0.0]))
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::contact::curves::{beside_long_edges, curved, turned_by_the_mesh};
-use super::contact::friction::{resist, rubs};
+use super::contact::friction::resist;
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
 use super::contact::softened;
@@ -152,7 +152,7 @@ impl Problem {
                     replace(&mut notes, &matched);
                 }
             }
-            resist(contact, &mesh, &mut matched, &mut remarks);
+            resist(contact, (&mesh, section), &mut matched, &mut remarks);
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {
                     if let Some(edge) = edge {
@@ -160,7 +160,7 @@ impl Problem {
                     }
                 }
             }
-            softened::refuse(contact, &matched, section, &mesh)?;
+            softened::refuse(contact, &matched, &mesh)?;
             interfaces.push(matched);
         }
         let beds = beds(&scene, &mesh)?;
@@ -319,17 +319,9 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
             return refused(what, "give F_r as value + gradient · r, and a constant F_z");
         }
     }
-    if rubs(scene) {
-        let what = "a contact of a body of revolution has friction".to_string();
-        return refused(what, "leave `friction` out of axisymmetric scenes");
-    }
     if scene.tractions.iter().any(|traction| !traction.terms.is_empty()) {
         let what = "a traction on a body of revolution has `terms`".to_string();
         return refused(what, "leave `terms` out of axisymmetric scenes");
-    }
-    if scene.contacts.iter().any(|contact| contact.stiffness.is_some()) {
-        let what = "a body of revolution has elastic contact".to_string();
-        return refused(what, "leave `stiffness` out of the contacts of axisymmetric scenes");
     }
     Ok(())
 }

@@ -83,6 +83,12 @@ impl Problem {
         let [_, axial] = self.section().forces(self.body_force(t));
         let of_edge = |e: &usize| match self.conditions[*e] {
             Condition::Traction(ends) => self.weighted(*e, ends).len() - 1,
+            // Along a direction that turns the pressure is of one degree less, and on the axis it has no coefficient: of degree 1 there is none.
+            Condition::Contact { interface, pair, .. } => {
+                let pair = &self.interfaces[interface].pairs[pair];
+                let on_axis = pair.first.iter().any(|v| self.section().on_axis(self.mesh.points[*v]));
+                if on_axis && !pair.direction.is_constant() { 2 } else { 1 }
+            }
             _ => 1,
         };
         // A mean displacement of the body along the axis has such a weight as its own load.

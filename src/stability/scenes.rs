@@ -67,6 +67,13 @@ impl Sketch {
         self
     }
 
+    /// The same as the section of a body of revolution about the line on which the first coordinate is zero.
+    pub fn revolved(mut self) -> Self {
+        self.scene.kinematics = Kinematics::Axisymmetric;
+        self.scene.thickness = self.scene.kinematics.measure();
+        self
+    }
+
     /// u = 0 on `on`.
     pub fn clamp(mut self, on: &str) -> Self {
         self.scene.supports.push(Support { on: on.into(), kind: SupportKind::CLAMPED });

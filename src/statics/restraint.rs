@@ -7,6 +7,7 @@
 
 use super::components::Components;
 use super::reach::{Degree, pressure_degree, reach};
+use crate::element::polynomial::side;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
 use crate::sets::DisjointSets;
 use nalgebra::{DVector, Vector3};
@@ -141,7 +142,8 @@ fn run(
     let sign = (across[0] * head.normal[0] + across[1] * head.normal[1]).signum();
     let normal = if along_line(head) { head.direction.ends[0] } else { across.map(|x| sign * x) };
     let degree = [head, tail].map(|pair| pressure_degree(problem, pair, degree));
-    let resists = |pair: &ContactPair| pair.friction.map_or(0.0, |f| 0.5 * pair.length * (f.bound[0] + f.bound[1]));
+    let resists =
+        |pair: &ContactPair| pair.friction.map_or(0.0, |f| pair.length * side::integral(&f.weighted(), &[1.0]));
     let friction = problem.scene.thickness * pairs.iter().map(resists).sum::<f64>();
     let reach = [reach(ends[0], point(head.first[1]), degree[0]), reach(ends[1], point(tail.first[0]), degree[1])];
     if head.direction.is_constant() {

@@ -89,7 +89,9 @@ pub(super) fn carrying_loads(mut problem: Problem, options: &Options) -> Result<
     let names: Vec<&str> = bodies.map(|b| problem.scene.bodies[b].name.as_str()).collect();
     if !names.is_empty() {
         let why = match problem.section().is_revolved() {
-            true => "The loads on {}, times the distance from the axis, are no linear functions",
+            true => {
+                "Times the distance from the axis the loads on {} are no linear functions, or its contact turns on the axis"
+            }
             false => "The body force of {} is not the same everywhere",
         };
         let text = format!(

@@ -67,6 +67,7 @@ mod quantities;
 mod ranges;
 mod refinement_ends;
 mod revolved;
+mod revolved_contact;
 mod revolved_springs;
 mod revolved_strain;
 mod rings;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::piece::Piece;
+use super::pressure::{Piece, unweighted, without_radial};
 use crate::dual::DualSolution;
 use crate::dual::equilibrium::contact_tractions;
 use crate::element::polynomial::side;
@@ -84,18 +84,25 @@ pub fn on_contact(
     }
     let (mut traction, mut bound, mut zones) = (Vec::new(), Vec::new(), Vec::new());
     let (mut total, mut force, mut moment) = (0.0, [0.0; 2], 0.0);
-    for (pair, pressure) in interface.pairs.iter().zip(pressures) {
+    let tangential = |pair: &ContactPair| {
         let [_, t] = contact_tractions(problem, &dual.stress, pair);
-        let t = if t.is_empty() { vec![0.0; 2] } else { t };
+        if t.is_empty() { vec![0.0; 2] } else { t }
+    };
+    // On a body of revolution all are times the distance from the axis.
+    let weighted: Vec<Vec<f64>> = interface.pairs.iter().map(tangential).collect();
+    let pieces: Vec<Piece> = weighted.iter().map(|t| Piece::polynomial(t.clone())).collect();
+    let drawn = unweighted(problem, interface, &pieces);
+    for (((pair, pressure), t), drawn) in interface.pairs.iter().zip(pressures).zip(&weighted).zip(drawn) {
         let ends = pair.friction.map_or([0.0; 2], |friction| friction.bound);
+        let most = pair.friction.map_or_else(|| vec![0.0], |friction| friction.weighted());
         let place = |s: f64| pair.arc[0] + s * (pair.arc[1] - pair.arc[0]);
-        traction.extend(Piece::polynomial(t.clone()).points().into_iter().map(|[s, t]| [place(s), t]));
+        traction.extend(drawn.points().into_iter().map(|[s, t]| [place(s), t]));
         bound.extend([[pair.arc[0], ends[0]], [pair.arc[1], ends[1]]]);
         let rounding = rounding(problem, dual, pair);
         for part in 0..PARTS {
             let [from, to] = [part, part + 1].map(|i| i as f64 / PARTS as f64);
             let s = 0.5 * (from + to);
-            let (own, most) = (side::value(&t, s).abs(), ends[0] + s * (ends[1] - ends[0]));
+            let (own, most) = (side::value(t, s).abs(), side::value(&most, s));
             let state = match () {
                 () if pressure.at(s) <= open && own <= rounding => FrictionState::Open,
                 () if most == 0.0 => FrictionState::Free,
@@ -105,7 +112,7 @@ pub fn on_contact(
             add(&mut zones, [place(from), place(to)], state);
         }
         let Some(friction) = pair.friction else { continue };
-        let (size, [f, g], m) = resultant(problem, pair, &friction, &t);
+        let (size, [f, g], m) = resultant(problem, pair, &friction, t);
         total += size;
         force = [force[0] + f, force[1] + g];
         moment += m;
@@ -142,13 +149,15 @@ fn rounding(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
     ROUNDING * t.map_or(0.0, |t| largest(dual.stress.block(t).as_flattened()))
 }
 
-/// ∫ t ds, and force and moment about the origin of t t̂ on the first side, thickness included.
+/// ∫ t ds, and force and moment about the origin of t t̂ on the first side, thickness included; of a body of revolution the force along its
+/// axis.
 fn resultant(problem: &Problem, pair: &ContactPair, friction: &Friction, t: &[f64]) -> (f64, [f64; 2], f64) {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
     let [a, b] = pair.first.map(|v| problem.mesh.points[v]);
     let [m, n] = friction.tangent.ends;
     let size = pair.length * problem.scene.thickness;
     let along = |weight: &[f64]| size * side::integral(t, weight);
-    let force = [0, 1].map(|c| along(&[m[c], n[c]]));
-    (along(&[1.0]), force, along(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]))
+    let force = without_radial(problem, [0, 1].map(|c| along(&[m[c], n[c]])));
+    let moment = along(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);
+    (along(&[1.0]), force, if problem.section().is_revolved() { 0.0 } else { moment })
 }

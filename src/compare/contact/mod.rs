@@ -22,7 +22,7 @@ use nodal::{NodalDifference, nodal_pressures};
 use peak::Peaks;
 use pressure::{
     Piece, contact_ends, disagreement, dual_pressure, l2, maximum, open_length, profile, reaction_moment,
-    reaction_pressure, resultant, trace_pressure, unweighted, without_radial,
+    reaction_pressure, resultant, resultant_of_pressure, trace_pressure, unweighted, without_radial,
 };
 use resultant::{forces, resultant_check};
 
@@ -134,7 +134,7 @@ impl Sides<'_> {
             None => trace_pressure(problem, interface, best),
         };
         let along = friction_resultant(problem, interface, &trace_friction(problem, interface, best));
-        let (force, moment) = together(resultant(problem, interface, &pieces), along);
+        let (force, moment) = together(resultant_of_pressure(problem, interface, &pieces), along);
         let force = reactions.map_or(force, |r| without_radial(problem, r.resultant));
         let of_reactions = |r| reaction_moment(problem, interface, r) + reported_moment(problem, interface, r);
         let moment = reactions.map_or(moment, of_reactions);

@@ -10,7 +10,7 @@ use crate::dual::DualSolution;
 use crate::element::displacement::through;
 use crate::element::polynomial::side;
 use crate::element::{Strains, elastic_degree};
-use crate::problem::{ContactPair, Interface, Problem};
+use crate::problem::{ContactPair, EdgeWeight, Interface, Problem};
 
 /// −t of the dual solution.
 pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
@@ -162,8 +162,24 @@ fn spring_pressure(opening: &[f64], k: f64) -> Piece {
     Piece::broken((0..=PARTS).map(|i| side::value(&pressed, i as f64 / PARTS as f64).max(0.0)).collect())
 }
 
-/// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included.
+/// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included; in a body of revolution of one
+/// that is times the distance from the axis.
 pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
+    resultant_of(problem, interface, pieces, |_| EdgeWeight::default())
+}
+
+/// The same of one that is not.
+pub fn resultant_of_pressure(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
+    let points = |pair: &ContactPair| pair.first.map(|v| problem.mesh.points[v]);
+    resultant_of(problem, interface, pieces, |pair| EdgeWeight::between(problem.section(), points(pair)))
+}
+
+fn resultant_of(
+    problem: &Problem,
+    interface: &Interface,
+    pieces: &[Piece],
+    weight: impl Fn(&ContactPair) -> EdgeWeight,
+) -> ([f64; 2], f64) {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
     let (mut force, mut moment) = ([0.0; 2], 0.0);
     for (pair, p) in interface.pairs.iter().zip(pieces) {
@@ -171,7 +187,7 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
         let [m, n] = pair.direction.ends;
         let size = pair.length * problem.scene.thickness;
         for c in 0..2 {
-            force[c] -= size * p.integral(&[m[c], n[c]]);
+            force[c] -= size * p.integral(&weight(pair).times(&[m[c], n[c]]));
         }
         // The arm of a force along a direction that turns is quadratic.
         moment -= size * p.integral(&[cross(a, m), 0.5 * (cross(a, n) + cross(b, m)), cross(b, n)]);

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::piece::Piece;
-use super::pressure::{resultant, trace_along};
+use super::pressure::{resultant_of_pressure, trace_along};
 use crate::bounds::{Nodes, Row, bernstein, of_pair, sides};
 use crate::compare::candidate::{Judged, Reactions};
 use crate::element::polynomial::side;
@@ -99,16 +99,8 @@ pub fn inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Slide
 /// c_0, …, c_k of a pair, thickness included; none without friction.
 pub fn limits(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<f64> {
     let Some(friction) = pair.friction else { return Vec::new() };
-    let [a, b] = friction.bound;
-    let section = problem.section();
-    let bound = if section.is_revolved() {
-        let [r, s] = pair.first.map(|v| section.weight(problem.mesh.points[v]));
-        vec![r * a, 0.5 * (r * b + s * a), s * b]
-    } else {
-        vec![a, b]
-    };
     let whole = problem.scene.thickness * pair.length;
-    side::moments(&bound, degree).into_iter().map(|moment| whole * moment).collect()
+    side::moments(&friction.weighted(), degree).into_iter().map(|moment| whole * moment).collect()
 }
 
 /// The traction along t̂ on the first side from the stresses of a displacement; zero where there is no friction.
@@ -125,12 +117,12 @@ pub fn friction_resultant(problem: &Problem, interface: &Interface, pieces: &[Pi
     };
     let rubbing = interface.pairs.iter().zip(pieces).filter_map(|(pair, piece)| Some((along(pair)?, piece.clone())));
     let (pairs, pieces): (Vec<ContactPair>, Vec<Piece>) = rubbing.unzip();
-    resultant(problem, &Interface { name: interface.name.clone(), pairs, centre: None }, &pieces)
+    resultant_of_pressure(problem, &Interface { name: interface.name.clone(), pairs, centre: None }, &pieces)
 }
 
 /// Moment about the origin of reported forces of friction, as they act on the first side.
 pub fn reported_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
-    let Some(friction) = &reactions.friction else { return 0.0 };
+    let Some(friction) = reactions.friction.as_ref().filter(|_| !problem.section().is_revolved()) else { return 0.0 };
     let arm = |[x, y]: [f64; 2], t: [f64; 2]| x * t[1] - y * t[0];
     let (mut tangents, mut moment) = (BTreeMap::new(), 0.0);
     for (k, pair) in interface.pairs.iter().enumerate() {

@@ -51,9 +51,9 @@ impl Functions {
         own.iter().zip(&gap).map(|(j, g)| j - g).collect()
     }
 
-    /// ∫ d₊ φ_i on an edge of length one, for all functions of degree `degree`.
-    fn forces(self, beyond: &[f64], degree: usize) -> Vec<f64> {
-        let moments = positive::moments(beyond, degree);
+    /// ∫ d₊ φ_i on an edge of length one whose points count `weight`, for all functions of degree `degree`.
+    fn forces(self, weight: EdgeWeight, beyond: &[f64], degree: usize) -> Vec<f64> {
+        let moments = positive::moments(beyond, degree, weight.ends());
         match (self, &moments[..]) {
             (Functions::Values, [a, middle, b]) => vec![a - 0.5 * middle, 2.0 * middle, b - 0.5 * middle],
             _ => moments,
@@ -89,13 +89,14 @@ impl NodalForces {
                 let whole = problem.scene.thickness * k * pair.length;
                 // Elastic contact resists what the jump exceeds the gap by.
                 let beyond = pair.contact.map(|contact| functions.beyond(&jump, &contact.gap()));
-                let forces = beyond.as_ref().map(|d| functions.forces(d, degree));
+                let forces = beyond.as_ref().map(|d| functions.forces(pair.weight, d, degree));
                 if let Some((beyond, contact)) = beyond.zip(pair.contact) {
-                    energy += 0.5 * whole * positive::square(&beyond);
+                    energy += 0.5 * whole * positive::square(&beyond, pair.weight.ends());
                     let gap = contact.gap();
-                    let on_gap =
-                        |at: f64, d: f64, weight: f64| self.on_gaps += whole * weight * d * side::value(&gap, at);
-                    positive::points(&beyond, beyond.len() + gap.len() - 2, on_gap);
+                    let on_gap = |at: f64, d: f64, weight: f64| {
+                        self.on_gaps += whole * weight * pair.weight.at(at) * d * side::value(&gap, at);
+                    };
+                    positive::points(&beyond, beyond.len() + gap.len() - 1, on_gap);
                 }
                 for i in 0..=degree {
                     let weight = |j: usize| whole * functions.weighted(pair.weight, degree, i, j);
@@ -152,17 +153,19 @@ pub fn spring_forces(
         let own = |node: &usize| dot(value(*node), axis);
         let jump: Vec<f64> = first.iter().enumerate().map(|(i, n)| own(n) - second.get(i).map_or(0.0, own)).collect();
         let of_nodes = match (&pair.contact, part) {
-            (Some(contact), Part::Own) => functions.forces(&functions.beyond(&jump, &contact.gap()), degree),
+            (Some(contact), Part::Own) => {
+                functions.forces(pair.weight, &functions.beyond(&jump, &contact.gap()), degree)
+            }
             (Some(contact), Part::WithGap(factor)) => {
                 let gap: Vec<f64> = contact.gap().iter().map(|g| factor * g).collect();
-                functions.forces(&functions.beyond(&jump, &gap), degree)
+                functions.forces(pair.weight, &functions.beyond(&jump, &gap), degree)
             }
             (Some(contact), Part::Pulling) => {
                 let open: Vec<f64> = functions.beyond(&jump, &contact.gap()).iter().map(|d| -d).collect();
-                functions.forces(&open, degree).iter().map(|f| -f).collect()
+                functions.forces(pair.weight, &open, degree).iter().map(|f| -f).collect()
             }
             (None, _) => (0..=degree)
-                .map(|i| (0..=degree).map(|j| functions.product(degree, i, j) * jump[j]).sum())
+                .map(|i| (0..=degree).map(|j| functions.weighted(pair.weight, degree, i, j) * jump[j]).sum())
                 .collect::<Vec<f64>>(),
         };
         for (i, force) in of_nodes.into_iter().enumerate() {

@@ -228,7 +228,7 @@ fn dual_and_rest(columns: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
 mod tests {
     use super::*;
     use crate::element::polynomial::side;
-    use crate::problem::{Bow, Friction};
+    use crate::problem::{Bow, EdgeWeight, Friction};
 
     #[test]
     fn columns_are_the_coefficients_of_t_times_a_linear_direction() {
@@ -259,7 +259,7 @@ mod tests {
             gap: [0.0; 2],
             bow: Bow::default(),
             stiffness: None,
-            friction: rubs.then_some(Friction { bound: [1.0; 2], tangent }),
+            friction: rubs.then_some(Friction { bound: [1.0; 2], tangent, weight: EdgeWeight::default() }),
         }
     }
 

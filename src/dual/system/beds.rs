@@ -16,7 +16,7 @@ use super::unknowns::{Component, EdgeMoments, Unknowns};
 use crate::element::displacement::MOST;
 use crate::element::polynomial::side;
 use crate::element::revolved::{ROUGH, SidePoint, side_rule, vanishes};
-use crate::problem::{BedPair, Problem};
+use crate::problem::{BedPair, EdgeWeight, Problem};
 
 /// An edge on springs or on a side of a layer.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,13 +118,14 @@ impl Springs {
             let EdgeMoments::Contact(edge) = &unknowns.edges[e] else { continue };
             let Some(stretch) = edge.stretch else { continue };
             let (parameter, stiffness) = (springs.parameters, k / pair.length);
+            let weight = EdgeWeight::between(problem.section(), pair.first.map(|v| problem.mesh.points[v]));
             springs.all.push(Spring {
                 first: stretch,
                 step: 1,
                 degree: edge.degree,
                 stiffness,
                 parameter,
-                turned: None,
+                turned: weight.radii().map(|radii| turned_inverse(radii, edge.degree)),
             });
             springs.parameters += edge.degree + 1;
         }

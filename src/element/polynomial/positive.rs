@@ -11,16 +11,26 @@ const MOST: usize = 60;
 /// Values below this part of the largest are rounding around a zero.
 const NOTHING: f64 = 1e-15;
 
-/// A part of a side, from the first of two parameters to the second.
-struct Part {
-    from: f64,
-    to: f64,
+/// A part of a side.
+pub struct Part {
+    /// The parameter at its beginning.
+    pub from: f64,
+    /// That at its end.
+    pub to: f64,
     /// Coefficients there, none of them negative; `None` where the polynomial is not positive.
     positive: Option<Vec<f64>>,
 }
 
+impl Part {
+    /// f₊ at a parameter of the side.
+    pub fn value(&self, at: f64) -> f64 {
+        let own = || ((at - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
+        self.positive.as_ref().map_or(0.0, |c| side::value(c, own()))
+    }
+}
+
 /// The parts where `f` is positive, and the others.
-fn parts(f: &[f64]) -> Vec<Part> {
+pub fn parts(f: &[f64]) -> Vec<Part> {
     let mut out = Vec::new();
     let small = NOTHING * f.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     let mut left = vec![(0.0, 1.0, f.to_vec(), 0)];
@@ -61,17 +71,18 @@ fn halves(mut c: Vec<f64>) -> [Vec<f64>; 2] {
     [first, c]
 }
 
-/// ∫₀¹ f₊².
-pub fn square(f: &[f64]) -> f64 {
+/// ∫₀¹ w f₊², with a linear w by its values at the ends.
+pub fn square(f: &[f64], [a, b]: [f64; 2]) -> f64 {
     let mut sum = 0.0;
-    points(f, 2 * (f.len() - 1), |_, positive, weight| sum += weight * positive * positive);
+    points(f, 2 * f.len() - 1, |at, positive, weight| sum += weight * (a + at * (b - a)) * positive * positive);
     sum
 }
 
-/// ∫₀¹ f₊ B_i of degree p, i = 0 … p.
-pub fn moments(f: &[f64], p: usize) -> Vec<f64> {
+/// ∫₀¹ w f₊ B_i of degree p, i = 0 … p, with a linear w by its values at the ends.
+pub fn moments(f: &[f64], p: usize, [a, b]: [f64; 2]) -> Vec<f64> {
     let mut out = vec![0.0; p + 1];
-    points(f, f.len() - 1 + p, |at, positive, weight| {
+    points(f, f.len() + p, |at, positive, weight| {
+        let weight = weight * (a + at * (b - a));
         (0..=p).for_each(|i| out[i] += weight * positive * side::bernstein(p, i, at));
     });
     out
@@ -85,17 +96,19 @@ mod tests {
     fn integrals_are_those_of_where_it_is_positive() {
         // 1 − 3 t on (0, 1/3).
         let line = [1.0, -2.0];
-        assert!((square(&line) - 1.0 / 9.0).abs() < 1e-15);
-        let [a, b] = <[f64; 2]>::try_from(moments(&line, 1)).expect("two");
+        assert!((square(&line, [1.0; 2]) - 1.0 / 9.0).abs() < 1e-15);
+        let [a, b] = <[f64; 2]>::try_from(moments(&line, 1, [1.0; 2])).expect("two");
         // ∫ (1 − 3t)(1 − t) and ∫ (1 − 3t) t over it.
         assert!((a - 4.0 / 27.0).abs() < 1e-15 && (b - 1.0 / 54.0).abs() < 1e-15, "{a} {b}");
+        // ∫ (1 + t)(1 − 3t)² over it.
+        assert!((square(&line, [1.0, 2.0]) - (1.0 / 9.0 + 1.0 / 108.0)).abs() < 1e-15);
         // What is positive all along is integrated as it is, and what is nowhere is nothing.
         let curve = [0.5, 2.0, 0.1, 0.7];
-        assert!((square(&curve) - side::integral(&curve, &curve)).abs() < 1e-15);
-        assert_eq!(square(&curve.map(|c| -c)), 0.0);
+        assert!((square(&curve, [1.0; 2]) - side::integral(&curve, &curve)).abs() < 1e-15);
+        assert_eq!(square(&curve.map(|c| -c), [1.0; 2]), 0.0);
         // Two zeros inside: f² = f₊² + f₋².
         let both = [1.0, -3.0, 2.0];
-        let whole = square(&both) + square(&both.map(|c| -c));
+        let whole = square(&both, [1.0; 2]) + square(&both.map(|c| -c), [1.0; 2]);
         assert!((whole - side::integral(&both, &both)).abs() < 1e-14);
     }
 }

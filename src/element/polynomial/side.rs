@@ -62,6 +62,16 @@ pub fn elevate(coefficients: &[f64], q: usize) -> Vec<f64> {
     (0..=q).map(|j| (0..=p).map(|k| elevation(p, q, j, k) * coefficients[k]).sum()).collect()
 }
 
+/// The coefficients of a polynomial times the linear function with these values at the ends.
+pub fn times_linear(f: &[f64], [a, b]: [f64; 2]) -> Vec<f64> {
+    let n = f.len();
+    let of = |i: usize| {
+        let low = if i < n { (n - i) as f64 / n as f64 * a * f[i] } else { 0.0 };
+        low + if i > 0 { i as f64 / n as f64 * b * f[i - 1] } else { 0.0 }
+    };
+    (0..=n).map(of).collect()
+}
+
 /// Moments of degree p, from those of a degree no less.
 pub fn lower_moments(moments: &[f64], p: usize) -> Vec<f64> {
     let q = moments.len() - 1;

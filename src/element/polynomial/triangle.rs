@@ -10,7 +10,10 @@
 //!
 //! Coefficients are numbered with α_0 falling and, where it is equal, α_1 falling: (1, 0, 0), (0, 1, 0), (0, 0, 1) for k = 1.
 
+use std::sync::OnceLock;
+
 use super::side::binomial;
+use crate::element::displacement::MOST;
 
 /// A multi-index.
 pub type Index = [usize; 3];
@@ -65,9 +68,24 @@ pub fn elevation(beta: Index, alpha: Index) -> f64 {
     (0..3).map(|i| binomial(alpha[i], beta[i])).product::<f64>() / binomial(p, q)
 }
 
-/// The values of all B_α of degree k at l.
+/// The highest degree that there are tables of.
+const HIGHEST: usize = 2 * MOST;
+
+/// The values of all B_α of degree k, at most [`HIGHEST`], at l.
 pub fn basis(k: usize, l: [f64; 3]) -> impl Iterator<Item = f64> {
-    indices(k).map(move |alpha| bernstein(alpha, l))
+    let powers = l.map(|l| {
+        let mut powers = [1.0; HIGHEST + 1];
+        (1..=k).for_each(|i| powers[i] = powers[i - 1] * l);
+        powers
+    });
+    let [a, b, c] = powers;
+    indices(k).zip(ways(k)).map(move |([i, j, m], ways)| ways * (a[i] * b[j] * c[m]))
+}
+
+/// k!/(α_0! α_1! α_2!) of all indices of degree k.
+fn ways(k: usize) -> &'static [f64] {
+    static TABLES: [OnceLock<Vec<f64>>; HIGHEST + 1] = [const { OnceLock::new() }; HIGHEST + 1];
+    TABLES[k].get_or_init(|| indices(k).map(|[i, j, m]| binomial(k, i) * binomial(j + m, j)).collect())
 }
 
 #[cfg(test)]

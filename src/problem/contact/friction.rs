@@ -2,10 +2,13 @@
 //!
 //! With j_t = (v' − v'')·t̂ along t̂, at right angles to the direction of contact, the law is φ(j_t) = τ̄ |j_t| with a given bound
 //! τ̄ (Tresca): the traction on the first side along t̂ lies in [−τ̄, τ̄], and is against the sliding where there is any.
+//!
+//! On a body of revolution tractions are weighted with the distance r from the axis, and so is their bound, a quadratic r τ̄.
 
+use crate::element::Section;
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
-use crate::problem::{ContactPair, Direction, Interface, Note};
+use crate::problem::{ContactPair, Direction, EdgeWeight, Interface, Note};
 use crate::scene::{Contact, Scene};
 
 /// Part of the length of a contact within which an arc length is that of a vertex.
@@ -18,14 +21,24 @@ pub struct Friction {
     pub bound: [f64; 2],
     /// t̂, with the arc length of the first side.
     pub tangent: Direction,
+    /// What the points of the pair count.
+    pub weight: EdgeWeight,
 }
 
 impl Friction {
-    /// Bernstein coefficients of degree `degree` of a function that is nowhere larger than τ̄: τ̄ itself, but for degree 0.
+    /// Bernstein coefficients of τ̄ times what the points of the pair count.
+    pub fn weighted(&self) -> Vec<f64> {
+        self.weight.times(&self.bound)
+    }
+
+    /// Bernstein coefficients of degree `degree` of a function that is nowhere larger than the weighted τ̄, and nowhere negative: that itself
+    /// where it has this degree.
     pub fn coefficients(&self, degree: usize) -> Vec<f64> {
-        match degree {
-            0 => vec![self.bound[0].min(self.bound[1])],
-            _ => side::linear(self.bound, degree).collect(),
+        let own = self.weighted();
+        match own[..] {
+            [a, .., b] if degree == 0 => vec![a.min(b)],
+            [a, middle, b] if degree == 1 => below(a, middle, b).to_vec(),
+            _ => side::elevate(&own, degree),
         }
     }
 
@@ -35,10 +48,26 @@ impl Friction {
     }
 }
 
+/// The ends of a line that is nowhere above the quadratic with these Bernstein coefficients, a product of two functions that are linear and
+/// nowhere negative, and nowhere negative itself: its chord, or where that lies above it the tangent at its middle or at its lower end.
+fn below(a: f64, middle: f64, b: f64) -> [f64; 2] {
+    if a - 2.0 * middle + b <= 0.0 {
+        return [a, b];
+    }
+    let at_middle = [0.25 * (3.0 * a + 2.0 * middle - b), 0.25 * (3.0 * b + 2.0 * middle - a)];
+    if at_middle.iter().all(|end| *end >= 0.0) {
+        at_middle
+    } else if a <= b {
+        [a, (2.0 * middle - a).max(0.0)]
+    } else {
+        [(2.0 * middle - b).max(0.0), b]
+    }
+}
+
 /// Gives the pairs of a contact with friction, whose directions are known, its bound; pairs along which nothing resists have none.
 pub(in crate::problem) fn resist(
     contact: &Contact,
-    mesh: &Triangulation,
+    (mesh, section): (&Triangulation, Section),
     interface: &mut Interface,
     notes: &mut Vec<Note>,
 ) {
@@ -49,7 +78,8 @@ pub(in crate::problem) fn resist(
     let on_break = |s: f64| breaks.iter().copied().find(|b| (b - s).abs() <= close).unwrap_or(s);
     for pair in &mut interface.pairs {
         let ends = pair.arc.map(|s| bound.at(on_break(s)));
-        pair.friction = (ends != [0.0; 2]).then(|| Friction { bound: ends, tangent: tangent(pair, mesh) });
+        let weight = EdgeWeight::between(section, pair.first.map(|v| mesh.points[v]));
+        pair.friction = (ends != [0.0; 2]).then(|| Friction { bound: ends, tangent: tangent(pair, mesh), weight });
     }
     let inside = |s: &&f64| interface.pairs.iter().any(|pair| **s - pair.arc[0] > close && pair.arc[1] - **s > close);
     let missed: Vec<String> = breaks.iter().filter(inside).map(f64::to_string).collect();

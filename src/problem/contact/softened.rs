@@ -6,7 +6,6 @@
 
 use std::borrow::Cow;
 
-use crate::element::Section;
 use crate::mesh::Triangulation;
 use crate::problem::{Bed, BedPair, Condition, Interface, Problem, ProblemError};
 use crate::scene::Contact;
@@ -25,7 +24,7 @@ impl Problem {
         }
         let mut soft = self.clone();
         for index in 0..soft.interfaces.len() {
-            let of = |pair| BedPair::of_contact(pair, &soft.mesh);
+            let of = |pair| BedPair::of_contact(pair, soft.section(), &soft.mesh);
             let springs: Option<Vec<_>> = soft.interfaces[index].pairs.iter().map(of).collect();
             let Some(springs) = springs.filter(|springs| !springs.is_empty()) else { continue };
             let (bed, stiffness) = (soft.beds.len(), springs[0].1);
@@ -45,7 +44,6 @@ impl Problem {
 pub(in crate::problem) fn refuse(
     contact: &Contact,
     matched: &Interface,
-    section: Section,
     mesh: &Triangulation,
 ) -> Result<(), ProblemError> {
     if contact.stiffness.is_none() {
@@ -54,10 +52,6 @@ pub(in crate::problem) fn refuse(
     let fault = |what: &str, remedy: &str| {
         Err(ProblemError::Contact { contact: contact.name(), what: what.into(), remedy: remedy.into() })
     };
-    if section.is_revolved() {
-        let what = "`stiffness` is given, and elastic contact is one of plane scenes";
-        return fault(what, "leave `stiffness` out of axisymmetric scenes");
-    }
     if matched.pairs.iter().any(|pair| !pair.direction.is_constant()) {
         let what = "`stiffness` is given, and the direction of contact turns along its edges";
         return fault(what, "write normals = \"facets\", or straight obstacles and sides");

@@ -5,6 +5,7 @@ mod curved;
 mod material;
 mod matter;
 mod meshes;
+mod revolved;
 mod units;
 
 use super::known::Known;
@@ -103,8 +104,15 @@ impl std::fmt::Display for Shown {
 }
 
 /// All regimes.
-pub static REGIMES: &[&[Regime]] =
-    &[material::REGIMES, matter::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
+pub static REGIMES: &[&[Regime]] = &[
+    material::REGIMES,
+    matter::REGIMES,
+    meshes::REGIMES,
+    curved::REGIMES,
+    units::REGIMES,
+    contact::REGIMES,
+    revolved::REGIMES,
+];
 
 /// The regime of that name.
 pub fn regime(id: &str) -> Option<&'static Regime> {

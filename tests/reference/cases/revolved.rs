@@ -1,4 +1,5 @@
-//! Bodies of revolution: Lamé's tube and sphere, a warm tube, a press fit, a turning spindle, Hertz's sphere.
+//! Bodies of revolution: Lamé's tube and sphere, a warm tube, a press fit, a turning spindle and disc, Hertz's sphere, Boussinesq's punch, Sneddon's
+//! cone.
 
 use std::f64::consts::PI;
 
@@ -123,5 +124,78 @@ fn hertz_sphere() {
         println!("{model}: radius {fitted_radius} for {radius}, peak {fitted_peak} for {peak}");
         close(fitted_radius, radius, 0.005);
         close(fitted_peak, peak, 0.005);
+    }
+}
+
+/// Means over the thickness are those of plane stress.
+#[test]
+fn flywheel() {
+    let ([a, b], half, nu, young, load): ([f64; 2], _, _, _, _) =
+        ([0.05, 0.2], 0.005, 0.3, 210e9, 8000.0 * 500.0_f64.powi(2));
+    let q = (3.0 + nu) / 8.0 * load;
+    let [inner, outer] = [a * a, b * b];
+    let u = |r: f64| {
+        let [even, odd] = [inner + outer, inner * outer / (r * r)];
+        let hoop = even + odd - (1.0 + 3.0 * nu) / (3.0 + nu) * r * r;
+        q * r / young * (hoop - nu * (even - odd - r * r))
+    };
+    let steps = 2000;
+    let at = |i: i32| a + (b - a) * (f64::from(i) + 0.5) / f64::from(steps);
+    let work: f64 =
+        (0..steps).map(at).map(|r| 2.0 * PI * half * load * r * r * u(r)).sum::<f64>() * (b - a) / f64::from(steps);
+    let report = sound("flywheel");
+    holds(&report, -0.5 * work, 5e-3);
+    answers(&report, 0, u(a), 3e-3);
+    answers(&report, 1, u(b), 1e-3);
+}
+
+/// The force of a pressure, linear between points, within the radius `end`.
+fn force_within(points: &[[f64; 2]], end: f64) -> f64 {
+    let part = |w: &[[f64; 2]]| {
+        let ([a, p], [b, q]) = (w[0], w[1]);
+        let c = b.min(end);
+        if c <= a {
+            return 0.0;
+        }
+        let at = |r: f64| r * (p + (q - p) * (r - a) / (b - a));
+        // Simpson's rule is exact.
+        2.0 * PI * (c - a) / 6.0 * (at(a) + 4.0 * at(0.5 * (a + c)) + at(c))
+    };
+    points.windows(2).map(part).sum()
+}
+
+/// The pressures of both models.
+fn pressures(report: &Report) -> Vec<Vec<[f64; 2]>> {
+    let of_models = with_reference().then_some("FEniCSx P2 reactions");
+    std::iter::once("dual").chain(of_models).map(|model| report.profile(0, model)).collect()
+}
+
+/// Within the radius r of a flat punch of radius one acts F (1 − √(1 − r²)).
+#[test]
+fn boussinesq() {
+    let report = sound("boussinesq");
+    let force = 0.05 * PI * 400.0;
+    carries(&report, 0, [0.0, -force]);
+    for points in pressures(&report) {
+        for r in [0.25, 0.5, 0.75, 0.9_f64] {
+            close(force_within(&points, r), force * (1.0 - (1.0 - r * r).sqrt()), 5e-3);
+        }
+        // Infinite at the rim: the finite value there only shows that the mesh is fine.
+        assert!(points.last().expect("points")[1] > 20.0 * points[0][1]);
+    }
+}
+
+/// p = ½ E* tan β arcosh(1/r): within the radius r acts ½ π E* tan β (r² arcosh(1/r) + 1 − √(1 − r²)).
+#[test]
+fn cone() {
+    let report = sound("cone");
+    let force = 0.5 * PI * 0.02 / compliance(1.0, 0.3);
+    carries(&report, 0, [0.0, force]);
+    for points in pressures(&report) {
+        for r in [0.25, 0.5, 0.75, 0.95_f64] {
+            close(force_within(&points, r), force * (r * r * (1.0 / r).acosh() + 1.0 - (1.0 - r * r).sqrt()), 1e-2);
+        }
+        let last = points.iter().filter(|p| p[1] > 1e-3 * force).fold(0.0_f64, |m, p| m.max(p[0]));
+        assert!((last - 1.0).abs() <= 0.05, "pressure up to {last}");
     }
 }

@@ -1,5 +1,5 @@
 //! Bodies of revolution: piles of one to three, solid, with a hole as narrow or as wide as one likes, or far from the axis, in contact or glued
-//! to each other, of any material, heated, turning, and loaded all around.
+//! to each other, with elastic contact and friction, of any material, heated, turning, and loaded all around.
 
 use super::super::random::Random;
 use super::super::toml::Toml;
@@ -51,6 +51,7 @@ pub fn turned(random: &mut Random) -> Made {
             ))
         }
     };
+    let toml = touching(random, &toml, ends[1][0]);
     Made { toml, mesh: None, energy: (1.0 + inside) * STRAIN * STRAIN, rounds: false }
 }
 
@@ -113,6 +114,26 @@ fn between(toml: Toml, random: &mut Random, below: &str, foot: &str) -> Toml {
         _ => format!("[[0.0, {:?}], [2.5, {:?}]]", random.between(0.0, 0.1), random.between(0.0, 0.1)),
     };
     toml.table(&format!("[[contacts]]\n{sides}\ngap = {gap}"))
+}
+
+/// Some of the contacts elastic, some with friction, along sides that reach to about this `radius`.
+fn touching(random: &mut Random, toml: &Toml, radius: f64) -> Toml {
+    toml.with_contacts(|table| {
+        let law = match random.below(6) {
+            0 => format!("stiffness = {:?}", random.magnitude(-0.5, 3.0)),
+            1 => format!("friction = {{ bound = {:?} }}", random.magnitude(-3.5, 0.0)),
+            2 => {
+                let rows = [
+                    [0.0, random.magnitude(-3.0, -0.5)],
+                    [0.4 * radius.min(2.0), 0.0],
+                    [2.0, random.between(0.0, 0.2)],
+                ];
+                format!("friction = {{ bound = {rows:?} }}")
+            }
+            _ => return table.to_owned(),
+        };
+        format!("{table}\n{law}")
+    })
 }
 
 fn wall(toml: Toml, random: &mut Random, side: &str) -> Toml {

@@ -11,7 +11,7 @@ use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, along_pair, sides};
 use crate::bounds::upper::energy::beds::BedEnergy;
 use crate::dual::equilibrium::contact_tractions;
-use crate::element::polynomial::side::lower_moments;
+use crate::element::polynomial::side;
 use crate::element::{SideValues, StressField};
 use crate::problem::{ContactPair, Friction, Problem};
 use crate::vector::dot;
@@ -123,8 +123,8 @@ impl Sliding {
         let of = |Rubbing { number, pair, friction, motion }: Rubbing<'_>| {
             let Motion::Slides(sense) = motion else { return None };
             let [first, second] = sides(pair, &problem.mesh, nodes);
-            let ([a, b], [t, u]) = (friction.bound, friction.tangent.ends);
-            let resists = [0, 1].map(|c| [a * t[c], 0.5 * (a * u[c] + b * t[c]), b * u[c]].map(|f| -sense * f));
+            let (bound, [t, u]) = (friction.weighted(), friction.tangent.ends);
+            let resists = [0, 1].map(|c| side::times_linear(&bound, [-sense * t[c], -sense * u[c]]));
             Some((number, BedEnergy::of_force([first?, second.unwrap_or_default()], pair.length, resists)))
         };
         self.pairs(problem).filter_map(of).collect()
@@ -199,7 +199,7 @@ fn motion(friction: &Friction, mean: f64, t: &[f64], rounding: f64) -> Motion {
 fn mean_sliding(problem: &Problem, moments: &SideValues<[f64; 2]>, pair: &ContactPair, friction: &Friction) -> f64 {
     let [t, u] = friction.tangent.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let lowered = |c: usize| lower_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
+        let lowered = |c: usize| side::lower_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
         let [x, y] = [0, 1].map(lowered);
         let turned = problem.mesh.edges[e].vertices[0] != start;
         let [a, b] = if turned { [1, 0] } else { [0, 1] }.map(|end| [x[end], y[end]]);

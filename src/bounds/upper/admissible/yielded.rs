@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use crate::bounds::springs::spring_tractions;
 use crate::dual::DualSolution;
 use crate::element::polynomial::side;
-use crate::problem::{BedPair, ContactPair, Problem};
+use crate::problem::{BedPair, ContactPair, EdgeWeight, Problem};
 
 /// `problem` with rigid contacts that have yielded in the place of stiff elastic ones, and the energy ½ ∫ k s² of these, per unit
 /// thickness.
@@ -35,7 +35,8 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> (Cow<'a, Proble
             let Some(k) = pair.stiffness.take() else { continue };
             let s = pair.first.map(mean);
             pair.gap = [pair.gap[0] + s[0], pair.gap[1] + s[1]];
-            stored += 0.5 * k * pair.length * side::integral(&s, &s);
+            let weight = EdgeWeight::between(problem.section(), pair.first.map(|v| problem.mesh.points[v]));
+            stored += 0.5 * k * pair.length * side::integral(&s, &weight.times(&s));
         }
     }
     (Cow::Owned(wider), stored)
@@ -50,8 +51,8 @@ fn is_stiff(problem: &Problem, pair: &ContactPair) -> bool {
 
 /// −t/k at both ends of a pair, zero where it would be below.
 fn ends(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> [f64; 2] {
-    let Some((bed, [k, _])) = BedPair::of_contact(pair, &problem.mesh) else { return [0.0; 2] };
+    let Some((bed, [k, _])) = BedPair::of_contact(pair, problem.section(), &problem.mesh) else { return [0.0; 2] };
     let [t, _] = spring_tractions(problem, &dual.stress, &bed);
-    let ends = [t[0], t[t.len() - 1]].map(|t| (-t / k).max(0.0));
+    let ends = [0, 1].map(|end| (-bed.weight.unweighted_at_end(&t, end) / k).max(0.0));
     if problem.mesh.edges[bed.edge].vertices[0] == pair.first[0] { ends } else { [ends[1], ends[0]] }
 }

@@ -54,11 +54,12 @@ pub fn reload(beds: &mut [BedEnergy], springs: Option<&OnSprings>) {
 }
 
 impl BedEnergy {
-    /// No springs, and the work ∫ f j of a force along a pair, x and y by coefficients of degree 2.
-    pub fn of_force(sides: [Vec<usize>; 2], length: f64, [x, y]: [[f64; 3]; 2]) -> Self {
+    /// No springs, and the work ∫ f j of a force along a pair, x and y by their Bernstein coefficients.
+    pub fn of_force(sides: [Vec<usize>; 2], length: f64, [x, y]: [Vec<f64>; 2]) -> Self {
         let k = sides[0].len() - 1;
-        let along = |i: usize, f: &[f64; 3]| -> f64 {
-            length * f.iter().enumerate().map(|(m, f)| f * product(k, i, 2, m)).sum::<f64>()
+        let along = |i: usize, f: &[f64]| -> f64 {
+            let of = |(m, f): (usize, &f64)| f * product(k, i, x.len() - 1, m);
+            length * f.iter().enumerate().map(of).sum::<f64>()
         };
         let load = (0..=k).map(|i| [along(i, &x), along(i, &y)]).collect();
         let axes = [[1.0, 0.0], [0.0, 1.0]];
@@ -151,8 +152,9 @@ impl BedEnergy {
         // g + w = min(j, g).
         let rest: Vec<f64> = jump.iter().zip(&gap).map(|(j, g)| j.min(*g)).collect();
         let k = self.stiffness[0] / self.length;
-        self.reload(Some(&[rest.iter().map(|w| k * w).collect(), Vec::new()]));
-        self.constant = 0.5 * self.stiffness[0] * side::integral(&rest, &rest);
+        let weighted = self.weight.times(&rest);
+        self.reload(Some(&[weighted.iter().map(|w| k * w).collect(), Vec::new()]));
+        self.constant = 0.5 * self.stiffness[0] * side::integral(&rest, &weighted);
         self.constant
     }
 
