@@ -11,6 +11,7 @@ mod invariant;
 mod point;
 mod tip;
 
+pub(crate) use adjoint::pass::strained;
 pub use functional::form::Form;
 pub use functional::value::{displaced, value_of};
 pub use functional::{Functional, Kind, NotBounded};

@@ -2,6 +2,7 @@
 
 mod contact;
 mod curved;
+mod friction;
 mod material;
 mod matter;
 mod meshes;
@@ -103,8 +104,15 @@ impl std::fmt::Display for Shown {
 }
 
 /// All regimes.
-pub static REGIMES: &[&[Regime]] =
-    &[material::REGIMES, matter::REGIMES, meshes::REGIMES, curved::REGIMES, units::REGIMES, contact::REGIMES];
+pub static REGIMES: &[&[Regime]] = &[
+    material::REGIMES,
+    matter::REGIMES,
+    meshes::REGIMES,
+    curved::REGIMES,
+    units::REGIMES,
+    contact::REGIMES,
+    friction::REGIMES,
+];
 
 /// The regime of that name.
 pub fn regime(id: &str) -> Option<&'static Regime> {
