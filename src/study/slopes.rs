@@ -14,7 +14,7 @@ use crate::dual::{Condensed, Options};
 use crate::element::Elements;
 use crate::element::polynomial::side;
 use crate::problem::{Condition, Problem, Scales};
-use crate::quantity::{Form, Functional, Interval, displaced, strained};
+use crate::quantity::{Form, Functional, Interval, clipped, displaced, strained};
 use crate::scene::{Draft, Scene};
 
 /// Part of the energy that the first change of the data is to cause where nothing is known of the curvature.
@@ -163,14 +163,15 @@ impl Slope<'_> {
         let slope = slope.map(|end| end / problem.scene.thickness);
         let [centre, radius] = self.remainder();
         let ends = [slope[0] - ROUNDING * slope[0].abs() - radius, slope[1] + ROUNDING * slope[1].abs() + radius];
-        let scaled = |x: f64| functional.scale * (functional.constant + x);
-        let ends = ends.map(|end| scaled(end + centre));
+        let ends = clipped(ends.map(|end| functional.constant + end + centre), functional.cannot_be());
+        let [least, most] = functional.within;
+        let ends = [ends[0].max(least), ends[1].min(most)].map(|end| functional.scale * end);
         let missing = |end: f64| (!end.is_finite()).then(|| UNSOLVED.to_string());
         let triangles = &self.certified.bracket.free.as_ref().ok()?.local.triangles;
         Some(Interval {
             ends,
             first_order: ends,
-            value: scaled(self.value()).max(ends[0]).min(ends[1]),
+            value: (functional.scale * (functional.constant + self.value())).max(ends[0]).min(ends[1]),
             exact_by_statics: self.change == Change::Nothing,
             rounding: 0.0,
             reasons: ends.map(missing),

@@ -8,7 +8,7 @@ use super::{Functional, Kind, NotBounded};
 use crate::bounds::{holds_at, jumps, jumps_along, work};
 use crate::element::Displacement;
 use crate::element::polynomial::side;
-use crate::problem::{ContactPair, Direction, Interface, Problem};
+use crate::problem::{ContactPair, Direction, Friction, Interface, Problem};
 use crate::vector::{dot, norm};
 
 /// Differences of motions that are rounding, relative to the largest.
@@ -30,7 +30,15 @@ pub fn tangential_force(
         t.map(|t| by * t)
     };
     let motion = Motion { contact, along: &along, normal: false };
-    motion.functional(problem, Kind::Force)
+    let mut functional = motion.functional(problem, Kind::Force)?;
+    let most = |pair: &ContactPair| {
+        let Friction { bound, .. } = pair.friction?;
+        let weights = pair.arc.map(|s| weight(s).abs());
+        Some(pair.length * side::integral(&weights, &bound))
+    };
+    let most: f64 = (1.0 + ROUNDING) * motion.pairs(problem).filter_map(most).sum::<f64>();
+    functional.within = [-most, most];
+    Ok(functional)
 }
 
 /// The moment about a point of all that a contact exerts on its first side.

@@ -61,6 +61,8 @@ pub struct Functional {
     pub constant: f64,
     /// A displacement, linear on triangles, with jumps −φ, where there is one that meets the supports.
     pub lift: Option<Displacement>,
+    /// What the value per unit thickness cannot be beyond, whatever the solution.
+    pub within: [f64; 2],
     /// What the value per unit thickness is multiplied by.
     pub scale: f64,
     /// ‖σ‖² of a stress that such a quantity has where it is no matter of statics alone, in order of magnitude.
@@ -205,6 +207,7 @@ impl Functional {
             oscillation: Vec::new(),
             constant: 0.0,
             lift: None,
+            within: [f64::NEG_INFINITY, f64::INFINITY],
             scale: if matches!(kind, Kind::Force | Kind::Moment) { problem.scene.thickness } else { 1.0 },
             natural: 0.0,
         }
