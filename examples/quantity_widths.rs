@@ -37,7 +37,7 @@ fn asked(problem: &mut Problem) {
     let (region, component) = (Region::Polygon(square), Component::XX);
     let quantities = vec![
         quantity("displacement", Target::Displacement { of, direction: [1.0, 0.0] }),
-        quantity("force", Target::ContactForce { contact: 0, window }),
+        quantity("force", Target::ContactForce { contact: 0, tangential: false, window }),
         quantity("stress", Target::Stress { body: 0, region, component }),
     ];
     ask(problem, quantities);

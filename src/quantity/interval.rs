@@ -379,7 +379,7 @@ fn not_held(error: DualError) -> String {
 }
 
 /// What is left of an interval for a value that is never below zero, or never above.
-fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
+pub(crate) fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
     let lower = if no_less { lower.max(upper.min(0.0)) } else { lower };
     let upper = if no_more { upper.min(lower.max(0.0)) } else { upper };
     [lower, upper]

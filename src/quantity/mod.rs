@@ -11,9 +11,11 @@ mod invariant;
 mod point;
 mod tip;
 
+pub(crate) use adjoint::pass::strained;
 pub use functional::form::Form;
 pub use functional::value::{displaced, value_of};
 pub use functional::{Functional, Kind, NotBounded};
+pub(crate) use interval::clipped;
 pub use interval::{Interval, Known, outside};
 pub use invariant::Invariants;
 pub use point::Wanted;

@@ -4,6 +4,7 @@
 //! inner segments, is drawn as it is. Where stresses have degree p these are the nodes of the lattice of degree p, and p² plain
 //! triangles between them: every program reads them, and what they show is exact at the nodes.
 
+mod friction;
 mod sheet;
 
 use super::Dossier;
@@ -11,6 +12,7 @@ use super::lattice::Lattice;
 use crate::compare::von_mises_of;
 use crate::element::geometry::sub_corners;
 use crate::problem::Problem;
+use friction::OnTriangles;
 pub(super) use sheet::shortened;
 use sheet::{Precision, Sheet};
 
@@ -30,7 +32,7 @@ const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 /// Point data: `dual_stress`, `mid_stress`, `stress_…` of every displacement model and `stress_difference_…`, λ_h less that, as
 /// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
 /// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
-/// everywhere, `cell` where the mesh file has quadrilaterals, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
+/// everywhere, `cell` where the mesh file has quadrilaterals, `friction_state`, `tangential_traction` and `friction_bound` where contacts have friction, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
 /// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, the corners of quadrilaterals, and the
 /// values of `displacement_…` at as many of these nodes as it has; not in files for looking at.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
@@ -236,6 +238,14 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
     }
     if lattice.degrees.iter().any(|p| *p != 1) {
         out.array("degree", "Int64", &[], on_cells(&|t| lattice.degrees[t] as i64))?;
+    }
+    if let Some(friction) = OnTriangles::of(dossier) {
+        out.array("friction_state", "Int64", &[], on_cells(&|t| friction.state[t]))?;
+        for (key, values) in [("tangential_traction", &friction.traction), ("friction_bound", &friction.bound)] {
+            let values: Vec<f64> =
+                values.iter().enumerate().flat_map(|(t, v)| std::iter::repeat_n(*v, lattice.cells(t))).collect();
+            out.field(key, &[], &values)?;
+        }
     }
     for map in dossier.maps.iter().filter(|map| map.values.len() == mesh.triangles.len()) {
         let of = |(t, v): (usize, &f64)| std::iter::repeat_n(*v, lattice.cells(t));

@@ -186,9 +186,10 @@ impl Draft {
                 };
                 format!("displacement = {of}, direction = {}", list(direction))
             }
-            Target::ContactForce { contact: of, window: None } => format!("force = {}", contact(*of)),
-            Target::ContactForce { contact: of, window: Some(window) } => {
-                format!("force = {}, window = {}", contact(*of), list(window))
+            Target::ContactForce { contact: of, tangential, window } => {
+                let component = if *tangential { ", component = \"tangential\"" } else { "" };
+                let window = window.map_or_else(String::new, |window| format!(", window = {}", list(&window)));
+                format!("force = {}{component}{window}", contact(*of))
             }
             Target::SupportForce { support: of, direction } => {
                 format!("force = {}, direction = {}", support(*of), list(direction))

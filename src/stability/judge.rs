@@ -197,6 +197,7 @@ fn sameness(method: Method, answer: &Answer, claim: &Claim<'_>) -> Complaint {
     }
     for (a, b) in answer.resultants.iter().zip(&first.resultants) {
         for (a, b) in a.iter().zip(b) {
+            let (a, b) = if claim.known.mirrored { (a.abs(), b.abs()) } else { (*a, *b) };
             let difference = (a - b * force).abs();
             off = off.max(if claim.known.load > 0.0 { difference / claim.known.load } else { difference });
         }

@@ -17,6 +17,8 @@ pub struct Known {
     pub variation: Vec<f64>,
     /// Factors of energy and force against the first problem of the regime, where one follows from the other.
     pub scale: Option<[f64; 2]>,
+    /// Components of forces may have the other sign.
+    pub mirrored: bool,
 }
 
 impl Known {
@@ -30,6 +32,7 @@ impl Known {
             load,
             variation: Vec::new(),
             scale: None,
+            mirrored: false,
         }
     }
 
@@ -47,6 +50,12 @@ impl Known {
     /// The answer is that of the first problem with energies and forces multiplied.
     pub fn scaled(mut self, energy: f64, force: f64) -> Self {
         self.scale = Some([energy, force]);
+        self
+    }
+
+    /// The answer is one in a mirror.
+    pub fn mirrored(mut self) -> Self {
+        self.mirrored = true;
         self
     }
 }

@@ -5,8 +5,8 @@ use crate::mesh::sides::glue::Glued;
 use crate::mesh::{RawMesh, Triangulation};
 use crate::problem::Problem;
 use crate::scene::{
-    Affine, Body, Contact, ContactSides, Draft, Gap, Kinematics, Load, MeshSource, Polygon, Scene, Support,
-    SupportKind, Traction,
+    Affine, Body, Contact, ContactSides, Draft, FrictionBound, Gap, Kinematics, Load, MeshSource, Polygon, Scene,
+    Support, SupportKind, Traction,
 };
 
 /// A scene with its mesh, before it is checked.
@@ -110,6 +110,14 @@ impl Sketch {
     pub fn contact(mut self, first: &str, second: &str, gap: Gap) -> Self {
         let sides = ContactSides::Between([first.into(), second.into()]);
         self.scene.contacts.push(Contact::new(sides, gap));
+        self
+    }
+
+    /// The last contact with this friction bound.
+    pub fn rubbing(mut self, bound: f64) -> Self {
+        if let Some(contact) = self.scene.contacts.last_mut() {
+            contact.friction = Some(FrictionBound::Constant(bound));
+        }
         self
     }
 

@@ -47,7 +47,12 @@ impl Answer {
 pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
     for quantity in &problem.scene.quantities {
         match Form::new(problem, quantity) {
-            Ok(_) | Err(NotBounded::Shared { .. } | NotBounded::NoTip(NoTip::Coarse { .. })) => {}
+            Ok(form) if problem.has_friction() => {
+                slopes::refuse(problem, &form).map_err(|reason| format!("quantity '{}': {reason}", quantity.name))?;
+            }
+            Ok(_)
+            | Err(NotBounded::Shared { .. } | NotBounded::Carried { .. } | NotBounded::NoTip(NoTip::Coarse { .. })) => {
+            }
             Err(error) => return Err(format!("quantity '{}': {error}", quantity.name)),
         }
     }
@@ -69,7 +74,7 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let Certified { problem, statics, dual, bracket } = certified;
     let motions = statics.held_at_vertices(problem);
     let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
-    if problem.has_elastic_contact() || problem.has_polynomial_tractions() {
+    if problem.has_friction() || problem.has_elastic_contact() || problem.has_polynomial_tractions() {
         let of_slopes = |quantity: &&Quantity| {
             let name = quantity.name.clone();
             match Form::new(problem, quantity) {

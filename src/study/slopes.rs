@@ -1,91 +1,154 @@
-//! Intervals of quantities from energies alone, where contact is elastic or a traction is a polynomial.
+//! Intervals of quantities from energies alone: where contact has friction or is elastic, and where a traction is a polynomial.
 //!
-//! The exact energy E is a concave function of the loads and a convex one of the gaps, with the slopes −∫q·u along a load q and ∫ φ t along a gap φ.
-//! Two brackets enclose a slope: a concave E(w) has E(w) − E(0) ≤ w E'(0) ≤ E(0) − E(−w). The width is of first order, about √(2 C G) with the gap
-//! G of the bracket and the curvature C of E, at the w that makes it least.
+//! The exact energy E is a concave function of the loads and a convex one of gaps and initial strains, with the slopes −∫ q·u along a load
+//! q, ∫ φ t along a gap φ and −∫ χ:τ along an initial strain χ. Two brackets enclose a slope: a concave E(w) has
+//! E(w) − E(0) ≤ w E'(0) ≤ E(0) − E(−w), a convex one the same with ≥. The width is of first order, about √(2 C G) with the gap G of the
+//! bracket and the curvature C of E, at the w that makes it least.
+
+use std::collections::HashMap;
 
 use super::Certified;
 use super::certify;
+use crate::bounds::Sum;
 use crate::dual::{Condensed, Options};
 use crate::element::Elements;
-use crate::problem::{Condition, Problem};
-use crate::quantity::{Form, Functional, Interval, displaced};
-use crate::scene::Scene;
+use crate::element::polynomial::side;
+use crate::problem::{Condition, Problem, Scales};
+use crate::quantity::{Form, Functional, Interval, clipped, displaced, strained};
+use crate::scene::{Draft, Scene};
 
-/// Part of the energy that the first change of the loads or gaps is to cause.
+/// Part of the energy that the first change of the data is to cause where nothing is known of the curvature.
 const FIRST: f64 = 0.05;
+
+/// Part of the size of a quantity below which its value says nothing of that change.
+const SMALL: f64 = 1e-3;
 
 /// Steps that are tried, and by what factor one may differ from the one before.
 const MOST_STEPS: usize = 4;
 const LARGEST: f64 = 8.0;
 
+/// What rounding costs a slope, relative to it.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The same of the integral of a stress, relative to the integral over all of the triangles.
+const ROUNDED_MEAN: f64 = 1e-12;
+
 /// What there is no interval of.
-const NO_SLOPE: &str = "with elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of bodies, and forces of \
-                        contacts, have an interval, and this is none of them";
+const NO_SLOPE: &str = "with friction, elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of \
+                        bodies, mean stresses, and forces of contacts and of supports without springs have an interval, and this is none of them";
 
 /// Why there is none all the same.
-const UNSOLVED: &str =
-    "the problem with a little more load or gap, from whose energy the interval would come, could not be bounded";
+const UNSOLVED: &str = "the problem with other data, from whose energy the interval would come, could not be bounded";
+
+/// Whether a quantity has an interval of this kind.
+///
+/// # Errors
+/// A sentence on what has.
+pub fn refuse(problem: &Problem, form: &Form) -> Result<(), &'static str> {
+    form.linear().and_then(|functional| Change::of(problem, functional)).map(|_| ()).ok_or(NO_SLOPE)
+}
 
 /// The interval of a quantity of a problem that was solved.
 pub fn interval(certified: &Certified, form: &Form, options: &Options) -> Interval {
-    let Form::Linear(functional) = form else { return Interval::unknown(NO_SLOPE) };
-    let Some(slope) = Slope::new(certified, functional, options) else { return Interval::unknown(NO_SLOPE) };
-    slope.interval().unwrap_or_else(|| Interval::unknown(UNSOLVED))
+    let found = form.linear().and_then(|functional| Some((functional, Change::of(&certified.problem, functional)?)));
+    let Some((functional, change)) = found else { return Interval::unknown(NO_SLOPE) };
+    let stress = &certified.dual.stress;
+    let degrees = (0..stress.len()).map(|t| stress.degree(t) as u8).collect();
+    let options = Options { elements: Elements::Blocks(degrees), ..options.clone() };
+    Slope { certified, functional, options, change }.interval().unwrap_or_else(|| Interval::unknown(UNSOLVED))
+}
+
+/// What of the data changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Change {
+    /// Nothing: the quantity is known.
+    Nothing,
+    /// Tractions and body forces.
+    Loads,
+    /// Gaps and initial strains.
+    GapsAndStrains,
+}
+
+impl Change {
+    /// The change whose slope the quantity is.
+    fn of(problem: &Problem, functional: &Functional) -> Option<Self> {
+        let load = &functional.load;
+        let plain = functional.local.is_none()
+            && load.turned.is_empty()
+            && load.shaped.is_empty()
+            && load.edges.is_empty()
+            && !problem.section().is_revolved();
+        let weighted = load.weights.iter().any(|weights| !weights.is_empty());
+        let linear = load.weights.iter().all(|weights| matches!(weights.len(), 0 | 2));
+        let loaded = !load.tractions.is_empty() || load.force.iter().any(|force| !force.is_none());
+        let free = |(e, _): &(usize, _)| matches!(problem.conditions[*e], Condition::Traction(_));
+        match (loaded, weighted || !load.strains.is_empty()) {
+            _ if !plain => None,
+            (false, false) => Some(Change::Nothing),
+            (true, false) => load.tractions.iter().all(free).then_some(Change::Loads),
+            (false, true) => linear.then_some(Change::GapsAndStrains),
+            (true, true) => None,
+        }
+    }
 }
 
 struct Slope<'a> {
     certified: &'a Certified,
     functional: &'a Functional,
     options: Options,
-    /// Whether it is the gaps that change.
-    of_gaps: bool,
+    change: Change,
 }
 
-impl<'a> Slope<'a> {
-    fn new(certified: &'a Certified, functional: &'a Functional, options: &Options) -> Option<Self> {
-        let (problem, load) = (&certified.problem, &functional.load);
-        let of_gaps = functional.is_of_contact_alone();
-        let plain = functional.local.is_none()
-            && functional.region.is_none()
-            && load.strains.is_empty()
-            && load.turned.is_empty()
-            && load.shaped.is_empty()
-            && load.edges.is_empty();
-        let free = |(e, _): &(usize, _)| matches!(problem.conditions[*e], Condition::Traction(_));
-        let weights = || load.weights.iter().filter(|weights| !weights.is_empty());
-        let known = if of_gaps {
-            weights().count() > 0 && weights().all(|weights| weights.len() == 2)
-        } else {
-            weights().count() == 0 && load.tractions.iter().all(free)
-        };
-        let stress = &certified.dual.stress;
-        let degrees = (0..stress.len()).map(|t| stress.degree(t) as u8).collect();
-        let options = Options { elements: Elements::Blocks(degrees), ..options.clone() };
-        (plain && known).then_some(Slope { certified, functional, options, of_gaps })
+impl Slope<'_> {
+    /// The problem with `by` times the load of the quantity added to its data.
+    fn changed(&self, by: f64) -> Problem {
+        let mut problem = self.certified.problem.clone();
+        let mut draft = (*problem.scene).clone();
+        match self.change {
+            Change::Nothing => {}
+            Change::Loads => self.add_loads(&mut problem, &mut draft, by),
+            Change::GapsAndStrains => {
+                self.add_gaps(&mut problem, by);
+                self.add_strains(&mut problem, &mut draft, by);
+            }
+        }
+        problem.scene = Scene::unchecked(draft);
+        problem
     }
 
-    /// The problem with `by` times the load or the gap of the quantity added.
-    fn changed(&self, by: f64) -> Problem {
-        let (mut problem, load) = (self.certified.problem.clone(), &self.functional.load);
-        if self.of_gaps {
-            let pairs = problem.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs);
-            for (pair, weights) in pairs.zip(&load.weights).filter(|(_, weights)| weights.len() == 2) {
-                (0..2).for_each(|end| pair.gap[end] += by * weights[end]);
-            }
-            return problem;
-        }
+    fn add_loads(&self, problem: &mut Problem, draft: &mut Draft, by: f64) {
+        let load = &self.functional.load;
         for (e, ends) in &load.tractions {
             if let Condition::Traction(own) = &mut problem.conditions[*e] {
                 (0..2).for_each(|end| (0..2).for_each(|c| own[end][c] += by * ends[end][c]));
             }
         }
-        let mut draft = (*problem.scene).clone();
         for (body, more) in draft.bodies.iter_mut().zip(&load.force).filter(|(_, more)| !more.is_none()) {
             body.body_force = body.body_force.plus(more.at([0.0; 2]).map(|f| by * f));
         }
-        problem.scene = Scene::unchecked(draft);
-        problem
+    }
+
+    fn add_gaps(&self, problem: &mut Problem, by: f64) {
+        let pairs = problem.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs);
+        for (pair, weights) in pairs.zip(&self.functional.load.weights).filter(|(_, weights)| weights.len() == 2) {
+            (0..2).for_each(|end| pair.gap[end] += by * weights[end]);
+        }
+    }
+
+    /// Takes strains away: triangles with one become bodies of their own, which stay bonded, with the initial stress cχ more.
+    fn add_strains(&self, problem: &mut Problem, draft: &mut Draft, by: f64) {
+        let materials = problem.materials();
+        let mut made: HashMap<(usize, [u64; 3]), usize> = HashMap::new();
+        for (t, chi) in &self.functional.load.strains {
+            let of = problem.mesh.body[*t];
+            problem.mesh.body[*t] = *made.entry((of, chi.map(f64::to_bits))).or_insert_with(|| {
+                let mut body = draft.bodies[of].clone();
+                let stress = materials[of].stress(*chi);
+                (0..3).for_each(|c| body.initial.stress[c] += by * stress[c]);
+                draft.bodies.push(body);
+                draft.bodies.len() - 1
+            });
+        }
     }
 
     /// The bracket of its energy.
@@ -95,25 +158,47 @@ impl<'a> Slope<'a> {
     }
 
     fn interval(&self) -> Option<Interval> {
-        let thickness = self.certified.problem.scene.thickness;
+        let (problem, functional) = (&self.certified.problem, self.functional);
+        let slope = if self.change == Change::Nothing { [0.0; 2] } else { self.slope()? };
+        let slope = slope.map(|end| end / problem.scene.thickness);
+        let [centre, radius] = self.remainder();
+        let ends = [slope[0] - ROUNDING * slope[0].abs() - radius, slope[1] + ROUNDING * slope[1].abs() + radius];
+        let ends = clipped(ends.map(|end| functional.constant + end + centre), functional.cannot_be());
+        let [least, most] = functional.within;
+        let ends = [ends[0].max(least), ends[1].min(most)].map(|end| functional.scale * end);
+        let missing = |end: f64| (!end.is_finite()).then(|| UNSOLVED.to_string());
+        let triangles = &self.certified.bracket.free.as_ref().ok()?.local.triangles;
+        Some(Interval {
+            ends,
+            first_order: ends,
+            value: (functional.scale * (functional.constant + self.value())).max(ends[0]).min(ends[1]),
+            exact_by_statics: self.change == Change::Nothing,
+            rounding: 0.0,
+            reasons: ends.map(missing),
+            shares: triangles.iter().map(|share| share.max(0.0)).collect(),
+        })
+    }
+
+    /// Two numbers that enclose the slope, thickness included.
+    fn slope(&self) -> Option<[f64; 2]> {
         let [low, high] = bracket(self.certified)?;
-        let v = &self.certified.bracket.free.as_ref().ok()?.displacement;
-        let value = if self.of_gaps { self.force() } else { displaced(&self.certified.problem, self.functional, v) };
-        let first = FIRST * self.certified.bracket.complementary.stored() / (thickness * value.abs());
         let mut best = [f64::NEG_INFINITY, f64::INFINITY];
-        let mut step = first;
+        let mut step = self.first_step(high - low);
         for _ in 0..MOST_STEPS {
             if !(step.is_finite() && step > 0.0) {
                 break;
             }
-            // Much more load or gap may have no equilibrium.
-            let (Some(down), Some(up)) = (self.energy(-step), self.energy(step)) else { break };
-            let ends = if self.of_gaps {
-                [(low - down[1]) / step, (up[1] - low) / step]
-            } else {
-                [(up[0] - high) / step, (high - down[0]) / step]
+            let [down, up] = [-step, step].map(|by| self.energy(by));
+            let ends = match self.change {
+                Change::Loads => [down.map(|down| (down[0] - high) / step), up.map(|up| (high - up[0]) / step)],
+                _ => [down.map(|down| (low - down[1]) / step), up.map(|up| (up[1] - low) / step)],
             };
-            best = [best[0].max(ends[0]), best[1].min(ends[1])];
+            best = [best[0].max(ends[0].unwrap_or(best[0])), best[1].min(ends[1].unwrap_or(best[1]))];
+            // Much more load may have no equilibrium.
+            let (Some(down), Some(up)) = (down, up) else {
+                step /= LARGEST;
+                continue;
+            };
             let middle = |ends: [f64; 2]| 0.5 * (ends[0] + ends[1]);
             let curvature = (middle(up) + middle(down) - 2.0 * middle([low, high])).abs() / (step * step);
             let next = (2.0 * (high - low).max(0.0) / curvature).sqrt().clamp(step / LARGEST, step * LARGEST);
@@ -122,29 +207,57 @@ impl<'a> Slope<'a> {
             }
             step = next;
         }
-        if !best.iter().all(|end| end.is_finite()) {
-            return None;
-        }
-        let slope = if self.of_gaps { best } else { [-best[1], -best[0]] };
-        let ends = slope.map(|end| self.functional.scale * (self.functional.constant + end / thickness));
-        let value = self.functional.scale * (self.functional.constant + value);
-        let triangles = &self.certified.bracket.free.as_ref().ok()?.local.triangles;
-        Some(Interval {
-            ends,
-            first_order: ends,
-            value: value.max(ends[0]).min(ends[1]),
-            exact_by_statics: false,
-            rounding: 0.0,
-            reasons: [None, None],
-            shares: triangles.iter().map(|share| share.max(0.0)).collect(),
-        })
+        best.iter().any(|end| end.is_finite()).then_some(best)
     }
 
-    /// ∫ φ t of the stresses.
-    fn force(&self) -> f64 {
-        let tractions = self.certified.dual.contact_traction.iter().flat_map(|of| of.iter());
-        let pairs = self.certified.problem.pairs().zip(&self.functional.load.weights).zip(tractions);
-        pairs.map(|((pair, weights), t)| pair.length * crate::element::polynomial::side::integral(weights, t)).sum()
+    /// The step that is best for the largest curvature that there can be, or one that changes the energy by a part of it.
+    fn first_step(&self, gap: f64) -> f64 {
+        let problem = &self.certified.problem;
+        let (thickness, materials) = (problem.scene.thickness, problem.materials());
+        let of = |(t, chi): &(usize, [f64; 3])| {
+            problem.mesh.area(*t) * materials[problem.mesh.body[*t]].strain_product(*chi, *chi)
+        };
+        let curvature: f64 = thickness * self.functional.load.strains.iter().map(of).sum::<f64>();
+        let best = (2.0 * gap.max(0.0) / curvature).sqrt();
+        if curvature > 0.0 && best > 0.0 && best.is_finite() {
+            return best;
+        }
+        let size = self.functional.kind.size(problem, &Scales::new(problem).data);
+        let value = self.value().abs().max(SMALL * size / self.functional.scale);
+        FIRST * self.certified.bracket.complementary.stored() / (thickness * value)
+    }
+
+    /// By how much the quantity differs from that of the means of its strains on triangles that are cut, and how far that may be off: with
+    /// ‖τ − λ‖² ≤ 2G.
+    fn remainder(&self) -> [f64; 2] {
+        let (Certified { problem, dual, .. }, functional) = (self.certified, self.functional);
+        let Some((chi, cuts)) = &functional.region else { return [0.0; 2] };
+        let materials = problem.materials();
+        let of = |functional: &Functional| {
+            strained(problem, functional, |t| dual.stress.degree(t), |t, sub, l| dual.stress.at(t, sub, l))
+        };
+        let means = Functional { region: None, ..functional.clone() };
+        let [exact, mean] = [functional, &means].map(of);
+        let rest = |(t, part): (usize, f64)| {
+            let square = materials[problem.mesh.body[t]].strain_product(*chi, *chi);
+            problem.mesh.area(t) * part * (1.0 - part) * square
+        };
+        let square: Sum = cuts.iter().map(|cut| rest((cut.triangle, cut.part))).collect();
+        let gap = bracket(self.certified).map_or(f64::INFINITY, |[low, high]| (high - low).max(0.0));
+        let radius = (2.0 * gap / problem.scene.thickness * square.value().max(0.0)).sqrt();
+        [exact - mean, radius + ROUNDED_MEAN * exact.abs()]
+    }
+
+    /// The quantity of λ and v, without its constant.
+    fn value(&self) -> f64 {
+        let (Certified { problem, dual, bracket, .. }, functional) = (self.certified, self.functional);
+        let tractions = dual.contact_traction.iter().flat_map(|of| of.iter());
+        let pairs = problem.pairs().zip(&functional.load.weights).zip(tractions);
+        let of_contact: f64 = pairs.map(|((pair, weights), t)| pair.length * side::integral(weights, t)).sum();
+        let of_stress = strained(problem, functional, |t| dual.stress.degree(t), |t, sub, l| dual.stress.at(t, sub, l));
+        let of_displacement =
+            bracket.free.as_ref().map_or(0.0, |free| displaced(problem, functional, &free.displacement));
+        of_contact + of_stress + of_displacement
     }
 }
 

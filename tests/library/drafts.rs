@@ -45,8 +45,11 @@ fn square() -> Draft {
         quantities: vec![
             quantity("side", side),
             quantity("all", Target::Displacement { of: Extent::Body(0), direction: [0.0, 1.0] }),
-            quantity("part", Target::ContactForce { contact: 0, window: Some([0.0, 0.0, 0.25, 0.5]) }),
-            quantity("whole", Target::ContactForce { contact: 0, window: None }),
+            quantity(
+                "part",
+                Target::ContactForce { contact: 0, tangential: false, window: Some([0.0, 0.0, 0.25, 0.5]) },
+            ),
+            quantity("whole", Target::ContactForce { contact: 0, tangential: false, window: None }),
             quantity("wall", Target::SupportForce { support: 0, direction: [1.0, 0.0] }),
             quantity("turn", Target::Moment { of: Holder::Contact(0), about: [0.5, 0.25] }),
             quantity("xy", Target::Stress { body: 0, region: Region::Whole, component: Component::XY }),
@@ -87,7 +90,10 @@ fn parts_that_make_no_scene_are_refused_as_in_a_file() {
     refused(&|draft| draft.tractions[0].on = "wall".into(), "two conditions");
     refused(&|draft| draft.contacts[0].gap = Gap::Table(vec![[0.5, 0.0], [0.0, 0.0]]), "gap");
     refused(&|draft| draft.quantities[0].name = "a=b".into(), "the sign =");
-    refused(&|draft| draft.quantities[3].target = Target::ContactForce { contact: 7, window: None }, "force");
+    refused(
+        &|draft| draft.quantities[3].target = Target::ContactForce { contact: 7, tangential: false, window: None },
+        "force",
+    );
 }
 
 /// The scenes of the repository, and random ones.

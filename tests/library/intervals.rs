@@ -31,9 +31,9 @@ fn asked(problem: &mut Problem) -> [f64; 3] {
     let stress = Target::Stress { body: 0, region: square(0.25, 0.75), component: Component::XX };
     let quantities = vec![
         quantity("tip", displacement),
-        quantity("seat", Target::ContactForce { contact: 0, window }),
+        quantity("seat", Target::ContactForce { contact: 0, tangential: false, window }),
         quantity("core", stress),
-        quantity("whole", Target::ContactForce { contact: 0, window: None }),
+        quantity("whole", Target::ContactForce { contact: 0, tangential: false, window: None }),
         quantity("wall", Target::SupportForce { support: 0, direction: [1.0, 0.0] }),
         quantity("turn", Target::Moment { of: Holder::Support(0), about: [2.0, 0.5] }),
     ];

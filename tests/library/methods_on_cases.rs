@@ -62,11 +62,12 @@ fn interior_point_and_condensed_agree_on_every_case() {
     }
 }
 
-/// Whether a scene has springs, elastic contact, a force that is not constant, an initial strain, or is one of revolution.
+/// Whether a scene has springs, elastic contact, friction, a force that is not constant, an initial strain, or is one of revolution.
 fn beyond_the_paper(problem: &Problem) -> bool {
     let more = |body: &Body| !body.body_force.is_constant() || !body.initial.is_none();
     !problem.beds.is_empty()
         || problem.has_elastic_contact()
+        || problem.has_friction()
         || problem.section().is_revolved()
         || problem.scene.bodies.iter().any(more)
 }

@@ -1,10 +1,10 @@
-//! Intervals that come from energies: quantities with elastic contact, and with polynomial tractions.
+//! Intervals that come from energies: quantities with friction, with elastic contact, and with polynomial tractions.
 
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Answer, answers, certify};
+use hypercircle::study::{Answer, answers, certify, refuse_quantities};
 
 use crate::support::random::Random;
 use crate::support::toml::Toml;
@@ -99,4 +99,106 @@ fn polynomial_tractions_have_intervals() {
         let ([low, high], value) = (coarse.interval.ends, fine.interval.value);
         assert!(low <= value && value <= high, "{}: {low} {value} {high}", coarse.name);
     }
+}
+
+/// A block on a block with friction, asked for all that has an interval.
+fn rubbing(contact: &str) -> String {
+    let toml = Toml::default()
+        .size(0.6)
+        .polygon("low", &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]], ["floor", "", "seat", ""])
+        .polygon("high", &[[0.0, 1.0], [2.0, 1.0], [2.0, 2.0], [0.0, 2.0]], ["foot", "", "load", "push"])
+        .material("low", 2.0, 0.2)
+        .material("high", 1.0, 0.3)
+        .clamp("floor")
+        .traction("load", [0.0, -0.3])
+        .traction("push", [0.1, 0.0])
+        .table(contact);
+    let asked = |name: &str, of: &str| format!("[[quantities]]\nname = \"{name}\"\n{of}");
+    toml.table(&asked("top", "displacement = \"load\"\ndirection = [0.6, -0.8]"))
+        .table(&asked("body", "displacement = \"high\"\ndirection = [1, 0]"))
+        .table(&asked("floor", "force = \"floor\"\ndirection = [1, 0]"))
+        .table(&asked("stress", "stress = \"high\"\ncomponent = \"xy\""))
+        .table(&asked("part", "stress = \"high\"\ncomponent = \"xx\"\nbox = [[0.3, 1.2], [1.1, 1.7]]"))
+        .text()
+}
+
+const FORCES: &str = r#"
+[[quantities]]
+name = "normal"
+force = "foot|seat"
+[[quantities]]
+name = "along"
+force = "foot|seat"
+component = "tangential"
+[[quantities]]
+name = "turning"
+moment = "foot|seat"
+about = [1.0, 1.0]
+"#;
+
+fn ends_of(answers: &[Answer], name: &str) -> [f64; 2] {
+    let answer = answers.iter().find(|answer| answer.name == name).unwrap_or_else(|| panic!("{name}"));
+    assert!(answer.interval.reasons.iter().all(Option::is_none), "{name}: {:?}", answer.interval.reasons);
+    answer.interval.ends
+}
+
+/// What statics says of a block that friction alone holds, whether it slides in part or not.
+#[test]
+fn forces_of_friction_are_those_of_statics() {
+    for bound in [0.055, 5.0] {
+        let contact = format!("[[contacts]]\nbetween = [\"foot\", \"seat\"]\nfriction = {{ bound = {bound:?} }}");
+        let found = solved(&(rubbing(&contact) + FORCES), 0, 1);
+        // Pressed with 2 · 0.3 and pushed with 0.1 at half its height; what the floor exerts holds the push.
+        for (name, exact) in [("normal", 0.6), ("along", -0.1), ("turning", 0.05), ("floor", -0.1)] {
+            let [low, high] = ends_of(&found, name);
+            assert!(low <= exact && exact <= high, "{bound}, {name}: {low} {exact} {high}");
+            assert!(high - low < 0.2 * exact.abs(), "{bound}, {name}: {low} {high}");
+        }
+    }
+}
+
+/// Friction that is never overcome is a bond, whose intervals are of another make.
+#[test]
+fn friction_that_sticks_has_the_values_of_a_bond() {
+    let between = "between = [\"foot\", \"seat\"]";
+    let stuck = solved(&rubbing(&format!("[[contacts]]\n{between}\nfriction = {{ bound = 1e6 }}")), 0, 1);
+    let bonded = solved(&rubbing(&format!("[[bonds]]\n{between}")), 0, 2);
+    for answer in &bonded {
+        let ([low, high], [least, most]) = (ends_of(&stuck, &answer.name), answer.interval.ends);
+        assert!(low <= most && least <= high, "{}: {low} {high}, {least} {most}", answer.name);
+        assert!(high - low > most - least, "{}", answer.name);
+    }
+}
+
+/// The end of the strip of `cases/pulled_strip.toml` moves by F²/2τEh, and by no more than the shear across it adds.
+#[test]
+fn a_strip_that_slides_moves_as_its_bar() {
+    let toml = Toml::default()
+        .size(0.02)
+        .model("plane-stress", 1.0)
+        .polygon("strip", &[[0.0, 0.0], [0.5, 0.0], [0.5, 0.02], [0.0, 0.02]], ["foot", "pull", "top", ""])
+        .material("strip", 1.0, 0.0)
+        .roller("top")
+        .traction("pull", [0.3, 0.0])
+        .table("[[contacts]]\non = \"foot\"\nfriction = { bound = 0.02 }")
+        .table("[[quantities]]\nname = \"pull\"\ndisplacement = \"pull\"\ndirection = [1, 0]");
+    let [low, high] = ends_of(&solved(&toml.text(), 0, 2), "pull");
+    let (bar, shear) = (0.006 * 0.006 / (2.0 * 0.02 * 0.02), 0.02 * 0.02 / (3.0 * 0.5));
+    assert!(low <= bar + shear && bar <= high, "{low} {high}");
+    assert!(high - low < 0.1 * bar, "{low} {high}");
+}
+
+/// What has no interval is refused, with its name and what has one.
+#[test]
+fn what_friction_leaves_without_an_interval_is_refused() {
+    let contact = "[[contacts]]\nbetween = [\"foot\", \"seat\"]\nfriction = { bound = 1.0 }";
+    for of in ["displacement = \"foot\"\ndirection = [1, 0]", "stress = \"high\"\npoint = [1.0, 1.5]\ncomponent = \"xx\""] {
+        let text = format!("{}\n[[quantities]]\nname = \"this one\"\n{of}\n", rubbing(contact));
+        let problem = Problem::load(Scene::parse(&text, "scene.toml".as_ref()).expect("a scene")).expect("a problem");
+        let error = refuse_quantities(&problem).expect_err("refused");
+        assert!(error.contains("'this one'") && error.contains("mean stresses"), "{error}");
+    }
+    let text = rubbing("[[contacts]]\nbetween = [\"foot\", \"seat\"]") + FORCES;
+    let error = Scene::parse(&text, "scene.toml".as_ref()).expect_err("no friction").to_string();
+    assert!(error.contains("component") && error.contains("without friction"), "{error}");
 }

@@ -24,9 +24,5 @@ pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
             "leave `friction` out of the scene, or use `solve`, `verify` or `certify`",
         ));
     }
-    if let Some(quantity) = scene.quantities.first() {
-        let what = format!("{path}: quantity `{}` of a scene with friction has no interval yet", quantity.name);
-        return Err(CliError::stopped(Exit::BadInput, what, "leave the [[quantities]] out, or `friction`"));
-    }
     Ok(())
 }

@@ -106,6 +106,11 @@ impl crate::problem::Problem {
     pub fn has_friction(&self) -> bool {
         self.pairs().any(|pair| pair.friction.is_some())
     }
+
+    /// Whether anything resists sliding along one contact.
+    pub fn rubs_on(&self, contact: usize) -> bool {
+        self.interfaces.get(contact).is_some_and(|interface| interface.pairs.iter().any(|pair| pair.friction.is_some()))
+    }
 }
 
 /// Whether a scene has a contact with friction.

@@ -6,6 +6,7 @@
 //! into that form by a displacement w̃ that moves the support and vanishes at all vertices beyond it: with w̃ = −w there,
 //! ∫_{Γu} T·w = F(w̃) − ∫ τ:e(w̃) + ∫_{ΓK} t j(w̃).
 
+mod carried;
 mod contacts;
 pub(super) mod form;
 mod kind;
@@ -19,6 +20,7 @@ pub(super) mod value;
 
 use std::borrow::Cow;
 
+use carried::{moment_on_first, tangential_force};
 use contacts::{moment_of, on_contact, trapezoid};
 pub use kind::Kind;
 use means::{mean_stress, on_body, on_boundary};
@@ -59,6 +61,8 @@ pub struct Functional {
     pub constant: f64,
     /// A displacement, linear on triangles, with jumps −φ, where there is one that meets the supports.
     pub lift: Option<Displacement>,
+    /// What the value per unit thickness cannot be beyond, whatever the solution.
+    pub within: [f64; 2],
     /// What the value per unit thickness is multiplied by.
     pub scale: f64,
     /// ‖σ‖² of a stress that such a quantity has where it is no matter of statics alone, in order of magnitude.
@@ -95,10 +99,16 @@ impl Functional {
                 let own = Functional::empty(problem, Kind::StressIntensity);
                 Ok(Functional { local: Some(Box::new(Local::Tip(tip))), constant, ..own })
             }
-            Target::ContactForce { contact, window } => {
+            Target::ContactForce { contact, tangential: true, window } => {
+                tangential_force(problem, *contact, |s| window.map_or(1.0, |window| trapezoid(window, s)))
+            }
+            Target::ContactForce { contact, tangential: false, window } => {
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
                 // Pressure is positive.
                 Ok(on_contact(problem, *contact, Kind::Force, |_, pair| pair.arc.map(|s| -weight(s)).to_vec()))
+            }
+            Target::Moment { of: Holder::Contact(contact), about } if problem.rubs_on(*contact) => {
+                moment_on_first(problem, *contact, *about)
             }
             Target::Moment { of: Holder::Contact(contact), about } => {
                 Ok(on_contact(problem, *contact, Kind::Moment, |problem, pair| moment_of(problem, pair, *about)))
@@ -197,6 +207,7 @@ impl Functional {
             oscillation: Vec::new(),
             constant: 0.0,
             lift: None,
+            within: [f64::NEG_INFINITY, f64::INFINITY],
             scale: if matches!(kind, Kind::Force | Kind::Moment) { problem.scene.thickness } else { 1.0 },
             natural: 0.0,
         }

@@ -16,6 +16,19 @@ pub enum NotBounded {
         /// Where.
         y: f64,
     },
+    /// What a contact carries up to a place where something else carries too.
+    #[error(
+        "what friction carries up to ({x}, {y}), where {what}, is no bounded functional; ask for the force within a `window` that is zero \
+         there"
+    )]
+    Carried {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+        /// What is there.
+        what: &'static str,
+    },
     /// A region that leaves its body.
     #[error("of the region only {inside} % lie inside body '{body}'; give a region inside the body")]
     Outside {

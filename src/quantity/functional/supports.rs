@@ -73,6 +73,20 @@ pub fn on_support(
     let mut functional = Functional::empty(problem, kind);
     pull_springs(problem, &mut functional, |_, v| vertex[v]);
     functional.constant = work(problem, &moved).value();
+    add_strains(problem, &mut functional, &vertex, -1.0);
+    let pairs = problem.pairs();
+    for (weights, pair) in functional.load.weights.iter_mut().zip(pairs) {
+        let along = jumps(problem, &moved, pair);
+        if along.iter().any(|w| *w != 0.0) {
+            *weights = along;
+        }
+    }
+    Ok(functional.beside(problem))
+}
+
+/// Adds sign · ∫ τ:e(w), w being linear on triangles with the values `vertex`.
+pub(super) fn add_strains(problem: &Problem, functional: &mut Functional, vertex: &[[f64; 2]], sign: f64) {
+    let mesh = &problem.mesh;
     let young: Vec<f64> = problem.materials().iter().map(|material| material.young()[1]).collect();
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let u = triangle.map(|v| vertex[v]);
@@ -84,19 +98,11 @@ pub fn on_support(
         let e = [d(0, 0), d(1, 1), 0.5 * (d(0, 1) + d(1, 0))];
         if problem.section().is_revolved() {
             let volume = problem.section().volume(mesh.corners(t));
-            functional.load.turned.push((t, [0.0, -e[1], 0.0, -e[2]]));
+            functional.load.turned.push((t, [0.0, sign * e[1], 0.0, sign * e[2]]));
             functional.natural += young[mesh.body[t]] * volume * (e[1] * e[1] + e[2] * e[2]);
             continue;
         }
-        functional.load.strains.push((t, e.map(|e| -e)));
+        functional.load.strains.push((t, e.map(|e| sign * e)));
         functional.natural += young[mesh.body[t]] * mesh.area(t) * e.iter().map(|e| e * e).sum::<f64>();
     }
-    let pairs = problem.pairs();
-    for (weights, pair) in functional.load.weights.iter_mut().zip(pairs) {
-        let along = jumps(problem, &moved, pair);
-        if along.iter().any(|w| *w != 0.0) {
-            *weights = along;
-        }
-    }
-    Ok(functional.beside(problem))
 }

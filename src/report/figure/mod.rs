@@ -7,6 +7,7 @@ mod axis;
 pub mod bracket;
 pub mod deformed;
 pub mod drawn;
+pub mod friction;
 pub mod history;
 pub mod map;
 pub mod mark;

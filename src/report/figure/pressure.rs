@@ -6,7 +6,10 @@ use super::axis::Axis;
 use super::svg::{Anchor, Svg, look, px};
 use crate::report::ContactSummary;
 
-const WIDTH: f64 = 560.0;
+pub(super) const WIDTH: f64 = 560.0;
+/// Where the axis of arc lengths begins and ends.
+pub(super) const LEFT: f64 = 62.0;
+pub(super) const RIGHT: f64 = WIDTH - 14.0;
 const DASHES: [&str; 5] = ["", "8 4", "2 3", "10 3 2 3", "5 2"];
 /// Markers per curve.
 const MARKERS: usize = 16;
@@ -30,23 +33,27 @@ pub fn extent(contact: &ContactSummary) -> [f64; 2] {
     if from < to && cut > WORTH_CUTTING * contact.length { [from, to] } else { [0.0, contact.length] }
 }
 
+/// The axis of arc lengths, with room for all `marks`.
+pub(super) fn along(extent: [f64; 2], marks: &[(f64, usize)]) -> Axis {
+    Axis::over(marks.iter().map(|mark| mark.0).chain(extent), LEFT, RIGHT, false)
+}
+
 /// Pressure against arc length; jumps are drawn upright, ends of contact as dotted lines, and `marks` (arc length, number) where
 /// something is wrong.
 pub fn pressure(contact: &ContactSummary, marks: &[(f64, usize)]) -> String {
     let rows = contact.profiles.len() as f64;
-    let (left, top, bottom) = (62.0, 10.0 + 20.0 * rows, 300.0 + 20.0 * rows);
+    let (left, top, bottom) = (LEFT, 10.0 + 20.0 * rows, 300.0 + 20.0 * rows);
     let mut svg =
         Svg::new(WIDTH, bottom + 46.0, format!("Pressure along the contact {} from every model", contact.name));
     let [from, to] = extent(contact);
-    let ends = marks.iter().map(|mark| mark.0).chain([from, to]);
-    let x = Axis::over(ends, left, WIDTH - 14.0, false);
+    let x = along([from, to], marks);
     let shown = |s: f64| (x.from..=x.to).contains(&s);
     let values = contact.profiles.iter().flat_map(|p| p.points.iter()).filter(|p| shown(p[0]));
     let y = Axis::over(values.map(|p| p[1]).chain([0.0]), bottom, top + 24.0, false).padded(0.03);
     x.draw_below(&mut svg, bottom, top + 24.0, "arc length along the contact");
-    y.draw_left(&mut svg, left, WIDTH - 14.0, "pressure");
+    y.draw_left(&mut svg, left, RIGHT, "pressure");
     if y.from < 0.0 {
-        svg.line(look::LINE, r#"stroke-width="0.8""#, [left, y.at(0.0)], [WIDTH - 14.0, y.at(0.0)]);
+        svg.line(look::LINE, r#"stroke-width="0.8""#, [left, y.at(0.0)], [RIGHT, y.at(0.0)]);
     }
     for &end in contact.contact_ends.iter().filter(|s| shown(**s)) {
         svg.line(
@@ -81,15 +88,15 @@ pub fn pressure(contact: &ContactSummary, marks: &[(f64, usize)]) -> String {
     svg.finish()
 }
 
-fn stroke(series: usize) -> String {
+pub(super) fn stroke(series: usize) -> String {
     let (class, colour) = look::SERIES[series % look::SERIES.len()];
     let width = if series == 0 { 2.4 } else { 1.7 };
     let dash = DASHES[series % DASHES.len()];
     format!(r#"class="{class}" fill="none" stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dash}""#)
 }
 
-/// A curve that is interrupted where a number is missing, with its markers.
-fn curve(svg: &mut Svg, series: usize, points: &[Option<[f64; 2]>]) {
+/// The path of a curve that is interrupted where a number is missing.
+pub(super) fn path_of(points: &[Option<[f64; 2]>]) -> String {
     let mut d = String::new();
     let mut pen: Option<[f64; 2]> = None;
     for point in points {
@@ -104,7 +111,12 @@ fn curve(svg: &mut Svg, series: usize, points: &[Option<[f64; 2]>]) {
             (None, _) => pen = None,
         }
     }
-    svg.path(&stroke(series), "", &d);
+    d
+}
+
+/// A curve with its markers.
+fn curve(svg: &mut Svg, series: usize, points: &[Option<[f64; 2]>]) {
+    svg.path(&stroke(series), "", &path_of(points));
     let every = points.len().div_ceil(MARKERS).max(1);
     // Series start their markers at different points, so that equal curves show all of them.
     for p in points.iter().skip((series * every) / 3).step_by(every).flatten() {

@@ -7,7 +7,7 @@ use super::tables::scroll;
 use crate::element::Displacement;
 use crate::report::figure::drawn::Drawn;
 use crate::report::figure::mark::{Mark, marks};
-use crate::report::figure::{deformed, history, pressure, scene};
+use crate::report::figure::{deformed, friction, history, pressure, scene};
 use crate::report::text::number::{clean, optional, percent, significant};
 use crate::report::{ContactSummary, Dossier};
 
@@ -79,10 +79,11 @@ fn shapes(dossier: &Dossier, marks: &[Mark]) -> Markup {
 fn pressure_figure(dossier: &Dossier, index: usize) -> Markup {
     let contact = &dossier.report.contact[index];
     let [from, to] = pressure::extent(contact);
-    let id = format!("pressure-{index}");
+    let (id, marks) = (format!("pressure-{index}"), arc_marks(dossier, index));
     html! {
         figure id=(id) {
-            (PreEscaped(pressure::pressure(contact, &arc_marks(dossier, index))))
+            (PreEscaped(pressure::pressure(contact, &marks)))
+            @if let Some(drawn) = friction::friction(contact, &marks) { (PreEscaped(drawn)) }
             figcaption {
                 b { "Pressure on " bdi { code { (clean(&contact.name)) } } ". " }
                 "The dual pressure may jump from edge to edge. Zero: the contact is open; it is open on "
@@ -92,9 +93,22 @@ fn pressure_figure(dossier: &Dossier, index: usize) -> Markup {
                     " Shown from " (significant(from, 4)) " to " (significant(to, 4)) " of the length " (significant(contact.length, 4))
                     "; no model has a pressure beyond."
                 }
+                (friction_caption(contact))
                 (pressures(contact, [from, to]))
                 (links::checks_of(&id, &dossier.report))
             }
+        }
+    }
+}
+
+/// Explains the strip of states and the tangential traction.
+fn friction_caption(contact: &ContactSummary) -> Markup {
+    html! {
+        @if let Some(friction) = &contact.friction {
+            " " b { "Friction. " }
+            "The sides stick on " (percent(friction.stick_fraction)) " of the length. They slide, or may begin to, on "
+            (percent(friction.slip_fraction)) ": there the tangential traction of the dual solution is at its bound. It adds up to "
+            (significant(friction.force, 4)) " on the first side, positive along its arc length."
         }
     }
 }

@@ -143,17 +143,19 @@ impl Context<'_> {
     }
 
     fn force(&self, of: &At<String>, whole: Range<usize>) -> Result<Target, SceneError> {
-        self.refuse(&["about", "box", "polygon", "component", "point", "smoothness"], "`force`")?;
+        self.refuse(&["about", "box", "polygon", "point", "smoothness"], "`force`")?;
         match self.holder("force", of)? {
             Holder::Contact(contact) => {
+                let tangential = self.is_tangential(contact)?;
                 if let Some(direction) = &self.raw.direction {
                     let remedy = "delete `direction`: the force of a contact is the normal force that presses its sides together";
                     return self.misplaced("direction", direction.span(), "the force of a contact", remedy);
                 }
                 let window = self.raw.window.as_ref().map(|window| self.window(window)).transpose()?;
-                Ok(Target::ContactForce { contact, window })
+                Ok(Target::ContactForce { contact, tangential, window })
             }
             Holder::Support(support) => {
+                self.refuse(&["component"], "the force of a support")?;
                 if let Some(window) = &self.raw.window {
                     let remedy = "delete `window`: the force of a support is that of the whole boundary; split the boundary for less";
                     return self.misplaced("window", window.span(), "the force of a support", remedy);

@@ -34,10 +34,12 @@ pub enum Target {
         /// Unit vector.
         direction: [f64; 2],
     },
-    /// The normal force that presses the sides of a contact together, positive in compression.
+    /// The force of a contact: the normal one that presses its sides together, positive in compression, or that of friction.
     ContactForce {
         /// Index into [`Draft::contacts`](super::Draft::contacts).
         contact: usize,
+        /// The force of friction on the first side, positive along its arc length, in place of the normal force.
+        tangential: bool,
         /// [s0, s1, s2, s3], a weight in the arc length s of the first side, counted as for [`super::Gap::Table`]: 0 up to
         /// s0 and from s3 on, 1 from s1 to s2, linear between. s0 ≤ s1 ≤ s2 < s3 with s0 < s1, or s1 ≤ 0: then the weight
         /// is 1 from the beginning of the side. `None` weights everything by 1.
@@ -257,7 +259,7 @@ impl Scene {
     /// The arc lengths at which windows of quantities on `contacts[contact]` bend.
     pub(crate) fn window_breaks(&self, contact: usize) -> impl Iterator<Item = f64> + '_ {
         self.quantities.iter().flat_map(move |quantity| match quantity.target {
-            Target::ContactForce { contact: on, window: Some(window) } if on == contact => window.to_vec(),
+            Target::ContactForce { contact: on, window: Some(window), .. } if on == contact => window.to_vec(),
             _ => Vec::new(),
         })
     }

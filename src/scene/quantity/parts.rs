@@ -9,6 +9,9 @@ use crate::scene::reading::raw::{At, Pair};
 use crate::scene::reading::source::counted;
 use crate::scene::{BoundaryUse, ContactSides};
 
+/// The component of the force of a contact that is not its normal force.
+const TANGENTIAL: &str = "tangential";
+
 /// Part of its arc length below which the slope of a window is a jump.
 const STEEP: f64 = 1e-9;
 
@@ -40,6 +43,21 @@ impl Context<'_> {
                 self.ambiguous(key, of, several.iter().map(owner).collect())
             }
         }
+    }
+
+    /// Whether the force of a contact is that of its friction.
+    pub(super) fn is_tangential(&self, contact: usize) -> Result<bool, SceneError> {
+        let Some(word) = &self.raw.component else { return Ok(false) };
+        if word.value != TANGENTIAL {
+            let (table, found, known) = (self.table.to_owned(), word.value.clone(), vec![TANGENTIAL.to_owned()]);
+            return self.fail(word.span(), Fault::UnknownWord { key: "component", table, found, known });
+        }
+        if self.named.conditions.contacts[contact].friction.is_none() {
+            let remedy =
+                "delete `component`, or give the contact a `friction`: without it there is no tangential force";
+            return self.misplaced("component", word.span(), "a contact without friction", remedy);
+        }
+        Ok(true)
     }
 
     pub(super) fn direction(&self, direction: &Pair) -> Result<[f64; 2], SceneError> {

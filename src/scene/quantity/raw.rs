@@ -23,7 +23,7 @@ pub(in crate::scene) struct RawQuantity {
     #[schemars(length(min = 1))]
     pub displacement: Option<At<String>>,
     /// A contact, as `first|second`, `first|rigid` or one of its sides: the normal force that presses its sides together,
-    /// weighted by `window`. Or the boundary of a support: the force along `direction` that it exerts on the bodies.
+    /// weighted by `window`; with `component = "tangential"` the force of friction on its first side along the arc length. Or the boundary of a support: the force along `direction` that it exerts on the bodies.
     #[schemars(length(min = 1))]
     pub force: Option<At<String>>,
     /// A contact or the boundary of a support: the counter-clockwise moment about the point `about` of the forces that it
@@ -60,8 +60,8 @@ pub(in crate::scene) struct RawQuantity {
     #[schemars(with = "Option<Vec<[f64; 2]>>", length(min = 3))]
     pub polygon: Option<At<Vec<Pair>>>,
     /// The component of the stress, of a body of revolution `rr`, `zz`, `rz` or `tt`; at a point also von Mises' equivalent stress and the
-    /// principal stresses in the plane.
-    #[schemars(extend("enum" = ["xx", "yy", "xy", "rr", "zz", "rz", "tt", "von-mises", "largest-principal", "smallest-principal"]))]
+    /// principal stresses in the plane. Of the force of a contact with friction `tangential`.
+    #[schemars(extend("enum" = ["xx", "yy", "xy", "rr", "zz", "rz", "tt", "von-mises", "largest-principal", "smallest-principal", "tangential"]))]
     pub component: Option<At<String>>,
     /// A point inside an isotropic body, away from its outline, at which a displacement or a stress is wanted.
     #[schemars(with = "Option<[f64; 2]>")]

@@ -2,6 +2,7 @@
 
 mod contact;
 mod curved;
+mod friction;
 mod material;
 mod matter;
 mod meshes;
@@ -112,6 +113,7 @@ pub static REGIMES: &[&[Regime]] = &[
     units::REGIMES,
     contact::REGIMES,
     revolved::REGIMES,
+    friction::REGIMES,
 ];
 
 /// The regime of that name.

@@ -42,3 +42,48 @@ fn open_crack() {
         close(finer.number(&format!("/energy/{bound}")), energy, 1e-3);
     }
 }
+
+/// A strip that friction holds: the bar in which the force falls by the bound per length.
+#[test]
+fn pulled_strip() {
+    let report = sound("pulled_strip");
+    let (force, bound, height, young) = (0.3 * 0.02, 0.02, 0.02, 1.0);
+    let moved = force * force / (2.0 * bound * young * height) + bound * height / (3.0 * 0.5 * young);
+    close(report.number("/quantities/0/value"), moved, 0.01);
+    let [low, high] = ["lower", "upper"].map(|end| report.number(&format!("/quantities/0/{end}")));
+    assert!(low <= moved && moved <= high, "{low} {moved} {high}");
+    for end in ["lower", "upper"] {
+        close(report.number(&format!("/energy/{end}")), -force.powi(3) / (6.0 * bound * young * height), 0.015);
+    }
+    close(report.number("/contact/0/friction/force"), -force, 1e-9);
+    // Over the height of the strip slip passes into stick, somewhere on an edge.
+    let slip = 0.5 * report.number("/contact/0/friction/slip_fraction");
+    assert!((slip - force / bound).abs() < height + 0.01, "{slip}");
+}
+
+/// Friction with a given bound between sheared half-planes: the traction in the middle, and where it slides.
+#[test]
+fn sheared_contact() {
+    let report = Run::new("solve", &case("sheared_contact"), &["--tolerance", "0.02"]).report();
+    close(report.number("/contact/0/friction/force"), -0.016, 1e-9);
+    let (bound, stuck) = (0.01, 0.6_f64);
+    let traction = report.0["contact"][0]["friction"]["traction"].as_array().expect("points");
+    let at = |point: &serde_json::Value| [0, 1].map(|i| point[i].as_f64().expect("a number"));
+    let steps: Vec<[[f64; 2]; 2]> = traction.windows(2).map(|w| [at(&w[0]), at(&w[1])]).collect();
+    // The mean between two distances x from the middle of the contact, whose length is 2.
+    let mean = |[from, to]: [f64; 2]| {
+        let (mut sum, mut length) = (0.0, 0.0);
+        let inside = |s: f64| (from - 1e-9..=to + 1e-9).contains(&(s - 1.0).abs());
+        for [[s, q], [r, p]] in steps.iter().filter(|[a, b]| inside(a[0]) && inside(b[0])) {
+            sum -= 0.5 * (q + p) * (r - s);
+            length += r - s;
+        }
+        assert!(length > 0.2, "{length} from {from} to {to}");
+        sum / length
+    };
+    let q = |x: f64| bound * (1.0 - 2.0 / PI * ((stuck * stuck - x * x) / (1.0 - stuck * stuck)).sqrt().atan());
+    let n = 100;
+    let exact = (0..n).map(|k| q(0.3 * (f64::from(k) + 0.5) / f64::from(n))).sum::<f64>() / f64::from(n);
+    close(mean([0.0, 0.3]), exact, 0.02);
+    close(mean([0.75, 1.0]), bound, 0.01);
+}

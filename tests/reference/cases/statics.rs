@@ -123,3 +123,36 @@ fn contact_of_every_degree() {
         }
     }
 }
+
+/// A block pushed along its base: what friction carries, and where the sides stick.
+fn pushed(name: &str, friction: f64) -> Report {
+    let report = sound(name);
+    carries(&report, 0, [friction, 1.0]);
+    close(report.number("/contact/0/friction/force"), friction, 1e-9);
+    let [low, high] = ["lower", "upper"].map(|end| report.number(&format!("/quantities/0/{end}")));
+    assert!(low <= friction + 1e-12 && friction - 1e-12 <= high, "{low} {high}");
+    report
+}
+
+#[test]
+fn pushed_blocks_stick_and_slide() {
+    let stuck = pushed("pushed_sticks", -0.2);
+    close(stuck.number("/contact/0/friction/stick_fraction"), 1.0, 1e-9);
+    // Glued on, the block is no other.
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(case("pushed_sticks")).expect("readable");
+    let glued = text.split("[[quantities]]").next().expect("a scene").replace("[[contacts]]", "[[bonds]]");
+    let path = folder.path().join("glued.toml");
+    std::fs::write(&path, glued.replace("friction = { bound = 5.0 }", "")).expect("writable");
+    let glued = Run::new("solve", &path, &[]).report();
+    close(glued.number("/energy/lower"), stuck.number("/energy/lower"), 1e-9);
+
+    let partly = pushed("pushed_partly", -0.2);
+    let fraction = |of: &str| partly.number(&format!("/contact/0/friction/{of}_fraction"));
+    assert!(fraction("stick") > 0.1 && fraction("slip") > 0.1);
+    // It gives way as much as its bound says, and not more.
+    assert!(partly.number("/energy/lower") < stuck.number("/energy/upper"));
+
+    let sliding = pushed("pushed_slides", -0.06);
+    close(sliding.number("/contact/0/friction/slip_fraction"), 1.0, 1e-9);
+}
