@@ -3,6 +3,7 @@
 //! With j_t = (v' − v'')·t̂ along t̂, at right angles to the direction of contact, the law is φ(j_t) = τ̄ |j_t| with a given bound
 //! τ̄ (Tresca): the traction on the first side along t̂ lies in [−τ̄, τ̄], and is against the sliding where there is any.
 
+use super::coulomb::follows_coulomb;
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 use crate::problem::{ContactPair, Direction, Interface, Note};
@@ -65,7 +66,7 @@ pub(in crate::problem) fn resist(
 }
 
 /// The direction of contact turned by a right angle, with the arc length of the first side.
-fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
+pub(super) fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
     let forward = pair.edges[0].is_none_or(|e| mesh.edges[e].vertices[0] == pair.first[0]);
     let sign = if forward { 1.0 } else { -1.0 };
     Direction { ends: pair.direction.ends.map(|[x, y]| [-sign * y, sign * x]), shares: pair.direction.shares }
@@ -80,7 +81,7 @@ impl crate::problem::Problem {
 
 /// Whether a scene has a contact with friction.
 pub fn rubs(scene: &Scene) -> bool {
-    scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
+    follows_coulomb(scene) || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
 }
 
 #[cfg(test)]
