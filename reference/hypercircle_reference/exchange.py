@@ -45,7 +45,8 @@ class Contact:
     of contact n̂ at the two ends, linear between, ``gap`` (m, 2) the gap g at the two ends. Where ``curved`` (m,), ``gap_below``
     (m, n, n + 2) has the coefficients of degree 2, 3, …, n + 1 of polynomials that lie nowhere above it, filled up with zeros,
         the last of them the gap itself. ``friction`` (m, 2) is the bound of the tangential traction at the two ends, zero where there is
-    none, ``tangent`` (m, 2, 2) the direction of sliding there, and ``length`` (m,) what integrals of friction are over.
+    none, ``tangent`` (m, 2, 2) the direction of sliding there, and ``length`` (m,) what integrals of friction are over. Where the
+    bound goes with the pressure ``coefficient`` is Coulomb's, else zero.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Contact:
     friction: np.ndarray
     tangent: np.ndarray
     length: np.ndarray
+    coefficient: float = 0.0
 
     @property
     def rubs(self) -> np.ndarray:
@@ -75,7 +77,7 @@ class Contact:
         """The contact on some of its pairs."""
         arrays = (self.edges, self.first, self.second, self.normal, self.direction, self.gap)
         arrays += (self.curved, self.gap_below, self.friction, self.tangent, self.length)
-        return Contact(self.name, *(array[pairs] for array in arrays))
+        return Contact(self.name, *(array[pairs] for array in arrays), self.coefficient)
 
     def gap_coefficients(self, degree: int) -> np.ndarray:
         """Coefficients (m, degree + 1) of polynomials of that degree, 2 or more, that lie nowhere above the gap."""
@@ -314,7 +316,10 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
         friction=_column(friction, rough, "bound", (2,)),
         tangent=_column(friction, rough, "tangent", (2, 2)),
         length=_column(friction, rough, "length", ()),
+        coefficient=_scalar(entry, "coefficient", f"{where}.coefficient") if "coefficient" in entry else 0.0,
     )
+    if contact.coefficient < 0.0:
+        raise BadExchange(f"{where}.coefficient is negative")
     if np.any(contact.friction < 0.0):
         raise BadExchange(f"{inside}[{np.argmin(contact.friction.min(axis=1))}].friction.bound is negative")
     _check_unit(contact.normal, inside, "normal")

@@ -8,7 +8,7 @@ import numpy as np
 
 from hypercircle_process import log
 
-from . import compat
+from . import compat, coulomb
 from .constraints import Constraints, build as build_constraints
 from .exchange import Problem
 from .lattice import Lattice
@@ -59,6 +59,9 @@ def solve_all(comm, problem: Problem, spaces, nodal_contact=False, sabotage=None
         phases["total"] = sum(phases.values())
         log(comm, f"{family}{degree}: energy {solution.energy!r}, {solution.iterations} steps")
         result = _result(comm, problem, degree, nodal_contact, constraints, solution, phases)
+        if coulomb.follows(problem):
+            result["coulomb"] = _own_coulomb(problem, degree, minimum, result["contacts"])
+            log(comm, f"{family}{degree}: Coulomb friction of its own, {result['coulomb']['iterations']} solutions")
         if family == "Q":
             result.update(cells="quadrilaterals", gauss_points=GAUSS_POINTS)
         results.append(result)
@@ -90,6 +93,18 @@ def _result(comm, problem: Problem, degree, nodal_contact, constraints, solution
         "triangle_displacement": inside.tolist() if degree > 2 else None,
         "contacts": _contacts(problem, degree, constraints, solution),
     }
+
+
+def _own_coulomb(problem: Problem, degree: int, minimum, contacts: list[dict]) -> dict:
+    """Coulomb friction with limits from the reactions of the model itself, from those in ``contacts`` on."""
+    unit = coulomb.with_unit_bounds(problem)
+    limits = coulomb.Limits(unit, degree, build_constraints(unit, degree))
+
+    def solve(under: Constraints):
+        solution = minimum(under)
+        return solution, _contacts(unit, degree, under, solution)
+
+    return coulomb.iterate(limits, contacts, solve)
 
 
 def _contacts(problem: Problem, degree: int, constraints: Constraints, solution: Solution) -> list[dict]:

@@ -52,6 +52,14 @@ fn failed(check: &Check) -> String {
         ("energy", "lower-below", who) => format!(
             "The lower bound {value} lies above the energy {reference} of {who} made admissible, by {difference}: one of the two is wrong."
         ),
+        ("energy", "coulomb", who) => format!(
+            "The energy {value} of {who} with Coulomb friction lies below {reference}, the lower bound without friction, by {difference}: one \
+             of the two is wrong."
+        ),
+        ("coulomb", who, _) => format!(
+            "With limits from its own reactions {who} has the force of friction {reference}, and the stresses have {value}: a difference \
+             of {difference} of what friction can carry; {allowed} was chosen as the most."
+        ),
         ("energy", "gap-two-ways", who) => format!(
             "The gap to {who} is {value} from the two energies and {reference} integrated triangle by triangle; the two are not equal."
         ),

@@ -107,6 +107,7 @@ impl Session {
                 failure,
                 advice: run.advice,
                 other_end: run.other_end.as_ref(),
+                coulomb: run.coulomb.as_ref(),
             },
             &fields,
         );

@@ -17,13 +17,13 @@ use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
 use crate::element::{Elements, block};
 use crate::mesh;
-use crate::problem::{Problem, ProblemError};
+use crate::problem::{Problem, ProblemError, follows_coulomb};
 use crate::process::{end_with_parent, limit};
 use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study;
 use crate::study::outlook;
-use crate::study::{Adapted, Admission, Answer, Certified, Goal, OtherEnd, Sharpened, StudyError};
+use crate::study::{Adapted, Admission, Answer, Certified, Coulomb, Goal, OtherEnd, Sharpened, StudyError};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -56,6 +56,8 @@ pub struct DualRun {
     pub advice: Option<&'static str>,
     /// The scene of the other ends of ranges of the data, solved.
     pub other_end: Option<OtherEnd>,
+    /// How the bound of Coulomb friction was found, where there is any.
+    pub coulomb: Option<Coulomb>,
 }
 
 impl Session {
@@ -125,49 +127,22 @@ impl Session {
             options.closed = study::guess_refined(&given, solve.refine as usize, &problem, &options);
         }
         drop(given);
-        let run = match solve.is_adaptive() {
-            false => {
-                // A displacement that is handed in belongs to the mesh as given.
-                let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
-                certify(problem, method.as_ref(), &options).map(|certified| DualRun {
-                    certified,
-                    history: Vec::new(),
-                    stopped: None,
-                    advice: None,
-                    other_end: None,
-                })
-            }
-            true => {
-                let Limits { max_triangles, max_seconds } = *limits;
-                let tolerance = solve.tolerance.unwrap_or(f64::INFINITY);
-                let adapt = solve.adapt();
-                let goal = Goal { max_triangles, max_seconds, adapt, wanted: solve.wanted(), ..Goal::new(tolerance) };
-                let first = Size::of(&problem);
-                let (mut rows, mut warned) = (Vec::new(), false);
-                let told = |row: &HistoryRow| {
-                    let bound = 100.0 * row.relative_error_bound;
-                    let mut text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
-                    rows.push(*row);
-                    if let Some(pace) = outlook(&rows, &goal, &admission, first.grown(row.triangles as f64)) {
-                        if !std::mem::replace(&mut warned, true) {
-                            self.progress.remark(&format!("{} triangles: {pace}", row.triangles));
-                        }
-                        text = format!("{text}; {pace}");
-                    }
-                    self.progress.phase(text);
-                };
-                study::adapt(problem, method.as_ref(), &options, &goal, told).map(
-                    |Adapted { certified, history, stopped, advice }| DualRun {
-                        certified,
-                        history,
-                        stopped,
-                        advice,
-                        other_end: None,
-                    },
-                )
-            }
-        };
-        let mut run = run.map_err(|error| self.refuse(error, folder))?;
+        // A displacement that is handed in belongs to the mesh as given.
+        let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
+        let adapt = |problem, options: &Options| self.adapted(problem, (method.as_ref(), options), solve, limits);
+        let (adapted, coulomb) = if follows_coulomb(&problem.scene) {
+            let tolerance = if solve.is_adaptive() { solve.tolerance } else { None };
+            let told = |text: &str| self.progress.phase(text.to_string());
+            study::solve_coulomb_to(tolerance, problem, (method.as_ref(), &options), certify, adapt, told)
+                .map(|(adapted, coulomb)| (adapted, Some(coulomb)))
+        } else if solve.is_adaptive() {
+            adapt(problem, &options).map(|adapted| (adapted, None))
+        } else {
+            certify(problem, method.as_ref(), &options).map(|certified| (Adapted::only(certified), None))
+        }
+        .map_err(|error| self.refuse(error, folder))?;
+        let Adapted { certified, history, stopped, advice } = adapted;
+        let mut run = DualRun { certified, history, stopped, advice, other_end: None, coulomb };
         run.certified.dual.seconds.read = read;
         if let Some(scene) = self.scene.of_highest_energy() {
             self.progress.phase("solving for the other ends of the ranges");
@@ -177,6 +152,35 @@ impl Session {
             run.other_end = Some(OtherEnd::of(&other.solve(solve, limits, folder)?.certified));
         }
         Ok(run)
+    }
+
+    /// Refines `problem` until what was asked for is reached.
+    fn adapted(
+        &self,
+        problem: Problem,
+        (method, options): (&dyn DualMethod, &Options),
+        solve: &SolveOptions,
+        limits: &Limits,
+    ) -> Result<Adapted, StudyError> {
+        let Limits { max_triangles, max_seconds } = *limits;
+        let tolerance = solve.tolerance.unwrap_or(f64::INFINITY);
+        let adapt = solve.adapt();
+        let goal = Goal { max_triangles, max_seconds, adapt, wanted: solve.wanted(), ..Goal::new(tolerance) };
+        let (first, admission) = (Size::of(&problem), Admission::new(method, self.budget));
+        let (mut rows, mut warned) = (Vec::new(), false);
+        let told = |row: &HistoryRow| {
+            let bound = 100.0 * row.relative_error_bound;
+            let mut text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
+            rows.push(*row);
+            if let Some(pace) = outlook(&rows, &goal, &admission, first.grown(row.triangles as f64)) {
+                if !std::mem::replace(&mut warned, true) {
+                    self.progress.remark(&format!("{} triangles: {pace}", row.triangles));
+                }
+                text = format!("{text}; {pace}");
+            }
+            self.progress.phase(text);
+        };
+        study::adapt(problem, method, options, &goal, told)
     }
 
     /// Refuses a scene with ranges of data where one field is held against one scene.
@@ -303,7 +307,7 @@ impl Session {
             StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {
                 CliError::stopped(Exit::BadInput, message, "")
             }
-            StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
+            StudyError::Coulomb(_) | StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
         }
     }
 

@@ -18,7 +18,7 @@ pub use balance::Balance;
 pub use candidate::{ADMISSIBLE, Candidate, FrictionForces, Judged, Reactions};
 pub use ceiling::Extent;
 pub use check::{Basis, Check};
-pub use contact::friction::{FrictionState, FrictionSummary, FrictionZone};
+pub use contact::friction::{BoundDistance, FrictionState, FrictionSummary, FrictionZone};
 pub use contact::mean::MeanPressure;
 pub use contact::pressure::weighted_reactions;
 pub use forces::NodalForces;
@@ -26,7 +26,7 @@ pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use solution::{Nonmatching, Numbering, Solution};
 pub use stress::{primal_means, von_mises_map, von_mises_of, von_mises_of_field, von_mises_of_means};
-pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, names_of_checks};
+pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, chosen, names_of_checks};
 
 use ceiling::Ceilings;
 

@@ -1,7 +1,7 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
 /// The tolerances this program chose, by the last part of the check name. What exceeds them is a remark.
-pub const CHOSEN: [(&str, f64, &str); 7] = [
+pub const CHOSEN: [(&str, f64, &str); 8] = [
     ("sharpness", SHARP, "a bracket wider than this could not tell two models apart"),
     ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
     ("pressure-l2", 0.25, "where no reactions are given, nothing bounds the pressure in L²"),
@@ -9,6 +9,7 @@ pub const CHOSEN: [(&str, f64, &str); 7] = [
     ("peak-pressure", 1.5, "times what the bracket explains of means: nothing bounds the pressure at a point"),
     ("resultant", 0.05, "where supports hold every vertex of a contact, nothing bounds the force at its ends"),
     ("open-length", 0.1, "the end of contact is known to a few edges on either side"),
+    ("friction-force", 0.1, "two searches for a Coulomb solution need not find the same one, and nothing bounds their difference"),
 ];
 
 /// The guaranteed relative error that a bracket is refined to before two models are compared by it.
@@ -19,17 +20,19 @@ pub const SHARP: f64 = 0.15;
 pub const BLUNT: f64 = 0.32;
 
 /// The chosen tolerance for checks whose name ends with `last`.
-pub(super) fn chosen(last: &str) -> f64 {
+pub fn chosen(last: &str) -> f64 {
     CHOSEN.iter().find(|(key, ..)| *key == last).map_or(0.0, |row| row.1)
 }
 
 /// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 29] = [
+const NAMES: [&str; 31] = [
     "bracket/sharpness",
     "bracket/tolerance",
     "dual/equilibrium",
     "admissible/{field}",
     "certified/{field}/energy-error",
+    "coulomb/{field}/friction-force",
+    "energy/coulomb/{field}",
     "energy/gap-two-ways/{field}",
     "energy/identity/{field}",
     "energy/lower-below/{field}",

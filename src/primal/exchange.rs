@@ -202,6 +202,8 @@ struct SpringEntry {
 #[derive(Serialize)]
 struct ContactEntry<'a> {
     name: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    coefficient: Option<f64>,
     pairs: Vec<PairEntry>,
 }
 
@@ -228,8 +230,10 @@ struct FrictionEntry {
 }
 
 impl FrictionEntry {
-    fn new(pair: &ContactPair) -> Option<Self> {
-        let friction = pair.friction?;
+    /// Of contacts with Coulomb friction every pair has one.
+    fn new(problem: &Problem, index: usize, pair: &ContactPair) -> Option<Self> {
+        let none = || problem.coefficient(index).map(|_| problem.without_resistance(pair));
+        let friction = pair.friction.or_else(none)?;
         Some(FrictionEntry { bound: friction.bound, tangent: friction.tangent.ends, length: pair.length })
     }
 }
@@ -296,8 +300,10 @@ impl<'a> ProblemFile<'a> {
             contacts: problem
                 .interfaces
                 .iter()
-                .map(|interface| ContactEntry {
+                .enumerate()
+                .map(|(index, interface)| ContactEntry {
                     name: &interface.name,
+                    coefficient: problem.coefficient(index),
                     pairs: interface
                         .pairs
                         .iter()
@@ -309,7 +315,7 @@ impl<'a> ProblemFile<'a> {
                             direction: pair.direction.ends,
                             gap: pair.gap,
                             gap_below: gap_below(pair),
-                            friction: FrictionEntry::new(pair),
+                            friction: FrictionEntry::new(problem, index, pair),
                         })
                         .collect(),
                 })

@@ -222,6 +222,35 @@ pub struct PrimalSolution {
     /// Reactions, contact by contact in scene order.
     #[serde(default)]
     pub contacts: Option<Vec<PrimalContact>>,
+    /// Coulomb friction by the model itself; `None` without, or where the solver does not have it.
+    #[serde(default)]
+    pub coulomb: Option<PrimalCoulomb>,
+}
+
+/// Coulomb friction of a displacement model, with limits from its own reactions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PrimalCoulomb {
+    /// Solutions on the way.
+    pub iterations: usize,
+    /// Whether the limits go with the reactions.
+    pub converged: bool,
+    /// By what part of their sum the limits still changed; `None` where nothing was solved.
+    pub change: Option<f64>,
+    /// 𝓛 with these limits; `None` where it is not known.
+    pub energy: Option<f64>,
+    /// What the contacts carry, in scene order.
+    pub contacts: Vec<PrimalCoulombContact>,
+}
+
+/// What a contact carries with Coulomb friction of the model itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PrimalCoulombContact {
+    /// Name of the interface.
+    pub name: String,
+    /// The sum of its reactions.
+    pub pressure: f64,
+    /// The sum of its forces of friction, positive along the arc length of the first side.
+    pub friction: f64,
 }
 
 /// Seconds spent in each phase. Imports and the compilation of forms stand apart from the work itself.

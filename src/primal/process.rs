@@ -19,6 +19,7 @@ const PACKAGE: Package = Package {
         ("builder.py", include_str!("../../reference/hypercircle_reference/builder.py")),
         ("compat.py", include_str!("../../reference/hypercircle_reference/compat.py")),
         ("constraints.py", include_str!("../../reference/hypercircle_reference/constraints.py")),
+        ("coulomb.py", include_str!("../../reference/hypercircle_reference/coulomb.py")),
         ("coupled.py", include_str!("../../reference/hypercircle_reference/coupled.py")),
         ("descent.py", include_str!("../../reference/hypercircle_reference/descent.py")),
         ("exchange.py", include_str!("../../reference/hypercircle_reference/exchange.py")),

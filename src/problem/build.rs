@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::contact::coulomb::inherit_bounds;
 use super::contact::curves::{beside_long_edges, curved, turned_by_the_mesh};
 use super::contact::friction::resist;
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
@@ -153,6 +154,9 @@ impl Problem {
                 }
             }
             resist(contact, (&mesh, section), &mut matched, &mut remarks);
+            if let (Some(_), Some(coarser)) = (contact.coefficient, coarser) {
+                inherit_bounds(&mut matched.pairs, &mesh, coarser, interface);
+            }
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {
                     if let Some(edge) = edge {

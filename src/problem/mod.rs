@@ -12,6 +12,7 @@ mod tests;
 pub(crate) use bed::facing_vertices;
 pub use bed::{Bed, BedPair, EdgeWeight, OneSided};
 pub use contact::bow::Bow;
+pub use contact::coulomb::follows_coulomb;
 pub use contact::direction::Direction;
 pub use contact::friction::{Friction, rubs};
 pub use error::ProblemError;

@@ -3,11 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use super::coulomb::CoulombSummary;
 pub use super::guarantee::{Guarantee, GuaranteeLevel};
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::cause::{Cause, Place};
 pub use crate::compare::{
-    Check, ComponentDifference, ContactSummary, FrictionState, FrictionSummary, Profile, StressSummary, TwoSides,
+    BoundDistance, Check, ComponentDifference, ContactSummary, FrictionState, FrictionSummary, Profile, StressSummary, TwoSides,
 };
 pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};
@@ -41,6 +42,9 @@ pub struct Report {
     /// What holds for all data in the ranges of the scene; missing where every number is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub data_range: Option<DataRangeSummary>,
+    /// What holds of Coulomb friction; missing without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coulomb: Option<CoulombSummary>,
     /// The dual solve.
     pub dual: Option<DualSummary>,
     /// Displacement solutions.
@@ -157,7 +161,7 @@ pub struct Energy {
     pub guaranteed: bool,
     /// On whose word it holds.
     pub guarantee: Guarantee,
-    /// What it holds for: the `scene`.
+    /// What it holds for: the `scene`, or with Coulomb friction the `friction bound` that was used.
     pub guaranteed_for: String,
     /// ∫ τ̄ |v_t' − v_t''| ds, what friction takes up of the work of the loads, of the displacement that gives `upper`; `null` without
     /// friction.

@@ -2,6 +2,7 @@
 //!
 //! [`write()`] makes the files; each of them is also a function here, from data to text, that knows nothing of files.
 
+mod coulomb;
 mod data;
 mod deflate;
 pub(crate) mod document;
@@ -19,6 +20,7 @@ mod sample_numbers;
 pub(crate) mod text;
 mod vtu;
 
+pub use coulomb::{CoulombOutcome, CoulombStart};
 pub use data::*;
 pub use folder::run::run_of;
 pub use folder::stored::*;

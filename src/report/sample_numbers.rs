@@ -63,6 +63,7 @@ pub(super) fn report(problem: &Problem, verdict: Verdict) -> Report {
         causes: if failed { causes() } else { Vec::new() },
         energy: solved.then_some(energy),
         data_range: None,
+        coulomb: None,
         dual: solved.then(|| DualSummary {
             method: "condensed".into(),
             degree_min: 1,

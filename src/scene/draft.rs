@@ -403,7 +403,7 @@ fn traction(Traction { on, load, terms }: &Traction) -> String {
 }
 
 fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<String>) -> String {
-    let Contact { sides, gap, normals, direction, obstacle, stiffness, friction } = contact;
+    let Contact { sides, gap, normals, direction, obstacle, stiffness, friction, coefficient } = contact;
     let sides = match sides {
         ContactSides::Between([a, b]) => format!("between = [{}, {}]", quoted(a), quoted(b)),
         ContactSides::Rigid(on) => format!("on = {}", quoted(on)),
@@ -422,7 +422,9 @@ fn contact(contact: &Contact, range: impl Fn(fn(usize) -> Ranged) -> Option<Stri
     let stiffness = stiffness
         .map(|k| format!(", stiffness = {}", range(Ranged::Contact).unwrap_or_else(|| number(k))))
         .unwrap_or_default();
-    let friction = friction.as_ref().map_or_else(String::new, |bound| {
+    let coulomb = |mu: f64| format!(", friction = {{ coefficient = {} }}", number(mu));
+    let coulomb = || coefficient.map_or_else(String::new, coulomb);
+    let friction = friction.as_ref().map_or_else(coulomb, |bound| {
         let bound = match bound {
             FrictionBound::Constant(bound) => range(Ranged::Friction).unwrap_or_else(|| number(*bound)),
             FrictionBound::Table(table) => rows(table),

@@ -225,7 +225,7 @@ pub enum Load {
     Pressure(f64),
 }
 
-/// A unilateral contact, without friction or with a given bound of the tangential traction.
+/// A unilateral contact, without friction, with a given bound of the tangential traction, or with Coulomb friction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// The two boundaries, or the one that meets a rigid obstacle.
@@ -238,8 +238,10 @@ pub struct Contact {
     pub direction: Option<[f64; 2]>,
     /// A rigid obstacle that is not of the shape of the boundary.
     pub obstacle: Option<Obstacle>,
-    /// Bound of the tangential traction; `None` without friction.
+    /// Bound of the tangential traction; `None` without friction, and with Coulomb's.
     pub friction: Option<FrictionBound>,
+    /// Coulomb's coefficient of friction; `None` without.
+    pub coefficient: Option<f64>,
     /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
     pub stiffness: Option<f64>,
 }
@@ -267,7 +269,7 @@ impl Contact {
     /// Contact with directions from smooth normals.
     pub fn new(sides: ContactSides, gap: Gap) -> Self {
         let (normals, direction, obstacle) = (Normals::default(), None, None);
-        Contact { sides, gap, normals, direction, obstacle, stiffness: None, friction: None }
+        Contact { sides, gap, normals, direction, obstacle, stiffness: None, friction: None, coefficient: None }
     }
 
     /// Name used in reports and check names: `first|second`, or `first|rigid`.

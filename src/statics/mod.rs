@@ -13,6 +13,7 @@
 mod balance;
 mod components;
 pub(crate) mod cone;
+mod coulomb;
 mod friction;
 mod gaps;
 mod lasting;
@@ -26,6 +27,7 @@ mod words;
 mod tests;
 
 pub use components::{Components, RigidMotion};
+pub use coulomb::{Wedged, friction_can_balance, wedged};
 pub use loads::LoadResultants;
 pub use pins::{EdgePin, VertexPin};
 pub use words::{MotionKind, Moving};

@@ -243,7 +243,12 @@ impl Group<'_> {
 
     /// The row (v' − v'')·n̂ at `point` of `run`, scaled to unit length.
     pub fn jump(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
-        unit(self.apart(run, point, run.normal_at(point)))
+        unit(self.across(run, point))
+    }
+
+    /// The row (v' − v'')·n̂ at `point` of `run`.
+    pub fn across(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
+        self.apart(run, point, run.normal_at(point))
     }
 
     /// The row of the relative displacement along `run` at `point`.

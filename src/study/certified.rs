@@ -52,6 +52,9 @@ pub enum StudyError {
         /// The part of an edge that pressure of the degrees in use can be confined to.
         part: String,
     },
+    /// No bound of friction was found that goes with the pressure that it leads to.
+    #[error("{0}")]
+    Coulomb(String),
     /// Supports and contacts contradict each other.
     #[error("{0}; prescribe displacements that fit together there, or leave out one of the conditions")]
     Contradiction(#[from] NoUpperBound),
@@ -164,6 +167,35 @@ fn may_prepare_beside(problem: &Problem, method: &dyn DualMethod, options: &Opti
     rayon::current_num_threads() > 1 && options.budget.admit_more(both).is_ok()
 }
 
+/// Refuses a mesh that cannot express the pressures that balance the loads.
+fn expressible(statics: &Statics, options: &Options) -> Result<(), StudyError> {
+    if !statics.is_beyond_mesh() {
+        return Ok(());
+    }
+    let part = match options.elements.largest_degree() {
+        1 => "third".to_string(),
+        2 => "quarter".to_string(),
+        p => format!("1/{}", p + 2),
+    };
+    Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part })
+}
+
+/// The stresses of `problem` alone, without a bracket.
+///
+/// # Errors
+/// [`StudyError`].
+pub(super) fn stresses(
+    problem: &Problem,
+    method: &dyn DualMethod,
+    options: &Options,
+) -> Result<DualSolution, StudyError> {
+    let Balanced { statics, .. } = Balanced::new(problem, &options.elements, None)?;
+    expressible(&statics, options)?;
+    let motions = statics.held_at_vertices(problem);
+    let dual = options.on_threads(|| dual::solve(method, problem, &motions, options))?;
+    Ok(without_stress(problem, dual))
+}
+
 /// Solves a problem with an equilibrium and brackets its energy; the upper bound may begin from `start`.
 ///
 /// # Errors
@@ -176,14 +208,7 @@ pub(super) fn solve_balanced(
     start: Option<NodalValues>,
 ) -> Result<Certified, StudyError> {
     let began = Instant::now();
-    if statics.is_beyond_mesh() {
-        let part = match options.elements.largest_degree() {
-            1 => "third".to_string(),
-            2 => "quarter".to_string(),
-            p => format!("1/{}", p + 2),
-        };
-        return Err(StudyError::BeyondMesh { sentence: statics.notes.join(" "), part });
-    }
+    expressible(&statics, options)?;
     let motions = statics.held_at_vertices(&problem);
     // Ranks keep nothing for quantities, and begin with nothing.
     let divides = method.divides() && !options.keep_factor && start.is_none();

@@ -12,6 +12,7 @@ mod comparison;
 mod congruent;
 mod contact_pressure;
 mod contact_qp;
+mod coulomb;
 mod crack_tips;
 mod cracks;
 mod curve_remarks;

@@ -206,8 +206,12 @@ pub fn verified(args: &Args, session: &Session, folder: Option<&Path>) -> Result
         None => primal::remark(mesh, &primal::spaces(mesh, cells, &args.degrees())),
         Some(_) => None,
     };
+    let models = run.coulomb.as_ref().map(|coulomb| (coulomb, solutions.clone()));
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
+    if let Some((coulomb, models)) = models {
+        comparison.checks.extend(coulomb.of_models(&models, &comparison.contacts));
+    }
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
     let (sharpened, enough) = match comparison.judged.is_empty() {

@@ -1,8 +1,8 @@
 //! What commands and options do with friction.
 
 use crate::cli::{CliError, Exit};
-use crate::problem::rubs;
-use crate::scene::Scene;
+use crate::problem::{follows_coulomb, rubs};
+use crate::scene::{Kinematics, Scene};
 
 /// The commands that take contacts with friction.
 const COMMANDS: [&str; 3] = ["solve", "verify", "certify"];
@@ -23,6 +23,36 @@ pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
             what,
             "leave `friction` out of the scene, or use `solve`, `verify` or `certify`",
         ));
+    }
+    refuse_coulomb(scene)?;
+    Ok(())
+}
+
+/// Refuses what is not there for Coulomb friction, and is for friction with a given bound.
+fn refuse_coulomb(scene: &Scene) -> Result<(), CliError> {
+    let stop = |what: String, help: &str| {
+        Err(CliError::stopped(Exit::BadInput, format!("{}: {what}", scene.path.display()), help))
+    };
+    if !follows_coulomb(scene) {
+        return Ok(());
+    }
+    if scene.kinematics == Kinematics::Axisymmetric {
+        let what = "`coefficient`: Coulomb friction of bodies of revolution is not solved".to_string();
+        return stop(what, "leave `friction` out of axisymmetric scenes");
+    }
+    if let Some(quantity) = scene.quantities.first() {
+        let what = format!(
+            "quantity `{}`: an interval is for one problem of least energy, and with Coulomb friction there is none",
+            quantity.name
+        );
+        return stop(what, "leave the [[quantities]] out, or give the bound itself with friction = { bound = … }");
+    }
+    if let Some(range) = scene.ranges.first() {
+        let what = format!(
+            "{} is a range: the energy of Coulomb friction is not monotone in the data, so that two ends say nothing of what lies between",
+            scene.name_of(range)
+        );
+        return stop(what, "write one number, or give the bound of friction itself");
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use super::pressure::{Piece, unweighted, without_radial};
 use crate::dual::DualSolution;
 use crate::dual::equilibrium::contact_tractions;
 use crate::element::polynomial::side;
-use crate::problem::{ContactPair, Friction, Interface, Problem};
+use crate::problem::{ContactPair, Friction, Problem};
 use crate::vector::long::largest;
 
 /// Part of the bound from which a traction is at it.
@@ -19,8 +19,12 @@ const PARTS: usize = 8;
 /// Friction on a contact.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct FrictionSummary {
-    /// `bound`: the largest tangential traction is given.
+    /// `bound`: the largest tangential traction is given; `coulomb`: it goes with the pressure.
     pub kind: String,
+    /// Coulomb's coefficient; `null` where the bound is given.
+    pub coefficient: Option<f64>,
+    /// How far the bound that was used is from the coefficient times the pressure; `null` where it is given.
+    pub bound_distance: Option<BoundDistance>,
     /// Solutions with other bounds on the way to this one; one where the bound is given.
     pub iterations: usize,
     /// Fraction of the length along which the sides stick to each other: their tangential traction is below its bound.
@@ -36,6 +40,17 @@ pub struct FrictionSummary {
     pub traction: Vec<[f64; 2]>,
     /// Its bound, likewise.
     pub bound: Vec<[f64; 2]>,
+}
+
+/// How far the friction bound that was used is from μ times the pressure of the stresses that go with it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, schemars::JsonSchema)]
+pub struct BoundDistance {
+    /// The largest difference at a point of the contact.
+    pub largest: f64,
+    /// The same, relative to the largest value of μ times the pressure.
+    pub largest_relative: f64,
+    /// The integral of the difference along the contact, relative to that of μ times the pressure.
+    pub relative: f64,
 }
 
 /// A stretch of a contact in one state.
@@ -72,14 +87,15 @@ pub struct OnContact {
     pub resultant: ([f64; 2], f64),
 }
 
-/// The friction of a contact with these `pressures`, where what is below `open` is none; `None` where it has none.
+/// The friction of contact `index` with these `pressures`, where what is below `open` is none; `None` where it has none.
 pub fn on_contact(
     problem: &Problem,
     dual: &DualSolution,
-    interface: &Interface,
+    index: usize,
     (pressures, open): (&[Piece], f64),
 ) -> Option<OnContact> {
-    if interface.pairs.iter().all(|pair| pair.friction.is_none()) {
+    let (interface, coefficient) = (&problem.interfaces[index], problem.coefficient(index));
+    if coefficient.is_none() && interface.pairs.iter().all(|pair| pair.friction.is_none()) {
         return None;
     }
     let (mut traction, mut bound, mut zones) = (Vec::new(), Vec::new(), Vec::new());
@@ -119,11 +135,13 @@ pub fn on_contact(
     }
     let length: f64 = interface.pairs.iter().map(|pair| pair.arc[1] - pair.arc[0]).sum();
     let fraction = |state: FrictionState| {
-        zones.iter().filter(|zone: &&FrictionZone| zone.state == state).map(|zone| zone.to - zone.from).sum::<f64>()
+        zones.iter().filter(|zone: &&FrictionZone| zone.state == state).map(|zone| zone.to - zone.from).fold(0.0, |sum, part| sum + part)
             / length
     };
     let summary = FrictionSummary {
-        kind: "bound".to_string(),
+        kind: if coefficient.is_some() { "coulomb" } else { "bound" }.to_string(),
+        coefficient,
+        bound_distance: None,
         iterations: 1,
         stick_fraction: fraction(FrictionState::Stick),
         slip_fraction: fraction(FrictionState::Slip),

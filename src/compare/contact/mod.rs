@@ -85,7 +85,7 @@ impl Sides<'_> {
         let (largest, at) = maximum(problem, interface, own);
         let threshold = self.open_below(NO_PRESSURE * largest);
         let open = open_length(interface, own, threshold);
-        let friction = on_contact(problem, self.dual, interface, (own, threshold));
+        let friction = on_contact(problem, self.dual, index, (own, threshold));
         let (tangential, turning) = friction.as_ref().map_or(([0.0; 2], 0.0), |friction| friction.resultant);
         let (force, moment) = ([force[0] + tangential[0], force[1] + tangential[1]], moment + turning);
         // Of elastic contact no displacement moves the pressure alone.

@@ -5,6 +5,7 @@
 //!
 //! On a body of revolution tractions are weighted with the distance r from the axis, and so is their bound, a quadratic r τ̄.
 
+use super::coulomb::follows_coulomb;
 use crate::element::Section;
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
@@ -95,7 +96,7 @@ pub(in crate::problem) fn resist(
 }
 
 /// The direction of contact turned by a right angle, with the arc length of the first side.
-fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
+pub(super) fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
     let forward = pair.edges[0].is_none_or(|e| mesh.edges[e].vertices[0] == pair.first[0]);
     let sign = if forward { 1.0 } else { -1.0 };
     Direction { ends: pair.direction.ends.map(|[x, y]| [-sign * y, sign * x]), shares: pair.direction.shares }
@@ -115,7 +116,7 @@ impl crate::problem::Problem {
 
 /// Whether a scene has a contact with friction.
 pub fn rubs(scene: &Scene) -> bool {
-    scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
+    follows_coulomb(scene) || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 pub(super) mod along;
 pub(super) mod around;
 pub(super) mod bow;
+pub(super) mod coulomb;
 pub(super) mod curves;
 pub(super) mod direction;
 pub(super) mod friction;

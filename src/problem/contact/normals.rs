@@ -86,7 +86,7 @@ pub(in crate::problem) struct Coarser<'a> {
 
 impl<'a> Coarser<'a> {
     /// Finds the coarser pairs of an interface that finer ones are parts of: every part has an end in common with the whole.
-    fn parents(&self, interface: usize) -> impl Fn(&ContactPair) -> Option<&'a ContactPair> + use<'a> {
+    pub fn parents(&self, interface: usize) -> impl Fn(&ContactPair) -> Option<&'a ContactPair> + use<'a> {
         let pairs = self.interfaces.get(interface).map_or(&[][..], |coarse| &coarse.pairs);
         let starting: HashMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p.first[0], k)).collect();
         let ending: HashMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p.first[1], k)).collect();

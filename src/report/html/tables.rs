@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::report::text::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
 use crate::report::text::words::{mean_in_words, upper_from};
-use crate::report::{DualSummary, Energy, PrimalSummary, Report};
+use crate::report::{CoulombSummary, DualSummary, Energy, PrimalSummary, Report};
 
 pub(super) fn tables(report: &Report) -> Markup {
     html! {
@@ -14,6 +14,7 @@ pub(super) fn tables(report: &Report) -> Markup {
         @if !report.remarks.is_empty() { section #remarks { h2 { "Remarks" } (super::checks::remarks(report)) } }
         @if !report.quantities.is_empty() { section #quantities { h2 { "Quantities" } (super::quantities::table(report)) } }
         @if let Some(energy) = &report.energy { section #energy { h2 { "Energy" } (energies(report, energy)) } }
+        @if let Some(coulomb) = &report.coulomb { section #coulomb { h2 { "Coulomb friction" } (friction(coulomb)) } }
         @if !report.contact.is_empty() { section #contact { h2 { "Contact" } (contacts(report)) } }
         @if report.stress.is_some() { section #stress { h2 { "Stress" } (stress(report)) } }
         section #solvers { h2 { "Solvers" } (solvers(report)) }
@@ -26,6 +27,11 @@ pub(super) fn tables(report: &Report) -> Markup {
 /// A table that scrolls sideways where it does not fit.
 pub(super) fn scroll(label: &str, table: Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
+}
+
+/// What is known of all solutions of Coulomb's law, of the bound that was used, and of how many there are.
+fn friction(coulomb: &CoulombSummary) -> Markup {
+    html! { ul { @for statement in coulomb.statements.iter().chain(&coulomb.wedging) { li { (clean(statement)) } } } }
 }
 
 fn energies(report: &Report, energy: &Energy) -> Markup {

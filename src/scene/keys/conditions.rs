@@ -250,8 +250,9 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
     };
     let obstacle = obstacle(contact, table, source)?;
     let direction = contact.direction.as_ref().map(|d| direction(d, contact, table, source)).transpose()?;
-    let (stiffness, friction) = (stiffness_of(contact, table, source)?, friction(contact, table, source)?);
-    if let (Some(raw), Some(_), Some(_)) = (&contact.friction, &friction, stiffness) {
+    let stiffness = stiffness_of(contact, table, source)?;
+    let (friction, coefficient) = friction(contact, table, source)?;
+    if let (Some(raw), Some(_)) = (&contact.friction, stiffness) {
         let remedy = "delete one of the two: elastic contact slides freely";
         let (table, other) = (table.to_owned(), "`stiffness`, elastic contact");
         return Err(source.error(raw.span(), Fault::Misplaced { key: "friction", table, other, remedy }));
@@ -262,6 +263,7 @@ fn contact(raw: &At<Table<RawContact>>, table: &str, taken: &mut Taken) -> Resul
         obstacle,
         stiffness,
         friction,
+        coefficient,
         ..Contact::new(sides, gap)
     })
 }

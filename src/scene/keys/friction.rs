@@ -1,4 +1,4 @@
-//! Friction of contacts: the largest tangential traction, given along the first side.
+//! Friction of contacts: the largest tangential traction, given along the first side, or as a part of the pressure.
 
 use super::range::ordered;
 use super::table::table_of;
@@ -47,37 +47,41 @@ const NEGATIVE: (&str, &str) = (
     "write the largest tangential traction that the contact transmits, zero for none",
 );
 
-/// The bound of the friction of a contact; none where it has no `friction`.
+const BACKWARD: (&str, &str) = (
+    "a coefficient of friction is not negative",
+    "write the largest ratio of tangential to normal traction, zero for none",
+);
+
+/// The bound of the friction of a contact, or its coefficient; none of the two where it has no `friction`.
 pub(in crate::scene) fn friction(
     contact: &RawContact,
     table: &str,
     source: &Source,
-) -> Result<Option<FrictionBound>, SceneError> {
-    let Some(raw) = &contact.friction else { return Ok(None) };
+) -> Result<(Option<FrictionBound>, Option<f64>), SceneError> {
+    let Some(raw) = &contact.friction else { return Ok((None, None)) };
     let (crate::scene::reading::raw::Table(friction), place) = (&raw.value, format!("friction of {table}"));
-    let bound = match (&friction.bound, &friction.coefficient) {
-        (Some(bound), None) => bound,
-        (None, Some(coefficient)) => {
-            let remedy = "write friction = { bound = … }, the largest tangential traction: with a given bound the energies \
-                          have a guaranteed bracket, which Coulomb's law does not have";
-            let (key, other) = ("coefficient", "what is solved here: friction with a given bound");
-            let fault = Fault::Misplaced { key, table: place, other, remedy };
-            return Err(source.error(coefficient.span(), fault));
+    match (&friction.bound, &friction.coefficient) {
+        (Some(bound), None) => Ok((Some(bound_of(bound, &place, source)?), None)),
+        (None, Some(mu)) => {
+            Ok((None, Some(source.number(mu, (&place, "coefficient"), |mu| mu >= 0.0, BACKWARD)?)))
         }
         (bound, coefficient) => {
             let both = bound.is_some() && coefficient.is_some();
             let fault = Fault::OneOf { table: place, first: "`bound`", second: "`coefficient`", both };
-            return Err(source.error(raw.span(), fault));
+            Err(source.error(raw.span(), fault))
         }
-    };
+    }
+}
+
+fn bound_of(bound: &At<RawBound>, place: &str, source: &Source) -> Result<FrictionBound, SceneError> {
     let number = |value: f64| {
         let number = At { value, start: bound.start, end: bound.end };
-        source.number(&number, (&place, "bound"), |bound| bound >= 0.0, NEGATIVE)
+        source.number(&number, (place, "bound"), |bound| bound >= 0.0, NEGATIVE)
     };
-    Ok(Some(match &bound.value {
+    Ok(match &bound.value {
         RawBound::Constant(value) => FrictionBound::Constant(number(*value)?),
         RawBound::Range(ends) => {
-            let ends = ordered(ends, bound.span(), (&place, "bound"), source)?;
+            let ends = ordered(ends, bound.span(), (place, "bound"), source)?;
             for value in ends {
                 number(value)?;
             }
@@ -85,7 +89,7 @@ pub(in crate::scene) fn friction(
             FrictionBound::Constant(ends[0])
         }
         RawBound::Table(rows) => {
-            FrictionBound::Table(table_of(rows, bound.span(), (&place, "bound"), NEGATIVE, source)?)
+            FrictionBound::Table(table_of(rows, bound.span(), (place, "bound"), NEGATIVE, source)?)
         }
-    }))
+    })
 }

@@ -521,7 +521,7 @@ pub(in crate::scene) struct RawContact {
     pub stiffness: Option<At<RawNumber>>,
 }
 
-/// Friction of a contact, with a given `bound` of the tangential traction. A `coefficient`, Coulomb's, is not solved yet.
+/// Friction of a contact: a given `bound` of the tangential traction, or a `coefficient`, Coulomb's, for which theory guarantees less.
 #[derive(Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Friction", extend("oneOf" = [{"required": ["bound"]}, {"required": ["coefficient"]}]))]

@@ -132,6 +132,13 @@ pub struct Adapted {
     pub advice: Option<&'static str>,
 }
 
+impl Adapted {
+    /// A mesh that was not refined.
+    pub fn only(certified: Certified) -> Self {
+        Adapted { certified, history: Vec::new(), stopped: None, advice: None }
+    }
+}
+
 /// Refines `problem` until the guaranteed relative energy-norm error is at most `goal.tolerance`; `on_step` hears of
 /// every mesh.
 ///

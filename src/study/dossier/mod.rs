@@ -6,6 +6,7 @@ pub(super) mod verdict;
 
 use super::Certified;
 use super::answers::Answer;
+use super::coulomb::Coulomb;
 use super::curves;
 use super::quantity_checks::summaries;
 use super::ranges::{OtherEnd, data_range, in_words, ranges_note};
@@ -15,7 +16,7 @@ use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
 use crate::dual::Motion;
 use crate::element::Displacement;
-use crate::problem::{Note, Problem};
+use crate::problem::{Note, Problem, follows_coulomb};
 use crate::report::{
     Dossier, DualSummary, Energy, Guarantee, GuaranteeLevel, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status,
 };
@@ -58,6 +59,8 @@ pub struct Findings<'a> {
     pub advice: Option<&'static str>,
     /// The scene of the other ends of ranges of the data, solved.
     pub other_end: Option<&'a OtherEnd>,
+    /// How the bound of Coulomb friction was found.
+    pub coulomb: Option<&'a Coulomb>,
 }
 
 /// Puts the report and its fields together.
@@ -114,8 +117,12 @@ fn report(findings: &Findings<'_>) -> Report {
         (Some(_), _) => Status::Failed,
         (None, false) => Status::Disagree,
         (None, true) if findings.enough.is_some_and(blunt) => Status::Undecided,
+        (None, true) if findings.coulomb.is_some_and(Coulomb::has_several) => Status::Undecided,
         (None, true) => Status::Agree,
     };
+    let coulomb = findings.coulomb.map(|coulomb| coulomb.summary(energy.as_ref()));
+    let mut contact = comparison.contacts.clone();
+    findings.coulomb.iter().for_each(|coulomb| coulomb.complete(&mut contact));
     let across = findings.other_end.map(|end| data_range(problem, sharpest, end));
     notes.extend(across.as_ref().map(ranges_note));
     let causes = causes(problem, comparison, &findings.diagnosis, findings.advice);
@@ -131,10 +138,15 @@ fn report(findings: &Findings<'_>) -> Report {
         run: identifier(),
         status,
         verdict: verdict(findings, status, energy.as_ref(), &causes)
-            + &across.as_ref().map_or_else(String::new, in_words),
+            + &across.as_ref().map_or_else(String::new, in_words)
+            + &coulomb.as_ref().map_or_else(String::new, |coulomb| {
+                let [of_all, _, how_many] = &coulomb.statements;
+                format!(" {}", [std::slice::from_ref(of_all), std::slice::from_ref(how_many), &coulomb.wedging].concat().join(" "))
+            }),
         causes,
         energy,
         data_range: across,
+        coulomb,
         dual: Some(DualSummary {
             method: dual.method.to_string(),
             degree_min: (0..dual.stress.len()).map(|t| dual.stress.degree(t)).min().unwrap_or(0),
@@ -162,7 +174,7 @@ fn report(findings: &Findings<'_>) -> Report {
                 seconds: j.candidate.seconds.clone(),
             })
             .collect(),
-        contact: comparison.contacts.clone(),
+        contact,
         stress: comparison.stress.clone(),
         quantities: summaries(findings.certified, findings.answers, comparison),
         checks,
@@ -209,7 +221,7 @@ fn energy(
         compliance: (problem.is_cone() && !problem.has_friction()).then(|| enclosed_work(upper, sharpest)),
         guaranteed,
         guarantee,
-        guaranteed_for: "scene".to_string(),
+        guaranteed_for: if follows_coulomb(&problem.scene) { "friction bound" } else { "scene" }.to_string(),
         friction_work: problem.has_friction().then_some(upper.potential.friction),
     }
 }
@@ -245,6 +257,7 @@ pub fn infeasible<'a>(
             causes: Vec::new(),
             energy: None,
             data_range: None,
+            coulomb: None,
             dual: None,
             primal: Vec::new(),
             contact: Vec::new(),

@@ -1,6 +1,7 @@
 //! The verdict in words.
 
 use super::{Findings, in_numbers};
+use crate::study::coulomb::Coulomb;
 use crate::cause::Cause;
 use crate::report::text::number::{digits_to_tell, percent, significant};
 use crate::report::{Energy, Status};
@@ -19,8 +20,9 @@ pub(in crate::study) fn verdict(
     let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
     let bound = energy.map_or(String::new(), |e| {
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
+        let (whose, of) = of_which(findings);
         format!(
-            " The exact energy lies between {} and {}; the {what} relative energy-norm error is at most {}.",
+            " {whose}he exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
             significant(e.lower, digits_to_tell(e.lower, e.upper)),
             significant(e.upper, digits_to_tell(e.lower, e.upper)),
             percent(e.relative_error_bound)
@@ -41,6 +43,9 @@ pub(in crate::study) fn verdict(
     };
     let models = findings.comparison.judged.len();
     match (failed.as_slice(), models) {
+        ([], _) if findings.coulomb.is_some_and(Coulomb::has_several) => {
+            format!("No check failed, but Coulomb's law has several solutions here.{bound}")
+        }
         ([], _) if status == Status::Undecided => {
             format!("No check failed, but the bracket is too wide to tell the two models apart.{bound}")
         }
@@ -55,6 +60,16 @@ pub(in crate::study) fn verdict(
         ([one], _) => format!("{told}One check failed: {one}.{bound}"),
         (several, _) => format!("{told}{} checks failed, first {}.{bound}", several.len(), several[0]),
     }
+}
+
+/// The problem that numbers are for where it is not the scene: how a sentence on the exact energy begins, and what follows "energy".
+fn of_which(findings: &Findings<'_>) -> (String, String) {
+    let Some(coulomb) = findings.coulomb else { return ("T".to_string(), String::new()) };
+    let off = percent(coulomb.farthest());
+    (
+        "For the friction bound that was used, t".to_string(),
+        format!(" (the bound is the coefficient times the pressure but for {off} of its force)"),
+    )
 }
 
 /// Says where values lie that were given without a field and passed; `None` without any.
@@ -76,8 +91,9 @@ fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let of = if judged.is_admissible() { name.clone() } else { format!("the admissible field nearest to {name}") };
     let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
     let upper = judged.admissible.upper();
+    let (whose, bound) = of_which(findings);
     format!(
-        " The {what} relative energy-norm error of {of} is at most {}: its energy is {}, and the exact one is no lower than {}.",
+        " {whose}he {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {}, and the exact one is no lower than {}.",
         percent(in_numbers(judged.relative_error(sharpest))),
         significant(upper, digits_to_tell(energy.lower, upper)),
         significant(energy.lower, digits_to_tell(energy.lower, upper)),
