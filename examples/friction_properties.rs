@@ -50,7 +50,9 @@ fn main() -> ExitCode {
     }
     let Seen { scenes, compared, frictionless, stuck, bonded, violations, unsolved } = seen;
     println!("{scenes} scenes, seeds {first} to {}", seed - 1);
-    println!("{compared} pairs of bounds compared; {frictionless} frictionless, {stuck} with no slip, {bonded} against bonds");
+    println!(
+        "{compared} pairs of bounds compared; {frictionless} frictionless, {stuck} with no slip, {bonded} against bonds"
+    );
     println!("{violations} violations, {unsolved} solves that ended without an answer");
     ExitCode::from(u8::from(violations > 0))
 }
@@ -106,7 +108,12 @@ impl Seen {
                     self.compared += 1;
                     let slack = ROUNDING * size.max(size_before);
                     // The discrete lower bounds grow too: more tractions are allowed.
-                    self.judge(seed, now[0] >= before[0] - slack && now[1] >= before[0] - slack, "does not grow", [before, now]);
+                    self.judge(
+                        seed,
+                        now[0] >= before[0] - slack && now[1] >= before[0] - slack,
+                        "does not grow",
+                        [before, now],
+                    );
                 }
                 last = Some((now, size));
             }
@@ -145,9 +152,12 @@ impl Seen {
 /// The problem with bonds in the place of contacts, where all of them have friction everywhere, in one direction, and stay closed.
 fn bonded(problem: &Problem, stuck: &Certified) -> Option<Problem> {
     let plain = problem.pairs().all(|pair| {
-        pair.gap == [0.0; 2] && pair.direction.is_constant() && pair.friction.is_some_and(|f| f.bound.iter().all(|b| *b > 0.0))
+        pair.gap == [0.0; 2]
+            && pair.direction.is_constant()
+            && pair.friction.is_some_and(|f| f.bound.iter().all(|b| *b > 0.0))
     });
-    let straight = problem.scene.contacts.iter().all(|contact| contact.direction.is_none() && contact.obstacle.is_none());
+    let straight =
+        problem.scene.contacts.iter().all(|contact| contact.direction.is_none() && contact.obstacle.is_none());
     if !plain || !straight || problem.contact_bends() || !stuck.dual.closed.values().iter().all(|closed| *closed) {
         return None;
     }

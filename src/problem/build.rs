@@ -155,7 +155,7 @@ impl Problem {
             }
             resist(contact, (&mesh, section), &mut matched, &mut remarks);
             if let (Some(_), Some(coarser)) = (contact.coefficient, coarser) {
-                inherit_bounds(&mut matched.pairs, &mesh, coarser, interface);
+                inherit_bounds(&mut matched.pairs, (&mesh, section), coarser, interface);
             }
             for (pair, matched) in matched.pairs.iter().enumerate() {
                 for (side, edge) in matched.edges.iter().enumerate() {

@@ -3,8 +3,9 @@
 //! With τ̄ held the law is that of a given bound, and the problem is one of least energy. What holds it is a field of this problem: τ̄ is
 //! linear on every pair, and jumps between them where pressures do. A finer mesh has the bound of the mesh that it was made of.
 
-use super::friction::tangent;
 use super::normals::Coarser;
+use crate::element::Section;
+use crate::mesh::Triangulation;
 use crate::problem::{ContactPair, Friction, Problem};
 use crate::scene::Scene;
 
@@ -28,8 +29,7 @@ impl Problem {
                 continue;
             }
             for (pair, bound) in interface.pairs.iter_mut().zip(&bounds[index]) {
-                pair.friction =
-                    (*bound != [0.0; 2]).then(|| Friction { bound: *bound, tangent: tangent(pair, &self.mesh) });
+                pair.friction = Friction::within(*bound, pair, (&self.mesh, self.section()));
             }
         }
         problem
@@ -37,7 +37,7 @@ impl Problem {
 
     /// Friction of `pair` with a bound of zero, which problems do not have.
     pub fn without_resistance(&self, pair: &ContactPair) -> Friction {
-        Friction { bound: [0.0; 2], tangent: tangent(pair, &self.mesh) }
+        Friction::without_resistance(pair, (&self.mesh, self.section()))
     }
 
     /// The bounds at the two ends of each pair, contact by contact.
@@ -50,7 +50,7 @@ impl Problem {
 /// Gives the pairs of a finer mesh the bound of the coarser pairs that they are parts of.
 pub(in crate::problem) fn inherit_bounds(
     pairs: &mut [ContactPair],
-    mesh: &crate::mesh::Triangulation,
+    place: (&Triangulation, Section),
     coarser: &Coarser,
     interface: usize,
 ) {
@@ -65,7 +65,7 @@ pub(in crate::problem) fn inherit_bounds(
             if kept { friction.bound[end] } else { 0.5 * (a + b) }
         };
         let bound = [of(0), of(1)];
-        pair.friction = (bound != [0.0; 2]).then(|| Friction { bound, tangent: tangent(pair, mesh) });
+        pair.friction = Friction::within(bound, pair, place);
     }
 }
 

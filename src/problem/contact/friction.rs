@@ -32,6 +32,17 @@ impl Friction {
         self.weight.times(&self.bound)
     }
 
+    /// Friction of `pair` with these bounds at its two ends; none where both are zero.
+    pub(super) fn within(bound: [f64; 2], pair: &ContactPair, place: (&Triangulation, Section)) -> Option<Self> {
+        (bound != [0.0; 2]).then(|| Friction { bound, ..Friction::without_resistance(pair, place) })
+    }
+
+    /// Friction of `pair` with a bound of zero, which problems do not have.
+    pub(super) fn without_resistance(pair: &ContactPair, (mesh, section): (&Triangulation, Section)) -> Self {
+        let weight = EdgeWeight::between(section, pair.first.map(|v| mesh.points[v]));
+        Friction { bound: [0.0; 2], tangent: tangent(pair, mesh), weight }
+    }
+
     /// Bernstein coefficients of degree `degree` of a function that is nowhere larger than the weighted τ̄, and nowhere negative: that itself
     /// where it has this degree.
     pub fn coefficients(&self, degree: usize) -> Vec<f64> {
@@ -79,8 +90,7 @@ pub(in crate::problem) fn resist(
     let on_break = |s: f64| breaks.iter().copied().find(|b| (b - s).abs() <= close).unwrap_or(s);
     for pair in &mut interface.pairs {
         let ends = pair.arc.map(|s| bound.at(on_break(s)));
-        let weight = EdgeWeight::between(section, pair.first.map(|v| mesh.points[v]));
-        pair.friction = (ends != [0.0; 2]).then(|| Friction { bound: ends, tangent: tangent(pair, mesh), weight });
+        pair.friction = Friction::within(ends, pair, (mesh, section));
     }
     let inside = |s: &&f64| interface.pairs.iter().any(|pair| **s - pair.arc[0] > close && pair.arc[1] - **s > close);
     let missed: Vec<String> = breaks.iter().filter(inside).map(f64::to_string).collect();
@@ -96,7 +106,7 @@ pub(in crate::problem) fn resist(
 }
 
 /// The direction of contact turned by a right angle, with the arc length of the first side.
-pub(super) fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
+fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
     let forward = pair.edges[0].is_none_or(|e| mesh.edges[e].vertices[0] == pair.first[0]);
     let sign = if forward { 1.0 } else { -1.0 };
     Direction { ends: pair.direction.ends.map(|[x, y]| [-sign * y, sign * x]), shares: pair.direction.shares }
@@ -116,7 +126,8 @@ impl crate::problem::Problem {
 
 /// Whether a scene has a contact with friction.
 pub fn rubs(scene: &Scene) -> bool {
-    follows_coulomb(scene) || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
+    follows_coulomb(scene)
+        || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
 }
 
 #[cfg(test)]

@@ -98,6 +98,8 @@ mod tests {
         let zone = |from, to, state| FrictionZone { from, to, state };
         contact.friction = Some(FrictionSummary {
             kind: "bound".into(),
+            coefficient: None,
+            bound_distance: None,
             iterations: 1,
             stick_fraction: 0.25,
             slip_fraction: 0.25,
