@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from flint import arb, arb_mat, fmpq
+from flint import arb, fmpq
 
 from . import Refused
 from .exact import cross, dot, length, rational, times
