@@ -192,7 +192,9 @@ fn a_strip_that_slides_moves_as_its_bar() {
 #[test]
 fn what_friction_leaves_without_an_interval_is_refused() {
     let contact = "[[contacts]]\nbetween = [\"foot\", \"seat\"]\nfriction = { bound = 1.0 }";
-    for of in ["displacement = \"foot\"\ndirection = [1, 0]", "stress = \"high\"\npoint = [1.0, 1.5]\ncomponent = \"xx\""] {
+    for of in
+        ["displacement = \"foot\"\ndirection = [1, 0]", "stress = \"high\"\npoint = [1.0, 1.5]\ncomponent = \"xx\""]
+    {
         let text = format!("{}\n[[quantities]]\nname = \"this one\"\n{of}\n", rubbing(contact));
         let problem = Problem::load(Scene::parse(&text, "scene.toml".as_ref()).expect("a scene")).expect("a problem");
         let error = refuse_quantities(&problem).expect_err("refused");
