@@ -1,5 +1,5 @@
 //! Properties of friction with a given bound on random scenes of the family `rough`: energies grow with the bound, a bound of zero is
-//! frictionless contact to the last digit, a bound beyond all tractions is one ten times as large to the last digits, and a bond where
+//! frictionless contact to the last digit and one of next to nothing but for rounding, a bound beyond all tractions is one ten times as large to the last digits, and a bond where
 //! nothing opens.
 //!
 //! `cargo run --release --example friction_properties -- 100 1000`: so many scenes, from the seed behind the first number on.
@@ -19,7 +19,7 @@ use support::scenes::sample_of;
 const MOST_TRIANGLES: usize = 400;
 
 /// Factors of the bounds of a scene; the first is frictionless, and none is larger than the last two.
-const FACTORS: [f64; 7] = [0.0, 1e-3, 0.25, 1.0, 4.0, 1e8, 1e9];
+const FACTORS: [f64; 8] = [0.0, 1e-12, 1e-3, 0.25, 1.0, 4.0, 1e8, 1e9];
 
 /// Differences of energies that are rounding, relative to the energy that is stored.
 const ROUNDING: f64 = 1e-10;
@@ -68,10 +68,12 @@ fn problem(seed: u64) -> Option<Problem> {
 fn with_bounds(problem: &Problem, factor: Option<f64>) -> Problem {
     let mut changed = problem.clone();
     for pair in changed.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs) {
-        pair.friction = pair.friction.zip(factor).map(|(mut friction, factor)| {
+        let scaled = pair.friction.zip(factor).map(|(mut friction, factor)| {
             friction.bound = friction.bound.map(|bound| factor * bound);
             friction
         });
+        // As a scene has it.
+        pair.friction = scaled.filter(|friction| friction.bound != [0.0; 2]);
     }
     changed
 }
@@ -128,6 +130,15 @@ impl Seen {
             self.frictionless += 1;
             let none = ends(&none).unwrap_or([f64::NAN; 2]);
             self.judge(seed, zero == none, "of bound zero is not frictionless", [zero, none]);
+            if let (Some(tiny), Some(certified)) = (found[1], &all[1]) {
+                let slack = STUCK * certified.bracket.complementary.stored();
+                self.judge(
+                    seed,
+                    (tiny[0] - none[0]).abs() <= slack,
+                    "of a bound of next to nothing is not frictionless",
+                    [tiny, none],
+                );
+            }
         }
         let [large, largest] = [found[FACTORS.len() - 2], found[FACTORS.len() - 1]];
         if let (Some(large), Some(largest), Some(certified)) = (large, largest, &all[FACTORS.len() - 1]) {
