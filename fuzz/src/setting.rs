@@ -49,6 +49,7 @@ pub fn judge(certified: &Certified, candidates: Vec<Candidate>) {
         failure: None,
         advice: None,
         other_end: None,
+        coulomb: None,
     };
     let dossier = assemble(findings, &fields);
     let text = report::json(&dossier.report).expect("every report can be written");

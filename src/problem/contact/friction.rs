@@ -81,7 +81,8 @@ impl crate::problem::Problem {
 
 /// Whether a scene has a contact with friction.
 pub fn rubs(scene: &Scene) -> bool {
-    follows_coulomb(scene) || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
+    follows_coulomb(scene)
+        || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
 }
 
 #[cfg(test)]
