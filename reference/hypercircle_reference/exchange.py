@@ -320,6 +320,8 @@ def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Conta
     )
     if contact.coefficient < 0.0:
         raise BadExchange(f"{where}.coefficient is negative")
+    if contact.coefficient > 0.0 and np.any(contact.length <= 0.0):
+        raise BadExchange(f"{inside}[{np.argmin(contact.length)}] has no friction, and its contact has a coefficient")
     if np.any(contact.friction < 0.0):
         raise BadExchange(f"{inside}[{np.argmin(contact.friction.min(axis=1))}].friction.bound is negative")
     _check_unit(contact.normal, inside, "normal")

@@ -307,7 +307,9 @@ impl Session {
             StudyError::Mesh(_) | StudyError::Contradiction(_) | StudyError::Dual(DualError::NotExpressible { .. }) => {
                 CliError::stopped(Exit::BadInput, message, "")
             }
-            StudyError::Coulomb(_) | StudyError::Statics(_) | StudyError::Dual(_) => CliError::stopped(Exit::Failed, message, ""),
+            StudyError::Coulomb(_) | StudyError::Statics(_) | StudyError::Dual(_) => {
+                CliError::stopped(Exit::Failed, message, "")
+            }
         }
     }
 

@@ -8,7 +8,8 @@ pub use super::guarantee::{Guarantee, GuaranteeLevel};
 pub use super::quantity::{QuantityOfModel, QuantitySummary};
 pub use crate::cause::{Cause, Place};
 pub use crate::compare::{
-    BoundDistance, Check, ComponentDifference, ContactSummary, FrictionState, FrictionSummary, Profile, StressSummary, TwoSides,
+    BoundDistance, Check, ComponentDifference, ContactSummary, FrictionState, FrictionSummary, Profile, StressSummary,
+    TwoSides,
 };
 pub use crate::diagnose::{Diagnosis, Finding};
 use crate::dual::{DualSolution, Phases};

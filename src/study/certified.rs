@@ -66,7 +66,8 @@ pub enum StudyError {
     Mesh(#[from] ProblemError),
 }
 
-/// Checks the statics of `problem`, solves the dual problem, and brackets the energy.
+/// Checks the statics of `problem`, solves the dual problem, and brackets the energy. Contacts with Coulomb friction have the bounds that
+/// the problem holds, none at first; [`super::solve_coulomb`] finds those that go with their pressures.
 ///
 /// # Errors
 /// [`StudyError`].

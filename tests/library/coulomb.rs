@@ -177,7 +177,10 @@ fn random_scene(seed: u64) -> (String, usize) {
         .clamp("floor")
         .table(&format!("[[contacts]]\nbetween = [\"foot\", \"top\"]\n{friction}"))
     };
-    (toml.traction("load", turned([0.2 * push, press])).traction("push", turned([push, 0.0])).text(), 1 + random.below(2))
+    (
+        toml.traction("load", turned([0.2 * push, press])).traction("push", turned([push, 0.0])).text(),
+        1 + random.below(2),
+    )
 }
 
 #[test]

@@ -126,7 +126,8 @@ fn translation_norm(
     for (e, condition) in problem.conditions.iter().enumerate() {
         for v in mesh.edges[e].vertices {
             let held = match condition {
-                Condition::Clamped(_) => [0.0; 2],
+                // The forces of springs differ between the models, too.
+                Condition::Clamped(_) | Condition::Elastic { .. } => [0.0; 2],
                 Condition::Roller { direction, .. } => along(w[v], *direction),
                 // Other contacts of the piece must not be moved in their normal direction.
                 Condition::Contact { interface, pair, .. } if *interface != index => {
@@ -148,7 +149,7 @@ fn translation_norm(
     // Where two conditions meet, what one of them takes of w another may have needed.
     let kept = |(e, condition): (usize, &Condition)| {
         mesh.edges[e].vertices.iter().all(|v| match condition {
-            Condition::Clamped(_) => w[*v] == [0.0; 2],
+            Condition::Clamped(_) | Condition::Elastic { .. } => w[*v] == [0.0; 2],
             Condition::Roller { direction: n, .. } => (w[*v][0] * n[0] + w[*v][1] * n[1]).abs() <= 1e-9,
             Condition::Contact { interface, pair, .. } if *interface != index => {
                 let pair = &problem.interfaces[*interface].pairs[*pair];

@@ -62,9 +62,7 @@ pub(in crate::scene) fn friction(
     let (crate::scene::reading::raw::Table(friction), place) = (&raw.value, format!("friction of {table}"));
     match (&friction.bound, &friction.coefficient) {
         (Some(bound), None) => Ok((Some(bound_of(bound, &place, source)?), None)),
-        (None, Some(mu)) => {
-            Ok((None, Some(source.number(mu, (&place, "coefficient"), |mu| mu >= 0.0, BACKWARD)?)))
-        }
+        (None, Some(mu)) => Ok((None, Some(source.number(mu, (&place, "coefficient"), |mu| mu >= 0.0, BACKWARD)?))),
         (bound, coefficient) => {
             let both = bound.is_some() && coefficient.is_some();
             let fault = Fault::OneOf { table: place, first: "`bound`", second: "`coefficient`", both };

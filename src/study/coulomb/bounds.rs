@@ -5,7 +5,7 @@ use crate::compare::BoundDistance;
 use crate::dual::DualSolution;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::polynomial::{side, subdivision};
-use crate::problem::{ContactPair, Problem, Scales};
+use crate::problem::{ContactPair, Interface, Problem, Scales};
 
 /// τ̄ at the two ends of each pair, contact by contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,15 +87,17 @@ pub fn apart(problem: &Problem, one: &Bounds, other: &Bounds) -> f64 {
 
 /// How far the bounds of `problem` are from μ times the pressures of its solution.
 pub fn distances(problem: &Problem, dual: &DualSolution) -> Vec<Option<BoundDistance>> {
-    let of = |(index, interface): (usize, &crate::problem::Interface)| {
+    let none = Scales::new(problem).round_off.stress;
+    let of = |(index, interface): (usize, &Interface)| {
         let mu = problem.coefficient(index)?;
         let (mut largest, mut peak, mut between, mut force) = (0.0_f64, 0.0_f64, 0.0, 0.0);
         for pair in &interface.pairs {
-            let most = most(problem, dual, pair, (mu, 0.0));
+            let most = most(problem, dual, pair, (mu, none));
             let most = if most.len() == 1 { vec![most[0]; 2] } else { most };
             let bound = pair.friction.map_or([0.0; 2], |friction| friction.bound);
             let wide: Vec<f64> = side::linear(bound, most.len() - 1).collect();
-            let [up, down]: [Vec<f64>; 2] = [1.0, -1.0].map(|s| wide.iter().zip(&most).map(|(a, b)| s * (a - b)).collect());
+            let [up, down]: [Vec<f64>; 2] =
+                [1.0, -1.0].map(|s| wide.iter().zip(&most).map(|(a, b)| s * (a - b)).collect());
             largest = largest.max(subdivision::largest(&up).0).max(subdivision::largest(&down).0);
             peak = peak.max(subdivision::largest(&most).0);
             between += pair.length * absolute(&up, &[1.0; 2]);
@@ -113,7 +115,9 @@ mod tests {
 
     #[test]
     fn linear_bounds_have_the_force_of_the_pressure_and_are_nowhere_negative() {
-        for p in [vec![2.0], vec![1.0, 3.0], vec![0.0, 1.0, 0.5], vec![0.0, 0.0, 0.0, 5.0], vec![3.0, 0.0, 0.0, 0.0, 0.1]] {
+        for p in
+            [vec![2.0], vec![1.0, 3.0], vec![0.0, 1.0, 0.5], vec![0.0, 0.0, 0.0, 5.0], vec![3.0, 0.0, 0.0, 0.0, 0.1]]
+        {
             let bound = linear(&p);
             let force = side::integral(&p, &[1.0]);
             assert!((0.5 * (bound[0] + bound[1]) - force).abs() < 1e-14 * force && bound[0] >= 0.0 && bound[1] >= 0.0);

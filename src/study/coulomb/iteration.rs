@@ -17,8 +17,10 @@ const ARRIVED: f64 = 1e-10;
 const NEAR: f64 = 1e-7;
 /// A step that leaves more than this part of the change before it is a slow one.
 const SLOW: f64 = 0.9;
-/// So many slow steps in a row halve the steps to come.
+/// So many slow steps in a row are as near as rounding lets bounds come.
 const PATIENCE: usize = 4;
+/// A change so many times that before it says that the last bounds tell nothing of the next; the step is halved.
+const GROWTH: f64 = 3.0;
 /// Least part of a step.
 const SHORTEST: f64 = 0.05;
 /// Halvings of a step after which the bodies still lose their hold.
@@ -76,11 +78,11 @@ pub fn iterate(
         if change <= ARRIVED || slow >= PATIENCE && change <= NEAR {
             return Ok(Iteration { bounds: Some(next), end: End::Arrived(count), refused: None });
         }
-        if slow >= PATIENCE {
-            (step, slow) = ((0.5 * step).max(SHORTEST), 0);
-        }
-        if change > before {
+        if change > GROWTH * before {
             history.clear();
+            step = (0.5 * step).max(SHORTEST);
+        } else if change < before {
+            step = (2.0 * step).min(1.0);
         }
         if history.len() == DEPTH {
             history.remove(0);

@@ -11,8 +11,7 @@ impl Coulomb {
     /// The checks of what models found of Coulomb friction; `contacts` are those of the stress side.
     pub fn of_models(&self, solutions: &[PrimalSolution], contacts: &[ContactSummary]) -> Vec<Check> {
         let own = |solution: &PrimalSolution| {
-            let name =
-                format!("{} {}", solution.solver, Space { cells: solution.cells, degree: solution.degree });
+            let name = format!("{} {}", solution.solver, Space { cells: solution.cells, degree: solution.degree });
             let coulomb = solution.coulomb.as_ref()?;
             Some([self.no_less(&name, solution, coulomb), Some(friction(&name, coulomb, contacts))])
         };

@@ -2,9 +2,9 @@
 
 use super::{Coulomb, End, From, Start, in_words};
 use crate::compare::ContactSummary;
-use crate::scene::counted;
 use crate::report::text::number::{digits_to_tell, percent, significant};
 use crate::report::{CoulombOutcome, CoulombStart, CoulombSummary, Energy};
+use crate::scene::counted;
 
 impl Coulomb {
     /// For a report on `energy`, the bracket for the bound that was used.
@@ -44,14 +44,19 @@ impl Coulomb {
                 "Every solution of Coulomb's law has an energy of at most {high}, guaranteed: that of sides that stick. There is no lower \
                  end, since nothing holds the bodies without friction."
             ),
-            [Some(low), None] => format!("Every solution of Coulomb's law has an energy of at least {low}, guaranteed."),
+            [Some(low), None] => {
+                format!("Every solution of Coulomb's law has an energy of at least {low}, guaranteed.")
+            }
             [None, None] => "No bounds were found for the energy of all solutions of Coulomb's law.".to_string(),
         }
     }
 
     fn of_the_bound(&self, energy: Option<&Energy>) -> String {
         let error = energy.map_or(String::new(), |energy| {
-            format!(", and the stresses are within {} of its exact solution, guaranteed", percent(energy.relative_error_bound))
+            format!(
+                ", and the stresses are within {} of its exact solution, guaranteed",
+                percent(energy.relative_error_bound)
+            )
         });
         let worst = self.distances.iter().flatten().max_by(|a, b| a.relative.total_cmp(&b.relative));
         let distance = worst.map_or(String::new(), |distance| {
@@ -62,7 +67,7 @@ impl Coulomb {
                 percent(distance.largest_relative)
             )
         });
-        format!("The friction bound was found in {}{error}.{distance}", counted(self.iterations(), "solution"))
+        format!("The friction bound was found after {}{error}.{distance}", counted(self.iterations(), "solution"))
     }
 
     fn of_how_many(&self) -> String {
@@ -78,7 +83,9 @@ impl Coulomb {
         } else {
             "One search alone arrived; whether"
         };
-        format!("{found} there are other solutions is not known, nor how near these fields are to one of Coulomb's law.")
+        format!(
+            "{found} there are other solutions is not known, nor how near these fields are to one of Coulomb's law."
+        )
     }
 }
 

@@ -141,7 +141,10 @@ fn report(findings: &Findings<'_>) -> Report {
             + &across.as_ref().map_or_else(String::new, in_words)
             + &coulomb.as_ref().map_or_else(String::new, |coulomb| {
                 let [of_all, _, how_many] = &coulomb.statements;
-                format!(" {}", [std::slice::from_ref(of_all), std::slice::from_ref(how_many), &coulomb.wedging].concat().join(" "))
+                format!(
+                    " {}",
+                    [std::slice::from_ref(of_all), std::slice::from_ref(how_many), &coulomb.wedging].concat().join(" ")
+                )
             }),
         causes,
         energy,

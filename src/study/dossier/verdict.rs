@@ -1,10 +1,10 @@
 //! The verdict in words.
 
 use super::{Findings, in_numbers};
-use crate::study::coulomb::Coulomb;
 use crate::cause::Cause;
 use crate::report::text::number::{digits_to_tell, percent, significant};
 use crate::report::{Energy, Status};
+use crate::study::coulomb::Coulomb;
 
 /// The verdict in one sentence.
 pub(in crate::study) fn verdict(
@@ -62,14 +62,18 @@ pub(in crate::study) fn verdict(
     }
 }
 
+/// Differences of a friction bound below this part are digits.
+const DIGITS: f64 = 1e-6;
+
 /// The problem that numbers are for where it is not the scene: how a sentence on the exact energy begins, and what follows "energy".
 fn of_which(findings: &Findings<'_>) -> (String, String) {
     let Some(coulomb) = findings.coulomb else { return ("T".to_string(), String::new()) };
-    let off = percent(coulomb.farthest());
-    (
-        "For the friction bound that was used, t".to_string(),
-        format!(" (the bound is the coefficient times the pressure but for {off} of its force)"),
-    )
+    let off = match coulomb.farthest() {
+        off if off < DIGITS => String::new(),
+        off => format!(" but for {} of its force", percent(off)),
+    };
+    let what = format!(" (the bound is the coefficient of friction times the pressure{off})");
+    ("For the friction bound that was found, t".to_string(), what)
 }
 
 /// Says where values lie that were given without a field and passed; `None` without any.

@@ -100,6 +100,33 @@ fn from_gmsh() {
     }
 }
 
+/// Each face carries N = P/(2 (sin α + μ cos α)) across it and μ N along it, by stresses, by displacements with the same bound of
+/// friction, and by displacements with limits of their own.
+#[test]
+fn wedges() {
+    for (name, mu) in [("wedge", 0.2), ("wedge_locked", 0.5)] {
+        let report = sound(name);
+        let (sin, cos) = 20.0_f64.to_radians().sin_cos();
+        let normal = 0.01 * 2.0 * 0.6639702342662023 / (2.0 * (sin + mu * cos));
+        for (contact, side) in [(0, 1.0), (1, -1.0)] {
+            carries(&report, contact, [side * normal * (cos - mu * sin), normal * (sin + mu * cos)]);
+            let along = report.number(&format!("/contact/{contact}/friction/force"));
+            close(along, -side * mu * normal, 1e-7);
+            assert_eq!(report.0["contact"][contact]["friction"]["kind"], "coulomb");
+            assert!(report.number(&format!("/contact/{contact}/friction/bound_distance/relative")) < 1e-7);
+        }
+        assert_eq!(report.0["energy"]["guaranteed_for"], "friction bound");
+        let wedging = report.0["coulomb"]["wedging"].as_array().map_or(0, Vec::len);
+        assert_eq!(wedging, usize::from(mu > (sin / cos)));
+        if with_reference() {
+            let own = |check: &&Value| check["name"].as_str().is_some_and(|n| n.ends_with("/friction-force"));
+            let own: Vec<&Value> = report.0["remarks"].as_array().into_iter().flatten().filter(own).collect();
+            assert_eq!(own.len(), 2);
+            assert!(own.iter().all(|check| check["difference"].as_f64().is_some_and(|d| d < 1e-6)), "{own:?}");
+        }
+    }
+}
+
 /// What is held against FEniCSx on the contact, where the direction is constant and where it turns: above all `reactions`, which
 /// asks that each force at a vertex differ from the dual one by the work of the stresses to round-off.
 #[test]

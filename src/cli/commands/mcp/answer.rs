@@ -57,8 +57,18 @@ impl Answer {
     pub fn of_report(report: &Report) -> Self {
         let whole = serde_json::to_value(report).unwrap_or_default();
         let mut data = Map::new();
-        for key in ["status", "verdict", "energy", "data_range", "dual", "stress", "causes", "quantities", "diagnosis"]
-        {
+        for key in [
+            "status",
+            "verdict",
+            "energy",
+            "data_range",
+            "coulomb",
+            "dual",
+            "stress",
+            "causes",
+            "quantities",
+            "diagnosis",
+        ] {
             if let Some(value) = whole.get(key).filter(|value| !value.is_null()) {
                 data.insert(key.to_string(), first(value.clone()));
             }
