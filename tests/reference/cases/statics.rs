@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::run::{Run, carries, case, close, models, sound, turns, with_reference};
+use super::run::{Report, Run, carries, case, close, models, sound, turns, with_reference};
 
 #[test]
 fn two_blocks() {
