@@ -240,6 +240,7 @@ fn contact_that_turns_on_the_axis_is_refined_from_one_edge() {
     let adapted = adapt(problem, &Condensed::default(), &options, &Goal::new(0.03), |_| ());
     let adapted = adapted.unwrap_or_else(|e| panic!("{e}\n{text}"));
     assert!(adapted.history.first().is_some_and(|row| row.triangles < 10) && adapted.stopped.is_none());
-    let [lower, upper] = ends(&adapted.certified);
+    let bracket = &adapted.certified.bracket;
+    let [lower, upper] = [bracket.lower(), bracket.free.as_ref().expect("an upper bound").upper()];
     assert!(lower < upper && upper - lower < 1e-3 * -upper, "{lower} {upper}");
 }
