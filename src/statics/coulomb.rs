@@ -65,8 +65,8 @@ pub fn wedged(problem: &Problem) -> Vec<Wedged> {
 }
 
 fn wedged_in(problem: &Problem, group: &Group) -> Option<Wedged> {
-    let rubs = |run: &&Run| problem.coefficient(run.interface).is_some();
-    if 2 * group.runs.len() > MOST_ENDS || !group.runs.iter().any(|run| rubs(&run)) {
+    let rubs = |run: &Run| problem.coefficient(run.interface).is_some();
+    if 2 * group.runs.len() > MOST_ENDS || !group.runs.iter().any(|run| rubs(run)) {
         return None;
     }
     let supports = supports(problem, group);

@@ -215,10 +215,9 @@ fn no_fixed_point(problem: &Problem, runs: Vec<(From, Iteration)>) -> StudyError
     let law = "Coulomb's friction has no principle of least energy, and its iteration need not arrive.";
     let wedging = wedges.first().map_or(String::new(), |wedged| format!(" {}", in_words(wedged)));
     StudyError::Coulomb(match (wanders, balances) {
-        (_, false) => format!(
-            "no forces of contact within the cones of Coulomb's friction balance the loads, so that no solution exists; a support, or a \
-             larger coefficient, would hold the bodies"
-        ),
+        (_, false) => "no forces of contact within the cones of Coulomb's friction balance the loads, so that no solution exists; a support, \
+                       or a larger coefficient, would hold the bodies"
+            .to_string(),
         (Some((count, change)), true) => format!(
             "no friction bound was found that goes with its pressure: after {count} solutions the bounds still change by {:.1e} of their \
              size. {law}{wedging} Lower the coefficient, give the bound itself with friction = {{ bound = … }}, or hold the bodies by \
