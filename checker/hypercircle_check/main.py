@@ -75,6 +75,8 @@ class Proof:
         """The ends that are proved: those claimed, or farther out by next to nothing."""
         if self.lower - self.upper > max(self.displacement.grain, DATA * abs(self.upper)):
             raise Refused("the lower bound lies above the upper one: the proof is not of one scene")
+        if self.lower > self.upper:
+            self.premises.append(f"the data of two meshes, rounded each for itself, contradict each other by {float(self.lower - self.upper):.1e}")
         allowed = max((arb(self.claim[1]) - self.claim[0]) * PART, self.displacement.grain, LEAST)
         self.room = [self.lower - self.claim[0], self.claim[1] - self.upper]
         for end, room, found, claimed in zip(("lower", "upper"), self.room, (self.lower, self.upper), self.claim):
