@@ -24,11 +24,11 @@ use crate::element::polynomial::side;
 use crate::element::{Material, Samples, StressField};
 use crate::problem::{ContactPair, Problem, Scales};
 
-/// Ends that are closer than this, relative to the value, are one but for rounding.
-const ONE: f64 = 1e-9;
-
 /// What rounding leaves in a value that was computed, relative to what the data can cause.
 const ROUNDED: f64 = 1e-11;
+
+/// Ends that are closer than this, relative to the value, are one but for rounding.
+const ONE: f64 = 1e-9;
 
 /// What rounding leaves of projections and of means, relative to the largest that they can be.
 const ROUNDED_MEAN: f64 = 1e-12;
@@ -109,6 +109,16 @@ impl Interval {
     /// Half of the width.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])
+    }
+}
+
+impl Functional {
+    /// How far outside of an interval with these `ends` rounding may put a value: bounded by what the data can cause, whatever the ends are.
+    pub fn rounding(&self, problem: &Problem, ends: [f64; 2]) -> f64 {
+        let scales = Scales::new(problem);
+        let [data, zero] = [&scales.data, &scales.round_off].map(|sizes| self.kind.size(problem, sizes));
+        let largest = ends.iter().filter(|end| end.is_finite()).fold(0.0_f64, |m, end| m.max(end.abs()));
+        (ROUNDED * data).min((ONE * largest).max(zero))
     }
 }
 
@@ -254,7 +264,7 @@ impl<'a> Known<'a> {
             first_order: first_order.map(scaled),
             value: scaled(value.max(ends[0]).min(ends[1])),
             exact_by_statics: exact,
-            rounding: self.rounding(functional, ends.map(scaled)),
+            rounding: functional.rounding(self.problem, ends.map(scaled)),
             reasons,
             shares: shares.into_iter().map(|s| functional.scale * s).collect(),
         }
@@ -264,14 +274,6 @@ impl<'a> Known<'a> {
     fn are_one(&self, functional: &Functional, [lower, upper]: [f64; 2]) -> bool {
         let zero = functional.kind.size(self.problem, &Scales::new(self.problem).round_off) / functional.scale;
         upper - lower <= (ONE * lower.abs().max(upper.abs())).max(zero)
-    }
-
-    /// How far outside rounding may put a value: bounded by what the data can cause, whatever the ends are.
-    fn rounding(&self, functional: &Functional, ends: [f64; 2]) -> f64 {
-        let scales = Scales::new(self.problem);
-        let [data, zero] = [&scales.data, &scales.round_off].map(|sizes| functional.kind.size(self.problem, sizes));
-        let largest = ends.iter().filter(|end| end.is_finite()).fold(0.0_f64, |m, end| m.max(end.abs()));
-        (ROUNDED * data).min((ONE * largest).max(zero))
     }
 
     /// What the load leaves of a value at a point on the exact displacement: that of v, and at most so much more, whose parts are added to

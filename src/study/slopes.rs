@@ -173,7 +173,7 @@ impl Slope<'_> {
             first_order: ends,
             value: (functional.scale * (functional.constant + self.value())).max(ends[0]).min(ends[1]),
             exact_by_statics: self.change == Change::Nothing,
-            rounding: 0.0,
+            rounding: functional.rounding(problem, ends),
             reasons: ends.map(missing),
             shares: triangles.iter().map(|share| share.max(0.0)).collect(),
         })

@@ -14,9 +14,6 @@ use crate::vector::{dot, norm};
 /// Differences of motions that are rounding, relative to the largest.
 const ROUNDING: f64 = 1e-12;
 
-/// Differences of jumps that are rounding, relative to the largest motion.
-const JUMP_ROUNDING: f64 = 1e-9;
-
 /// ∫ ψ t_t, the traction of friction on the first side weighted by ψ(s).
 pub fn tangential_force(
     problem: &Problem,
@@ -168,5 +165,5 @@ fn less(of: &[f64], other: &[f64]) -> Vec<f64> {
 }
 
 fn is_zero(jump: &[f64], size: f64) -> bool {
-    jump.iter().all(|j| j.abs() <= JUMP_ROUNDING * size)
+    jump.iter().all(|j| j.abs() <= ROUNDING * size)
 }
