@@ -73,14 +73,16 @@ impl Change {
     /// The change whose slope the quantity is.
     fn of(problem: &Problem, functional: &Functional) -> Option<Self> {
         let load = &functional.load;
+        let weighted = load.weights.iter().any(|weights| !weights.is_empty());
+        let linear = load.weights.iter().all(|weights| matches!(weights.len(), 0 | 2));
+        let loaded = !load.tractions.is_empty() || load.force.iter().any(|force| !force.is_none());
+        // In a body of revolution gaps alone are changed.
+        let of_gaps = || weighted && !loaded && load.strains.is_empty() && functional.region.is_none();
         let plain = functional.local.is_none()
             && load.turned.is_empty()
             && load.shaped.is_empty()
             && load.edges.is_empty()
-            && !problem.section().is_revolved();
-        let weighted = load.weights.iter().any(|weights| !weights.is_empty());
-        let linear = load.weights.iter().all(|weights| matches!(weights.len(), 0 | 2));
-        let loaded = !load.tractions.is_empty() || load.force.iter().any(|force| !force.is_none());
+            && (!problem.section().is_revolved() || of_gaps());
         let free = |(e, _): &(usize, _)| matches!(problem.conditions[*e], Condition::Traction(_));
         match (loaded, weighted || !load.strains.is_empty()) {
             _ if !plain => None,

@@ -7,7 +7,7 @@ use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics::{friction_can_balance, wedged};
-use hypercircle::study::{Certified, Coulomb, End, StudyError, certify, solve_coulomb};
+use hypercircle::study::{Certified, Coulomb, End, StudyError, certify, certify_divided, solve_coulomb};
 
 fn problem(text: &str) -> Problem {
     let scene = Scene::parse(text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -17,7 +17,7 @@ fn problem(text: &str) -> Problem {
 fn tried(problem: &Problem, degree: usize) -> Result<(Certified, Coulomb), StudyError> {
     let options = Options { elements: Elements::Uniform(block(degree)), ..Options::default() };
     let method = Condensed::default();
-    solve_coulomb(problem, &method, &options, |held| certify(held, &method, &options), |_| ())
+    solve_coulomb(problem, &method, &options, |held| certify_divided(held, &method, &options), |_| ())
 }
 
 fn solved(text: &str, degree: usize) -> (Certified, Coulomb) {
@@ -42,7 +42,7 @@ fn forces(certified: &Certified) -> Vec<[f64; 2]> {
 fn wedge(angle: f64, mu: f64, down: f64) -> (String, f64) {
     let half = 0.3 + angle.to_radians().tan();
     let text = Toml::default()
-        .size(0.5)
+        .size(0.2)
         .outline("wedge", &[[-0.3, 0.0], [0.3, 0.0], [half, 1.0], [-half, 1.0]], &["", "right", "load", "left"])
         .traction("load", [0.0, -down])
         .table(&format!("[[contacts]]\non = \"left\"\nfriction = {{ coefficient = {mu:?} }}"))
@@ -185,7 +185,7 @@ fn random_scene(seed: u64) -> (String, usize) {
 
 #[test]
 fn random_scenes_lie_between_their_two_ends() {
-    let mut arrived = 0;
+    let (mut arrived, mut both) = (0, 0);
     for seed in 0..10 {
         let (text, degree) = random_scene(seed);
         let (certified, coulomb) = match tried(&problem(&text), degree) {
@@ -195,11 +195,16 @@ fn random_scenes_lie_between_their_two_ends() {
         };
         arrived += 1;
         let upper = certified.bracket.free.as_ref().expect("an upper bound").upper();
-        let [lowest, highest] = [coulomb.lowest, coulomb.highest].map(|end| end.expect("an end"));
-        assert!(lowest <= upper && certified.bracket.lower() <= highest, "seed {seed}: {lowest} {upper} {highest}");
+        let lowest = coulomb.lowest.expect("springs hold the bodies");
+        assert!(lowest <= upper, "seed {seed}: {lowest} {upper}");
+        // There is no upper end where the field of sides that stick slides by more than rounding.
+        if let Some(highest) = coulomb.highest {
+            both += 1;
+            assert!(certified.bracket.lower() <= highest, "seed {seed}: {lowest} {upper} {highest}");
+        }
         for distance in coulomb.distances.iter().flatten() {
             assert!(distance.relative < if degree == 1 { 1e-6 } else { 0.2 }, "seed {seed}: {distance:?}");
         }
     }
-    assert!(arrived >= 7, "{arrived}");
+    assert!(arrived >= 7 && both >= 5, "{arrived} {both}");
 }
