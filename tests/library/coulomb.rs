@@ -7,7 +7,7 @@ use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics::{friction_can_balance, wedged};
-use hypercircle::study::{Certified, Coulomb, End, StudyError, certify, certify_divided, solve_coulomb};
+use hypercircle::study::{Certified, Coulomb, End, StudyError, certify_divided, solve_coulomb};
 
 fn problem(text: &str) -> Problem {
     let scene = Scene::parse(text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
