@@ -42,7 +42,7 @@ fn forces(certified: &Certified) -> Vec<[f64; 2]> {
 fn wedge(angle: f64, mu: f64, down: f64) -> (String, f64) {
     let half = 0.3 + angle.to_radians().tan();
     let text = Toml::default()
-        .size(0.2)
+        .size(0.25)
         .outline("wedge", &[[-0.3, 0.0], [0.3, 0.0], [half, 1.0], [-half, 1.0]], &["", "right", "load", "left"])
         .traction("load", [0.0, -down])
         .table(&format!("[[contacts]]\non = \"left\"\nfriction = {{ coefficient = {mu:?} }}"))
