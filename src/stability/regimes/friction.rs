@@ -25,9 +25,9 @@ fn pushed(push: f64, bound: f64) -> Sketch {
         .rubbing(bound)
 }
 
-/// The force on the upper block where friction alone holds the push.
-fn held(push: f64) -> Known {
-    Known::forces(vec![[-push, 2.0 * PRESSURE]], 2.0 * PRESSURE)
+/// The force across the contact; that of friction is not judged.
+fn held() -> Known {
+    Known::forces(vec![[f64::NAN, 2.0 * PRESSURE]], 2.0 * PRESSURE)
 }
 
 /// The same blocks, pushed to the right, or seen in a mirror.
@@ -45,7 +45,7 @@ pub(super) const REGIMES: &[Regime] = &[
         values: &[0.1, 0.03, 1e-2, 1e-4, 1e-8, 1e-12, 1.0, 1e2, 1e4, 1e8, 1e12],
         reduced: &[0, 5, 10],
         build: |bound| pushed(PUSH, bound).springs("high_right", 0.5).problem(),
-        known: |_| Known::forces(vec![[f64::NAN, 2.0 * PRESSURE]], 2.0 * PRESSURE),
+        known: |_| held(),
         ..PLAIN
     },
     Regime {
@@ -56,7 +56,7 @@ pub(super) const REGIMES: &[Regime] = &[
         values: &[0.05, 0.06, 0.07, 0.08, 0.09, 0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.16, 0.17, 0.18, 0.19, 0.21],
         reduced: &[0, 8, 15],
         build: |push| pushed(push, BOUND).problem(),
-        known: |push| if push < 2.0 * BOUND { held(push) } else { Known::none() },
+        known: |push| if push < 2.0 * BOUND { held() } else { Known::none() },
         ..PLAIN
     },
     Regime {
@@ -68,7 +68,7 @@ pub(super) const REGIMES: &[Regime] = &[
         labels: &["to the right", "to the left"],
         reduced: &[0, 1],
         build: mirrored,
-        known: |sign| held(sign * PUSH).scaled(1.0, 1.0).mirrored(),
+        known: |_| held(),
         ..PLAIN
     },
 ];
