@@ -61,13 +61,8 @@ impl Verdict {
         cone: impl Fn(&[Part], Points) -> Box<dyn Cone + 'a>,
     ) -> Result<Self, StaticsError> {
         let undecided = |_: cone::Unsettled| StaticsError::Undecided { bodies: words::all_names(group) };
-        let mut load = DVector::zeros(group.dimension());
-        for (i, c) in group.members.iter().enumerate() {
-            load[3 * i] = loads.force[*c][0];
-            load[3 * i + 1] = loads.force[*c][1];
-            load[3 * i + 2] = loads.moment[*c] / group.components.size[*c];
-        }
-        let total: f64 = group.members.iter().map(|c| loads.magnitude[*c]).sum();
+        let mut load = group.load(loads);
+        let total = group.magnitude(loads);
         let tolerance = total * round_off(group);
 
         let rollers = group.rollers(problem);

@@ -5,14 +5,14 @@
 //! inside the pieces. Where the cone contains a line that the rows g alone do not have, forces of contact balance each other without a
 //! load: the piece is wedged, and the loads do not say how much it presses.
 
-use faer::Mat;
 use nalgebra::DVector;
 
 use super::balance::RANK;
 use super::cone::span::Span;
+use super::friction::{PUSHES, held_to, nearest};
 use super::restraint::{Group, Run, clamped, groups, runs};
 use super::{Components, LoadResultants, words};
-use crate::optimise::{Law, Program, solve};
+use crate::optimise::Law;
 use crate::problem::Problem;
 
 /// What is left of a force, relative to it, where others balance it.
@@ -42,17 +42,11 @@ pub fn friction_can_balance(problem: &Problem) -> bool {
     let loads = LoadResultants::new(problem, &components);
     let runs = runs(problem, &components, &|_| 1);
     groups(&components, &clamped(problem, &components), &runs).iter().all(|group| {
-        let mut load = DVector::zeros(group.dimension());
-        for (i, c) in group.members.iter().enumerate() {
-            load[3 * i] = loads.force[*c][0];
-            load[3 * i + 1] = loads.force[*c][1];
-            load[3 * i + 2] = loads.moment[*c] / components.size[*c];
-        }
-        let total: f64 = group.members.iter().map(|c| loads.magnitude[*c]).sum();
-        let supports = supports(problem, group);
+        let supports = group.span(&group.rollers(problem));
         let forces = forces(problem, group, &supports, |interface| problem.coefficient(interface).unwrap_or(0.0));
-        let load = supports.residual(&load);
-        forces.len() > 4 * MOST_ENDS || nearest(&forces, &load).is_none_or(|(left, _)| left <= BALANCED * total)
+        let load = supports.residual(&group.load(&loads));
+        let allowed = BALANCED * group.magnitude(&loads);
+        forces.len() > 4 * MOST_ENDS || balancing(&forces, &load).is_none_or(|(left, _)| left <= allowed)
     })
 }
 
@@ -69,12 +63,12 @@ fn wedged_in(problem: &Problem, group: &Group) -> Option<Wedged> {
     if 2 * group.runs.len() > MOST_ENDS || !group.runs.iter().any(|run| rubs(run)) {
         return None;
     }
-    let supports = supports(problem, group);
+    let supports = group.span(&group.rollers(problem));
     let with = |friction: bool| {
         let coefficient = |interface| if friction { problem.coefficient(interface).unwrap_or(0.0) } else { 0.0 };
         let mut forces = forces(problem, group, &supports, coefficient);
         // Friction with a given bound takes a part alone.
-        forces.retain(|force| matches!(force.law, Law::AtMost { .. }) && force.row.norm() > RANK);
+        forces.retain(|force| force.law == PUSHES && force.row.norm() > RANK);
         balanced_without_load(&mut forces)
     };
     if with(false).is_some() {
@@ -94,7 +88,7 @@ fn wedged_in(problem: &Problem, group: &Group) -> Option<Wedged> {
 fn balanced_without_load(forces: &mut Vec<Force>) -> Option<Vec<usize>> {
     for i in 0..forces.len() {
         let own = forces.remove(i);
-        let found = nearest(forces, &-own.row.normalize());
+        let found = balancing(forces, &-own.row.normalize());
         let together = found.filter(|(left, _)| *left <= BALANCED).map(|(_, sizes)| {
             let others = forces.iter().zip(sizes).filter(|(_, size)| *size > BALANCED);
             std::iter::once(own.interface).chain(others.map(|(force, _)| force.interface)).collect()
@@ -107,52 +101,33 @@ fn balanced_without_load(forces: &mut Vec<Force>) -> Option<Vec<usize>> {
     None
 }
 
-fn supports(problem: &Problem, group: &Group) -> Span {
-    let mut supports = Span::empty(group.dimension());
-    let rows: Vec<_> = group.rollers(problem).iter().map(|part| group.dense(std::slice::from_ref(part))).collect();
-    supports.extend(&rows, RANK);
-    supports
-}
-
 /// The forces of contact on a group beside those of its supports, with a coefficient of friction for each contact.
 fn forces(problem: &Problem, group: &Group, supports: &Span, coefficient: impl Fn(usize) -> f64) -> Vec<Force> {
     let mut all = Vec::new();
     for run in &group.runs {
         let mu = coefficient(run.interface);
-        let push = Law::AtMost { bound: 0.0 };
         for end in run.ends {
             let normal = group.dense(&group.across(run, end));
             let slip = group.dense(&group.slip(run, end)) * mu;
             let rows = if mu > 0.0 { vec![&normal + &slip, &normal - &slip] } else { vec![normal] };
-            all.extend(rows.into_iter().map(|row| Force {
-                row: supports.residual(&row),
-                law: push,
-                interface: run.interface,
-            }));
+            let push = |row| Force { row: supports.residual(&row), law: PUSHES, interface: run.interface };
+            all.extend(rows.into_iter().map(push));
         }
         if run.friction > 0.0 && problem.coefficient(run.interface).is_none() {
             let row = supports.residual(&group.dense(&group.slip(run, run.ends[0])));
-            let law = Law::Between { lower: -run.friction, upper: run.friction };
-            all.push(Force { row, law, interface: run.interface });
+            all.push(Force { row, law: held_to(run.friction), interface: run.interface });
         }
     }
     all
 }
 
-/// What forces leave at least of a load, and their sizes then; none where the least was not found.
-fn nearest(forces: &[Force], load: &DVector<f64>) -> Option<(f64, Vec<f64>)> {
+/// The least that forces leave of a load, and their sizes then; none where it was not found.
+fn balancing(forces: &[Force], load: &DVector<f64>) -> Option<(f64, Vec<f64>)> {
     if forces.is_empty() {
         return Some((load.norm(), Vec::new()));
     }
-    // Forces that push are minus the unknowns.
-    let rows: Vec<DVector<f64>> = forces
-        .iter()
-        .map(|force| if matches!(force.law, Law::AtMost { .. }) { -&force.row } else { force.row.clone() })
-        .collect();
-    let form = Mat::from_fn(rows.len(), rows.len(), |i, k| rows[i].dot(&rows[k]));
-    let pulls: Vec<f64> = rows.iter().map(|row| row.dot(load)).collect();
-    let laws: Vec<Law> = forces.iter().map(|force| force.law).collect();
-    let found = solve(&Program { form: &form, load: &pulls, laws: &laws }, None)?;
-    let left = rows.iter().zip(&found.x).fold(load.clone(), |left, (row, x)| left - row * *x);
-    Some((left.norm(), found.x.iter().map(|x| -x).collect()))
+    let (rows, laws): (Vec<_>, Vec<_>) = forces.iter().map(|force| (force.row.clone(), force.law)).unzip();
+    let sizes = nearest(&rows, &laws, load)?;
+    let left = rows.iter().zip(&sizes).fold(load.clone(), |left, (row, size)| left - row * *size);
+    Some((left.norm(), sizes))
 }

@@ -10,7 +10,6 @@ use faer::Mat;
 use nalgebra::DVector;
 
 use super::balance::RANK;
-use super::cone::span::Span;
 use super::restraint::{Group, Part, Points};
 use crate::optimise::{Law, Program, solve};
 
@@ -19,9 +18,7 @@ const MOST: f64 = 1e6;
 
 /// The forces of friction that leave least of a `load`, as a load, where `vanishing` rows do not move.
 pub(super) fn relieved(group: &Group, vanishing: &[Part], load: &DVector<f64>, total: f64) -> DVector<f64> {
-    let mut supports = Span::empty(group.dimension());
-    let rows: Vec<_> = vanishing.iter().map(|part| group.dense(std::slice::from_ref(part))).collect();
-    supports.extend(&rows, RANK);
+    let supports = group.span(vanishing);
     let left = |row: &DVector<f64>| supports.residual(row);
     let rubbing = group.runs.iter().filter(|run| run.friction > 0.0);
     let slips: Vec<(DVector<f64>, f64)> = rubbing
@@ -36,23 +33,28 @@ pub(super) fn relieved(group: &Group, vanishing: &[Part], load: &DVector<f64>, t
         return none;
     }
     let all: Vec<DVector<f64>> = jumps.iter().cloned().chain(slips.iter().map(|(row, _)| left(row))).collect();
-    let form = Mat::from_fn(all.len(), all.len(), |i, k| all[i].dot(&all[k]));
-    let load = left(load);
-    // Unknowns are −μ and f.
-    let pulls: Vec<f64> =
-        all.iter().enumerate().map(|(i, row)| row.dot(&load) * if i < jumps.len() { -1.0 } else { 1.0 }).collect();
-    let form = Mat::from_fn(all.len(), all.len(), |i, k| {
-        let sign = if (i < jumps.len()) == (k < jumps.len()) { 1.0 } else { -1.0 };
-        sign * form[(i, k)]
-    });
-    let laws: Vec<Law> = jumps
-        .iter()
-        .map(|_| Law::AtMost { bound: 0.0 })
-        .chain(slips.iter().map(|(_, most)| Law::Between { lower: -most, upper: *most }))
-        .collect();
-    let Some(found) = solve(&Program { form: &form, load: &pulls, laws: &laws }, None) else { return none };
-    let forces = found.x[jumps.len()..].iter().zip(&slips);
+    let laws = jumps.iter().map(|_| PUSHES);
+    let laws: Vec<Law> = laws.chain(slips.iter().map(|(_, most)| held_to(*most))).collect();
+    let Some(found) = nearest(&all, &laws, &left(load)) else { return none };
+    let forces = found[jumps.len()..].iter().zip(&slips);
     forces.fold(none, |sum, (f, (row, most))| sum + row * f.clamp(-most, *most))
+}
+
+/// The law of minus a force that pushes.
+pub(super) const PUSHES: Law = Law::AtMost { bound: 0.0 };
+
+/// The law of a force of friction.
+pub(super) fn held_to(most: f64) -> Law {
+    Law::Between { lower: -most, upper: most }
+}
+
+/// The forces along `rows`, under [`PUSHES`] or [`held_to`] a bound, that leave least of a `load`; none where they were not found.
+pub(super) fn nearest(rows: &[DVector<f64>], laws: &[Law], load: &DVector<f64>) -> Option<Vec<f64>> {
+    let sign = |i: usize| if laws[i] == PUSHES { -1.0 } else { 1.0 };
+    let form = Mat::from_fn(rows.len(), rows.len(), |i, k| sign(i) * sign(k) * rows[i].dot(&rows[k]));
+    let pulls: Vec<f64> = rows.iter().enumerate().map(|(i, row)| sign(i) * row.dot(load)).collect();
+    let found = solve(&Program { form: &form, load: &pulls, laws }, None)?;
+    Some(found.x.iter().enumerate().map(|(i, x)| sign(i) * x).collect())
 }
 
 /// What friction takes up in a `motion` of the group.

@@ -5,7 +5,10 @@
 //! short edges carry the round-off of their coordinates. An edge along which the direction of contact turns is a run of its
 //! own; where contact acts along a given direction, the jump is linear across it however the sides run.
 
+use super::LoadResultants;
+use super::balance::RANK;
 use super::components::Components;
+use super::cone::span::Span;
 use super::reach::{Degree, pressure_degree, reach};
 use crate::element::polynomial::side;
 use crate::problem::{Condition, ContactPair, Interface, Problem};
@@ -221,6 +224,30 @@ impl Group<'_> {
             (0..3).for_each(|i| out[3 * m + i] += part[i]);
         }
         out
+    }
+
+    /// The loads on the group, by the unknowns.
+    pub fn load(&self, loads: &LoadResultants) -> DVector<f64> {
+        let mut load = DVector::zeros(self.dimension());
+        for (i, c) in self.members.iter().enumerate() {
+            load[3 * i] = loads.force[*c][0];
+            load[3 * i + 1] = loads.force[*c][1];
+            load[3 * i + 2] = loads.moment[*c] / self.components.size[*c];
+        }
+        load
+    }
+
+    /// Their sizes, added up.
+    pub fn magnitude(&self, loads: &LoadResultants) -> f64 {
+        self.members.iter().map(|c| loads.magnitude[*c]).sum()
+    }
+
+    /// All that rows with one part each span.
+    pub fn span(&self, rows: &[Part]) -> Span {
+        let mut span = Span::empty(self.dimension());
+        let rows: Vec<_> = rows.iter().map(|part| self.dense(std::slice::from_ref(part))).collect();
+        span.extend(&rows, RANK);
+        span
     }
 
     /// The row `direction` · u(`point`) of piece `c`; none where the piece is held.

@@ -20,9 +20,7 @@ pub(in crate::statics) struct DenseCone<'a> {
 impl<'a> DenseCone<'a> {
     /// From rows that must vanish and the two points of each contact run where the jump must not be positive.
     pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Self {
-        let mut supports = Span::empty(group.dimension());
-        let vanishing: Vec<_> = vanishing.iter().map(|part| group.dense(std::slice::from_ref(part))).collect();
-        supports.extend(&vanishing, RANK);
+        let supports = group.span(vanishing);
         let mut fixed = supports.clone();
         let ties: Vec<_> = group
             .runs
