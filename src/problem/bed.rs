@@ -49,12 +49,16 @@ pub struct EdgeWeight(Option<[f64; 2]>);
 impl EdgeWeight {
     /// On an edge of the mesh.
     fn on(section: Section, mesh: &Triangulation, edge: usize) -> Self {
-        EdgeWeight::between(section, mesh.edges[edge].vertices.map(|v| mesh.points[v]))
+        EdgeWeight::between(section, mesh, mesh.edges[edge].vertices)
     }
 
-    /// On an edge between two points.
-    pub fn between(section: Section, points: [[f64; 2]; 2]) -> Self {
-        EdgeWeight(section.is_revolved().then(|| points.map(|p| section.weight(p))))
+    /// On the first side of a pair, from its first end.
+    pub fn of_pair(section: Section, mesh: &Triangulation, pair: &ContactPair) -> Self {
+        EdgeWeight::between(section, mesh, pair.first)
+    }
+
+    fn between(section: Section, mesh: &Triangulation, vertices: [usize; 2]) -> Self {
+        EdgeWeight(section.is_revolved().then(|| vertices.map(|v| section.weight(mesh.points[v]))))
     }
 
     /// At both of its ends.
@@ -100,8 +104,7 @@ impl EdgeWeight {
     /// weight.
     pub fn rule(&self, [from, to]: [f64; 2], degree: usize) -> Vec<SidePoint> {
         let whole = |p: SidePoint| SidePoint { at: from + p.at * (to - from), weight: p.weight * (to - from), ..p };
-        let radii = self.0.map_or([1.0; 2], |_| [self.at(from), self.at(to)]);
-        side_rule(radii, degree, NEAR).into_iter().map(whole).collect()
+        side_rule([from, to].map(|s| self.at(s)), degree, NEAR).into_iter().map(whole).collect()
     }
 
     /// A weighted function over the weight at an end of the edge; on the axis of revolution, where both vanish, its limit.

@@ -170,8 +170,7 @@ pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> 
 
 /// The same of one that is not.
 pub fn resultant_of_pressure(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
-    let points = |pair: &ContactPair| pair.first.map(|v| problem.mesh.points[v]);
-    resultant_of(problem, interface, pieces, |pair| EdgeWeight::between(problem.section(), points(pair)))
+    resultant_of(problem, interface, pieces, |pair| EdgeWeight::of_pair(problem.section(), &problem.mesh, pair))
 }
 
 fn resultant_of(

@@ -118,7 +118,7 @@ impl Springs {
             let EdgeMoments::Contact(edge) = &unknowns.edges[e] else { continue };
             let Some(stretch) = edge.stretch else { continue };
             let (parameter, stiffness) = (springs.parameters, k / pair.length);
-            let weight = EdgeWeight::between(problem.section(), pair.first.map(|v| problem.mesh.points[v]));
+            let weight = EdgeWeight::of_pair(problem.section(), &problem.mesh, pair);
             springs.all.push(Spring {
                 first: stretch,
                 step: 1,

@@ -39,7 +39,7 @@ impl Friction {
 
     /// Friction of `pair` with a bound of zero, which problems do not have.
     pub(super) fn without_resistance(pair: &ContactPair, (mesh, section): (&Triangulation, Section)) -> Self {
-        let weight = EdgeWeight::between(section, pair.first.map(|v| mesh.points[v]));
+        let weight = EdgeWeight::of_pair(section, mesh, pair);
         Friction { bound: [0.0; 2], tangent: tangent(pair, mesh), weight }
     }
 

@@ -35,7 +35,7 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> (Cow<'a, Proble
             let Some(k) = pair.stiffness.take() else { continue };
             let s = pair.first.map(mean);
             pair.gap = [pair.gap[0] + s[0], pair.gap[1] + s[1]];
-            let weight = EdgeWeight::between(problem.section(), pair.first.map(|v| problem.mesh.points[v]));
+            let weight = EdgeWeight::of_pair(problem.section(), &problem.mesh, pair);
             stored += 0.5 * k * pair.length * side::integral(&s, &weight.times(&s));
         }
     }
