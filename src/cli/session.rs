@@ -129,11 +129,11 @@ impl Session {
         drop(given);
         // A displacement that is handed in belongs to the mesh as given.
         let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
-        let adapt = |problem, options: &Options| self.adapted(problem, (method.as_ref(), options), solve, limits);
+        let adapt =
+            |problem, options: &Options| self.adapted(problem, (method.as_ref(), options), &admission, (solve, limits));
         let (adapted, coulomb) = if follows_coulomb(&problem.scene) {
-            let tolerance = if solve.is_adaptive() { solve.tolerance } else { None };
             let told = |text: &str| self.progress.phase(text.to_string());
-            study::solve_coulomb_to(tolerance, problem, (method.as_ref(), &options), certify, adapt, told)
+            study::solve_coulomb_to(solve.tolerance, problem, (method.as_ref(), &options), certify, adapt, told)
                 .map(|(adapted, coulomb)| (adapted, Some(coulomb)))
         } else if solve.is_adaptive() {
             adapt(problem, &options).map(|adapted| (adapted, None))
@@ -159,20 +159,20 @@ impl Session {
         &self,
         problem: Problem,
         (method, options): (&dyn DualMethod, &Options),
-        solve: &SolveOptions,
-        limits: &Limits,
+        admission: &Admission,
+        (solve, limits): (&SolveOptions, &Limits),
     ) -> Result<Adapted, StudyError> {
         let Limits { max_triangles, max_seconds } = *limits;
         let tolerance = solve.tolerance.unwrap_or(f64::INFINITY);
         let adapt = solve.adapt();
         let goal = Goal { max_triangles, max_seconds, adapt, wanted: solve.wanted(), ..Goal::new(tolerance) };
-        let (first, admission) = (Size::of(&problem), Admission::new(method, self.budget));
+        let first = Size::of(&problem);
         let (mut rows, mut warned) = (Vec::new(), false);
         let told = |row: &HistoryRow| {
             let bound = 100.0 * row.relative_error_bound;
             let mut text = format!("{} triangles: guaranteed error {bound:.3} %, refining", row.triangles);
             rows.push(*row);
-            if let Some(pace) = outlook(&rows, &goal, &admission, first.grown(row.triangles as f64)) {
+            if let Some(pace) = outlook(&rows, &goal, admission, first.grown(row.triangles as f64)) {
                 if !std::mem::replace(&mut warned, true) {
                     self.progress.remark(&format!("{} triangles: {pace}", row.triangles));
                 }

@@ -42,8 +42,8 @@ pub fn active_sets(
         let changes = next.iter().zip(&states).filter(|(next, now)| next != now).count();
         (fewest, patience) = if changes < fewest { (changes, WITHOUT_GAIN) } else { (fewest, patience - 1) };
         history.push(changes);
-        let before = history.len().checked_sub(HALVED_IN + 1).map(|k| history[k]);
-        if program.form.is_loose() && before.is_some_and(|before| 2 * changes > before) {
+        let before = history.iter().nth_back(HALVED_IN);
+        if program.form.is_loose() && before.is_some_and(|before| 2 * changes > *before) {
             break;
         }
         states = next;

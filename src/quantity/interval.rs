@@ -24,11 +24,11 @@ use crate::element::polynomial::side;
 use crate::element::{Material, Samples, StressField};
 use crate::problem::{ContactPair, Problem, Scales};
 
-/// What rounding leaves in a value that was computed, relative to what the data can cause.
-const ROUNDED: f64 = 1e-11;
-
 /// Ends that are closer than this, relative to the value, are one but for rounding.
 const ONE: f64 = 1e-9;
+
+/// What rounding leaves in a value that was computed, relative to what the data can cause.
+const ROUNDED: f64 = 1e-11;
 
 /// What rounding leaves of projections and of means, relative to the largest that they can be.
 const ROUNDED_MEAN: f64 = 1e-12;

@@ -229,6 +229,9 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
         let of = |t: usize| std::iter::repeat_n(value(t), lattice.cells(t));
         (0..mesh.triangles.len()).flat_map(of).flat_map(i64::to_le_bytes).collect()
     };
+    let spread = |values: &[f64]| -> Vec<f64> {
+        values.iter().enumerate().flat_map(|(t, v)| std::iter::repeat_n(*v, lattice.cells(t))).collect()
+    };
     out.open("CellData", &[])?;
     out.array("triangle", "Int64", &[], on_cells(&|t| t as i64))?;
     out.array("body", "Int64", &[], on_cells(&|t| mesh.body[t] as i64))?;
@@ -242,15 +245,11 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
     if let Some(friction) = OnTriangles::of(dossier) {
         out.array("friction_state", "Int64", &[], on_cells(&|t| friction.state[t]))?;
         for (key, values) in [("tangential_traction", &friction.traction), ("friction_bound", &friction.bound)] {
-            let values: Vec<f64> =
-                values.iter().enumerate().flat_map(|(t, v)| std::iter::repeat_n(*v, lattice.cells(t))).collect();
-            out.field(key, &[], &values)?;
+            out.field(key, &[], &spread(values))?;
         }
     }
     for map in dossier.maps.iter().filter(|map| map.values.len() == mesh.triangles.len()) {
-        let of = |(t, v): (usize, &f64)| std::iter::repeat_n(*v, lattice.cells(t));
-        let values: Vec<f64> = map.values.iter().enumerate().flat_map(of).collect();
-        out.field(&map.key, &[], &values)?;
+        out.field(&map.key, &[], &spread(&map.values))?;
     }
     out.close("CellData")
 }

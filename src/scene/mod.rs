@@ -31,7 +31,7 @@ pub use quantity::{Component, Extent, Holder, Invariant, Mode, PointValue, Quant
 pub use reading::error::{Fault, SceneError};
 pub use reading::raw::schema;
 pub use reading::read::BoundaryUse;
-pub(crate) use reading::source::counted;
+pub(crate) use reading::source::{capital, counted};
 pub(crate) use reading::validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.

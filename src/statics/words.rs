@@ -4,6 +4,7 @@ use super::components::{Components, RigidMotion};
 use super::loads::LoadResultants;
 use super::restraint::{Group, Run};
 use crate::problem::{Condition, Problem};
+use crate::scene::capital;
 
 /// Displacements and jumps below this fraction of the largest displacement count as none.
 const STILL: f64 = 1e-5;
@@ -278,11 +279,6 @@ fn list(items: &[String]) -> String {
         [one] => one.clone(),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn near_zero(x: f64, scale: f64) -> String {

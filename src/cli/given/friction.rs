@@ -24,8 +24,7 @@ pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
             "leave `friction` out of the scene, or use `solve`, `verify` or `certify`",
         ));
     }
-    refuse_coulomb(scene)?;
-    Ok(())
+    refuse_coulomb(scene)
 }
 
 /// Refuses what is not there for Coulomb friction, and is for friction with a given bound.

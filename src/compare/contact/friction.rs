@@ -135,12 +135,9 @@ pub fn on_contact(
     }
     let length: f64 = interface.pairs.iter().map(|pair| pair.arc[1] - pair.arc[0]).sum();
     let fraction = |state: FrictionState| {
-        zones
-            .iter()
-            .filter(|zone: &&FrictionZone| zone.state == state)
-            .map(|zone| zone.to - zone.from)
-            .fold(0.0, |sum, part| sum + part)
-            / length
+        let own = zones.iter().filter(|zone: &&FrictionZone| zone.state == state);
+        // The sum of nothing would be minus zero.
+        own.map(|zone| zone.to - zone.from).fold(0.0, |sum, part| sum + part) / length
     };
     let summary = FrictionSummary {
         kind: if coefficient.is_some() { "coulomb" } else { "bound" }.to_string(),

@@ -68,7 +68,7 @@ pub(super) const REGIMES: &[Regime] = &[
         labels: &["to the right", "to the left"],
         reduced: &[0, 1],
         build: mirrored,
-        known: |_| held(),
+        known: |_| held().scaled(1.0, 1.0).mirrored(),
         ..PLAIN
     },
 ];

@@ -25,6 +25,7 @@ use crate::problem::{Problem, Scales};
 use crate::statics::{Wedged, friction_can_balance, wedged};
 use bounds::{Bounds, apart, distances};
 use iteration::{Iteration, iterate};
+pub(super) use summary::in_verdict;
 
 /// A bound that keeps sides sticking, in the largest stress that data can cause.
 const STICKING: f64 = 1e6;

@@ -89,6 +89,13 @@ impl Coulomb {
     }
 }
 
+/// What a verdict says beside the bracket for the bound that was used.
+pub fn in_verdict(coulomb: &CoulombSummary) -> String {
+    let [of_every_solution, _, of_how_many] = &coulomb.statements;
+    let all = [of_every_solution, of_how_many].into_iter().chain(&coulomb.wedging);
+    all.map(|sentence| format!(" {sentence}")).collect()
+}
+
 fn start(start: &Start) -> CoulombStart {
     let (outcome, iterations) = match start.end {
         End::Arrived(count) => (CoulombOutcome::Arrived, Some(count)),

@@ -6,7 +6,7 @@ pub(super) mod verdict;
 
 use super::Certified;
 use super::answers::Answer;
-use super::coulomb::Coulomb;
+use super::coulomb::{Coulomb, in_verdict};
 use super::curves;
 use super::quantity_checks::summaries;
 use super::ranges::{OtherEnd, data_range, in_words, ranges_note};
@@ -139,13 +139,7 @@ fn report(findings: &Findings<'_>) -> Report {
         status,
         verdict: verdict(findings, status, energy.as_ref(), &causes)
             + &across.as_ref().map_or_else(String::new, in_words)
-            + &coulomb.as_ref().map_or_else(String::new, |coulomb| {
-                let [of_all, _, how_many] = &coulomb.statements;
-                format!(
-                    " {}",
-                    [std::slice::from_ref(of_all), std::slice::from_ref(how_many), &coulomb.wedging].concat().join(" ")
-                )
-            }),
+            + &coulomb.as_ref().map_or_else(String::new, in_verdict),
         causes,
         energy,
         data_range: across,

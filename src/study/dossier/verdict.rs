@@ -4,6 +4,7 @@ use super::{Findings, in_numbers};
 use crate::cause::Cause;
 use crate::report::text::number::{digits_to_tell, percent, significant};
 use crate::report::{Energy, Status};
+use crate::scene::capital;
 use crate::study::coulomb::Coulomb;
 
 /// The verdict in one sentence.
@@ -21,12 +22,13 @@ pub(in crate::study) fn verdict(
     let bound = energy.map_or(String::new(), |e| {
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
         let (whose, of) = of_which(findings);
-        format!(
-            " {whose}he exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
+        let sentence = format!(
+            "{whose}the exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
             significant(e.lower, digits_to_tell(e.lower, e.upper)),
             significant(e.upper, digits_to_tell(e.lower, e.upper)),
             percent(e.relative_error_bound)
-        )
+        );
+        format!(" {}", capital(&sentence))
     });
     let excused = findings.comparison.checks.iter().filter(|c| c.excused && c.decides());
     let excused: Vec<&str> = excused.map(|c| c.name.as_str()).collect();
@@ -65,15 +67,15 @@ pub(in crate::study) fn verdict(
 /// Differences of a friction bound below this part are digits.
 const DIGITS: f64 = 1e-6;
 
-/// The problem that numbers are for where it is not the scene: how a sentence on the exact energy begins, and what follows "energy".
-fn of_which(findings: &Findings<'_>) -> (String, String) {
-    let Some(coulomb) = findings.coulomb else { return ("T".to_string(), String::new()) };
+/// The problem that numbers are for where it is not the scene: what precedes "the exact energy", and what follows it.
+fn of_which(findings: &Findings<'_>) -> (&'static str, String) {
+    let Some(coulomb) = findings.coulomb else { return ("", String::new()) };
     let off = match coulomb.farthest() {
         off if off < DIGITS => String::new(),
         off => format!(" but for {} of its force", percent(off)),
     };
     let what = format!(" (the bound is the coefficient of friction times the pressure{off})");
-    ("For the friction bound that was found, t".to_string(), what)
+    ("for the friction bound that was found, ", what)
 }
 
 /// Says where values lie that were given without a field and passed; `None` without any.
@@ -96,10 +98,11 @@ fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
     let upper = judged.admissible.upper();
     let (whose, bound) = of_which(findings);
-    format!(
-        " {whose}he {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {}, and the exact one is no lower than {}.",
+    let sentence = format!(
+        "{whose}the {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {}, and the exact one is no lower than {}.",
         percent(in_numbers(judged.relative_error(sharpest))),
         significant(upper, digits_to_tell(energy.lower, upper)),
         significant(energy.lower, digits_to_tell(energy.lower, upper)),
-    )
+    );
+    format!(" {}", capital(&sentence))
 }
