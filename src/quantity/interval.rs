@@ -15,6 +15,7 @@ use super::adjoint::revolved;
 use super::adjoint::revolved::Of;
 use super::adjoint::search::Search;
 use super::adjoint::springs::{middle_of, square_of, uncancelled_of};
+use super::ends::{clipped, outside};
 use super::functional::Functional;
 use super::functional::value::{displaced, value_of};
 use crate::bounds::energy::square;
@@ -120,12 +121,6 @@ impl Functional {
         let largest = ends.iter().filter(|end| end.is_finite()).fold(0.0_f64, |m, end| m.max(end.abs()));
         (ROUNDED * data).min((ONE * largest).max(zero))
     }
-}
-
-/// By how much `x` lies outside of an interval; zero inside, and no farther outside than `rounding`.
-pub fn outside([lower, upper]: [f64; 2], rounding: f64, x: f64) -> f64 {
-    let off = (lower - x).max(x - upper).max(0.0);
-    if off <= rounding { 0.0 } else { off }
 }
 
 /// What is known of a problem that was solved.
@@ -378,13 +373,6 @@ fn not_held(error: DualError) -> String {
         DualError::NotConverged { .. } | DualError::ContactUndetermined => NOT_HELD.to_string(),
         other => other.to_string(),
     }
-}
-
-/// What is left of an interval for a value that is never below zero, or never above.
-pub(crate) fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
-    let lower = if no_less { lower.max(upper.min(0.0)) } else { lower };
-    let upper = if no_more { upper.min(lower.max(0.0)) } else { upper };
-    [lower, upper]
 }
 
 /// The coefficients of t(λ), zero where there is no pressure: rounding holds nothing.

@@ -5,6 +5,7 @@
 //! ([`Form`]).
 
 mod adjoint;
+mod ends;
 mod functional;
 mod interval;
 mod invariant;
@@ -12,11 +13,12 @@ mod point;
 mod tip;
 
 pub(crate) use adjoint::pass::strained;
+pub(crate) use ends::clipped;
+pub use ends::outside;
 pub use functional::form::Form;
 pub use functional::value::{displaced, value_of};
 pub use functional::{Functional, Kind, NotBounded};
-pub(crate) use interval::clipped;
-pub use interval::{Interval, Known, outside};
+pub use interval::{Interval, Known};
 pub use invariant::Invariants;
 pub use point::Wanted;
 pub use tip::NoTip;

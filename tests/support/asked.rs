@@ -32,28 +32,18 @@ pub fn everything(problem: &Problem, random: &mut Random) -> Vec<Quantity> {
         all.push(quantity("loaded", Target::Displacement { of, direction }));
     }
     for (contact, interface) in problem.interfaces.iter().enumerate().take(2) {
-        all.push(quantity(
-            &format!("contact {contact}"),
-            Target::ContactForce { contact, tangential: false, window: None },
-        ));
-        if problem.rubs_on(contact) {
-            all.push(quantity(
-                &format!("friction {contact}"),
-                Target::ContactForce { contact, tangential: true, window: None },
-            ));
-        }
+        let mut forces = |name: String, window| {
+            let of = |tangential| Target::ContactForce { contact, tangential, window };
+            if problem.rubs_on(contact) {
+                all.push(quantity(&format!("friction on {name}"), of(true)));
+            }
+            all.push(quantity(&name, of(false)));
+        };
+        forces(format!("contact {contact}"), None);
         // Where a window bends there is a vertex, on this mesh and on finer ones.
         let count = interface.pairs.len();
         if count >= 4 {
-            let window = Some([0, 1, 2, 3].map(|i| interface.pairs[i * count / 4].arc[0]));
-            all.push(quantity(
-                &format!("window {contact}"),
-                Target::ContactForce { contact, tangential: false, window },
-            ));
-            if problem.rubs_on(contact) {
-                let target = Target::ContactForce { contact, tangential: true, window };
-                all.push(quantity(&format!("friction window {contact}"), target));
-            }
+            forces(format!("window {contact}"), Some([0, 1, 2, 3].map(|i| interface.pairs[i * count / 4].arc[0])));
         }
     }
     for support in 0..scene.supports.len().min(2) {
