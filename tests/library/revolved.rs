@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::support::random::Random;
+use hypercircle::bounds::flat_rings;
 use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
@@ -331,4 +332,24 @@ fn what_cannot_be_beside_an_axis_is_refused() {
     }
     // Rollers there say what is so anyway.
     problem(&(head("axisymmetric", 0.5) + &body(0.0) + &rollers("rod_in")));
+}
+
+/// The mesher makes triangles as long as the ring is wide where they may be that large.
+#[test]
+fn a_ring_too_flat_for_its_digits_is_told() {
+    let told = |kinematics: &str, height: f64, degree: usize| {
+        let text = head(kinematics, 0.5)
+            + &rectangle("rod", [0.5, 1.0], [0.0, height], 0.3)
+            + &rollers("rod_foot")
+            + &rollers("rod_in")
+            + &pressure("rod_top", 0.5);
+        let options = Options { elements: Elements::Uniform(block(degree)), ..Options::default() };
+        let found = certify_divided(problem(&text), &Condensed::default(), &options).expect("a solution");
+        let note = flat_rings(&found.problem, &found.dual.stress);
+        assert!(note.as_ref().is_none_or(|note| note.weakens_guarantee && note.text.contains("times as long as high")));
+        note.is_some()
+    };
+    assert!(told("axisymmetric", 1e-3, 4) && told("axisymmetric", 1e-3, 3));
+    assert!(!told("axisymmetric", 1e-3, 2) && told("axisymmetric", 1e-4, 2));
+    assert!(!told("axisymmetric", 0.1, 4) && !told("plane-strain", 1e-3, 4));
 }

@@ -18,8 +18,11 @@
 //!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
 //!    measured.
 pub(super) mod counted;
+mod flat;
 pub(super) mod sum;
 pub(super) mod terms;
+
+pub use flat::flat_rings;
 
 use rayon::prelude::*;
 
