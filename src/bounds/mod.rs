@@ -25,8 +25,8 @@ pub use gap::{LocalGap, local_gap};
 pub use jump::{jumps, jumps_along, openings, openings_within, side_coefficients};
 pub use mid::{mid_field, stress_of};
 pub use ranks::on_ranks::{make_part, on_ranks};
+pub use rounding::ROUNDING_PER_TERM;
 pub use rounding::sum::Sum;
-pub use rounding::{ROUNDING_PER_TERM, flat_rings};
 pub use springs::{OnSprings, spring_jumps, spring_tractions};
 pub use upper::{
     Beside, Groundwork, Hold, Holds, Nearest, NoUpperBound, NodalValues, Nodes, Prepared, Pull, Repair, Row, Until,

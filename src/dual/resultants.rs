@@ -2,7 +2,8 @@
 //!
 //! The tractions on its sides and its body force must have neither a resultant nor a moment. In the basis of an element that
 //! is so to the last digits; where bases are shared by triangles that are congruent to most of their digits, or where numbers
-//! resolve a triangle badly, it is so to fewer, and tractions that are continuous do not show it.
+//! resolve a triangle badly, it is so to fewer, and tractions that are continuous do not show it. Inside, tractions across the segments from the
+//! corners to the centroid must be continuous.
 
 use rayon::prelude::*;
 
@@ -10,8 +11,8 @@ use crate::element::geometry::from_centroid;
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 
-/// Σ |resultant| · |displacement| + |moment| · |rotation| over all triangles, per unit thickness; `moments` are those of
-/// the displacement on the edges, ∫ u B_k ds.
+/// Σ |resultant| · |displacement| + |moment| · |rotation| + ∫ |jump inside| · |displacement| over all triangles, per unit thickness;
+/// `moments` are those of the displacement on the edges, ∫ u B_k ds.
 pub fn work_within(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> f64 {
     let mesh = &problem.mesh;
     let mean = |e: usize| {
@@ -40,7 +41,7 @@ pub fn work_within(problem: &Problem, stress: &StressField, moments: &SideValues
         // The midpoints of two sides lie half of the third apart.
         let apart = |i: usize| [0, 1].map(|c| of_edges[i][c] - of_edges[(i + 1) % 3][c]);
         let turned = (0..3).map(apart).fold(0.0_f64, |m, [x, y]| m.max(x.hypot(y))) / (0.5 * longest);
-        fx.hypot(fy) * largest + moment.abs() * turned
+        (fx.hypot(fy) + jumps(stress, t, corners)) * largest + moment.abs() * turned
     };
     let terms: Vec<f64> = (0..stress.len()).into_par_iter().with_min_len(256).map(of).collect();
     terms.into_iter().sum()
@@ -73,6 +74,16 @@ fn resultant(stress: &StressField, t: usize, corners: [[f64; 2]; 3], force: [f64
     sum
 }
 
+/// ∫ |jump of traction| along the three segments from the corners of triangle `t` to its centroid, which is the origin of `corners`.
+fn jumps(stress: &StressField, t: usize, corners: [[f64; 2]; 3]) -> f64 {
+    let of_segment = |corner: usize| {
+        let [dx, dy] = corners[corner];
+        let size = |[xx, yy, xy]: [f64; 3]| (xx * dy - xy * dx).hypot(xy * dy - yy * dx);
+        stress.jump_inside(t, corner).map(size).sum::<f64>()
+    };
+    (0..3).map(of_segment).sum::<f64>() / (stress.degree(t) as f64 + 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -92,6 +103,17 @@ mod tests {
         assert!(found.iter().all(|x| x.abs() < 1e-15), "{found:?}");
         let found = resultant(&constant([0.0; 3]), 0, corners, [0.3, -0.4]);
         assert_eq!(found, [0.3, -0.4, 0.0]);
+    }
+
+    /// A pressure q on the first subtriangle alone jumps by q across two segments.
+    #[test]
+    fn jumps_inside_are_seen() {
+        let corners = from_centroid(CORNERS);
+        let mut stress = StressField::zeros(2, 1);
+        assert_eq!(jumps(&stress, 0, corners), 0.0);
+        stress.block_mut(0)[..6].fill([3.0, 3.0, 0.0]);
+        let expected = 3.0 * (corners[1][0].hypot(corners[1][1]) + corners[2][0].hypot(corners[2][1]));
+        assert!((jumps(&stress, 0, corners) - expected).abs() < 1e-14 * expected);
     }
 
     /// (xx, yy, xy) = (−Fx x, −Fy y, 0) balances F, wherever its origin is; turned by an antisymmetric part it would not.

@@ -142,18 +142,36 @@ impl StressField {
     pub fn on_side(&self, t: usize, side: usize) -> impl Iterator<Item = [f64; 3]> + use<'_> {
         let degree = self.degree(t);
         let nodes = &self.block(t)[side * lattice_len(degree)..][..lattice_len(degree)];
-        let matrix = from_equispaced(degree);
-        // Nodes of the side are those without a part of the centroid: the first in each row of the lattice.
-        let first = move |j: usize| j * (j + 1) / 2;
-        (0..=degree).map(move |k| {
-            let mut value = [0.0; 3];
-            for j in 0..=degree {
-                let weight = matrix[k * (degree + 1) + j];
-                (0..3).for_each(|c| value[c] += weight * nodes[first(j)][c]);
-            }
-            value
+        to_bernstein(degree, move |j| nodes[triangle::number([degree - j, j, 0])])
+    }
+
+    /// By how much the values (xx, yy, xy) on the two subtriangles beside the segment from corner `corner` of triangle `t` to its centroid
+    /// differ, as Bernstein coefficients of the degree there.
+    pub fn jump_inside(&self, t: usize, corner: usize) -> impl Iterator<Item = [f64; 3]> + use<'_> {
+        let degree = self.degree(t);
+        let nodes = |sub: usize| &self.block(t)[sub * lattice_len(degree)..][..lattice_len(degree)];
+        // The second side of one, and the third of the other.
+        let (one, other) = (nodes((corner + 1) % 3), nodes((corner + 2) % 3));
+        to_bernstein(degree, move |j| {
+            let a = one[triangle::number([0, degree - j, j])];
+            let b = other[triangle::number([degree - j, 0, j])];
+            [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
         })
     }
+}
+
+/// Bernstein coefficients of the polynomial that has these values at equally spaced points.
+fn to_bernstein<'a>(degree: usize, at: impl Fn(usize) -> [f64; 3] + 'a) -> impl Iterator<Item = [f64; 3]> + 'a {
+    let matrix = from_equispaced(degree);
+    (0..=degree).map(move |k| {
+        let mut value = [0.0; 3];
+        for j in 0..=degree {
+            let weight = matrix[k * (degree + 1) + j];
+            let own = at(j);
+            (0..3).for_each(|c| value[c] += weight * own[c]);
+        }
+        value
+    })
 }
 
 /// The matrix that gives Bernstein coefficients of degree p, row by row, from values at p + 1 equally spaced points.

@@ -7,22 +7,20 @@
 //!    terms alone, because near ν = ½, in bodies that turn and in slivers the numbers behind a term are much larger
 //!    than the term. The sums themselves are compensated (Neumaier) and add one unit of the result, and where ranks have made sums of
 //!    their terms, one unit of those.
-//! 2. *Equilibrium.* λ_h misses it by what [`crate::dual::Equilibrium`] measures on every edge and of every triangle by itself. An exactly
+//! 2. *Equilibrium.* λ_h misses it by what [`crate::dual::Equilibrium`] measures on every edge, of every triangle by itself, and across the
+//!    segments inside it. An exactly
 //!    equilibrated field λ_h + δ is near; aλ_h being the strain of the edge displacement, Π changes by the traction
 //!    jumps of δ times the moments of that displacement, up to ½‖δ‖²_a, the square of a rounding error. The absolute
 //!    values are added up, so that no cancellation is relied upon.
-//! 3. *Equilibrium within triangles in balance*, where it is a property of the basis and not measured: a rounding error of λ_h
+//! 3. *Equilibrium within subtriangles*, where it is a property of the basis and not measured: a rounding error of λ_h
 //!    times the displacement along the boundary of the triangle.
 //! 4. *Admissibility* of the displacement: supports and gaps are met to a rounding error of the displacement, and what
 //!    that is worth is the traction times that error; the same expression. Where triangles are tiny, rounding of their corners
 //!    turns the edges of a roller against each other, and a displacement along one has a part across another. That part is
 //!    measured.
 pub(super) mod counted;
-mod flat;
 pub(super) mod sum;
 pub(super) mod terms;
-
-pub use flat::flat_rings;
 
 use rayon::prelude::*;
 

@@ -16,6 +16,7 @@
 //! fields, and enclosed (`rule.rs`) for everything that is a bound.
 
 mod energies;
+mod fields;
 mod householder;
 mod initial;
 mod law;

@@ -2,27 +2,25 @@
 
 use nalgebra::DMatrix;
 
-use super::householder::range_and_rest;
+use super::fields::{Fields, Raw, Repair};
 use super::law::Law;
 use super::rule::rule;
 use super::stress::to_bernstein;
 use super::{Held, ROUGH};
 use crate::element::field::{from_equispaced, lattice};
 use crate::element::geometry::{from_centroid, gradients};
-use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::polynomial::triangle;
-use crate::element::split::polynomials::{Jet, values, with_derivatives};
 use crate::element::{Layout, Modes, ModesMut, lattice_len};
 
 /// A triangle beside the axis.
 #[derive(Debug, Clone)]
 pub struct Ring {
-    degree: usize,
+    pub(super) degree: usize,
     /// Corners as seen from the centroid.
-    corners: [[f64; 2]; 3],
+    pub(super) corners: [[f64; 2]; 3],
     radii: [f64; 3],
     /// √area.
-    unit: f64,
+    pub(super) unit: f64,
 }
 
 impl Ring {
@@ -47,13 +45,18 @@ impl Ring {
         Layout { parameters, tractions: 6 * (self.degree + 1), kept }
     }
 
+    /// The number of corners on the axis.
+    pub(super) fn ends_on_axis(&self) -> usize {
+        self.radii.iter().filter(|r| **r == 0.0).count()
+    }
+
     /// The number of traction coefficients that do not vanish on the axis.
-    fn met(&self) -> usize {
+    pub(super) fn met(&self) -> usize {
         (0..3).map(|side| 2 * (0..=self.degree).filter(|k| !self.vanishes(side, *k)).count()).sum()
     }
 
     /// Whether coefficient `k` of the traction on a side belongs to the axis.
-    fn vanishes(&self, side: usize, k: usize) -> bool {
+    pub(super) fn vanishes(&self, side: usize, k: usize) -> bool {
         let ends = [self.radii[(side + 1) % 3] == 0.0, self.radii[(side + 2) % 3] == 0.0];
         super::vanishes(ends, k, self.degree)
     }
@@ -63,8 +66,7 @@ impl Ring {
     /// The body force is (a + b r, `axial`), `radial` being a and b; `held` is an initial strain.
     pub fn compute(&self, law: &Law, (radial, axial): ([f64; 2], f64), held: Option<Held>, out: ModesMut<'_>) {
         let raw = Raw::new(self);
-        let tractions = self.tractions(&raw);
-        let fields = Fields::new(self, &raw, &tractions);
+        let fields = Fields::new(self, &raw);
         let loaded = radial != [0.0; 2] || axial != 0.0 || held.is_some();
         let balancing = self.balancing(axial);
         let given = Given { balancing: &balancing, radial, held };
@@ -79,10 +81,10 @@ impl Ring {
             x[(last, k)] = unit;
             backward(&triangle, x.column_mut(k).as_mut_slice(), last + 1);
         }
-        let coefficients = &fields.columns * x;
-        let of_modes = &tractions * &coefficients;
-        out.traction.copy_from_slice(of_modes.as_slice());
-        let nodal = &raw.nodal * &coefficients;
+        let repair = Repair::inside(self, &raw);
+        let mut nodal = &raw.nodal * (&fields.columns * x);
+        repair.apply(&mut nodal);
+        out.traction.copy_from_slice(self.tractions(&nodal).as_slice());
         let size = nodal.nrows();
         out.kept[..nodal.len()].copy_from_slice(nodal.as_slice());
         let particular = &mut out.kept[parameters * size..];
@@ -92,16 +94,11 @@ impl Ring {
         if loaded {
             let mut y: Vec<f64> = (0..count).map(|i| -triangle[(i, count)]).collect();
             backward(&triangle, &mut y, count);
-            let coefficients = &fields.columns * DMatrix::from_vec(count, 1, y);
-            let nodal = &raw.nodal * &coefficients;
-            for ((out, own), given) in particular.iter_mut().zip(nodal.iter()).zip(balancing.as_flattened()) {
-                *out = own + given;
-            }
-            let of_given = self.traction_of(&balancing);
-            let of_fields = &tractions * coefficients;
-            for ((out, own), given) in out.particular_traction.iter_mut().zip(of_fields.iter()).zip(of_given) {
-                *out = own + given;
-            }
+            let given = DMatrix::from_column_slice(size, 1, balancing.as_flattened());
+            let mut nodal = given + &raw.nodal * (&fields.columns * DMatrix::from_vec(count, 1, y));
+            repair.apply(&mut nodal);
+            particular.copy_from_slice(nodal.as_slice());
+            out.particular_traction.copy_from_slice(self.tractions(&nodal).as_slice());
             *out.particular_energy = (triangle[(count, count)] / unit).powi(2);
         }
     }
@@ -109,14 +106,15 @@ impl Ring {
     /// Nodal values of an orthonormal basis of the fields without traction.
     pub fn unloaded(&self, law: &Law) -> Vec<Vec<[f64; 3]>> {
         let raw = Raw::new(self);
-        let fields = Fields::new(self, &raw, &self.tractions(&raw));
+        let fields = Fields::new(self, &raw);
         let triangle = self.triangle(law, &raw, &fields.columns, None);
-        let count = fields.columns.ncols();
+        let (count, repair) = (fields.columns.ncols(), Repair::unloaded(self, &raw));
         let field = |k: usize| {
             let mut x = vec![0.0; count];
             x[k] = law.unit().sqrt();
             backward(&triangle, &mut x, k + 1);
-            let nodal = &raw.nodal * (&fields.columns * DMatrix::from_vec(count, 1, x));
+            let mut nodal = &raw.nodal * (&fields.columns * DMatrix::from_vec(count, 1, x));
+            repair.apply(&mut nodal);
             nodal.as_slice().as_chunks::<3>().0.to_vec()
         };
         (1..=fields.free).map(field).collect()
@@ -152,7 +150,7 @@ impl Ring {
     }
 
     /// The corners of a subtriangle as seen from the centroid.
-    fn sub_corners(&self, sub: usize) -> [[f64; 2]; 3] {
+    pub(super) fn sub_corners(&self, sub: usize) -> [[f64; 2]; 3] {
         [self.corners[(sub + 1) % 3], self.corners[(sub + 2) % 3], [0.0; 2]]
     }
 
@@ -178,16 +176,16 @@ impl Ring {
     }
 
     /// Outward unit normal of a side.
-    fn normal(&self, side: usize) -> [f64; 2] {
+    pub(super) fn normal(&self, side: usize) -> [f64; 2] {
         let [a, b, _] = self.sub_corners(side);
         let (x, y) = (b[0] - a[0], b[1] - a[1]);
         [y / x.hypot(y), -x / x.hypot(y)]
     }
 
-    /// Bernstein coefficients of the tractions of all raw fields, one column each.
-    fn tractions(&self, raw: &Raw) -> DMatrix<f64> {
-        let mut out = DMatrix::zeros(6 * (self.degree + 1), raw.nodal.ncols());
-        for (i, field) in raw.nodal.column_iter().enumerate() {
+    /// Bernstein coefficients of the tractions of the fields with these nodal values, one column each.
+    fn tractions(&self, nodal: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut out = DMatrix::zeros(6 * (self.degree + 1), nodal.ncols());
+        for (i, field) in nodal.column_iter().enumerate() {
             let (values, _) = field.as_slice().as_chunks::<3>();
             out.column_mut(i).copy_from_slice(&self.traction_of(values));
         }
@@ -271,7 +269,7 @@ struct Given<'a> {
     held: Option<Held>,
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -281,124 +279,6 @@ fn backward(r: &DMatrix<f64>, b: &mut [f64], count: usize) {
         b[k] /= r[(k, k)];
         let x = b[k];
         (0..k).for_each(|i| b[i] -= r[(i, k)] * x);
-    }
-}
-
-/// Σ_rr of degree p and χ of degree p + 1, without a constant, on each subtriangle by itself.
-struct Raw {
-    /// Number of fields of one subtriangle.
-    fields: usize,
-    /// Nodal values (rr, zz, rz) of all three subtriangles, one column a field.
-    nodal: DMatrix<f64>,
-}
-
-impl Raw {
-    fn new(ring: &Ring) -> Self {
-        let p = ring.degree;
-        let (n, of_sigma, of_chi) = (lattice_len(p), lattice_len(p), lattice_len(p + 1) - 1);
-        let fields = of_sigma + of_chi;
-        let mut nodal = DMatrix::zeros(9 * n, 3 * fields);
-        for sub in 0..3 {
-            let g = gradients(ring.sub_corners(sub));
-            for (node, l) in lattice(p).enumerate() {
-                let jets: [Jet; 3] = [0, 1, 2].map(|i| [l[i], ring.unit * g[i][0], ring.unit * g[i][1]]);
-                let row = 3 * (n * sub + node);
-                for (i, value) in values(p, l).into_iter().enumerate() {
-                    nodal[(row, fields * sub + i)] = value;
-                }
-                for (i, [_, along, up]) in with_derivatives(p + 1, jets).into_iter().skip(1).enumerate() {
-                    let column = fields * sub + of_sigma + i;
-                    nodal[(row + 1, column)] = -along;
-                    nodal[(row + 2, column)] = up;
-                }
-            }
-        }
-        Raw { fields, nodal }
-    }
-
-    /// The coefficients of uniform pressure: Σ_rr = r and χ = −r²/2, r counted from the centroid in the square.
-    fn pressure(&self, ring: &Ring) -> Vec<f64> {
-        let p = ring.degree;
-        let of_sigma = lattice_len(p);
-        let mut out = vec![0.0; 3 * self.fields];
-        for (sub, out) in out.chunks_exact_mut(self.fields).enumerate() {
-            let (radii, corners) = (ring.sub_radii(sub), ring.sub_corners(sub));
-            let centre = radii[2];
-            for &(l, weight) in triangle_rule(2 * p + 2) {
-                let (x, r) = (dot(corners.map(|q| q[0]), l), dot(radii, l));
-                let chi = -(centre * x + 0.5 * x * x) / ring.unit;
-                for (out, value) in out.iter_mut().zip(values(p, l)) {
-                    *out += weight * value * r;
-                }
-                for (out, value) in out[of_sigma..].iter_mut().zip(values(p + 1, l).into_iter().skip(1)) {
-                    *out += weight * value * chi;
-                }
-            }
-        }
-        out
-    }
-}
-
-/// The fields of the element, by their coefficients in the raw ones.
-struct Fields {
-    /// In the order of the columns.
-    columns: DMatrix<f64>,
-    /// Number of those without traction.
-    free: usize,
-}
-
-impl Fields {
-    fn new(ring: &Ring, raw: &Raw, tractions: &DMatrix<f64>) -> Self {
-        let (all, kept) = range_and_rest(ring.conditions(raw).transpose(), usize::MAX);
-        let space = all.columns(kept, all.ncols() - kept).into_owned();
-        let (turned, met) = range_and_rest((tractions * &space).transpose(), ring.met() - 1);
-        let ordered = &space * &turned;
-        let free = ordered.ncols() - met;
-        let pressure = DMatrix::from_vec(space.nrows(), 1, raw.pressure(ring)).normalize();
-        let part = ordered.columns(0, met).transpose() * &pressure;
-        let (others, _) = range_and_rest(part, 1);
-        let mut columns = DMatrix::zeros(space.nrows(), met + free);
-        columns.column_mut(0).copy_from(&pressure);
-        columns.columns_mut(1, free).copy_from(&ordered.columns(met, free));
-        columns.columns_mut(1 + free, met - 1).copy_from(&(ordered.columns(0, met) * others.columns(1, met - 1)));
-        Fields { columns, free }
-    }
-}
-
-impl Ring {
-    /// What vanishes for a field of the element: the jumps of Σ n at the nodes of the inner segments, and Σ on the axis.
-    fn conditions(&self, raw: &Raw) -> DMatrix<f64> {
-        let p = self.degree;
-        let n = lattice_len(p);
-        let mut rows: Vec<Vec<(usize, f64)>> = Vec::new();
-        for corner in 0..3 {
-            let [x, y] = self.corners[corner];
-            let (c, s) = (y / x.hypot(y), -x / x.hypot(y));
-            // The segment is the second side of one subtriangle, and the third of the other.
-            let (one, other) = ((corner + 1) % 3, (corner + 2) % 3);
-            for k in 0..=p {
-                let a = 3 * (n * one + triangle::number([0, p - k, k]));
-                let b = 3 * (n * other + triangle::number([p - k, 0, k]));
-                rows.push(vec![(a, c), (a + 2, s), (b, -c), (b + 2, -s)]);
-                rows.push(vec![(a + 2, c), (a + 1, s), (b + 2, -c), (b + 1, -s)]);
-            }
-        }
-        for sub in 0..3 {
-            for (node, l) in lattice(p).enumerate() {
-                if dot(self.sub_radii(sub), l) == 0.0 {
-                    rows.extend((0..3).map(|c| vec![(3 * (n * sub + node) + c, 1.0)]));
-                }
-            }
-        }
-        let mut out = DMatrix::zeros(rows.len(), raw.nodal.ncols());
-        for (i, row) in rows.iter().enumerate() {
-            for &(at, weight) in row {
-                for j in 0..raw.nodal.ncols() {
-                    out[(i, j)] += weight * raw.nodal[(at, j)];
-                }
-            }
-        }
-        out
     }
 }
 

@@ -121,7 +121,7 @@ pub(super) const REGIMES: &[Regime] = &[
         parameter: "height",
         truth: CLOSED,
         values: &[0.5, 0.1, 1e-2, 1e-3, 1e-4],
-        reduced: &[0, 2],
+        reduced: &[0, 3],
         build: |height| flat(height).problem(),
         known: |height| flat(height).known(),
         degrees: true,

@@ -10,7 +10,7 @@ use super::coulomb::{Coulomb, in_verdict};
 use super::curves;
 use super::quantity_checks::summaries;
 use super::ranges::{OtherEnd, data_range, in_words, ranges_note};
-use crate::bounds::{Bracket, UpperBound, flat_rings};
+use crate::bounds::{Bracket, UpperBound};
 use crate::cause::causes;
 use crate::compare::Comparison;
 use crate::diagnose::Diagnosis;
@@ -105,7 +105,6 @@ fn report(findings: &Findings<'_>) -> Report {
     notes.extend(statics.notes.iter().map(remark));
     notes.extend(dual.notes.iter().map(remark));
     notes.extend(findings.notes.iter().cloned());
-    notes.extend(flat_rings(problem, &dual.stress));
     // A finer mesh for the sake of the verdict keeps the edges.
     let followed = if findings.finer.is_none() { findings.history.as_slice() } else { &[] };
     notes.extend(curves::remarks(findings.certified, followed));
