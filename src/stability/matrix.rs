@@ -175,14 +175,15 @@ fn tasks(what: &Sweep<'_>, regime: &Regime, step: usize, first: bool) -> Vec<Tas
     tasks
 }
 
-/// Whether a method is run in a regime: not without a step length where that is swept, and those of higher degree in a few
-/// rows only of a reduced matrix.
+/// True if a method is run in a regime. Only Uzawa's is where step lengths are swept. In most rows of a reduced matrix stresses are linear, and
+/// displacements of one degree, the highest.
 fn is_run(what: &Sweep<'_>, regime: &Regime, method: Method) -> bool {
     if regime.is_step_length {
-        method == Method::UZAWA
-    } else {
-        regime.degrees || !(what.reduced && method.is_higher())
+        return method == Method::UZAWA;
     }
+    let higher = |other: &Method| other.is_primal() && other.degree() > method.degree();
+    let beside_another = method.is_higher() || method.is_primal() && what.methods.iter().any(higher);
+    regime.degrees || !(what.reduced && beside_another)
 }
 
 fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<OsString> {
@@ -190,7 +191,9 @@ fn options(what: &Sweep<'_>, regime: &Regime, step: usize, task: Task) -> Vec<Os
     let mut option = |name: &str, value: String| arguments.extend([name.into(), value.into()]);
     let methods = match task {
         Task::One(method) => vec![method],
-        Task::Primal => what.methods.iter().copied().filter(|method| method.is_primal()).collect(),
+        Task::Primal => {
+            what.methods.iter().copied().filter(|method| method.is_primal() && is_run(what, regime, *method)).collect()
+        }
         Task::Finer => {
             option("--refine", if heavy(regime, step) { 1 } else { FINER }.to_string());
             vec![Method::CONDENSED]
