@@ -34,7 +34,8 @@ def arguments() -> argparse.Namespace:
 def run(options: argparse.Namespace) -> None:
     """Read, solve for every degree, and only then write."""
     from . import compat
-    from .exchange import read_problem, write_result
+    from .exchange import read_problem
+    from .results import write_result
     from .run import solve_all
 
     comm = compat.MPI.COMM_WORLD

@@ -1,17 +1,17 @@
-"""The two files shared with the caller: ``problem.json`` in, ``primal-P*.json`` out."""
+"""The problem that the caller hands in, ``problem.json``."""
 
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from dataclasses import dataclass
 from math import comb
 from pathlib import Path
 
 import numpy as np
 
-from hypercircle_process import BadExchange, Failure
+from hypercircle_process import BadExchange
+
+from .records import array, column, get, index_column, indices, numbers, records, scalar
 
 FORMAT = "hypercircle-exchange"
 VERSION = 1
@@ -183,34 +183,34 @@ def read_problem(path: Path) -> Problem:
 
 def parse_problem(data: dict) -> Problem:
     """Check the contents of ``problem.json``; :class:`BadExchange` names the key that is wrong."""
-    kinematics = _get(data, "kinematics")
+    kinematics = get(data, "kinematics")
     if kinematics not in KINEMATICS:
         raise BadExchange(f"kinematics is {kinematics!r}, expected one of {', '.join(KINEMATICS)}")
-    revolution = _revolution(_get(data, "revolution")) if kinematics == "axisymmetric" else None
-    thickness = _scalar(data, "thickness", "thickness")
+    revolution = _revolution(get(data, "revolution")) if kinematics == "axisymmetric" else None
+    thickness = scalar(data, "thickness", "thickness")
     if not thickness > 0.0:
         raise BadExchange(f"thickness is {thickness}, expected a positive number")
-    bodies = [_body(entry, f"bodies[{i}]", 3 if revolution is None else 4) for i, entry in enumerate(_records(data, "bodies"))]
-    points = _numbers(data, "points", (-1, 2))
-    triangles = _indices(data, "triangles", (-1, 3), len(points))
-    edges = _indices(data, "edges", (-1, 2), len(points))
-    triangle_edges = _indices(data, "triangle_edges", (len(triangles), 3), len(edges))
-    body = _indices(data, "body", (len(triangles),), len(bodies))
+    bodies = [_body(entry, f"bodies[{i}]", 3 if revolution is None else 4) for i, entry in enumerate(records(data, "bodies"))]
+    points = numbers(data, "points", (-1, 2))
+    triangles = indices(data, "triangles", (-1, 3), len(points))
+    edges = indices(data, "edges", (-1, 2), len(points))
+    triangle_edges = indices(data, "triangle_edges", (len(triangles), 3), len(edges))
+    body = indices(data, "body", (len(triangles),), len(bodies))
     _check_mesh(points, triangles, edges, triangle_edges)
 
-    cells = _records(data, "quadrilaterals") if "quadrilaterals" in data else []
-    quadrilaterals = _index_column(cells, "quadrilaterals", "corners", (4,), len(points))
-    halves = _index_column(cells, "quadrilaterals", "triangles", (2,), len(triangles))
+    cells = records(data, "quadrilaterals") if "quadrilaterals" in data else []
+    quadrilaterals = index_column(cells, "quadrilaterals", "corners", (4,), len(points))
+    halves = index_column(cells, "quadrilaterals", "triangles", (2,), len(triangles))
     _check_halves(quadrilaterals, halves, triangles)
 
-    clamped = _records(data, "clamped")
-    roller = _records(data, "roller")
-    tractions = _records(data, "tractions")
-    pins = _records(data, "pins")
-    springs = _springs(_records(data, "springs") if "springs" in data else [], len(edges))
-    along = _column(roller, "roller", "normal", (2,))
+    clamped = records(data, "clamped")
+    roller = records(data, "roller")
+    tractions = records(data, "tractions")
+    pins = records(data, "pins")
+    springs = _springs(records(data, "springs") if "springs" in data else [], len(edges))
+    along = column(roller, "roller", "normal", (2,))
     _check_unit(along, "roller", "normal")
-    directions = _column(pins, "pins", "direction", (2,))
+    directions = column(pins, "pins", "direction", (2,))
     _check_unit(directions, "pins", "direction")
     return Problem(
         kinematics=kinematics,
@@ -224,39 +224,39 @@ def parse_problem(data: dict) -> Problem:
         triangle_edges=triangle_edges,
         quadrilaterals=quadrilaterals,
         halves=halves,
-        clamped_edges=_index_column(clamped, "clamped", "edge", (), len(edges)),
-        clamped_values=_column([_at_both_ends(entry) for entry in clamped], "clamped", "displacement", (2, 2)),
-        roller_edges=_index_column(roller, "roller", "edge", (), len(edges)),
+        clamped_edges=index_column(clamped, "clamped", "edge", (), len(edges)),
+        clamped_values=column([_at_both_ends(entry) for entry in clamped], "clamped", "displacement", (2, 2)),
+        roller_edges=index_column(roller, "roller", "edge", (), len(edges)),
         roller_directions=along,
-        roller_values=_column([{"displacement": 0.0, **entry} for entry in roller], "roller", "displacement", ()),
-        traction_edges=_index_column(tractions, "tractions", "edge", (), len(edges)),
-        traction_values=_column(tractions, "tractions", "values", (2, 2)),
+        roller_values=column([{"displacement": 0.0, **entry} for entry in roller], "roller", "displacement", ()),
+        traction_edges=index_column(tractions, "tractions", "edge", (), len(edges)),
+        traction_values=column(tractions, "tractions", "values", (2, 2)),
         contacts=[
-            _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(_records(data, "contacts"))
+            _contact(entry, f"contacts[{i}]", edges, len(points)) for i, entry in enumerate(records(data, "contacts"))
         ],
         springs=springs.part(touching=False),
         touching=springs.part(touching=True),
-        pin_vertices=_index_column(pins, "pins", "vertex", (), len(points)),
+        pin_vertices=index_column(pins, "pins", "vertex", (), len(points)),
         pin_directions=directions,
     )
 
 
 def _springs(entries: list[dict], edges: int) -> Springs:
     alone = [{**entry, "opposite": -1} if entry.get("opposite") is None else entry for entry in entries]
-    axes = _column(entries, "springs", "axes", (2, 2))
+    axes = column(entries, "springs", "axes", (2, 2))
     for axis in range(2):
         _check_unit(axes[:, axis], "springs", "axes")
-    stiffness = _column(entries, "springs", "stiffness", (2,))
+    stiffness = column(entries, "springs", "stiffness", (2,))
     if np.any(stiffness < 0.0):
         raise BadExchange(f"springs[{np.argmin(stiffness.min(axis=1))}].stiffness is negative")
-    gap = lambda i, entry: None if entry.get("gap") is None else _array(entry, "gap", f"springs[{i}]", (-1,))
+    gap = lambda i, entry: None if entry.get("gap") is None else array(entry, "gap", f"springs[{i}]", (-1,))
     gaps = [gap(i, entry) for i, entry in enumerate(entries)]
     for i, found in enumerate(gaps):
         if found is not None and len(found) == 0:
             raise BadExchange(f"springs[{i}].gap has no coefficient")
     return Springs(
-        edges=_index_column(entries, "springs", "edge", (), edges),
-        opposite=_index_column(alone, "springs", "opposite", (), edges, lowest=-1),
+        edges=index_column(entries, "springs", "edge", (), edges),
+        opposite=index_column(alone, "springs", "opposite", (), edges, lowest=-1),
         axes=axes,
         stiffness=stiffness,
         gaps=gaps,
@@ -266,29 +266,29 @@ def _springs(entries: list[dict], edges: int) -> Springs:
 def _revolution(entry) -> Revolution:
     if not isinstance(entry, dict):
         raise BadExchange("revolution must be one JSON object")
-    points = _array(entry, "points", "revolution", (-1, 2))
+    points = array(entry, "points", "revolution", (-1, 2))
     return Revolution(
-        axis=_scalar(entry, "axis", "revolution.axis"),
+        axis=scalar(entry, "axis", "revolution.axis"),
         points=points,
-        weights=_array(entry, "weights", "revolution", (len(points),)),
+        weights=array(entry, "weights", "revolution", (len(points),)),
     )
 
 
 def _body(entry: dict, where: str, stresses: int) -> Body:
-    name, force, slope = str(_get(entry, "name", where)), _get(entry, "body_force", where), np.zeros((2, 2))
+    name, force, slope = str(get(entry, "name", where)), get(entry, "body_force", where), np.zeros((2, 2))
     if isinstance(force, dict):
         inside = f"{where}.body_force"
-        force, slope = _array(force, "value", inside, (2,)), _array(force, "gradient", inside, (2, 2))
+        force, slope = array(force, "value", inside, (2,)), array(force, "gradient", inside, (2, 2))
     else:
-        force = _array(entry, "body_force", where, (2,))
-    initial = _array(entry, "initial_strain", where, (stresses, 3)) if "initial_strain" in entry else None
+        force = array(entry, "body_force", where, (2,))
+    initial = array(entry, "initial_strain", where, (stresses, 3)) if "initial_strain" in entry else None
     if "stiffness" in entry:
-        stiffness = _array(entry, "stiffness", where, (stresses, stresses))
+        stiffness = array(entry, "stiffness", where, (stresses, stresses))
         if not (np.array_equal(stiffness, stiffness.T) and np.linalg.eigvalsh(stiffness)[0] > 0.0):
             raise BadExchange(f"{where}.stiffness is not symmetric and positive definite")
         return Body(name, float(stiffness.diagonal().max()), 0.0, force, slope, stiffness, initial)
-    young = _scalar(entry, "young", f"{where}.young")
-    poisson = _scalar(entry, "poisson", f"{where}.poisson")
+    young = scalar(entry, "young", f"{where}.young")
+    poisson = scalar(entry, "poisson", f"{where}.poisson")
     if not young > 0.0:
         raise BadExchange(f"{where}.young is {young}, expected a positive number")
     if not -1.0 < poisson < 0.5:
@@ -297,26 +297,26 @@ def _body(entry: dict, where: str, stresses: int) -> Body:
 
 
 def _contact(entry: dict, where: str, edges: np.ndarray, vertices: int) -> Contact:
-    pairs = _records(entry, "pairs", where)
+    pairs = records(entry, "pairs", where)
     inside = f"{where}.pairs"
     rigid = np.array([pair.get("second") is None for pair in pairs], dtype=bool)
     filled = [_without_second(pair, inside) if alone else pair for pair, alone in zip(pairs, rigid)]
     none = {"bound": [0.0, 0.0], "tangent": [[0.0, 0.0], [0.0, 0.0]], "length": 0.0}
     friction, rough = [pair.get("friction") or none for pair in pairs], f"{inside}[..].friction"
     contact = Contact(
-        name=str(_get(entry, "name", where)),
-        edges=_index_column(filled, inside, "edges", (2,), len(edges), lowest=-1),
-        first=_index_column(filled, inside, "first", (2,), vertices),
-        second=_index_column(filled, inside, "second", (2,), vertices, lowest=-1),
-        normal=_column(filled, inside, "normal", (2,)),
-        direction=_column(filled, inside, "direction", (2, 2)),
-        gap=_column(filled, inside, "gap", (2,)),
+        name=str(get(entry, "name", where)),
+        edges=index_column(filled, inside, "edges", (2,), len(edges), lowest=-1),
+        first=index_column(filled, inside, "first", (2,), vertices),
+        second=index_column(filled, inside, "second", (2,), vertices, lowest=-1),
+        normal=column(filled, inside, "normal", (2,)),
+        direction=column(filled, inside, "direction", (2, 2)),
+        gap=column(filled, inside, "gap", (2,)),
         curved=np.array(["gap_below" in pair for pair in pairs], dtype=bool),
         gap_below=_gap_below(pairs, inside),
-        friction=_column(friction, rough, "bound", (2,)),
-        tangent=_column(friction, rough, "tangent", (2, 2)),
-        length=_column(friction, rough, "length", ()),
-        coefficient=_scalar(entry, "coefficient", f"{where}.coefficient") if "coefficient" in entry else 0.0,
+        friction=column(friction, rough, "bound", (2,)),
+        tangent=column(friction, rough, "tangent", (2, 2)),
+        length=column(friction, rough, "length", ()),
+        coefficient=scalar(entry, "coefficient", f"{where}.coefficient") if "coefficient" in entry else 0.0,
     )
     if contact.coefficient < 0.0:
         raise BadExchange(f"{where}.coefficient is negative")
@@ -348,12 +348,12 @@ def _gap_below(pairs: list[dict], where: str) -> np.ndarray:
         if not isinstance(degrees, list) or len(degrees) != count:
             raise BadExchange(f"{where}[{i}].gap_below is not a list of {count} degrees")
         for k, coefficients in enumerate(degrees):
-            found[i, k, : k + 3] = _array({"gap_below": coefficients}, "gap_below", f"{where}[{i}]", (k + 3,))
+            found[i, k, : k + 3] = array({"gap_below": coefficients}, "gap_below", f"{where}[{i}]", (k + 3,))
     return found
 
 
 def _without_second(pair: dict, where: str) -> dict:
-    edges = _get(pair, "edges", where)
+    edges = get(pair, "edges", where)
     if not isinstance(edges, list) or len(edges) != 2 or edges[1] is not None:
         raise BadExchange(f"{where}[..].edges must be [edge, null] where second is null")
     return {**pair, "second": [-1, -1], "edges": [edges[0], -1]}
@@ -387,89 +387,8 @@ def _check_unit(vectors: np.ndarray, where: str, key: str) -> None:
         raise BadExchange(f"{where}[{np.argmax(off)}].{key} is not a unit vector")
 
 
-def _get(data, key: str, where: str = ""):
-    if not isinstance(data, dict) or key not in data:
-        raise BadExchange(f"{where + '.' if where else ''}{key} is missing")
-    return data[key]
-
-
-def _records(data: dict, key: str, where: str = "") -> list[dict]:
-    path = f"{where}.{key}" if where else key
-    entries = _get(data, key, where)
-    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise BadExchange(f"{path} must be a list of objects")
-    return entries
-
-
-def _as_array(values, where: str, shape: tuple, kind: str) -> np.ndarray:
-    try:
-        array = np.array(values)
-    except ValueError as error:
-        raise BadExchange(f"{where} is ragged: {error}") from error
-    if array.size == 0 and shape[:1] in ((-1,), (0,)):
-        return np.zeros((0, *shape[1:]), dtype=np.int64 if kind == "i" else np.float64)
-    allowed = "iu" if kind == "i" else "iuf"
-    if array.dtype.kind not in allowed:
-        raise BadExchange(f"{where} must hold {'whole ' if kind == 'i' else ''}numbers only")
-    if array.ndim != len(shape) or any(want not in (-1, have) for want, have in zip(shape, array.shape)):
-        raise BadExchange(f"{where} has shape {list(array.shape)}, expected {list(shape)} (-1: any)")
-    if kind == "f" and not np.all(np.isfinite(array)):
-        raise BadExchange(f"{where} holds a number that is not finite")
-    return array.astype(np.int64 if kind == "i" else np.float64)
-
-
-def _array(data, key, where, shape):
-    return _as_array(_get(data, key, where), f"{where}.{key}", shape, "f")
-
-
-def _numbers(data, key, shape):
-    return _as_array(_get(data, key), key, shape, "f")
-
-
-def _scalar(data, key, where) -> float:
-    return float(_as_array(_get(data, key, where.rpartition(".")[0]), where, (), "f"))
-
-
-def _indices(data, key, shape, count):
-    return _in_range(_as_array(_get(data, key), key, shape, "i"), key, count, 0)
-
-
 def _at_both_ends(clamped: dict) -> dict:
     """A clamped edge with its displacement at both ends, where the file has one vector for the whole edge."""
     value = clamped.get("displacement")
     constant = isinstance(value, list) and not any(isinstance(entry, list) for entry in value)
     return {**clamped, "displacement": [value, value]} if constant else clamped
-
-
-def _column(entries, where, key, shape):
-    values = [_get(entry, key, f"{where}[{i}]") for i, entry in enumerate(entries)]
-    return _as_array(values, f"{where}[..].{key}", (len(entries), *shape), "f")
-
-
-def _index_column(entries, where, key, shape, count, lowest=0):
-    values = [_get(entry, key, f"{where}[{i}]") for i, entry in enumerate(entries)]
-    path = f"{where}[..].{key}"
-    return _in_range(_as_array(values, path, (len(entries), *shape), "i"), path, count, lowest)
-
-
-def _in_range(array, where, count, lowest):
-    if array.size and (array.min() < lowest or array.max() >= count):
-        raise BadExchange(f"{where} holds an index outside 0..{count - 1}")
-    return array
-
-
-def write_result(path: Path, result: dict) -> None:
-    """Write one result file whole or not at all: a temporary file in the same folder, then a rename."""
-    try:
-        text = json.dumps(result, allow_nan=False)
-    except ValueError as error:
-        raise Failure("the solution holds a number that is not finite; nothing was written") from error
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".part")
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        os.replace(temporary, path)
-    except BaseException:
-        os.unlink(temporary)
-        raise

@@ -23,6 +23,8 @@ const PACKAGE: Package = Package {
         ("coupled.py", include_str!("../../reference/hypercircle_reference/coupled.py")),
         ("descent.py", include_str!("../../reference/hypercircle_reference/descent.py")),
         ("exchange.py", include_str!("../../reference/hypercircle_reference/exchange.py")),
+        ("records.py", include_str!("../../reference/hypercircle_reference/records.py")),
+        ("results.py", include_str!("../../reference/hypercircle_reference/results.py")),
         ("friction.py", include_str!("../../reference/hypercircle_reference/friction.py")),
         ("group.py", include_str!("../../reference/hypercircle_reference/group.py")),
         ("inside.py", include_str!("../../reference/hypercircle_reference/inside.py")),

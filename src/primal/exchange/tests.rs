@@ -3,6 +3,7 @@ use serde_json::{Value, json};
 use super::*;
 use crate::primal::fixture::pressed_square;
 use crate::primal::{Options, Sabotage, run};
+use crate::problem::Condition;
 
 fn written(problem: &Problem, pins: &[Pin]) -> Value {
     let folder = tempfile::tempdir().unwrap();
