@@ -81,7 +81,7 @@ struct BodyEntry<'a> {
     body_force: Force,
 }
 
-/// The same everywhere, or value + gradient · x.
+/// A constant, or value + gradient · x.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Force {
@@ -167,7 +167,7 @@ struct ClampedEntry {
     displacement: Prescribed,
 }
 
-/// The same at both ends of an edge, or one value each.
+/// One value for both ends of an edge, or one value each.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Prescribed {
