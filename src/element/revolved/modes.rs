@@ -52,7 +52,7 @@ impl Ring {
         (0..3).map(|side| 2 * (0..=self.degree).filter(|k| !self.vanishes(side, *k)).count()).sum()
     }
 
-    /// Whether coefficient `k` of the traction on a side belongs to the axis.
+    /// True if coefficient `k` of the traction on a side belongs to the axis.
     fn vanishes(&self, side: usize, k: usize) -> bool {
         let ends = [self.radii[(side + 1) % 3] == 0.0, self.radii[(side + 2) % 3] == 0.0];
         super::vanishes(ends, k, self.degree)
@@ -261,7 +261,7 @@ impl Ring {
     }
 }
 
-/// What is given on a triangle.
+/// Loads and initial strain of a triangle.
 struct Given<'a> {
     /// Nodal values of a Σ that balances the axial force.
     balancing: &'a [[f64; 3]],
@@ -366,7 +366,7 @@ impl Fields {
 }
 
 impl Ring {
-    /// What vanishes for a field of the element: the jumps of Σ n at the nodes of the inner segments, and Σ on the axis.
+    /// Linear conditions on a field of the element: zero jumps of Σ n at the nodes of the inner segments, and zero Σ on the axis.
     fn conditions(&self, raw: &Raw) -> DMatrix<f64> {
         let p = self.degree;
         let n = lattice_len(p);
