@@ -70,7 +70,7 @@ impl Problem {
         &self.scene.bodies[self.mesh.body[t]].body_force
     }
 
-    /// The effect of the body force on triangle `t`.
+    /// The body force on triangle `t`.
     pub fn force_on(&self, t: usize) -> OnTriangle {
         self.body_force(t).on(self.mesh.corners(t))
     }
@@ -146,7 +146,7 @@ pub enum Refinement {
     /// New vertices lie on the curve: a finer mesh is another domain, with other admissible fields.
     #[default]
     FollowsCurves,
-    /// As [`Self::FollowsCurves`], with all edges of one circle divided together, so that symmetry is preserved.
+    /// As [`Refinement::FollowsCurves`], with all edges of one circle divided together, so that symmetry is preserved.
     FollowsCurvesEvenly,
     /// Polygon and gap stay as they are: fields of the mesh are fields of every finer one.
     KeepsEdges,

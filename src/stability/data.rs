@@ -29,7 +29,7 @@ pub struct Matrix {
 pub struct Row {
     /// Name on the command line and in links.
     pub id: String,
-    /// A description of it.
+    /// A short description.
     pub title: String,
     /// The parameter that is swept.
     pub parameter: String,

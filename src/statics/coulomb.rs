@@ -15,7 +15,7 @@ use super::{Components, LoadResultants, words};
 use crate::optimise::Law;
 use crate::problem::Problem;
 
-/// Largest rest of a force, relative to it, where others balance it.
+/// Largest remainder of a force, relative to it, that counts as balanced by others.
 const BALANCED: f64 = 1e-7;
 /// Groups with more ends of contact are not looked into.
 const MOST_ENDS: usize = 60;

@@ -118,7 +118,7 @@ impl crate::problem::Problem {
         self.pairs().any(|pair| pair.friction.is_some())
     }
 
-    /// True if one contact resists sliding.
+    /// True if contact number `contact` resists sliding.
     pub fn rubs_on(&self, contact: usize) -> bool {
         self.interfaces.get(contact).is_some_and(|interface| interface.pairs.iter().any(|pair| pair.friction.is_some()))
     }

@@ -55,7 +55,7 @@ pub struct Functional {
     pub local: Option<Box<Local>>,
     /// ∫ c(χ − Πχ):(χ − Πχ) for each of the shaped strains Πχ of the load.
     pub rests: Vec<f64>,
-    /// Bound on the difference between the quantity and the load for a displacement w, Σ b_T ‖e(w)‖_T: triangles with their b_T.
+    /// Bound Σ b_T ‖e(w)‖_T on the difference between quantity and load for a displacement w: triangles with their b_T.
     pub oscillation: Vec<(usize, f64)>,
     /// The part that is known.
     pub constant: f64,

@@ -36,7 +36,7 @@ pub enum NoTip {
         x: f64,
         /// As written.
         y: f64,
-        /// The finding there instead.
+        /// The geometry found there instead.
         what: &'static str,
     },
     /// Too few triangles.

@@ -6,7 +6,7 @@ use super::{PLAIN, Regime};
 use crate::problem::Problem;
 use crate::scene::Gap;
 
-/// Pressure that holds the blocks together.
+/// Pressure that holds the blocks together, per length.
 const PRESSURE: f64 = 0.3;
 /// Push and bound where they are not swept: a half of the contact slides, about.
 const PUSH: f64 = 0.1;

@@ -17,7 +17,7 @@ use crate::problem::Problem;
 pub struct Regime {
     /// Name on the command line and in links.
     pub id: &'static str,
-    /// A description of it.
+    /// A short description.
     pub title: &'static str,
     /// The parameter that is swept.
     pub parameter: &'static str,
