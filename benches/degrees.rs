@@ -1,4 +1,4 @@
-//! What a degree costs, and what a second thread gains.
+//! Cost of a higher degree, and gain of a second thread.
 //!
 //! `cargo bench --bench degrees -- [unknowns]`
 //!

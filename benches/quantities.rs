@@ -1,10 +1,10 @@
-//! What the interval of a quantity costs beside the bracket of the energy.
+//! Cost of the interval of a quantity relative to the bracket of the energy.
 //!
 //! `cargo bench --bench quantities -- [squares per side …]`
 //!
 //! The mean displacement of the loaded edge of the two blocks, linear stresses, n × n squares each, so 4n² triangles; one
-//! thread, the least of five runs side by side. What is added is the time of bracket and interval together, with what the bracket
-//! leaves for the interval, less that of a bracket alone.
+//! thread, the least of five runs side by side. The added cost is the time of bracket and interval together, where the interval reuses
+//! data of the bracket, less that of a bracket alone.
 
 #[path = "../tests/support/mod.rs"]
 mod support;

@@ -23,7 +23,8 @@ const FACTORS: [f64; 8] = [0.0, 1e-12, 1e-3, 0.25, 1.0, 4.0, 1e8, 1e9];
 /// Differences of energies that are rounding, relative to the energy that is stored.
 const ROUNDING: f64 = 1e-10;
 
-/// The same of energies with bounds far beyond all tractions, and with a bond.
+/// Allowed difference of energies with very small bounds from those without friction, and with very large bounds from each other and
+/// from those of a bond, relative to the energy that is stored.
 const STUCK: f64 = 1e-8;
 
 #[derive(Default)]

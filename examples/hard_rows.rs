@@ -14,7 +14,7 @@ use hypercircle::dual::{Condensed, DualMethod, LinearSolver, Options, Petsc};
 use hypercircle::stability::{REGIMES, Regime};
 use hypercircle::study::{Certified, certify_divided};
 
-/// What bounds may differ by, relative to the larger of both, and what equilibrium may be missed by, relative to the load.
+/// Largest difference of bounds, relative to the larger of both, and largest violation of equilibrium, relative to the load.
 const EQUAL: f64 = 1e-9;
 const LIMIT: Duration = Duration::from_secs(600);
 

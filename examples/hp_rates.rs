@@ -37,7 +37,7 @@ fn adaptive(poisson: f64, degree: usize, what: Adapt, tolerance: f64) -> Result<
     Ok(run.history.iter().map(|r| [r.unknowns as f64, r.relative_error_bound]).collect())
 }
 
-/// The same degree by degree, on the mesh of the scene.
+/// Unknowns and guaranteed relative error, degree by degree, on the mesh of the scene.
 fn by_degree(poisson: f64) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
     let problem = blocks(poisson, false)?;
     let of = |p: usize| {

@@ -28,7 +28,7 @@ const MOST_TRIANGLES: usize = 600;
 /// An interval of the finer mesh that is this much narrower stands for the truth.
 const NARROWER: f64 = 5.0;
 
-/// What was seen of quantities of one kind.
+/// Counts and figures of quantities of one kind.
 #[derive(Default)]
 struct Seen {
     asked: usize,

@@ -29,7 +29,7 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-/// What the two blocks are asked.
+/// Asks the two blocks for a displacement, a force and a stress.
 fn asked(problem: &mut Problem) {
     let of = Extent::Boundary("left_west".to_string());
     let square = vec![[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]];

@@ -41,7 +41,7 @@ pub struct Job {
     n: usize,
 }
 
-/// What it gave.
+/// Measured values of a job.
 pub struct Measured {
     /// Squares per side.
     pub n: usize,

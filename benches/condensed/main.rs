@@ -1,4 +1,4 @@
-//! What contact costs: ratios of the condensed method to a plain factorisation, to the other methods and to FEniCSx.
+//! Cost of contact: ratios of the condensed method to a plain factorisation, to the other methods and to FEniCSx.
 //!
 //! `cargo bench --bench condensed -- [squares per side …] [--full] [--limit seconds]`
 //!
@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use job::{Family, Job, Measured};
 
-/// What the command line asks for.
+/// The measurements that the command line asks for.
 struct Plan {
     sizes: Vec<usize>,
     limit: Duration,

@@ -22,4 +22,4 @@ VERSION = "0.2.0"
 
 
 class Refused(Exception):
-    """What failed, in one sentence."""
+    """The failed check, in one sentence."""

@@ -35,7 +35,7 @@ def upper(x):
 
 
 def zero(*values):
-    """Whether all of these numbers are zero for certain."""
+    """True if all of these numbers are zero for certain."""
     return all(x == 0 for x in values)
 
 

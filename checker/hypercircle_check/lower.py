@@ -111,7 +111,7 @@ class Stress:
         return [*force, cross(a, force) + cross((b[0] - a[0], b[1] - a[1]), first)]
 
     def _residuals(self):
-        """What is missing in the balances of every triangle."""
+        """Residuals of the balances of every triangle."""
         mesh, acting = self.mesh, [self._acting(e, tau) for e, tau in enumerate(self.tau)]
         for t, (sides, signs) in enumerate(zip(mesh.sides.tolist(), mesh.signs.tolist())):
             out = [sum(sign * x for sign, x in zip(signs, own)) for own in zip(*(acting[e] for e in sides))]

@@ -41,7 +41,7 @@ def read(path):
 
 
 class Proof:
-    """What is proved of a proof file. Raises Refused with what failed."""
+    """The statements that a proof file proves. Raises Refused with the failed check."""
 
     def __init__(self, data):
         try:

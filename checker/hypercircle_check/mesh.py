@@ -14,9 +14,9 @@ NEAR = 1e-9  # vertices and areas against polygons, relative to the size of the 
 
 @dataclass
 class Joint:
-    """What acts along one direction on an edge, between it and the ground or between two edges; s runs from 0 to 1 along it. The jump of
-    displacements j = (v' - v'').n equals |n| times the offset, or is at most that where the joint can only press; of a joint with a stiffness what
-    is beyond costs energy. The traction of the first side, times the length of the edge, is b(s) n(s) with b the unknown."""
+    """A constraint along one direction on an edge, against the ground or between two edges; s runs from 0 to 1 along it. The jump of
+    displacements j = (v' - v'').n equals |n| times the offset, or is at most that where the joint can only press; in a joint with a stiffness
+    the excess costs energy. The traction of the first side, times the length of the edge, is b(s) n(s) with b the unknown."""
 
     edges: tuple  # of the first side, of the second or -1
     starts: tuple  # the vertices where s = 0

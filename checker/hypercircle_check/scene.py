@@ -143,7 +143,7 @@ class Scene:
         self.forces[name] = force
 
     def pulled(self, quantity, by):
-        """The same scene with `by` times a constant load along the direction of a mean displacement; None where it is no such quantity."""
+        """This scene with `by` times a constant load along the direction of a mean displacement; None where it is no such quantity."""
         on, direction = quantity.get("displacement"), quantity.get("direction")
         if on is None or direction is None or "point" in quantity or self.contacts:
             return None

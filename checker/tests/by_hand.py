@@ -144,7 +144,7 @@ def write(arrays, path, digest=True):
 
 
 def with_scene(arrays, change):
-    """The same proof for the scene whose text `change` makes of its own."""
+    """Turns the proof into one for the scene whose text is `change` of its own."""
     text = change(bytes(arrays["scene"]).decode())
     arrays["scene"] = np.frombuffer(text.encode(), np.uint8)
     arrays["manifest"]["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()

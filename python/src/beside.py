@@ -1,4 +1,4 @@
-"""What the module does in Python's own words: fields of other programs, tables, pages in notebooks, pictures, jobs."""
+"""Parts of the module that are written in Python: fields of other programs, tables, pages in notebooks, pictures, jobs."""
 
 import html
 import json

@@ -1,4 +1,4 @@
-//! What is said in Python's own words: tables, notebooks, pictures, fields of other programs, jobs.
+//! Parts of the module that are written in Python: tables, notebooks, pictures, fields of other programs, jobs.
 
 use std::ffi::CString;
 

@@ -28,9 +28,9 @@ pub struct Claims<'a, 'py> {
     pub file: Option<PathBuf>,
     /// Name of the point data in the file.
     pub field: Option<&'a str>,
-    /// What messages and checks call arrays.
+    /// Name of the arrays in messages and checks.
     pub name: &'a str,
-    /// Whether the field claims to be a discrete solution.
+    /// True if the field claims to be a discrete solution.
     pub solution: bool,
     /// Values of quantities.
     pub values: Option<&'a Bound<'py, PyDict>>,
@@ -42,7 +42,7 @@ pub struct Claims<'a, 'py> {
     pub out: Option<PathBuf>,
 }
 
-/// The same as the command has them.
+/// The arguments in the form of the command.
 pub struct Claimed {
     /// Its options.
     pub args: Args,

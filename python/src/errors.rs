@@ -1,4 +1,4 @@
-//! What goes wrong, as Python exceptions with the words of the command line.
+//! Failures as Python exceptions, with the words of the command line.
 
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};

@@ -21,7 +21,7 @@ mod workbench;
 
 use pyo3::prelude::*;
 
-/// What a text in JSON stands for.
+/// The Python object that a text in JSON represents.
 fn from_json(py: Python<'_>, text: serde_json::Result<String>) -> PyResult<Bound<'_, PyAny>> {
     py.import("json")?.call_method1("loads", (text.map_err(errors::fault)?,))
 }

@@ -63,7 +63,7 @@ impl Line {
     }
 }
 
-/// What clap says, in the words of Python: `max_triangles = 0: …`.
+/// A message of clap in the words of Python: `max_triangles = 0: …`.
 fn refused(error: clap::Error) -> PyErr {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),

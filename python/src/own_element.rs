@@ -8,10 +8,10 @@ use hypercircle::element::{EquilibriumElement, MAX_DEGREE, Spanned};
 use hypercircle::problem::Problem;
 use hypercircle::workbench::stress::{Fields, divergence, inner_jump};
 
-/// What stresses may miss of equilibrium, relative to their size, where a bound rests on it.
+/// Largest violation of equilibrium by stresses, relative to their size, where a bound rests on it.
 const BALANCED: f64 = 1e-9;
 
-/// Whether an object is such an element.
+/// True if an object is such an element.
 pub fn is_element(object: &Bound<'_, PyAny>) -> PyResult<bool> {
     Ok(object.getattr_opt("stresses")?.is_some_and(|method| method.is_callable()))
 }
@@ -50,7 +50,7 @@ pub fn spanned(object: &Bound<'_, PyAny>) -> PyResult<&'static Spanned> {
     Ok(Box::leak(Box::new(element.map_err(|reason| fault(format!("stresses of the element: {reason}")))?)))
 }
 
-/// What a method makes of corners, and of a body force, as an array of numbers.
+/// The return value of a method for corners, and for a body force, as an array of numbers.
 fn called(method: &Py<PyAny>, corners: Corners, force: Option<[f64; 2]>) -> Result<Py<PyAny>, String> {
     Python::attach(|py| {
         let numpy = py.import("numpy")?;
@@ -79,10 +79,10 @@ fn fields(array: &Py<PyAny>) -> Result<Vec<Nodal>, String> {
     })
 }
 
-/// Whether the stresses of `element` balance on every triangle of `problem`: bounds are bounds only where they do.
+/// Checks that the stresses of `element` balance on every triangle of `problem`: bounds are guaranteed only where they do.
 ///
 /// # Errors
-/// What a method raised, or the first triangle on which they do not balance.
+/// The error that a method raised, or the first triangle on which they do not balance.
 pub fn balanced(element: &'static Spanned, problem: &Problem) -> Result<(), String> {
     let (mesh, materials) = (&problem.mesh, problem.materials());
     for (t, &body) in mesh.body.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What solving a scene gives.
+//! The solution of a scene.
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ impl Solution {
         &self.solved.run.certified.problem
     }
 
-    /// What `session` found.
+    /// The solution that `session` found.
     pub fn new(args: Args, session: Session, solved: Solved) -> Self {
         let starts = solved.run.certified.dual.stress.starts().iter().map(|n| *n as i64).collect();
         Solution { args, session, solved, starts, report: PyOnceLock::new() }

@@ -20,7 +20,7 @@ MOST_STEPS = 200
 GRAZING = 1e-13
 """Tension and penetration below this fraction of the terms at the end, or of the largest jump, are round-off."""
 SPRINGS = (0.0, 1e-13, 1e-11, 1e-9)
-"""What is added to the diagonal of S where the open part has free motions: the least that leaves it definite."""
+"""Shifts of the diagonal of S where the open part has free motions: the least that leaves it definite is used."""
 SOFT = (1e-12, 1e-4)
 """Parts of the diagonal of K below which that of S counts as this part."""
 

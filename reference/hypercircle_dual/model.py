@@ -141,7 +141,7 @@ class Model:
         return out
 
     def residual(self, s: np.ndarray):
-        """What the stresses leave of the loads at every unknown."""
+        """Residual of the stresses against the loads, at every unknown."""
         left = self.load.copy()
         for group in self.groups:
             for part, matrix in group.chunks():

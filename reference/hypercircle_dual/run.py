@@ -21,7 +21,7 @@ MOST_CHANGES = 60
 GRAZING = 1e-12
 """Tension relative to the load and penetration relative to the largest jump that are round-off."""
 UNSETTLED = 1e-8
-"""The same where the changes have come to an end: more is no contact state."""
+"""As ``GRAZING``, after the changes have come to an end: with more there is no contact state."""
 COARSE = 1e-4
 """Refinement of a contact state that is likely to change."""
 MOST_REFINEMENTS, FEW_REFINEMENTS = 200, 4

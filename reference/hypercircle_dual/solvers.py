@@ -21,7 +21,7 @@ INNER = 1e-6
 """Relative residual of an iteration; refinement does the rest."""
 MOST_ITERATIONS = 300
 SPRING = 1e-6
-"""What is added to the diagonal of open jumps, relative to it."""
+"""Shift of the diagonal of open jumps, relative to it."""
 
 
 class Factorised:
@@ -107,7 +107,7 @@ class Factorised:
         return self._expand(z, self._on_first(lambda: self.contact.with_closed(c, np.zeros(len(c)), closed)))
 
     def _on_first(self, find: Callable):
-        """What the first rank finds, so that all go on with the same digits."""
+        """The result of ``find`` on the first rank, for all ranks, so that all go on with the same digits."""
         return self.model.comm.bcast(find() if self.model.comm.rank == 0 else None)
 
 
@@ -128,7 +128,7 @@ class Iterated:
         self.factorised = perf_counter()
 
     def _assemble(self) -> None:
-        """What does not change with the contact state."""
+        """Assembles the parts that do not depend on the contact state."""
         raise NotImplementedError
 
     def _preconditioned(self, closed: np.ndarray):

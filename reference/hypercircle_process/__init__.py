@@ -1,4 +1,4 @@
-"""What a solver that runs as a process of its own has in common with the others: how it fails, reports and ends.
+"""Common parts of all solvers that run as separate processes: failure, reports and exit.
 
 Exit codes: 0 result files written, 2 bad arguments or exchange file, 3 the solver failed, 4 a package is not installed.
 """

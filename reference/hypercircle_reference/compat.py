@@ -65,7 +65,7 @@ def cache_folder() -> Path:
 
 
 def jit(comm: MPI.Comm, make: Callable):
-    """What ``make`` compiles, on all ranks together."""
+    """Compiles by ``make``, on all ranks together, and returns its result."""
     for _ in range(WAITS):
         if comm.rank == 0:
             remove_abandoned(cache_folder())

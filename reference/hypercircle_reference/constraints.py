@@ -57,7 +57,7 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
 
     T, offset = builder.matrix(2 * nodes), builder.offset
     if degree > 1 and not nodal_contact:
-        # What is inside a contact edge follows the jumps at its ends, too.
+        # Unknowns inside a contact edge follow the jumps at its ends, too.
         follow = vertex_jumps_inside(problem, lattice) + turning_vertex_jumps(problem, lattice)
         T = (T + follow @ T).tocsr()
         offset = offset + follow @ offset

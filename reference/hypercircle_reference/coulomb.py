@@ -28,7 +28,7 @@ SLOW, PATIENCE = 0.9, 3
 
 
 def follows(problem: Problem) -> bool:
-    """Whether any contact has a coefficient of friction."""
+    """True if any contact has a coefficient of friction."""
     return any(contact.coefficient > 0.0 for contact in problem.contacts)
 
 
@@ -46,7 +46,7 @@ class Limits:
 
     def __init__(self, problem: Problem, degree: int, constraints: Constraints):
         self.problem, self.constraints = problem, constraints
-        # What a bound of one carries at a vertex, along each tangent and along all.
+        # Force of friction at a vertex for a unit bound, along each tangent and along all.
         along, self.whole = defaultdict(float), defaultdict(float)
         for (first, _), tangent, weight, contact in vertex_slips(problem, degree):
             along[(contact, first, *tangent)] += weight
@@ -92,7 +92,7 @@ class Limits:
 
 
 def iterate(limits: Limits, contacts: list[dict], solve) -> dict:
-    """What came of the iteration from the reactions in ``contacts``; ``solve`` makes a solution and its list of contacts from constraints."""
+    """The result of iterating from the reactions in ``contacts``; ``solve`` makes a solution and its list of contacts from constraints."""
     now, step, slow, before = limits.of(contacts), 1.0, 0, np.inf
     known, change, energy = ~np.isnan(now), np.inf, None
     for count in range(1, MOST + 1):
@@ -101,7 +101,7 @@ def iterate(limits: Limits, contacts: list[dict], solve) -> dict:
         except Failure:
             # With these limits the bodies lose their hold, or nearly so.
             break
-        # What supports decide alone is in the energy with a bound of one.
+        # The energy contains, with a unit bound, the work of slips that supports alone decide.
         energy = solution.energy if limits.constraints.slid == 0.0 else None
         found = limits.of(contacts)
         size = max(np.sum(found[known]), np.sum(now[known]))

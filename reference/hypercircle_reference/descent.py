@@ -31,7 +31,7 @@ from hypercircle_process import Failure, log
 EPSILON = float(np.finfo(float).eps)
 
 ROUNDING = 32.0
-"""What rounding may leave of a row of A w − b, in units of the last place of the sum of its terms' absolute values."""
+"""Largest rounding error of a row of A w − b, in units of the last place of the sum of its terms' absolute values."""
 
 SHIFT = 1e-12
 """Added to the unit diagonal of what is factorised, so that a face that can move without strain has factors too."""
@@ -152,9 +152,9 @@ class Descent:
             return Minimum(w, gradient, ROUNDING * unit, left, faces, NOTHING_LOWER if moves else AT_ROUNDING)
 
     def improved(self, found: Minimum) -> Minimum:
-        """The same minimum with less of a residual, where a motion that costs next to no energy has gone far: what rounding
-        leaves along it is large beside what is wrong in all other directions, bounds included, and hides it. These are put
-        right with any further motion resisted (the proximal point method), by changes that are small again."""
+        """This minimum with a smaller residual, where a motion that costs next to no energy has gone far: its rounding
+        error is large beside the errors in all other directions, bounds included, and hides them. These are corrected
+        with any further motion resisted (the proximal point method), by changes that are small again."""
         matrix = self.A.copy()
         matrix.shift(RESISTED)
         w, gradient, unit = found.w, found.gradient, found.rounding / ROUNDING

@@ -98,7 +98,7 @@ class Contact:
 
 
 KINEMATICS = ("plane-strain", "plane-stress", "axisymmetric")
-"""What a plane figure may stand for."""
+"""Bodies and states that a plane figure may represent."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Springs:
 
 @dataclass(frozen=True)
 class Problem:
-    """What ``problem.json`` says, checked; index arrays are int64, everything else float64.
+    """The checked content of ``problem.json``; index arrays are int64, everything else float64.
 
     ``quadrilaterals`` (m, 4) are the vertices of those cells, and ``halves`` (m, 2) the triangles at the first and at the third of
     them.

@@ -146,7 +146,7 @@ class Reduced:
         return u
 
     def _size(self, w: np.ndarray) -> float:
-        """What a residual is compared with: load and energy norm. Scaled forces are square roots of energies."""
+        """Scale of a residual: load and energy norm. Scaled forces are square roots of energies."""
         unscaled = self.scale.copy()
         unscaled.array[:] *= w
         u = self._displacement(unscaled)
@@ -208,7 +208,7 @@ class Reduced:
         )
 
     def _energy_rounding(self, u: PETSc.Vec, strain_energy: float) -> float:
-        """What a relative change of each displacement by some roundings, and the sums over all of them, do to 𝓛(u).
+        """Error of 𝓛(u) from a relative change of each displacement by some roundings, and from the sums over all of them.
 
         With |δu| ≤ ε |u|, ‖δu‖² ≤ ε² |u|ᵀ|K||u| in the energy norm, and 𝓛 changes by ‖u‖ ‖δu‖ + ½ ‖δu‖² + |f|ᵀ|δu|.
         """

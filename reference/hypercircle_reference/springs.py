@@ -24,7 +24,7 @@ def mass(degree: int) -> np.ndarray:
 
 
 def weighted_mass(degree: int) -> np.ndarray:
-    """The same (2, k + 1, k + 1) with the weights 1 − s and s, s from 0 to 1 along the edge."""
+    """As :func:`mass`, (2, k + 1, k + 1), with the weights 1 − s and s, s from 0 to 1 along the edge."""
     k = degree
     of = lambda i, j, m: comb(k, i) * comb(k, j) / (comb(2 * k + 1, i + j + m) * (2 * k + 2))
     gram = np.array([[[of(i, j, m) for j in range(k + 1)] for i in range(k + 1)] for m in range(2)])

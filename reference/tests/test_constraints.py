@@ -42,7 +42,7 @@ def test_elimination_of_ordinary_and_odd_groups(stiffness):
     # A polyline with a corner: two normals at one vertex.
     corner = rows(pair, [1.0, 0.0, -1.0, 0.0])
     assert len(check(rows(), none, corner, np.array([0.1, 0.2]), stiffness).upper) == 2
-    # The same row twice, with different gaps: the smaller one binds.
+    # One row twice, with different gaps: the smaller one binds.
     twice = check(rows(), none, rows(pair, pair), np.array([0.3, 0.1]), stiffness)
     assert [bound.value for bound in twice.upper] == pytest.approx([0.1])
     assert twice.upper[0].row == 1

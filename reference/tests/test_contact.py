@@ -72,7 +72,7 @@ def test_no_penetration_anywhere(solve, degree, gap):
 
 
 def test_nodal_contact_penetrates_between_nodes(solve):
-    """What makes the Bernstein condition necessary, and this suite able to see the difference."""
+    """The reason for the Bernstein condition; this suite is able to see the difference."""
     data = two_blocks(8)
     worst = 0.0
     for ends, middle, _ in jumps(data, solve(data, 2, nodal_contact=True)):

@@ -61,7 +61,7 @@ def test_random_minima_are_those_of_enumeration(seed, loose):
 
 
 def enumerated_with_friction(matrix, right, upper, kink, weight):
-    """The same with Σ weight |w − kink|: each of these unknowns sticks or slips one way or the other."""
+    """As ``enumerated``, with Σ weight |w − kink|: each of these unknowns sticks or slips one way or the other."""
     energies = []
     choices = [[FREE, HIGH] if np.isfinite(b) else [-1, 0, 1] if c > 0.0 else [FREE] for b, c in zip(upper, weight)]
     for state in product(*choices):
@@ -95,7 +95,7 @@ def test_random_minima_with_friction_are_those_of_enumeration(seed, loose):
     kink[2:7] = rng.choice([0.0, 0.0, 0.3, -1.0], 5)
     weight[2:7] = 10.0 ** rng.uniform(-2.0, 1.0, 5)
     for direction in (basis[:, :loose] / scale[:, None]).T:
-        # What nothing else holds, friction does: the load along it is taken away but for a part.
+        # Friction holds the motions that nothing else holds: most of the load along them is taken away.
         right -= 0.9 * (right @ direction) / (direction @ direction) * direction
         weight[2:7] += 0.2 * abs(right @ direction) / np.abs(direction[2:7]).sum() + 1.0
     found = descend(matrix, right, np.full(size, -np.inf), upper, kink, weight)

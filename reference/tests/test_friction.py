@@ -318,7 +318,7 @@ def test_a_ring_turns_in_another_one(solve, degree, turned):
         assert (result["friction_work"] > 1e-12) == (torque > most)
         force = np.array(result["contacts"][0]["vertex_friction"])
         assert np.ptp(force) < 1e-9 and force[0] * turned < 0.0
-    # What is left is the polygon in the place of the circle, and the shear of 1/r² in three layers.
+    # The rest of the error is from the polygon in the place of the circle, and the shear of 1/r² in three layers.
     assert errors[1] < (0.08 if degree == 1 else 0.02) and errors[1] < 0.55 * errors[0], errors
 
 

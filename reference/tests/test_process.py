@@ -116,7 +116,7 @@ def test_missing_package(tmp_path):
 
 
 def test_a_failure_is_written_in_one_piece(monkeypatch):
-    """What is written unbuffered, as ``PYTHONUNBUFFERED`` asks, mixes with what other ranks write at the same time."""
+    """Unbuffered output, as ``PYTHONUNBUFFERED`` asks for, mixes with the output of other ranks at the same time."""
     from hypercircle_process import Failure, NotInstalled, finish
 
     class Pieces(list):

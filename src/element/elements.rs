@@ -7,7 +7,7 @@ use super::{EquilibriumElement, block};
 /// The element of every triangle.
 #[derive(Clone)]
 pub enum Elements {
-    /// The same on all.
+    /// One element for all triangles.
     Uniform(&'static dyn EquilibriumElement),
     /// Blocks, of a degree for each triangle.
     Blocks(Arc<[u8]>),

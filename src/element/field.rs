@@ -51,7 +51,7 @@ impl StressField {
         self.degree.len()
     }
 
-    /// Whether there are no triangles.
+    /// True if there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }

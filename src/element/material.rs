@@ -97,7 +97,7 @@ impl Material {
         self.revolved.unwrap_or(revolved::Law::NONE)
     }
 
-    /// The same with what the body has before it is loaded.
+    /// This material with the initial strain of a body.
     #[must_use]
     pub fn with_initial(self, kinematics: Kinematics, elasticity: &Elasticity, initial: &Initial) -> Self {
         let initial = match kinematics {
@@ -109,7 +109,7 @@ impl Material {
         Material { initial, ..self }
     }
 
-    /// The same without initial strain.
+    /// This material without initial strain.
     #[must_use]
     pub fn without_initial(self) -> Self {
         Material { initial: InitialStrain::NONE, ..self }
@@ -157,7 +157,7 @@ impl Material {
         }
     }
 
-    /// What a relative error of one in every number could change of a λ:λ, at most.
+    /// Largest change of a λ:λ per unit of relative error in every number.
     pub fn spread(&self, l: [f64; 3]) -> f64 {
         match &self.law {
             Law::Isotropic(own) => absolute(l) * absolute(own.strain(l)),
@@ -181,7 +181,7 @@ impl Material {
         }
     }
 
-    /// The same material in axes of which the first has the components `axis`, a unit vector.
+    /// This material in axes of which the first has the components `axis`, a unit vector.
     #[must_use]
     pub fn in_frame(&self, axis: [f64; 2]) -> Self {
         match &self.law {

@@ -247,7 +247,7 @@ impl<'a> Modes<'a> {
         &self.data[start..start + self.layout.tractions]
     }
 
-    /// What the element keeps to give stresses from parameters.
+    /// The data that the element keeps to compute stresses from parameters.
     pub fn kept(&self) -> &[f64] {
         let end = self.layout.len() - 1;
         &self.data[end - self.layout.kept..end]

@@ -1,9 +1,9 @@
-//! What a plane figure stands for: a slice of a body, or a body of revolution.
+//! The body that a plane figure represents: a slice, or a body of revolution.
 //!
-//! Everything that differs between the two is here and in [`super::revolved`]. In a slice stresses are λ and areas and lengths count as
-//! they are, times the thickness. In a body of revolution what is stored are the weighted stresses Σ = r λ ([`super::revolved`]), tractions
+//! All differences between the two are here and in [`super::revolved`]. In a slice the stresses are λ, and integrals over areas and lengths
+//! carry no weight but the thickness. In a body of revolution the stored stresses are weighted, Σ = r λ ([`super::revolved`]), tractions
 //! are r T, integrals over the figure carry the weight r, and the measure is 2π, so that energies and forces are those of the full turn.
-//! With weighted tractions everything that is done on edges (moments of displacements, unknowns, contact) is the same for both.
+//! With weighted tractions everything on edges (moments of displacements, unknowns, contact) is common to both.
 
 use super::congruent;
 use super::geometry::{sub_area, sub_corners, sub_gradients};
@@ -32,7 +32,7 @@ pub enum Section {
 type Corners = [[f64; 2]; 3];
 
 impl Section {
-    /// Whether it is a body of revolution.
+    /// True for a body of revolution.
     pub fn is_revolved(self) -> bool {
         self != Section::Slice
     }
@@ -53,7 +53,7 @@ impl Section {
         }
     }
 
-    /// Whether a point lies on the axis of revolution.
+    /// True if a point lies on the axis of revolution.
     pub fn on_axis(self, point: [f64; 2]) -> bool {
         self.is_revolved() && self.weight(point) == 0.0
     }
@@ -82,7 +82,7 @@ impl Section {
         vec![p.map(|x| a * x), middle, q.map(|x| b * x)]
     }
 
-    /// What distinguishes triangles of one shape and size.
+    /// Key that distinguishes triangles of one shape and size: their distance from the axis in a body of revolution, `None` in a slice.
     pub fn place(self, corners: Corners) -> Option<i64> {
         let Section::Revolved { axis } = self else { return None };
         let (_, exponent) = congruent::shape(corners);
@@ -180,7 +180,7 @@ impl Section {
         }
     }
 
-    /// Whether a body force is one that a body of revolution can have: F_r depends on r alone, and F_z on nothing.
+    /// True if the section admits this body force: in a body of revolution F_r depends on r alone, and F_z is constant.
     pub fn carries(self, force: &BodyForce) -> bool {
         let [[_, across], along] = force.given().gradient;
         !self.is_revolved() || (across == 0.0 && along == [0.0; 2])

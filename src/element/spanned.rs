@@ -69,7 +69,7 @@ impl Spanned {
         }
     }
 
-    /// What went wrong on a triangle since this was last asked.
+    /// The error that occurred on a triangle since the last call, if any.
     pub fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

@@ -27,7 +27,7 @@ pub enum Cells {
 }
 
 impl Cells {
-    /// What they are called in files and reports.
+    /// Their name in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Cells::Triangles => "triangles",
@@ -76,7 +76,7 @@ pub fn spaces(mesh: &Triangulation, wanted: WantedCells, degrees: &[u8]) -> Vec<
     degrees.iter().map(|&degree| Space { cells: cells(degree), degree }).collect()
 }
 
-/// What a report says of the cells of the displacement model where the mesh file has quadrilaterals.
+/// A report's remark on the cells of the displacement model where the mesh file has quadrilaterals.
 pub fn remark(mesh: &Triangulation, spaces: &[Space]) -> Option<String> {
     let count = mesh.cells.len();
     if count == 0 {

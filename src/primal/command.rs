@@ -12,13 +12,13 @@ use super::exchange::{PROBLEM_FILE, solution_file};
 use super::{Cells, HIGHEST_DEGREE, PrimalError, Space};
 use crate::process::{Outcome, Scratch, package, python, supervise, words};
 
-/// What stands for the exchange file in a command.
+/// Placeholder of the exchange file in a command.
 const PROBLEM: &str = "{problem}";
-/// What stands for the folder of the result files.
+/// Placeholder of the folder of the result files.
 const OUT: &str = "{out}";
 /// The exit code of a program that has no answer, and says why.
 const NO_ANSWER: i32 = 3;
-/// What stands for the degrees that are wanted, with commas between.
+/// Placeholder of the degrees that are wanted, separated by commas.
 const DEGREES: &str = "{degrees}";
 
 /// A command with `{problem}` and `{out}` in it.
@@ -54,7 +54,7 @@ impl SolverCommand {
         program.file_name().map_or_else(|| self.words[0].clone(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// Whether the command is told which degrees are wanted, and then owes each of them.
+    /// True if the command is told the degrees that are wanted; it then owes each of them.
     fn is_told_degrees(&self) -> bool {
         self.words.iter().any(|word| word.contains(DEGREES))
     }

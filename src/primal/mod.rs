@@ -28,12 +28,12 @@ use crate::problem::{Pin, Problem};
 /// The highest degree of a displacement solution.
 pub const HIGHEST_DEGREE: u8 = crate::element::displacement::MOST as u8;
 
-/// What to run, and how.
+/// The displacement models to solve, and the settings of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Polynomial degrees, each from 1 to [`HIGHEST_DEGREE`], each solved once. A program that is not told them solves its own.
     pub degrees: Vec<u8>,
-    /// Which cells they are solved on; a program chooses for itself.
+    /// Cells they are solved on; a program chooses for itself.
     pub cells: WantedCells,
     /// A solver to run in the place of FEniCSx; ranks, planted bugs, nodal contact and the interpreter are not for it.
     pub program: Option<SolverCommand>,
@@ -133,7 +133,7 @@ pub enum PrimalError {
     BadResult {
         /// Name of the file.
         file: String,
-        /// What is wrong with it.
+        /// Its defect.
         reason: String,
     },
     /// Options that cannot be run.
@@ -158,7 +158,7 @@ pub enum PrimalError {
 
 /// The displacement solution of one degree. Energies and forces include the thickness.
 ///
-/// What a solver may leave out of its file is empty, zero or `None` then.
+/// Fields that a solver may omit from its file are then empty, zero or `None`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PrimalSolution {
     /// `FEniCSx`, or what the solver calls itself.
@@ -191,7 +191,7 @@ pub struct PrimalSolution {
     /// tell.
     #[serde(default)]
     pub friction_work: Option<f64>,
-    /// What rounding and the residual can have cost `energy`, an estimate; `None` where the solver does not tell.
+    /// Estimated error of `energy` from rounding and the residual; `None` where the solver does not tell.
     #[serde(default)]
     pub energy_rounding: Option<f64>,
     /// Sets of closed contacts that were tried; 1 for a problem without contact, `None` where the solver does not tell.
@@ -203,7 +203,7 @@ pub struct PrimalSolution {
     /// Unknowns left after supports are eliminated; `None` where the solver does not tell.
     #[serde(default)]
     pub unknowns: Option<usize>,
-    /// Whether the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
+    /// True if the model imposes v_n' + v_n'' ≤ g everywhere and not at the nodes only.
     #[serde(default)]
     pub admissible: Option<bool>,
     /// Wall-clock time by phase.
@@ -232,17 +232,17 @@ pub struct PrimalSolution {
 pub struct PrimalCoulomb {
     /// Solutions on the way.
     pub iterations: usize,
-    /// Whether the limits go with the reactions.
+    /// True if the limits agree with the reactions.
     pub converged: bool,
     /// By what part of their sum the limits still changed; `None` where nothing was solved.
     pub change: Option<f64>,
     /// 𝓛 with these limits; `None` where it is not known.
     pub energy: Option<f64>,
-    /// What the contacts carry, in scene order.
+    /// Contact forces, in scene order.
     pub contacts: Vec<PrimalCoulombContact>,
 }
 
-/// What a contact carries with Coulomb friction of the model itself.
+/// Forces of a contact with Coulomb friction in the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PrimalCoulombContact {
     /// Name of the interface.
@@ -286,7 +286,7 @@ pub struct PrimalContact {
     /// Force of friction on the first side along t̂ at each of `vertices`, conjugate to the tangential jump there; `None` without friction.
     #[serde(default)]
     pub vertex_friction: Option<Vec<f64>>,
-    /// The same of each pair for its inner Bernstein coefficients, k − 1 of them; `None` for degree 1.
+    /// Force of friction of each pair, conjugate to the k − 1 inner Bernstein coefficients of its tangential jump; `None` for degree 1.
     #[serde(default)]
     pub edge_friction: Option<Vec<Vec<f64>>>,
     /// Force on the first side.

@@ -34,13 +34,13 @@ pub struct BedPair {
     pub axes: [[f64; 2]; 2],
     /// Length of the edge.
     pub length: f64,
-    /// What its points count.
+    /// Weight of its points in integrals.
     pub weight: EdgeWeight,
     /// The elastic contact that it is, which resists along the first of the axes where the jump exceeds the gap, and pulls nowhere.
     pub contact: Option<OneSided>,
 }
 
-/// What a point of an edge counts in integrals over it: one, or its distance from the axis of revolution, by that of the two ends.
+/// Weight of the points of an edge in integrals along it: one, or the distance from the axis of revolution, given at the two ends.
 ///
 /// Tractions of a body of revolution are weighted with it, t̃ = r t; jumps are not.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -190,13 +190,13 @@ impl Bed {
         Ok(Some(Bed { name: bond.name(), stiffness, pairs }))
     }
 
-    /// The same in a section.
+    /// Sets the weights of its pairs to those of `section`.
     pub(super) fn of_section(mut self, section: Section, mesh: &Triangulation) -> Self {
         self.pairs.iter_mut().for_each(|pair| pair.weight = EdgeWeight::on(section, mesh, pair.edge));
         self
     }
 
-    /// Whether it has a second side.
+    /// True if it has a second side.
     pub fn is_layer(&self) -> bool {
         self.pairs.iter().any(|pair| pair.opposite.is_some())
     }

@@ -24,7 +24,7 @@ use crate::scene::{Contact, ContactSides, Draft, Kinematics, MeshSource, Normals
 /// Bisections of the triangles at the edges of circles until these are even.
 const MOST_TO_BE_EVEN: usize = 60;
 
-/// What a boundary name stands for.
+/// The condition that a boundary name stands for.
 #[derive(Clone, Copy)]
 enum Role<'a> {
     Support(SupportKind),
@@ -41,7 +41,7 @@ impl Problem {
         Problem::load_within(scene, PATIENCE)
     }
 
-    /// The same, with a limit of its own for a program that helps to read the mesh file.
+    /// As [`Problem::load`], with a separate time limit for the program that helps to read the mesh file.
     ///
     /// # Errors
     /// As [`Problem::load`].
@@ -186,7 +186,7 @@ impl Problem {
         Ok(problem)
     }
 
-    /// The same problem after `n` uniform refinements, each cutting every triangle into four.
+    /// This problem after `n` uniform refinements, each of which cuts every triangle into four.
     ///
     /// # Errors
     /// None that [`Problem::new`] did not have, unless the mesh outgrows the index range.
@@ -211,8 +211,8 @@ impl Problem {
         Problem::with_directions(self.scene.clone(), mesh, self.notes.clone(), Some(&coarser))
     }
 
-    /// Whether gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) + ∫ τ̄ |u_t' − u_t''| = L(u), the
-    /// integral over contacts with friction.
+    /// True if gaps and prescribed displacements vanish: the admissible set K is then a cone, and a(u, u) + ∫ τ̄ |u_t' − u_t''| = L(u),
+    /// the integral over contacts with friction.
     pub fn is_cone(&self) -> bool {
         let elastic = self.bed_pairs().filter_map(|(pair, _)| pair.contact);
         let no_gap = self.pairs().all(|p| p.gap == [0.0; 2] && p.bow.is_none())
@@ -220,12 +220,12 @@ impl Problem {
         no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 
-    /// Whether the direction of contact turns along any edge.
+    /// True if the direction of contact turns along any edge.
     pub fn contact_turns(&self) -> bool {
         self.pairs().any(|pair| !pair.direction.is_constant())
     }
 
-    /// Whether the direction of contact differs along any contact, on one edge or from edge to edge.
+    /// True if the direction of contact varies along any contact, on one edge or from edge to edge.
     pub fn contact_bends(&self) -> bool {
         const STRAIGHT: f64 = 1e-9;
         self.interfaces.iter().any(|interface| {
@@ -235,7 +235,7 @@ impl Problem {
         })
     }
 
-    /// Whether refinement puts vertices on the curves that edges stand for.
+    /// True if refinement puts new vertices on the curves that edges stand for.
     pub fn follows_curves(&self) -> bool {
         !curved(self).is_empty()
     }
@@ -247,9 +247,8 @@ impl Problem {
         contacts.chain(layers).collect()
     }
 
-    /// The same problem with the triangles `marked` bisected, and what else that asks for, see
-    /// [`bisect`]. Also gives the refinement edges of the new triangles, and for each new
-    /// triangle the old one it comes from.
+    /// Bisects the triangles `marked` of this problem, and those whose bisection this requires, see [`bisect`]. Also returns the
+    /// refinement edges of the new triangles, and for each new triangle the old one it comes from.
     ///
     /// # Errors
     /// None that [`Problem::new`] did not have.
@@ -330,7 +329,7 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
     Ok(())
 }
 
-/// What the plane figure of a scene stands for.
+/// The section that the plane figure of a scene stands for.
 pub(super) fn section(scene: &Scene) -> Section {
     match scene.kinematics {
         Kinematics::Axisymmetric => Section::Revolved { axis: 0.0 - scene.origin[0] },

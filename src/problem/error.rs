@@ -13,9 +13,9 @@ pub enum ProblemError {
     Contact {
         /// `first|second` or `first|rigid`.
         contact: String,
-        /// What was found, with coordinates.
+        /// The finding, with coordinates.
         what: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
 }

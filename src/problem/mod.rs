@@ -41,9 +41,9 @@ pub struct Problem {
     pub interfaces: Vec<Interface>,
     /// Springs, in the order of the supports, then elastic layers in that of the bonds.
     pub beds: Vec<Bed>,
-    /// What the reader of the report has to know about how the mesh and the data were represented.
+    /// Remarks for the reader of the report on how the mesh and the data were represented.
     pub notes: Vec<Note>,
-    /// What refinement makes of curves.
+    /// Treatment of curves in refinement.
     pub refinement: Refinement,
     /// The mesh as it was read or made, where contacts changed it; none of a mesh that was refined.
     pub uncut: Option<Arc<Uncut>>,
@@ -70,7 +70,7 @@ impl Problem {
         &self.scene.bodies[self.mesh.body[t]].body_force
     }
 
-    /// What the body force does on triangle `t`.
+    /// The body force on triangle `t`.
     pub fn force_on(&self, t: usize) -> OnTriangle {
         self.body_force(t).on(self.mesh.corners(t))
     }
@@ -101,7 +101,7 @@ impl Problem {
         of_edges.max(if axial == 0.0 && !asked { 1 } else { 2 })
     }
 
-    /// What the plane figure stands for.
+    /// The section that the plane figure stands for.
     pub fn section(&self) -> Section {
         build::section(&self.scene)
     }
@@ -111,7 +111,7 @@ impl Problem {
         self.section().weighted(self.mesh.edges[e].vertices.map(|v| self.mesh.points[v]), ends)
     }
 
-    /// Whether coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
+    /// True if coefficient `k` of `degree` of the traction on edge `e` belongs to a point of the axis of revolution, where there is none.
     pub fn vanishes(&self, e: usize, k: usize, degree: usize) -> bool {
         vanishes(self.mesh.edges[e].vertices.map(|v| self.section().on_axis(self.mesh.points[v])), k, degree)
     }
@@ -140,19 +140,19 @@ impl Problem {
     }
 }
 
-/// What refinement makes of edges and gaps that stand for a curve.
+/// Treatment, in refinement, of edges and gaps that stand for a curve.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Refinement {
     /// New vertices lie on the curve: a finer mesh is another domain, with other admissible fields.
     #[default]
     FollowsCurves,
-    /// The same, and edges of one circle are divided together, so that what is symmetric stays it.
+    /// As [`Refinement::FollowsCurves`], with all edges of one circle divided together, so that symmetry is preserved.
     FollowsCurvesEvenly,
     /// Polygon and gap stay as they are: fields of the mesh are fields of every finer one.
     KeepsEdges,
 }
 
-/// What holds on one edge.
+/// The condition on one edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Condition {
     /// Shared by two triangles: traction is continuous.
@@ -192,8 +192,8 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// What a support prescribes at the two ends of its edge, linear between: all of u on a clamped edge, on rollers the part
-    /// along their direction. `None` where nothing is held.
+    /// The displacement prescribed by a support at the two ends of its edge, linear between: all of u on a clamped edge, on rollers the
+    /// component along their direction. `None` where nothing is held.
     pub fn prescribed(&self) -> Option<[[f64; 2]; 2]> {
         match *self {
             Condition::Clamped(ends) => Some(ends),
@@ -202,7 +202,7 @@ impl Condition {
         }
     }
 
-    /// Whether something other than zero is prescribed.
+    /// True if a displacement other than zero is prescribed.
     pub fn is_moved(&self) -> bool {
         self.prescribed().is_some_and(|ends| ends != [[0.0; 2]; 2])
     }
@@ -240,7 +240,7 @@ pub struct ContactPair {
     pub gap: [f64; 2],
     /// How far it lies below its chord between them.
     pub bow: Bow,
-    /// What resists sliding, where something does.
+    /// Its friction, where sliding is resisted.
     pub friction: Option<Friction>,
     /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
     pub stiffness: Option<f64>,

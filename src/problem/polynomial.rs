@@ -1,14 +1,14 @@
-//! Tractions of a higher degree than one: on every edge the nearest affine one stands for them, and what is left is known.
+//! Tractions of higher degree than one: on every edge the nearest affine traction replaces them, and the remainder is known.
 //!
-//! What is left on an edge is orthogonal to all affine functions on it, so it has neither a resultant nor a moment: a stress on
-//! the one triangle beside it balances it. What that costs is part of the bracket ([`crate::bounds`]).
+//! The remainder on an edge is orthogonal to all affine functions on it, so it has neither a resultant nor a moment, and a stress on
+//! the one adjacent triangle balances it. The energy of that stress is part of the bracket ([`crate::bounds`]).
 
 use super::{Note, Problem};
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 use crate::scene::{Load, Scene, Term, Traction};
 
-/// What the affine traction of an edge leaves of that of the scene.
+/// The remainder of a traction of the scene after its affine part on an edge is subtracted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Oscillation {
     /// The edge.
@@ -20,12 +20,12 @@ pub struct Oscillation {
 }
 
 impl Problem {
-    /// Whether a traction of the scene is of a higher degree than one.
+    /// True if a traction of the scene is of higher degree than one.
     pub fn has_polynomial_tractions(&self) -> bool {
         self.scene.tractions.iter().any(|traction| !traction.terms.is_empty())
     }
 
-    /// What is left of tractions on the edges of this mesh.
+    /// Remainders of the tractions on the edges of this mesh.
     pub fn oscillations(&self) -> Vec<Oscillation> {
         let of = |traction: &Traction| -> Vec<Oscillation> {
             let edges = self.mesh.boundary(&traction.on).into_iter();
@@ -104,7 +104,7 @@ fn nearest(whole: &[[f64; 2]]) -> [[f64; 2]; 2] {
 /// How remarks on polynomials begin.
 const REMARK: &str = "The polynomial traction on '";
 
-/// Whether a note is one of [`remarks`], of this mesh or a coarser one.
+/// True if a note is one of [`remarks`], of this mesh or a coarser one.
 pub(super) fn is_remark(note: &Note) -> bool {
     note.text.starts_with(REMARK)
 }

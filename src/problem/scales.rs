@@ -1,10 +1,10 @@
 //! The sizes of force, stress, displacement and energy that the data of a problem stand for.
 //!
-//! What counts as zero is judged against the data, never against the answer alone: where the answer is without stress
-//! (a body moved rigidly, a gap that stays open) everything in it is round-off, and round-off compared with round-off is
-//! anything. Data cause stress in two ways. Tractions and weights have a size of their own. Prescribed displacements,
+//! Zero is judged against the data, never against the answer alone: where the answer is free of stress
+//! (a body moved rigidly, a gap that stays open) everything in it is round-off, and comparing round-off with round-off is
+//! meaningless. Data cause stress in two ways. Tractions and weights have a size of their own. Prescribed displacements,
 //! and gaps that a body crosses before contact holds it, cause at most modulus times displacement over length; the
-//! stresses that they do cause may be smaller or none, but are computed from displacements of that size, and carry
+//! stresses that they actually cause may be smaller or zero, but are computed from displacements of that size, and carry
 //! their rounding errors.
 
 use super::{BedPair, Condition, Problem};
@@ -30,9 +30,9 @@ pub struct Sizes {
 /// The sizes of a problem. All are zero exactly where nothing is applied, prescribed or open, and the answer then is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scales {
-    /// What the data can cause: no estimate of the answer, which may be much smaller.
+    /// Upper limits of the effect of the data; not an estimate of the answer, which may be much smaller.
     pub data: Sizes,
-    /// What rounding leaves where the answer is zero. Numbers up to this size are to be taken for zero.
+    /// Rounding errors where the answer is zero. Numbers up to this size are to be taken as zero.
     pub round_off: Sizes,
     /// Largest applied traction, or what a body force adds up to across its body.
     pub traction: f64,
@@ -85,9 +85,9 @@ impl Scales {
         }
     }
 
-    /// The same for a model that begins with every contact closed, as displacement models do: what crosses a gap and comes
-    /// back leaves a rounding error of it, even where the gap has no part in the answer. An energy at its minimum sees the
-    /// square of that.
+    /// Sizes for a model that starts with every contact closed, as displacement models do: crossing a gap and coming back leaves
+    /// a rounding error in proportion to the gap, even where the gap does not affect the answer. An energy at its minimum sees the
+    /// square of that error.
     pub fn from_closed_contacts(mut self, problem: &Problem) -> Self {
         let pairs = problem.pairs();
         let widest = pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max);
@@ -99,7 +99,7 @@ impl Scales {
         self
     }
 
-    /// What rounding of imposed displacements leaves as stress of degree `degree` in triangle `t`, where there is none.
+    /// Rounding error of imposed displacements, as stress of degree `degree` in triangle `t`, where the stress is zero.
     pub fn stress_round_off(&self, problem: &Problem, t: usize, degree: usize) -> f64 {
         if self.imposed == 0.0 {
             return 0.0;

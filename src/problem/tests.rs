@@ -19,7 +19,7 @@ fn two_blocks(gap: Gap, n: usize) -> Scene {
     contact(scene, "a_right", "b_left", gap)
 }
 
-/// What must hold for every problem: each contact edge in one pair, the sides opposite, the normal outward.
+/// Asserts the invariants of every problem: each contact edge in one pair, the sides opposite, the normal outward.
 fn assert_paired(problem: &Problem) {
     let mesh = &problem.mesh;
     let mut met = 0;

@@ -28,10 +28,10 @@ use crate::problem::{ContactPair, Problem, Scales};
 /// Ends that are closer than this, relative to the value, are one but for rounding.
 const ONE: f64 = 1e-9;
 
-/// What rounding leaves in a value that was computed, relative to what the data can cause.
+/// Rounding error of a computed value, relative to the largest effect of the data.
 const ROUNDED: f64 = 1e-11;
 
-/// What rounding leaves of projections and of means, relative to the largest that they can be.
+/// Rounding error of projections and of means, relative to the largest that they can be.
 const ROUNDED_MEAN: f64 = 1e-12;
 
 /// Contacts of up to so many jumps have a dense Schur complement.
@@ -53,14 +53,14 @@ pub struct Interval {
     pub first_order: [f64; 2],
     /// The value of λ for forces and stresses, of v for displacements: nearer to the truth than the middle.
     pub value: f64,
-    /// Whether equilibrium alone determines the value: every equilibrium has it, whatever its contact pressures, and the ends
+    /// True if equilibrium alone determines the value: every equilibrium has it, whatever its contact pressures, and the ends
     /// differ by rounding.
     pub exact_by_statics: bool,
     /// How far outside rounding may put a correct value that was computed.
     pub rounding: f64,
     /// Why an end is infinite.
     pub reasons: [Option<String>; 2],
-    /// What each triangle adds to the width.
+    /// Contribution of each triangle to the width.
     pub shares: Vec<f64>,
 }
 
@@ -79,7 +79,7 @@ impl Interval {
         }
     }
 
-    /// Whether anything is guaranteed.
+    /// True if any end is guaranteed.
     pub fn has_an_end(&self) -> bool {
         self.ends.iter().any(|end| end.is_finite())
     }
@@ -89,7 +89,7 @@ impl Interval {
         outside(self.ends, self.rounding, x)
     }
 
-    /// What this interval and one from sharper stresses tell together of one value, with the shares of this one.
+    /// Combines this interval with one of the same value from sharper stresses, keeping the shares of this one.
     pub fn and(self, sharper: &Interval) -> Self {
         let both =
             |[a, b]: [f64; 2], [c, d]: [f64; 2]| if a.max(c) <= b.min(d) { [a.max(c), b.min(d)] } else { [c, d] };
@@ -123,7 +123,7 @@ impl Functional {
     }
 }
 
-/// What is known of a problem that was solved.
+/// The solved problem, with its stress, its upper bound and quantities derived from them.
 pub struct Known<'a> {
     pub(super) problem: &'a Problem,
     pub(super) dual: &'a DualSolution,
@@ -265,14 +265,14 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// Whether the ends differ by rounding alone: relative to the value, or to what rounding leaves where it is zero.
+    /// True if the ends differ by rounding alone: relative to the value, or to its rounding error where it is zero.
     fn are_one(&self, functional: &Functional, [lower, upper]: [f64; 2]) -> bool {
         let zero = functional.kind.size(self.problem, &Scales::new(self.problem).round_off) / functional.scale;
         upper - lower <= (ONE * lower.abs().max(upper.abs())).max(zero)
     }
 
-    /// What the load leaves of a value at a point on the exact displacement: that of v, and at most so much more, whose parts are added to
-    /// `shares`.
+    /// Enclosure, on the exact displacement, of the part of a value at a point that the load does not represent: its value for v, give or
+    /// take a radius whose contributions are added to `shares`.
     fn remainder(&self, exact: &Functional, loaded: &Functional, shares: &mut [f64]) -> Remainder {
         if exact.local.is_none() {
             return Remainder { centre: 0.0, radius: 0.0 };
@@ -346,7 +346,7 @@ impl<'a> Known<'a> {
     }
 }
 
-/// What the load of an adjoint problem leaves of a quantity.
+/// Enclosure of the part of a quantity that the load of its adjoint problem does not represent.
 struct Remainder {
     centre: f64,
     radius: f64,

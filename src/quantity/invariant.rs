@@ -63,7 +63,7 @@ impl Invariants {
         candidates.into_iter().map(|[x, y]| self.value([x, y, shear])).fold(f64::INFINITY, f64::min)
     }
 
-    /// What the intervals of the three components tell.
+    /// The interval that follows from those of the three components.
     pub fn interval(&self, components: [Interval; 3]) -> Interval {
         let all = |ends: [[f64; 2]; 3]| {
             if ends.iter().flatten().all(|end| end.is_finite()) {

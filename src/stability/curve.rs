@@ -14,7 +14,7 @@ const BESIDE: f64 = 0.07;
 /// Errors against the truth (full markers), guaranteed errors of the methods that deliver them (hollow).
 ///
 /// # Errors
-/// What the drawing library reported.
+/// The error that the drawing library reported.
 pub fn curve(row: &Row) -> Result<String, PlotError> {
     let mut series = Vec::new();
     let middle = 0.5 * (Method::all().count() - 1) as f64;

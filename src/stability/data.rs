@@ -1,4 +1,4 @@
-//! What a stability matrix knows.
+//! Contents of a stability matrix.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub struct Matrix {
     pub schema_version: u32,
     /// Where it was made.
     pub machine: Machine,
-    /// Whether only a part of the values was swept.
+    /// True if only a part of the values was swept.
     pub reduced: bool,
     /// The command that makes it again.
     #[serde(default)]
@@ -29,9 +29,9 @@ pub struct Matrix {
 pub struct Row {
     /// Name on the command line and in links.
     pub id: String,
-    /// What it is.
+    /// A short description.
     pub title: String,
-    /// What is swept.
+    /// The parameter that is swept.
     pub parameter: String,
     /// The values as a reader sees them, in the order of the sweep.
     pub values: Vec<String>,
@@ -56,7 +56,7 @@ pub struct Cell {
     pub solver: Option<String>,
     /// The worst outcome.
     pub worst: Outcome,
-    /// What happened at each value.
+    /// The outcome at each value.
     pub steps: Vec<Step>,
 }
 
@@ -124,7 +124,7 @@ impl Outcome {
 }
 
 impl Cell {
-    /// What it is called: the method, or the solver in the place of FEniCSx with its degree.
+    /// Its name: the method, or the solver in the place of FEniCSx with its degree.
     pub fn name(&self) -> String {
         self.method.name_with(self.solver.as_deref())
     }

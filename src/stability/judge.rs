@@ -1,4 +1,4 @@
-//! What a run said, held against what is known.
+//! Comparison of the answer of a run with the known facts.
 
 use super::data::{Outcome, Step};
 use super::known::Known;
@@ -26,7 +26,7 @@ const SAME_ITERATIVE: f64 = 1e-6;
 /// Variation of the pressure beyond the exact one that counts as oscillation.
 const OSCILLATION: f64 = 1.1;
 
-/// What to hold a run against.
+/// The reference that a run is compared with.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'a> {
     /// Facts from outside.

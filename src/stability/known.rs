@@ -1,9 +1,9 @@
-//! What is known about an answer before anything is solved.
+//! Facts that are known about an answer before anything is solved.
 
 /// Facts about one problem of a regime.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
-    /// Whether there is an equilibrium.
+    /// True if there is an equilibrium.
     pub solvable: bool,
     /// Exact energy and 𝒮 of the exact stress, from a closed solution.
     pub energy: Option<[f64; 2]>,

@@ -15,7 +15,7 @@ use crate::budget::Budget;
 use crate::measure::{self, Answer, Ended, Limits, Machine, Method, Step};
 use crate::primal::SolverCommand;
 
-/// What to run.
+/// The regimes and methods to run, and the settings of the run.
 pub struct Sweep<'a> {
     /// The regimes.
     pub regimes: Vec<&'static Regime>,
@@ -58,7 +58,7 @@ const TOLERANCE: f64 = 0.02;
 /// … and stop at this many triangles.
 const MOST_TRIANGLES: usize = 12_000;
 
-/// What a process runs.
+/// The computation of one process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Task {
     One(Method),
@@ -150,7 +150,7 @@ fn fingerprint(regime: &Regime, step: usize) -> String {
     }
 }
 
-/// Whether a finer mesh is another problem, so that what is true of this one says nothing of it: new vertices lie on the
+/// True if a finer mesh is another problem, so that truths about this one do not carry over: new vertices lie on the
 /// curves that edges stand for.
 fn changes_with_its_mesh(regime: &Regime, step: usize) -> bool {
     let made = std::panic::catch_unwind(|| regime.problem(regime.values[step]));

@@ -67,7 +67,7 @@ impl Sketch {
         self
     }
 
-    /// The same as the section of a body of revolution about the line on which the first coordinate is zero.
+    /// Turns it into the section of a body of revolution about the line on which the first coordinate is zero.
     pub fn revolved(mut self) -> Self {
         self.scene.kinematics = Kinematics::Axisymmetric;
         self.scene.thickness = self.scene.kinematics.measure();
@@ -155,7 +155,7 @@ impl Sketch {
         self
     }
 
-    /// The same mesh with vertices, triangles, corners and segments in random order; seed 0 changes nothing.
+    /// Renumbers vertices, triangles, corners and segments of the mesh at random; seed 0 changes nothing.
     pub fn shuffled(mut self, seed: u64) -> Self {
         if seed == 0 {
             return self;
@@ -182,7 +182,7 @@ impl Sketch {
     /// Checks everything.
     ///
     /// # Errors
-    /// What is wrong with scene or mesh, in words.
+    /// A description of the defects of scene or mesh.
     pub fn problem(self) -> Result<Problem, String> {
         // Its triangles are no file's and no polygons'.
         let scene = Scene::unchecked(self.scene);

@@ -21,7 +21,7 @@ const BALANCED: f64 = 1e-10;
 /// Groups of more pieces than this are judged with sparse rows.
 const MANY: usize = 24;
 
-/// What was found for one group, as vectors in the unknowns of the group.
+/// The findings for one group, as vectors in the unknowns of the group.
 pub(super) struct Verdict {
     /// A basis of the motions allowed both ways.
     pub held: Vec<DVector<f64>>,
@@ -31,7 +31,7 @@ pub(super) struct Verdict {
     pub one_way: Option<DVector<f64>>,
     /// The motion that the pressures of the mesh cannot stop, see [`super::Solvability::Possible`].
     pub beyond_mesh: Option<DVector<f64>>,
-    /// What of it a finer mesh leaves as it is.
+    /// The part of the verdict that a finer mesh does not change.
     pub lasting: Option<Lasting>,
 }
 
@@ -52,7 +52,7 @@ impl Verdict {
         })
     }
 
-    /// The same with cones that `cone` makes of rows that vanish and the points of runs that must not penetrate.
+    /// As [`Self::of`], with the cones that `cone` makes of vanishing rows and of the points of runs that must not penetrate.
     pub fn from_cones<'a>(
         problem: &Problem,
         group: &Group,
@@ -130,13 +130,13 @@ fn beyond_mesh(
 pub(super) struct Driven {
     pub motion: DVector<f64>,
     pub work: f64,
-    /// What friction takes up of it.
+    /// Work absorbed by friction in it.
     pub resisted: f64,
 }
 
 /// The cone of allowed motions of a group.
 pub(super) trait Cone {
-    /// What neither supports nor contacts can balance: the part along motions allowed both ways, and the rest.
+    /// The part of `load` that neither supports nor contacts can balance: the component along motions allowed both ways, and the rest.
     fn unbalanced(&self, load: &DVector<f64>) -> Result<[DVector<f64>; 2], cone::Unsettled>;
 
     /// How many rows g, of length one and orthogonal to motions allowed both ways, have g · y ≤ 0, and their sum.
@@ -145,7 +145,7 @@ pub(super) trait Cone {
     /// A basis of the motions allowed both ways, readable: most of them translations of few pieces.
     fn held(&self) -> Vec<DVector<f64>>;
 
-    /// `motion` with free motions added so that, as far as they can, pieces do not slide where they stay in touch: what
+    /// `motion` with free motions added so that, as far as they can, pieces do not slide where they stay in touch: a piece that
     /// turns then turns about its points of contact and not about a point that round-off or the method would choose.
     /// Translations stay as they are. The loads must do no work on free motions.
     fn without_sliding(&self, motion: DVector<f64>) -> DVector<f64>;
@@ -164,7 +164,7 @@ fn borderline(cone: &dyn Cone, load: &DVector<f64>, total: f64) -> Result<Option
     Ok((one.norm() > 1e-4 * step).then_some(one))
 }
 
-/// What counts as zero relative to the loads: [`BALANCED`], or more where coordinates far from the origin or short
+/// Threshold of zero relative to the loads: [`BALANCED`], or more where coordinates far from the origin or short
 /// contacts leave fewer digits in the directions of contact.
 fn round_off(group: &Group) -> f64 {
     let components = group.components;

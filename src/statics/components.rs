@@ -45,7 +45,7 @@ pub struct Components {
     pub origin: [f64; 2],
     /// Names of the bodies of each piece, in scene order.
     pub bodies: Vec<Vec<String>>,
-    /// Whether the bodies of the piece have further pieces, so that their names alone do not tell it.
+    /// True if the bodies of the piece have further pieces, so that their names alone do not identify it.
     pub one_of_several: Vec<bool>,
 }
 

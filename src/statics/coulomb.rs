@@ -15,7 +15,7 @@ use super::{Components, LoadResultants, words};
 use crate::optimise::Law;
 use crate::problem::Problem;
 
-/// What is left of a force, relative to it, where others balance it.
+/// Largest remainder of a force, relative to it, that counts as balanced by others.
 const BALANCED: f64 = 1e-7;
 /// Groups with more ends of contact are not looked into.
 const MOST_ENDS: usize = 60;
@@ -36,7 +36,7 @@ struct Force {
     interface: usize,
 }
 
-/// Whether forces of contact within their cones balance the loads on every piece; `true` where this was not looked into.
+/// True if contact forces within their cones balance the loads on every piece; also where this was not examined.
 pub fn friction_can_balance(problem: &Problem) -> bool {
     let components = Components::new(problem);
     let loads = LoadResultants::new(problem, &components);

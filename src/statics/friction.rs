@@ -57,7 +57,7 @@ pub(super) fn nearest(rows: &[DVector<f64>], laws: &[Law], load: &DVector<f64>) 
     Some(found.x.iter().enumerate().map(|(i, x)| sign(i) * x).collect())
 }
 
-/// What friction takes up in a `motion` of the group.
+/// Work absorbed by friction in a `motion` of the group.
 pub(super) fn resistance(group: &Group, motion: &DVector<f64>) -> f64 {
     let of = |run: &&super::restraint::Run| {
         let slip = group.dense(&group.slip(run, run.ends[0])).dot(motion);

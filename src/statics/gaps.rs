@@ -18,7 +18,7 @@ const MANY: usize = 24;
 /// Part of the largest displacement below which a piece is at rest.
 const AT_REST: f64 = 1e-9;
 
-/// Whether the contact of `run` has a gap all along.
+/// True if the contact of `run` has a gap along its whole length.
 fn is_apart(problem: &Problem, run: &Run) -> bool {
     // Friction acts across a gap, too.
     let apart = |pair: &ContactPair| pair.friction.is_none() && pair.gap.iter().all(|g| *g > 0.0);

@@ -1,4 +1,4 @@
-//! What a finer mesh leaves as it is: how the loads rest on supports and contacts that have not changed.
+//! The part of a verdict that a finer mesh does not change: how the loads rest on supports and contacts that have not changed.
 //!
 //! A mesh only says how close to the ends of contact its pressures can act. Everything else follows from where straight
 //! contacts begin and end, from supports and from the sums of the loads.
@@ -9,7 +9,7 @@ use super::restraint::{Group, Part};
 use crate::vector::long::largest;
 
 /// Numbers that differ by less, relative to the largest of their kind, are those of the same scene: sums over other triangles
-/// round differently. What counts as a balanced load is a hundred times more.
+/// round differently. The threshold of a balanced load is a hundred times larger.
 const SAME: f64 = 1e-12;
 
 /// A verdict without what depends on the mesh.
@@ -23,7 +23,7 @@ pub(super) struct Lasting {
 }
 
 impl Lasting {
-    /// Whether it is the verdict on `question`, too.
+    /// True if it is also the verdict on `question`.
     pub fn answers(&self, question: &Question) -> bool {
         let own = &self.question;
         let alike = |a: &[f64], b: &[f64], size: f64| {
@@ -36,7 +36,7 @@ impl Lasting {
     }
 }
 
-/// What a verdict follows from.
+/// The data that determine a verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Question {
     /// Members, sides of runs and whether their direction turns, and the members that rows of rollers belong to.

@@ -1,4 +1,4 @@
-//! Whether the loads admit an equilibrium, and which rigid motions nothing holds.
+//! Existence of an equilibrium under the loads, and the rigid motions that nothing holds.
 //!
 //! Equilibrium is possible only if L(y) ≤ 0 for every rigid motion y that supports and contacts allow: u = 0 on Γ_u,
 //! u_n = 0 on Γ_0, v_n' + v_n'' ≤ 0 on Γ_K (1.16). Initial gaps do not enter: a body falls through any gap until it is
@@ -7,8 +7,8 @@
 //! (see `cone`). A motion allowed both ways must see no work at all; it then leaves the stress unique and the displacement
 //! not, and pins choose one displacement.
 //!
-//! With friction L(y) may be as large as ∫ τ̄ |y_t' − y_t''|, what a given bound of the traction takes up (see `friction`), and a motion that
-//! slides against friction is no free one.
+//! With friction L(y) may be as large as ∫ τ̄ |y_t' − y_t''|, the work absorbed by a given bound of the traction (see `friction`), and a
+//! motion that slides against friction is not free.
 
 mod balance;
 mod components;
@@ -58,14 +58,14 @@ pub struct Statics {
     pub edge_pins: Vec<EdgePin>,
     /// The answer.
     pub equilibrium: Solvability,
-    /// What a report should say: motions that stay free, borderline loads, pressure too concentrated for the mesh.
+    /// Remarks for a report: motions that stay free, borderline loads, pressure too concentrated for the mesh.
     pub notes: Vec<String>,
-    /// What of the verdicts on groups of pieces stays on a finer mesh.
+    /// Parts of the verdicts on groups of pieces that stay valid on a finer mesh.
     lasting: Vec<Lasting>,
 }
 
 impl Statics {
-    /// Whether no pressure on this mesh balances the loads, though there is an equilibrium.
+    /// True if no pressure on this mesh balances the loads, though there is an equilibrium.
     pub fn is_beyond_mesh(&self) -> bool {
         matches!(self.equilibrium, Solvability::Possible { beyond_mesh: Some(_), .. })
     }
@@ -76,7 +76,7 @@ impl Statics {
     }
 }
 
-/// Whether (1.16) holds.
+/// The verdict on (1.16).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solvability {
     /// L(y) ≤ 0 for every allowed motion.

@@ -1,4 +1,4 @@
-//! What supports and contacts ask of the rigid motions: rows of small linear systems.
+//! Constraints of supports and contacts on the rigid motions: rows of small linear systems.
 //!
 //! A rigid motion moves a straight line so that its normal displacement is linear along it. A straight run of edges
 //! therefore needs two rows, however many edges it has, and the normal is taken from the whole run: normals of single
@@ -101,7 +101,7 @@ pub(super) fn runs(problem: &Problem, components: &Components, degree: Degree<'_
     all
 }
 
-/// Whether pair `next` follows on pair `next` − 1 and the run from `start` stays straight with it.
+/// True if pair `next` continues pair `next` − 1 and the run from `start` stays straight with it.
 fn continues_straight(problem: &Problem, interface: &Interface, start: usize, next: usize) -> bool {
     let pairs = &interface.pairs;
     let (from, to) = (&pairs[start], &pairs[next]);
@@ -124,7 +124,7 @@ fn continues_straight(problem: &Problem, interface: &Interface, start: usize, ne
     })
 }
 
-/// Whether contact acts along a direction that is not the normal of the pair.
+/// True if contact acts along a direction that is not the normal of the pair.
 fn along_line(pair: &ContactPair) -> bool {
     pair.direction.is_constant() && pair.direction.ends[0] != pair.normal
 }
@@ -172,7 +172,7 @@ pub(super) struct Group<'a> {
     pub runs: Vec<&'a Run>,
 }
 
-/// Whether each piece has a clamped edge.
+/// For each piece, true if it has a clamped edge.
 pub(super) fn clamped(problem: &Problem, components: &Components) -> Vec<bool> {
     let mut clamped = vec![false; components.count()];
     for (edge, condition) in problem.mesh.edges.iter().zip(&problem.conditions) {
@@ -382,7 +382,7 @@ pub(super) fn held_directions(problem: &Problem) -> impl Iterator<Item = (usize,
     rollers.chain(springs)
 }
 
-/// What `part` of a row takes from a vector of all unknowns.
+/// The product of `part` of a row with a vector of all unknowns.
 pub(super) fn along((m, part): &Part, all: &DVector<f64>) -> f64 {
     (0..3).map(|i| part[i] * all[3 * m + i]).sum()
 }

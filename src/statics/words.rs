@@ -165,7 +165,7 @@ pub(super) fn impossible(components: &Components, moving: &[Moving], work: f64, 
     format!("{} {motion}: {reason}.", capital(&name(components, lead.component)))
 }
 
-/// What a motion that stays free without work means for the displacement.
+/// Consequence for the displacement of a motion that stays free without work.
 pub(super) fn free_both_ways(components: &Components, moving: &[Moving]) -> String {
     let all: Vec<_> =
         moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();
@@ -176,7 +176,7 @@ pub(super) fn free_both_ways(components: &Components, moving: &[Moving]) -> Stri
     )
 }
 
-/// The same for a motion that only contacts with a gap would hinder: those of these `names`.
+/// As [`free_both_ways`], for a motion that only contacts with a gap would hinder, those of these `names`.
 pub(super) fn free_while_open(components: &Components, moving: &[Moving], names: &[String]) -> String {
     let all: Vec<_> =
         moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();
@@ -191,7 +191,7 @@ pub(super) fn free_while_open(components: &Components, moving: &[Moving], names:
     )
 }
 
-/// The same for a motion that is free in one direction only.
+/// As [`free_both_ways`], for a motion that is free in one direction only.
 pub(super) fn free_one_way(components: &Components, moving: &[Moving], loaded: bool) -> String {
     let all: Vec<_> =
         moving.iter().map(|one| format!("{} {}", name(components, one.component), clause(components, one))).collect();

@@ -31,7 +31,7 @@ def test_a_telephone_shows_all_of_it(opened, pages, name):
 @pytest.mark.parametrize("name", PAGES)
 def test_nothing_is_cut_on_paper(opened, pages, name):
     page = opened(pages[name])
-    # What margins leave of A4, at 96 pixels an inch.
+    # A4 without margins, at 96 pixels an inch.
     width, height = (1009, 688) if name == "stability" else (688, 1009)
     page.set_viewport_size({"width": width, "height": height})
     page.emulate_media(media="print")

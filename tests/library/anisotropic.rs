@@ -210,7 +210,7 @@ fn brackets_nest_and_their_gaps_are_local() {
     }
 }
 
-/// What is no material is refused, with the constant that breaks it.
+/// Elastic constants that make no material are refused, with the constant that breaks it.
 #[test]
 fn constants_that_are_no_material_are_named() {
     let refused = |law: &str, kinematics: &str, fragment: &str| {

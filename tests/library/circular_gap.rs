@@ -17,7 +17,7 @@ pub fn foot(gap: &str) -> Problem {
     foot_asked(gap, "")
 }
 
-/// The same with tables of `quantities`.
+/// As [`foot`], with tables of `quantities`.
 fn foot_asked(gap: &str, quantities: &str) -> Problem {
     let text = format!(
         "[model]\nkinematics = \"plane-strain\"\n[mesh]\nfile = \"foot.msh\"\n\

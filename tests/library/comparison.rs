@@ -57,7 +57,7 @@ fn exact(problem: &Problem) -> Candidate {
     }
 }
 
-/// The same in degree `k`: of a constant pressure, every coefficient on an edge has an equal share.
+/// As [`exact`], in degree `k`: of a constant pressure, every coefficient on an edge has an equal share.
 fn exact_of_degree(problem: &Problem, k: usize) -> Candidate {
     let mesh = &problem.mesh;
     let linear = exact(problem);

@@ -137,7 +137,7 @@ fn gauss_seidel(s: &Mat<f64>, c: &[f64], g: &[f64]) -> Vec<f64> {
     j
 }
 
-/// Whether plain block pivoting from closed contact comes back to a state it has been in.
+/// True if plain block pivoting from closed contact returns to an earlier state.
 fn block_pivoting_cycles(s: &Mat<f64>, c: &[f64], g: &[f64]) -> bool {
     let mut closed = vec![true; c.len()];
     let mut seen = Vec::new();

@@ -1,4 +1,4 @@
-//! What a report says about the polygon and the curve that it stands for.
+//! Remarks of a report on the polygon and the curve that it represents.
 
 use crate::arcs::between_arcs;
 use crate::circular_gap::foot;

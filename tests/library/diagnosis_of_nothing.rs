@@ -1,4 +1,4 @@
-//! What is no mistake is given no name: noise, smooth errors and random residuals on scenes by seed. Planted mistakes on the same
+//! Faults that are no mistakes get no name: noise, smooth errors and random residuals on scenes by seed. Planted mistakes on the same
 //! scenes are named.
 
 use std::collections::BTreeMap;
@@ -160,7 +160,7 @@ impl Method {
         &self.free * matrix.cholesky().expect("a held body").solve(&right)
     }
 
-    /// What is wrong with `values` as a solution of `problem`, which has the mesh of this method.
+    /// The diagnosis of `values` as a solution of `problem`, which has the mesh of this method.
     fn diagnosed(&self, problem: &Problem, values: &DVector<f64>) -> Option<Diagnosis> {
         let field = candidate(problem, self.degree, values.as_slice());
         let strain = 0.5 * values.dot(&(&self.stiffness * values));
@@ -168,7 +168,7 @@ impl Method {
         diagnose(&solution, Energies { own: 0.0, admissible: None, reported: None })
     }
 
-    /// What supports leave of a field.
+    /// Projection of a field onto those that the supports allow.
     fn projected(&self, values: DVector<f64>) -> DVector<f64> {
         &self.free * (self.free.transpose() * values)
     }

@@ -310,8 +310,9 @@ fn a_small_triangle_far_from_the_origin_loses_no_digits() {
     }
 }
 
-/// What flat triangles, nearly incompressible materials and high degrees cost: rounding grows with the aspect ratio, for a corner moved by rounding
-/// changes a flat triangle by as much. That the field of given tractions is worse by the aspect ratio once more is (2.10): c(α) ~ 1/sin²α.
+/// Rounding errors of flat triangles, nearly incompressible materials and high degrees: they grow with the aspect ratio, for a corner
+/// moved by rounding changes a flat triangle by as much. The field of given tractions is worse by the aspect ratio once more, as by (2.10)
+/// c(α) ~ 1/sin²α.
 #[test]
 fn flat_and_nearly_incompressible_triangles() {
     const FIGURES: [(&str, Figure); 9] = [

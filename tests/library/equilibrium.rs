@@ -10,7 +10,7 @@ use hypercircle::study::{Goal, StudyError, adapt, certify};
 
 struct Case {
     name: &'static str,
-    /// What drives is 1 + the argument times what holds.
+    /// The scene in which the driving load is 1 + the argument times the load that can be held.
     scene: fn(f64) -> Toml,
     body: &'static str,
     motion: &'static str,

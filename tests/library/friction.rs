@@ -70,7 +70,7 @@ fn a_bar_bonded_by_friction_slides_as_far_as_its_load_asks() {
     assert!(two_ways(&certified) < 1e-9);
 }
 
-/// What holds the upper block where friction does not.
+/// Support of the upper block where friction does not hold it.
 const SPRING: &str = "[[supports]]\non = \"side\"\ntype = \"spring\"\nstiffness = [0.5, 0.1]";
 
 /// One block on another one, pressed and pushed, turned by an angle; the two meet along a line or along a kinked one.

@@ -10,7 +10,7 @@ mod fuzz;
 
 /// Changed inputs for each target.
 const CHANGED: usize = 6000;
-/// What one input may take, on a busy machine.
+/// Time limit of one input, on a busy machine.
 const LIMIT: Duration = Duration::from_secs(5);
 
 const WORDS: [&str; 24] = [

@@ -171,7 +171,7 @@ fn methods_agree() {
     }
 }
 
-/// What is no temperature is refused.
+/// Invalid temperatures and initial stresses are refused.
 #[test]
 fn wrong_keys_are_named() {
     let refused = |keys: &str, fragment: &str| {

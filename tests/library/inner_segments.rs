@@ -1,4 +1,4 @@
-//! What the basis of balanced modes keeps and the elimination of inner segments loses.
+//! Digits that the basis of balanced modes keeps and the elimination of inner segments loses.
 
 use hypercircle::element::subtriangle::{Moments, flexibility, side_map};
 use hypercircle::element::{Block, EquilibriumElement, Material};

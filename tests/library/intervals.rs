@@ -24,7 +24,7 @@ fn square(low: f64, high: f64) -> Region {
     Region::Polygon(vec![[low, low], [high, low], [high, high], [low, high]])
 }
 
-/// What the first example of the paper is asked, with the values that are known to about 1e-6.
+/// Asks the first example of the paper for three quantities; returns their values, known to about 1e-6.
 fn asked(problem: &mut Problem) -> [f64; 3] {
     let displacement = Target::Displacement { of: Extent::Boundary("left_west".into()), direction: [1.0, 0.0] };
     let window = Some([0.125, 0.25, 0.375, 0.5]);

@@ -49,7 +49,7 @@ fn permutation(n: usize, seed: u64) -> Vec<usize> {
     order
 }
 
-/// The same problem with triangles, vertices and edges renumbered and the corners of each triangle turned by one;
+/// This problem with triangles, vertices and edges renumbered and the corners of each triangle turned by one;
 /// `place[t]` is the new number of triangle t.
 fn renumbered(problem: &Problem, seed: u64) -> (Problem, Vec<usize>) {
     let mut p = problem.clone();

@@ -186,7 +186,7 @@ mod mutations {
         }
     }
 
-    /// What must hold of any error: it can be told, in one message, with places inside the text.
+    /// Checks any error: it can be told, in one message, with places inside the text.
     fn tell(error: &SceneError, length: usize) -> Result<(), TestCaseError> {
         prop_assert!(!error.found().is_empty() && !error.remedy().is_empty());
         if let Some(place) = error.place() {

@@ -1,4 +1,4 @@
-//! What `hypercircle mesh` finds in files whose content is known, and that the scene it writes means what it says.
+//! `hypercircle mesh` on files of known content: its findings, and the scene that it writes.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

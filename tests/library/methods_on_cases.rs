@@ -35,8 +35,8 @@ fn run(method: &dyn DualMethod, problem: &Problem) -> Result<(DualSolution, f64)
     Ok((solution, lower))
 }
 
-/// Whether two contact states agree where the state means something: at ends that carry pressure or stand open. An end
-/// without either may be called open or closed.
+/// True if two contact states agree where the state matters: at ends that carry pressure or stand open. An end
+/// with neither may be called open or closed.
 fn same_contact(problem: &Problem, a: &DualSolution, b: &DualSolution) -> bool {
     let tractions =
         |s: &DualSolution| -> Vec<f64> { s.contact_traction.iter().flat_map(|t| t.values()).copied().collect() };
@@ -62,7 +62,7 @@ fn interior_point_and_condensed_agree_on_every_case() {
     }
 }
 
-/// Whether a scene has springs, elastic contact, friction, a force that is not constant, an initial strain, or is one of revolution.
+/// True if a scene has springs, elastic contact, friction, a force that is not constant, an initial strain, or is one of revolution.
 fn beyond_the_paper(problem: &Problem) -> bool {
     let more = |body: &Body| !body.body_force.is_constant() || !body.initial.is_none();
     !problem.beds.is_empty()
@@ -72,7 +72,7 @@ fn beyond_the_paper(problem: &Problem) -> bool {
         || problem.scene.bodies.iter().any(more)
 }
 
-/// Whether the direction of contact is not the normal of each edge, which the paper does not know.
+/// True if the direction of contact is not the normal of each edge, a case that the paper does not treat.
 fn turning(problem: &Problem) -> bool {
     let along = |pair: &ContactPair| {
         pair.direction.ends.iter().all(|n| (n[0] - pair.normal[0]).hypot(n[1] - pair.normal[1]) < 1e-9)

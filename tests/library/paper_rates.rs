@@ -8,7 +8,7 @@ use crate::support::theory::tables;
 const INTERPOLATION: [usize; 4] = [8, 16, 32, 64];
 const CONTACT: [usize; 4] = [4, 8, 16, 32];
 
-/// What a fit over few meshes can resolve.
+/// The resolution of a rate fitted over few meshes.
 const RESOLUTION: f64 = 0.1;
 
 #[derive(serde::Deserialize)]

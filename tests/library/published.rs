@@ -15,7 +15,7 @@ fn weighted(p: impl Fn(f64) -> f64) -> f64 {
     (0..n).map(|k| weight(at(k).sin()) * p(at(k).sin()) * at(k).cos()).sum::<f64>() * 0.5 * PI / n as f64
 }
 
-/// What the formula of a published number gives; nothing for a number that was read.
+/// The value of the formula of a published number; `None` for a number without a formula.
 fn evaluated(case: &str, quantity: &str, which: usize) -> Option<f64> {
     let root = |a: f64| (PI * a).sqrt();
     let (alpha, angle) = (0.5_f64, 0.25 * PI);

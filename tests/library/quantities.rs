@@ -1,4 +1,4 @@
-//! What a scene is solved for: what the file may say, and the vertices it asks for.
+//! Quantities of a scene: valid and invalid entries of the file, and the vertices that they add to the mesh.
 
 use std::path::{Path, PathBuf};
 

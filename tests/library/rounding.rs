@@ -1,4 +1,4 @@
-//! What rounding does to the bounds: energies in twice the digits, stresses that miss equilibrium on purpose, and the
+//! Effect of rounding on the bounds: energies in twice the digits, stresses that miss equilibrium on purpose, and the
 //! mid-field.
 
 use crate::support::Blocks;

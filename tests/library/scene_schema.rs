@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// Whether `value` is of the schema `at`, for the keywords that the schema of scenes has.
+/// True if `value` conforms to the schema `at`, for the keywords that the schema of scenes has.
 fn admits(schema: &serde_json::Value, at: &serde_json::Value, value: &serde_json::Value) -> bool {
     let number = |key: &str| at[key].as_f64();
     let referred = at["$ref"].as_str().is_none_or(|path| {

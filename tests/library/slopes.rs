@@ -142,7 +142,7 @@ fn ends_of(answers: &[Answer], name: &str) -> [f64; 2] {
     answer.interval.ends
 }
 
-/// What statics says of a block that friction alone holds, whether it slides in part or not.
+/// Forces on a block that friction alone holds agree with statics, whether it slides in part or not.
 #[test]
 fn forces_of_friction_are_those_of_statics() {
     for bound in [0.055, 5.0] {
@@ -188,7 +188,7 @@ fn a_strip_that_slides_moves_as_its_bar() {
     assert!(high - low < 0.1 * bar, "{low} {high}");
 }
 
-/// What has no interval is refused, with its name and what has one.
+/// Quantities without an interval are refused, with their name and with those that have one.
 #[test]
 fn what_friction_leaves_without_an_interval_is_refused() {
     let contact = "[[contacts]]\nbetween = [\"foot\", \"seat\"]\nfriction = { bound = 1.0 }";

@@ -7,7 +7,7 @@ use hypercircle::problem::{Problem, Scales};
 use hypercircle::scene::Scene;
 use hypercircle::study::{Certified, StudyError, certify};
 
-/// What is at the left end of the row.
+/// The condition at the left end of the row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Left {
     Free,
@@ -17,7 +17,7 @@ enum Left {
     Moved(f64),
 }
 
-/// What is at the right end of the row.
+/// The condition at the right end of the row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Right {
     Free,
@@ -153,7 +153,7 @@ impl Row {
     }
 }
 
-/// What a method says: lower and upper bound and relative error; none where there is no equilibrium.
+/// The answer of a method: lower and upper bound and relative error; `None` where there is no equilibrium.
 type Answer = Option<[f64; 3]>;
 
 fn answer(row: &Row, frame: Frame, method: &dyn DualMethod) -> Result<Answer, String> {
@@ -172,7 +172,7 @@ fn answer(row: &Row, frame: Frame, method: &dyn DualMethod) -> Result<Answer, St
     Err(what(format!("{lower:e} and {upper:e}, error {error:e}")))
 }
 
-/// What is wrong with the answers of all methods to `row` in `frame`; whether it has an equilibrium.
+/// Adds the errors in the answers of all methods to `row` in `frame` to `complaints`; true if it has an equilibrium.
 fn judge(row: &Row, frame: Frame, complaints: &mut Vec<String>) -> bool {
     let exact = frame == UPRIGHT;
     let (active, clarabel, uzawa) = (ActiveSet::default(), Clarabel::default(), Uzawa::default());

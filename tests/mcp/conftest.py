@@ -55,7 +55,7 @@ def field(displacement):
 
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory):
-    """What the server may read."""
+    """The folder that the server may read."""
     folder = tmp_path_factory.mktemp("mcp") / "folder"
     folder.mkdir()
     (folder / "plate.msh").write_text(mesh())

@@ -11,7 +11,7 @@ use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use serde_json::Value;
 
-/// What a diagnosis has to name: the finding, and its number to two digits where it has one.
+/// The diagnosis that is expected: the finding, and its number to two digits where it has one.
 type Expected = Option<(&'static str, Option<f64>)>;
 
 /// The mistakes of `fields.py` by name, with what explains them.
@@ -56,7 +56,7 @@ fn prepared(folder: &Path, names: &[&str]) -> bool {
     prepared_on(folder, &scene(), names)
 }
 
-/// The same for a scene of two blocks or of its own.
+/// As [`prepared`], for any `scene`.
 pub fn prepared_on(folder: &Path, scene: &str, names: &[&str]) -> bool {
     let has = Command::new(python()).args(["-c", "import numpy, scipy.sparse"]).output();
     if !has.is_ok_and(|output| output.status.success()) {

@@ -1,4 +1,4 @@
-//! What is said of quantities and contacts beside their numbers: exact by statics, inside, open, free, and why a value is missing.
+//! Labels of quantities and contacts beside their numbers: exact by statics, inside, open, free, and why a value is missing.
 
 use std::path::Path;
 

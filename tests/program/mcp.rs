@@ -20,7 +20,7 @@ const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1
                     $Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n4\n1 1 2 1 1 1 2\n2 1 2 2 2 3 4\n3 2 2 3 3 1 2 3\n\
                     4 2 2 3 3 1 3 4\n$EndElements\n";
 
-/// The same as a deck.
+/// The unit square of [`MESH`] as a deck.
 const DECK: &str =
     "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=CPE3, ELSET=block\n1, 1, 2, 3\n2, 1, 3, 4\n";
 

@@ -45,7 +45,7 @@ fn on_file(file: &Path) -> FieldFile {
     FieldFile { points: raw.points, cells, values }
 }
 
-/// The same in another numbering of points and triangles, turned and started elsewhere.
+/// The field with points and triangles renumbered, and with cells turned and started elsewhere.
 fn shuffled(field: &FieldFile, random: &mut Random) -> FieldFile {
     let mut shuffle = |count: usize| {
         let mut order: Vec<usize> = (0..count).collect();
@@ -70,7 +70,7 @@ fn shuffled(field: &FieldFile, random: &mut Random) -> FieldFile {
     }
 }
 
-/// The same with coordinates of six digits.
+/// The field with coordinates of six digits.
 fn rounded(field: &FieldFile) -> FieldFile {
     let round = |x: f64| format!("{x:.5e}").parse().expect("a number");
     FieldFile { points: field.points.iter().map(|p| p.map(round)).collect(), ..field.clone() }

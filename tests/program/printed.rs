@@ -1,4 +1,4 @@
-//! What README and docs show of the program's output, compared with what it prints, digit by digit.
+//! Program output shown in README and docs, compared with the real output, digit by digit.
 
 use crate::pages::{blocks, needs_reference, pages, read, replay};
 
@@ -17,7 +17,7 @@ fn sessions_on_the_pages_are_those_of_the_program() {
     assert!(commands > 1, "only {commands} commands are shown with what they print");
 }
 
-/// What checks proofs; `checker/tests` compares what it prints.
+/// The checker of proofs; `checker/tests` compares its output.
 const CHECKER: &str = "hypercircle-check";
 
 /// A block of plain text is what a program printed: it is behind a program of Python, which `tests/python` runs, behind the checker of

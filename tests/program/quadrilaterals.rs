@@ -87,7 +87,7 @@ fn scene(name: &str) -> String {
     )
 }
 
-/// What a script of `tests/support/displacement` prints, or nothing where scikit-fem is missing.
+/// The output of a script of `tests/support/displacement`, or `None` where scikit-fem is missing.
 pub fn by_scikit_fem(script: &str, folder: &Path, args: &[&str]) -> Option<Vec<u8>> {
     let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or("/usr/bin/python3".into(), PathBuf::from);
     let site = Path::new(PROGRAM).ancestors().nth(2).expect("a folder of the build").join("python");

@@ -1,4 +1,4 @@
-//! What a run says of what it was asked and of what it did: no number is taken for another, and nothing happens without a word.
+//! Statements of a run about its input and its actions: no number is taken for another, and nothing happens without a word.
 
 use std::path::Path;
 use std::process::Output;

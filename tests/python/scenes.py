@@ -64,7 +64,7 @@ def gmsh(points, triangles, body, lines):
 
 
 def described(points, triangles, body, lines, load):
-    """The same in the form of `hypercircle.problem`."""
+    """The problem in the form of `hypercircle.problem`."""
     seen = {}
     for t in triangles:
         for i in range(3):

@@ -77,7 +77,7 @@ def turned_first(nodes):
     return nodes[[1, 0, *range(2, len(nodes))]]
 
 
-# What is planted, where it is possible, and its name. Arguments are those of `Element`.
+# By planted bug: the elements that can have it, the name to be found, and the arguments of `Element` that plant it.
 BROKEN = {
     "weights": (SEVERAL_POINTS, "weights", lambda k, r: {"weights": weights(k, r)}),
     "lost point": (SEVERAL_POINTS, "lost-point", lambda k, r: {"weights": one(k, r, 0)}),

@@ -1,4 +1,4 @@
-"""What users of notebooks and scripts ask of the package: verify, jobs, tables, pictures, fields of other programs, ctrl-C."""
+"""The package as users of notebooks and scripts need it: verify, jobs, tables, pictures, fields of other programs, ctrl-C."""
 
 import os
 import signal
@@ -206,7 +206,7 @@ def test_ctrl_c_ends_a_solve():
         except KeyboardInterrupt:
             print("interrupted", scene.solve().status, flush=True)
         """
-    # What a shell starts in the background ignores the signal, and so does all that comes of it.
+    # A background process of a shell ignores the signal, and so do all its children.
     heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
     process = subprocess.Popen(
         [sys.executable, "-c", textwrap.dedent(body)], stdout=subprocess.PIPE, text=True, preexec_fn=heard

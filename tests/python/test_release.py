@@ -1,4 +1,4 @@
-"""What a release says of itself, in every file that says it."""
+"""Version and description of a release, in every file that has them."""
 
 import re
 import tomllib

@@ -30,7 +30,7 @@ fn number(report: &Value, key: &str) -> f64 {
     report.pointer(key).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {key}"))
 }
 
-/// The same bounds, and equilibrium below 1e-9. Gives how many contact states were tried.
+/// Asserts equal bounds, and equilibrium below 1e-9. Returns the number of contact states that were tried.
 #[track_caller]
 fn same(name: &str, options: &[&str], engine: &[&str]) -> usize {
     let folder = tempfile::tempdir().expect("a folder");

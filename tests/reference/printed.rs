@@ -1,4 +1,4 @@
-//! What README and docs show of a comparison with FEniCSx, held against what the program prints, digit by digit.
+//! Comparisons with FEniCSx shown in README and docs, compared with the real output, digit by digit.
 
 use crate::command::with_reference;
 use crate::pages::{needs_reference, pages, read, replay};

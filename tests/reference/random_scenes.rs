@@ -63,7 +63,7 @@ fn a_seed_is_the_same_scene_every_time_and_another_seed_another_one() {
     }
 }
 
-/// What a scene is made of, as far as its text tells.
+/// True if the text of a scene contains `what`.
 fn has(text: &str, what: &str) -> bool {
     text.contains(what)
 }

@@ -28,7 +28,7 @@ def without_code(text):
 
 
 def anchors(page):
-    """What `#…` may name on a page: its headings as GitHub and MyST write them, and anchors of HTML."""
+    """Valid targets of `#…` on a page: its headings as GitHub and MyST write them, and anchors of HTML."""
     text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     found, counts = set(re.findall(r'<a (?:id|name)="([^"]+)"', text)), {}
     for heading in re.findall(r"^#+ +(.*?) *$", text, flags=re.MULTILINE):

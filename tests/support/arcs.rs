@@ -13,7 +13,7 @@ pub struct Arcs {
     pub rise: f64,
     /// `smooth` or `facets`.
     pub normals: &'static str,
-    /// Whether the arc is one of an ellipse.
+    /// True if the arc is one of an ellipse.
     pub squeezed: bool,
 }
 

@@ -9,7 +9,7 @@ use std::process::{Command, Output, Stdio};
 /// The program.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_hypercircle");
 
-/// Whether FEniCSx is expected; the environment says so where it is known to be missing, and the dual side is then tried alone.
+/// True if FEniCSx is expected; the environment says so where it is known to be missing, and the dual side is then tried alone.
 pub fn with_reference() -> bool {
     std::env::var_os("HYPERCIRCLE_WITHOUT_REFERENCE").is_none_or(|value| value != "1")
 }
@@ -27,12 +27,12 @@ pub fn hypercircle<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<
     command
 }
 
-/// What came of `command`.
+/// Runs `command` and returns its output.
 pub fn run(mut command: Command) -> Output {
     command.output().expect("the program starts")
 }
 
-/// What a run said on standard error.
+/// The text of a run on standard error.
 pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::command::PROGRAM;
 
-/// What `decks.py` has written into a folder, or nothing where meshio is missing.
+/// The decks that `decks.py` has written into a folder, or `None` where meshio is missing.
 pub fn written(folder: &Path) -> Option<Vec<Value>> {
     let python = std::env::var_os("HYPERCIRCLE_PYTHON").unwrap_or("/usr/bin/python3".into());
     let site = Path::new(PROGRAM).ancestors().nth(2).expect("a folder of the build").join("python");

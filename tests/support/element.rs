@@ -1,4 +1,4 @@
-//! What every equilibrium element is held against: random triangles and materials, and energies with a quadrature of their own.
+//! Common inputs of tests of equilibrium elements: random triangles and materials, and energies with an independent quadrature.
 
 use hypercircle::element::{self, EquilibriumElement, Modes};
 use hypercircle::scene::Kinematics;

@@ -16,7 +16,7 @@ use hypercircle::mesh::Triangulation;
 use hypercircle::problem::Problem;
 use hypercircle::scene::*;
 
-/// What distinguishes one two-block scene from another.
+/// Parameters of a two-block scene.
 #[derive(Clone)]
 pub struct Blocks {
     /// Squares per side of each block.

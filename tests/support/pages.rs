@@ -74,7 +74,7 @@ pub fn blocks(text: &str) -> Vec<Block> {
     blocks
 }
 
-/// Whether a session in `text` compares with FEniCSx.
+/// True if a session in `text` compares with FEniCSx.
 pub fn needs_reference(text: &str) -> bool {
     let blocks = blocks(text);
     let sessions = blocks.iter().filter(|block| block.language == "console");
@@ -144,7 +144,7 @@ fn scratch() -> tempfile::TempDir {
     folder
 }
 
-/// What a command prints on both its outputs, in the order in which it comes.
+/// The output of a command on both streams, in the order in which it comes.
 fn printed(folder: &Path, command: &str) -> String {
     let path = std::env::var("PATH").expect("a path");
     let mut shell = Command::new("sh");
@@ -157,7 +157,7 @@ fn printed(folder: &Path, command: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// Whether `printed` is what a page shows.
+/// True if `printed` matches the lines that a page shows.
 fn fit(shown: &[&str], printed: &[&str]) -> bool {
     match shown.split_first() {
         None => printed.is_empty(),
@@ -168,7 +168,7 @@ fn fit(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Whether a printed line is what a page shows.
+/// True if a printed line matches the one that a page shows.
 fn alike(shown: &str, printed: &str) -> bool {
     let Some((before, behind)) = shown.split_once(LEFT_OUT) else {
         return shown == printed;

@@ -25,7 +25,7 @@ impl Random {
         (self.next() % n as u64) as usize
     }
 
-    /// Whether something of that probability happens.
+    /// True with the given probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.between(0.0, 1.0) < probability
     }

@@ -45,7 +45,7 @@ impl Toml {
         self.outline(body, points, &edges)
     }
 
-    /// The same for any number of edges.
+    /// As [`Self::polygon`], for any number of edges.
     pub fn outline(mut self, body: &str, points: &[[f64; 2]], edges: &[&str]) -> Self {
         write!(self.polygons, "[[geometry.polygons]]\nbody = \"{body}\"\npoints = {points:?}\nedges = {edges:?}\n")
             .expect("a string takes any text");
@@ -87,7 +87,7 @@ impl Toml {
         self
     }
 
-    /// The same scene with each table of a contact as `change` has it.
+    /// This scene with each table of a contact replaced by the result of `change`.
     pub fn with_contacts(&self, mut change: impl FnMut(&str) -> String) -> Self {
         let text = format!("\n{}", self.conditions);
         let tables = text.split("\n[[").skip(1).map(|table| format!("[[{}", table.trim_end()));

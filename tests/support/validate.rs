@@ -24,7 +24,7 @@ for path in sys.argv[2:]:
 sys.exit(wrong)
 "#;
 
-/// What does not fit the schema called `name`; nothing where all `files` do.
+/// The errors of files that do not fit the schema called `name`; empty where all `files` do.
 pub fn misfits(folder: &Path, name: &str, files: &[PathBuf]) -> String {
     let printed = run(hypercircle(folder, ["schema", name]));
     let schema = folder.join(format!("{name}.schema.json"));

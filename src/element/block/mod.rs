@@ -100,7 +100,7 @@ const fn upper(k: usize) -> usize {
     k * (k + 1) / 2
 }
 
-/// What the fields of the basis have in Σ S_k τ_k less the overlaps of `particular` times the particular field.
+/// Coefficients of the fields of the basis in Σ (S_k − `particular` · overlap_k) τ_k.
 fn coefficients(kept: &[f64], s: &[f64], particular: f64) -> [f64; N] {
     let (inverse, overlaps) = kept.split_at(UPPER);
     let mut out = [0.0; N];

@@ -1,4 +1,4 @@
-//! What balances a constant body force.
+//! The field that balances a constant body force.
 
 use super::N;
 use super::basis::BlockBasis;

@@ -73,7 +73,7 @@ impl Displacement {
         self.degree.len()
     }
 
-    /// Whether there are no triangles.
+    /// True if there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.degree.is_empty()
     }

@@ -56,7 +56,7 @@ impl OnQuadrilaterals {
         &self.values
     }
 
-    /// Whether all quadrilaterals are parallelograms, and the displacement is what [`Self::on_triangles`] makes of it.
+    /// True if all quadrilaterals are parallelograms, so that [`Self::on_triangles`] represents the displacement exactly.
     pub fn is_polynomial(&self) -> bool {
         self.is_polynomial
     }
@@ -99,7 +99,7 @@ impl OnQuadrilaterals {
     }
 }
 
-/// Whether all cells of the file are quadrilaterals onto which a square can be mapped.
+/// True if all cells of the file are quadrilaterals onto which a square can be mapped.
 pub fn can_carry(mesh: &Triangulation) -> bool {
     mesh.is_quadrilateral() && mesh.quadrilaterals().all(|cell| cell.is_convex(mesh))
 }

@@ -89,7 +89,7 @@ impl PlainDisplacement {
         Some(PlainDisplacement { degree: k, values, ends })
     }
 
-    /// The same on other boundary values: those at vertices, then the coefficients inside edges.
+    /// This displacement with other boundary values: those at vertices, then the coefficients inside edges.
     pub fn with_boundary(mut self, boundary: &[[f64; 2]]) -> Self {
         self.values[..boundary.len()].copy_from_slice(boundary);
         self
@@ -128,7 +128,7 @@ impl PlainDisplacement {
         mesh.edges.iter().enumerate().map(middle).collect()
     }
 
-    /// The same on the split triangulation, by de Casteljau's steps to the centroids.
+    /// This displacement on the split triangulation, by de Casteljau's steps to the centroids.
     pub fn split(&self, mesh: &Triangulation) -> Displacement {
         let k = self.degree;
         let mut field = Displacement::zeros(std::iter::repeat_n(k, mesh.triangles.len()));

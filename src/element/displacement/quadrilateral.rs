@@ -31,7 +31,7 @@ pub struct At {
     pub determinant: f64,
     /// The determinant times the strain (xx, yy, xy).
     pub strain: [f64; 3],
-    /// The same with the sizes of all terms added up.
+    /// Sum of the absolute values of all terms of `strain`.
     pub spread: f64,
 }
 
@@ -92,7 +92,7 @@ impl Quadrilateral {
         [cross(a, b), cross(a, h), cross(h, b)]
     }
 
-    /// Whether it is a parallelogram, but for round-off.
+    /// True if it is a parallelogram, up to round-off.
     pub fn is_parallelogram(&self) -> bool {
         let [a, b, h] = self.frame();
         h[0].hypot(h[1]) <= PARALLEL * a[0].hypot(a[1]).min(b[0].hypot(b[1]))
@@ -186,7 +186,7 @@ impl Quadrilateral {
     }
 }
 
-/// Whether four corners, in either order round, are those of a convex quadrilateral, with no angle of 180 degrees.
+/// True if four corners, in either orientation, are those of a convex quadrilateral without an angle of 180 degrees.
 pub fn is_convex(corners: &[[f64; 2]; 4]) -> bool {
     let turn = |i: usize| {
         let [p, q, r] = [corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]];
@@ -219,7 +219,7 @@ fn along(at: f64, s: f64) -> [f64; 2] {
     if at == 0.0 { [1.0 - s * s, -2.0 * s] } else { [0.5 * s * (s + at), s + 0.5 * at] }
 }
 
-/// What the functions of four or eight nodes are of those of nine: each is Σ of its values at the nine nodes.
+/// Shape functions of four or eight nodes from those of nine: each is their sum weighted with its values at the nine nodes.
 fn own(nodes: usize, nine: &[[f64; 2]; 9]) -> Vec<[f64; 2]> {
     let mut own = nine.to_vec();
     let mut add = |to: usize, from: usize, weight: f64| {

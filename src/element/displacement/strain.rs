@@ -96,7 +96,7 @@ impl Strains {
         samples.basis(q).iter().zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
     }
 
-    /// The same as [`Self::spread`] at the point with barycentric coordinates `l`.
+    /// As [`Self::spread`], at the point with barycentric coordinates `l`.
     pub fn spread_at(&self, l: [f64; 3]) -> f64 {
         triangle::basis(self.degree, l).zip(&self.spreads).map(|(weight, spread)| weight * spread).sum()
     }

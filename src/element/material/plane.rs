@@ -97,7 +97,7 @@ impl General {
         self.unit * dot(times(&self.inverse, strains(e)), times(&self.inverse, strains(d)))
     }
 
-    /// What rounding of the factor and of a stress can change of a λ:λ, relative to one rounding.
+    /// Largest change of a λ:λ by rounding of the factor and of a stress, relative to one rounding.
     pub fn spread(&self, l: [f64; 3]) -> f64 {
         let x = unknowns(l);
         let row = |row: &[f64; 3]| {

@@ -40,7 +40,7 @@ impl<T: Copy> SideValues<T> {
         self.start.len() - 1
     }
 
-    /// Whether there are no sides.
+    /// True if there are no sides.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -59,7 +59,7 @@ pub fn product(alpha: Index, beta: Index) -> f64 {
     ways / (binomial(p + q, p) * len(p + q) as f64)
 }
 
-/// What coefficient `alpha` has of coefficient `beta` of the same polynomial in a lower degree.
+/// Weight of coefficient `beta` of a polynomial in coefficient `alpha` of the same polynomial in a higher degree.
 pub fn elevation(beta: Index, alpha: Index) -> f64 {
     if (0..3).any(|i| beta[i] > alpha[i]) {
         return 0.0;

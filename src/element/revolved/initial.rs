@@ -86,7 +86,7 @@ impl<'a> Motion<'a> {
 }
 
 impl Held {
-    /// What the strain of [`Motion`] leaves of ε0 on a triangle; `None` where that is nothing.
+    /// The part of ε0 on a triangle beyond the strain of [`Motion`]; `None` if that is zero.
     pub fn beside_motion(material: &Material, axis: f64, corners: [[f64; 2]; 3]) -> Option<Self> {
         let whole = Held::on(material, corners)?;
         let Some(motion) = Motion::new(material.initial(), axis, corners) else { return Some(whole) };

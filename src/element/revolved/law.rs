@@ -60,7 +60,7 @@ impl Law {
         times(&self.factor, Revolution::unknowns(l))
     }
 
-    /// The same of the stress of a strain.
+    /// As [`Self::roots`], for the stress of a strain.
     pub fn roots_of_strain(&self, e: Tensor) -> [f64; 4] {
         self.strain_roots(e).map(|root| self.unit * root)
     }

@@ -32,13 +32,13 @@ pub use rule::{Point, SidePoint, rule, side_rule};
 pub use sampled::{Sampled, Strained};
 pub use stress::Weighted;
 
-/// Whether coefficient `k` of `degree` of the traction on a side belongs to a point of the axis, where there is none: `on_axis` says it of the
-/// ends of the side.
+/// True if coefficient `k` of `degree` of the traction on a side belongs to a point of the axis, where there is none; the flags tell which
+/// ends of the side lie on the axis.
 pub fn vanishes([first, last]: [bool; 2], k: usize, degree: usize) -> bool {
     first && (last || k == 0) || last && k == degree
 }
 
-/// By how much the majorant of 1/r may lie above it in what is a bound, relative to it.
+/// Largest excess of the majorant of 1/r in a guaranteed bound, relative to 1/r.
 pub const NEAR: f64 = 4.0 * f64::EPSILON;
-/// The same in the choice of basis fields and in stiffness matrices that only guide a minimisation.
+/// Largest such excess in the choice of basis fields and in stiffness matrices that only guide a minimisation.
 pub const ROUGH: f64 = 1e-9;

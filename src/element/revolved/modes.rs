@@ -55,7 +55,7 @@ impl Ring {
         (0..3).map(|side| 2 * (0..=self.degree).filter(|k| !self.vanishes(side, *k)).count()).sum()
     }
 
-    /// Whether coefficient `k` of the traction on a side belongs to the axis.
+    /// True if coefficient `k` of the traction on a side belongs to the axis.
     pub(super) fn vanishes(&self, side: usize, k: usize) -> bool {
         let ends = [self.radii[(side + 1) % 3] == 0.0, self.radii[(side + 2) % 3] == 0.0];
         super::vanishes(ends, k, self.degree)
@@ -259,7 +259,7 @@ impl Ring {
     }
 }
 
-/// What is given on a triangle.
+/// Loads and initial strain of a triangle.
 struct Given<'a> {
     /// Nodal values of a Σ that balances the axial force.
     balancing: &'a [[f64; 3]],

@@ -77,7 +77,7 @@ pub struct SidePoint {
     pub excess: f64,
 }
 
-/// The same as [`rule`] on an edge whose ends have these distances from the axis.
+/// As [`rule`], on an edge whose ends have these distances from the axis.
 pub fn side_rule([first, last]: [f64; 2], degree: usize, near: f64) -> Vec<SidePoint> {
     let (least, most) = (first.min(last), first.max(last));
     let intervals = if least > 0.0 && most > least { intervals(most / least) } else { 1 };

@@ -1,6 +1,6 @@
 //! Stresses of a body of revolution from their weighted form.
 //!
-//! What is stored is Σ = r λ, polynomial on every subtriangle, in the components rr, zz, rz. Balance in the direction of r gives the hoop
+//! The stored field is Σ = r λ, polynomial on every subtriangle, in the components rr, zz, rz. Balance in the direction of r gives the hoop
 //! stress, λ_θθ = ∂_r Σ_rr + ∂_z Σ_rz + r F_r; balance along the axis, ∂_r Σ_rz + ∂_z Σ_zz + r F_z = 0, is a property of the element.
 
 use std::sync::OnceLock;

@@ -58,7 +58,7 @@ impl Factor {
         backward(&self.r, b);
     }
 
-    /// What the last column has in those of Q.
+    /// Components of the last column along the columns of Q.
     pub fn overlaps(&self) -> &[f64] {
         self.r.col_as_slice(self.r.ncols() - 1)
     }

@@ -85,7 +85,7 @@ impl EquilibriumElement for Split {
         6 * (self.degree + 1) - 3
     }
 
-    /// What modes and λ̄ have in the fields: see [`Kept`].
+    /// Number of coefficients of modes and λ̄ in the fields: see [`Kept`].
     fn kept(&self) -> usize {
         let (n, free) = (self.parameters(), self.free());
         n * (n + 1) / 2 + n * free + n + free
@@ -172,13 +172,13 @@ impl EquilibriumElement for Split {
     }
 }
 
-/// What is kept of a triangle.
+/// Coefficients kept for a triangle.
 struct Kept<'a> {
-    /// What mode k has in the first k + 1 fields with traction: a packed upper triangle, column by column.
+    /// Coefficients of mode k in the first k + 1 fields with traction: a packed upper triangle, column by column.
     upper: &'a [f64],
-    /// What the modes have in fields without traction, mode by mode.
+    /// Coefficients of the modes in fields without traction, mode by mode.
     free: &'a [f64],
-    /// What λ̄ has in fields with traction, then in those without.
+    /// Coefficients of λ̄ in fields with traction, then in those without.
     particular: &'a [f64],
 }
 
@@ -209,7 +209,7 @@ struct Triangle {
 }
 
 impl Triangle {
-    /// Whether there is a body force.
+    /// True if there is a body force.
     fn is_loaded(&self) -> bool {
         self.force != Affine::default()
     }

@@ -23,7 +23,7 @@ const CORNERS: [[f64; 2]; 3] = [[0.0, 1.0], [-HALF_SIDE, -0.5], [HALF_SIDE, -0.5
 /// Half the length of its sides, √3/2.
 const HALF_SIDE: f64 = 0.866_025_403_784_438_6;
 
-/// What τ_12 is of its coefficient while null spaces are found: squares then add up to τ:τ.
+/// Ratio of τ_12 to its coefficient while null spaces are found: squares then add up to τ:τ.
 const SHEAR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Where a rule on a side, or a node, is in a subtriangle.
@@ -47,7 +47,7 @@ pub struct Field {
     pub traction: Vec<[f64; 2]>,
 }
 
-/// What all split triangles of one degree share.
+/// Data shared by all split triangles of one degree.
 pub struct Reference {
     /// Number of polynomials on a subtriangle.
     pub modes: usize,
@@ -57,13 +57,13 @@ pub struct Reference {
     pub off_base: Vec<Field>,
     /// Points of a subtriangle that determine a polynomial of degree p.
     pub points: Vec<[f64; 3]>,
-    /// What the value at point q has in coefficient m, at `q modes + m`.
+    /// Weight of the value at point q in coefficient m, at `q modes + m`.
     pub from_points: Vec<f64>,
     /// Nodes of a subtriangle.
     pub nodes: Vec<[f64; 3]>,
     /// Points of a side that determine a polynomial of degree p.
     pub side_points: Vec<f64>,
-    /// What the value at point q has in Bernstein coefficient k, at `q (p + 1) + k`.
+    /// Weight of the value at point q in Bernstein coefficient k, at `q (p + 1) + k`.
     pub from_side_points: Vec<f64>,
 }
 
@@ -271,7 +271,7 @@ fn beyond_equilibrium(p: usize) -> DMatrix<f64> {
     out
 }
 
-/// What Legendre coefficient n has in Bernstein coefficient k.
+/// Weights of Legendre coefficients n in Bernstein coefficients k.
 fn from_legendre(p: usize) -> DMatrix<f64> {
     let columns = (0..=p).map(|n| {
         let size = ((2 * n + 1) as f64).sqrt();

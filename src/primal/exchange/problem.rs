@@ -65,7 +65,7 @@ struct BodyEntry<'a> {
     body_force: Force,
 }
 
-/// The same everywhere, or value + gradient · x.
+/// A constant, or value + gradient · x.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Force {
@@ -151,7 +151,7 @@ struct ClampedEntry {
     displacement: Prescribed,
 }
 
-/// The same at both ends of an edge, or one value each.
+/// One value for both ends of an edge, or one value each.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Prescribed {

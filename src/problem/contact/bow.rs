@@ -81,7 +81,7 @@ impl Bow {
         &self.coefficients[..self.count]
     }
 
-    /// Whether the gap is linear.
+    /// True if the gap is linear.
     pub fn is_none(&self) -> bool {
         self.count == 0
     }

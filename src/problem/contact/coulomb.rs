@@ -9,7 +9,7 @@ use crate::mesh::Triangulation;
 use crate::problem::{ContactPair, Friction, Problem};
 use crate::scene::Scene;
 
-/// Whether a scene has a contact with Coulomb friction.
+/// True if a scene has a contact with Coulomb friction.
 pub fn follows_coulomb(scene: &Scene) -> bool {
     scene.contacts.iter().any(|contact| contact.coefficient.is_some_and(|mu| mu > 0.0))
 }
@@ -20,7 +20,7 @@ impl Problem {
         self.scene.contacts.get(interface)?.coefficient.filter(|mu| *mu > 0.0)
     }
 
-    /// The same problem with these bounds at the two ends of each pair, contact by contact, of contacts with Coulomb friction; other
+    /// This problem with `bounds` on friction at the two ends of each pair, contact by contact, where contacts have Coulomb friction; other
     /// contacts keep theirs.
     pub fn with_friction_bounds(&self, bounds: &[Vec<[f64; 2]>]) -> Problem {
         let mut problem = self.clone();

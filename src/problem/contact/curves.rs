@@ -6,7 +6,7 @@ use crate::scene::{Circle, FrictionBound, Gap, MeshSource, Normals, Scene};
 
 /// Part of the radius within which vertices of a contact lie on a circle.
 const ON_CIRCLE: f64 = 1e-6;
-/// The same for vertices that were put on an arc of the scene.
+/// Part of the radius within which vertices that were put on an arc of the scene lie on its circle.
 const ON_ARC: f64 = 1e-9;
 /// Directions of contact of two edges that differ by less meet without a corner.
 const NO_CORNER: f64 = 1e-9;
@@ -151,7 +151,7 @@ fn scene_arcs(scene: &Scene) -> Vec<(&str, Circle, [[f64; 2]; 2])> {
     all.collect()
 }
 
-/// Whether the triangles at an edge stay well shaped when its middle moves onto the circle.
+/// True if the triangles at an edge stay well shaped when its midpoint moves onto the circle.
 fn has_room(problem: &Problem, e: usize, circle: &Circle) -> bool {
     let mesh = &problem.mesh;
     let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);

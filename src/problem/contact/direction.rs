@@ -16,12 +16,12 @@ pub struct Direction {
 }
 
 impl Direction {
-    /// The same direction all along sides that coincide.
+    /// A direction that is constant along sides that coincide.
     pub fn constant(normal: [f64; 2]) -> Self {
         Direction { ends: [normal; 2], shares: [1.0; 2] }
     }
 
-    /// Whether n̂ is the same all along.
+    /// True if n̂ is constant along the pair.
     pub fn is_constant(&self) -> bool {
         self.ends[0] == self.ends[1]
     }
@@ -49,7 +49,7 @@ impl Direction {
         if self.is_constant() { along / self.shares[0] } else { along / (n[0] * n[0] + n[1] * n[1]) / self.shares[0] }
     }
 
-    /// What is left of a traction of the given side at an end where t n̂ is taken away.
+    /// The rest of a traction of the given side at an end after t n̂ is subtracted.
     pub fn remainder(&self, side: usize, end: usize, traction: [f64; 2], t: f64) -> [f64; 2] {
         let factor = if side == 0 { t * self.shares[0] } else { -t * self.shares[1] };
         [0, 1].map(|c| traction[c] - factor * self.ends[end][c])

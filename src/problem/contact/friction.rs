@@ -15,19 +15,19 @@ use crate::scene::{Contact, Scene};
 /// Part of the length of a contact within which an arc length is that of a vertex.
 const AT_VERTEX: f64 = 1e-9;
 
-/// What resists sliding along a pair.
+/// The resistance to sliding along a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// τ̄ at the two ends of the pair, linear between; per length of the pair, like the traction along n̂.
     pub bound: [f64; 2],
     /// t̂, with the arc length of the first side.
     pub tangent: Direction,
-    /// What the points of the pair count.
+    /// Weight of the points of the pair in integrals.
     pub weight: EdgeWeight,
 }
 
 impl Friction {
-    /// Bernstein coefficients of τ̄ times what the points of the pair count.
+    /// Bernstein coefficients of τ̄ times the weight of the pair.
     pub fn weighted(&self) -> Vec<f64> {
         self.weight.times(&self.bound)
     }
@@ -113,18 +113,18 @@ fn tangent(pair: &ContactPair, mesh: &Triangulation) -> Direction {
 }
 
 impl crate::problem::Problem {
-    /// Whether anything resists sliding along a contact.
+    /// True if any contact resists sliding.
     pub fn has_friction(&self) -> bool {
         self.pairs().any(|pair| pair.friction.is_some())
     }
 
-    /// Whether anything resists sliding along one contact.
+    /// True if contact number `contact` resists sliding.
     pub fn rubs_on(&self, contact: usize) -> bool {
         self.interfaces.get(contact).is_some_and(|interface| interface.pairs.iter().any(|pair| pair.friction.is_some()))
     }
 }
 
-/// Whether a scene has a contact with friction.
+/// True if a scene has a contact with friction.
 pub fn rubs(scene: &Scene) -> bool {
     follows_coulomb(scene)
         || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))

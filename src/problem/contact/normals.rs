@@ -80,7 +80,7 @@ pub(in crate::problem) struct Coarser<'a> {
     pub vertices: usize,
     /// The edges that were divided on a circle.
     pub curved: &'a Curved,
-    /// What it makes of curves.
+    /// Its treatment of curves in refinement.
     pub refinement: Refinement,
 }
 

@@ -11,13 +11,13 @@ use crate::problem::{Bed, BedPair, Condition, Interface, Problem, ProblemError};
 use crate::scene::Contact;
 
 impl Problem {
-    /// Whether a contact is elastic.
+    /// True if a contact is elastic.
     pub fn has_elastic_contact(&self) -> bool {
         self.pairs().any(|pair| pair.stiffness.is_some())
     }
 
-    /// The same problem with springs that do not pull in the place of elastic contacts, behind all other springs. Their interfaces
-    /// stay in their places, without pairs.
+    /// This problem with its elastic contacts replaced by springs that do not pull, listed after all other springs. The interfaces
+    /// keep their places, without pairs.
     pub fn softened(&self) -> Cow<'_, Problem> {
         if !self.has_elastic_contact() {
             return Cow::Borrowed(self);
@@ -63,7 +63,7 @@ pub(in crate::problem) fn refuse(
     Ok(())
 }
 
-/// Whether the two sides of a pair lie on each other.
+/// True if the two sides of a pair coincide.
 fn coincide(pair: &crate::problem::ContactPair, mesh: &Triangulation) -> bool {
     pair.second.is_none_or(|second| (0..2).all(|end| mesh.points[second[end]] == mesh.points[pair.first[end]]))
 }

@@ -134,7 +134,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// What a pair is worth: the fields of [`End`] of these names.
+/// The bound that a pair gives, in the fields of [`End`] of these names.
 struct Bound {
     bound: f64,
     centre: f64,

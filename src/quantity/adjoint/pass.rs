@@ -37,7 +37,7 @@ pub struct Pass {
     pub squares: Vec<f64>,
     /// Those of the pair.
     pub pair: Integrals,
-    /// The same with z = 0.
+    /// The integrals of the pair with z = 0.
     pub alone: Integrals,
     /// ‖σ̂‖²_a.
     pub balanced: f64,
@@ -45,7 +45,7 @@ pub struct Pass {
     pub initial: [f64; 2],
 }
 
-/// What an adjoint pair has over all triangles.
+/// Integrals of an adjoint pair over all triangles.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Integrals {
     /// ‖σ_z − σ(z)‖²_a.

@@ -43,7 +43,7 @@ const WORTH_A_SWEEP: f64 = 1e-3;
 /// Relative squares of stresses that are none.
 const NO_STRESS: f64 = 1e-18;
 
-/// The same for what is left between an adjoint stress and its displacement, both being computed.
+/// Relative square below which the computed difference between an adjoint stress and the stress of its displacement is zero.
 const NO_STRAIN: f64 = 1e-15;
 
 /// Jumps that are none, relative to the largest displacement and weight.
@@ -56,7 +56,7 @@ pub(in crate::quantity) struct Search<'s, 'a> {
     pub loaded: &'s Loaded<'s>,
 }
 
-/// What the search for either end begins with.
+/// The common starting point of the search for either end.
 pub(in crate::quantity) struct Begun {
     response: Response,
     /// Values of z at nodes.
@@ -69,7 +69,7 @@ pub(in crate::quantity) struct Begun {
 }
 
 impl Search<'_, '_> {
-    /// What the search for either end begins with: the response that is not bounded, and a displacement near to it.
+    /// Prepares the search for either end: the unconstrained response, and a displacement close to it.
     pub fn begin(&self, neutral: Response) -> Begun {
         let Known { problem, nearest, .. } = self.known;
         let sigma = self.stress(&neutral.stress);
@@ -152,8 +152,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Whether the pair that takes no notice of the state of contact is without stress and without k: then every equilibrium,
-    /// whatever its pressures, has the value Q_h.
+    /// True if the pair that ignores the state of contact has neither stress nor k: then every equilibrium,
+    /// whatever its contact pressures, has the value Q_h.
     pub fn is_static(&self, begun: &Begun) -> bool {
         let Known { nearest, .. } = self.known;
         let natural = self.functional.natural;
@@ -171,7 +171,7 @@ impl Search<'_, '_> {
             && pair.beyond <= NO_JUMP
     }
 
-    /// What σ_z has in a body of revolution beside the weighted form of σ̂: the radial load in its hoop stress, and cχ.
+    /// The part of σ_z in a body of revolution beyond the weighted form of σ̂: the radial load in its hoop stress, and cχ.
     fn beside(&self, factor: f64) -> Option<Beside<'_>> {
         let Functional { load: Load { force, .. }, beside, .. } = self.functional;
         let is_there = !beside.is_empty() || force.iter().any(|force| !force.is_none());
@@ -256,7 +256,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// Whether both sides of a contact have one vertex at this place of the scene as it was written.
+/// True if both sides of a contact share one vertex at this place of the scene as written.
 fn is_tip(problem: &Problem, place: [f64; 2]) -> bool {
     let shared = problem.pairs().flat_map(|pair| {
         let second = pair.second;
@@ -273,7 +273,7 @@ struct Tries<'t, 's, 'a> {
     heaviest: f64,
     /// Remainders of equilibrium that do not show in the width.
     enough: f64,
-    /// What relaxing begins with, and whether that was relaxed.
+    /// The displacement from which relaxation starts, and true if it was relaxed already.
     start: (NodalValues, bool),
     tried: Tried,
     best: Option<(End, Response)>,

@@ -11,7 +11,7 @@ use crate::problem::{BedPair, Problem};
 use crate::quantity::functional::Functional;
 use crate::vector::dot;
 
-/// What a pair has on one pair of springs.
+/// Integrals of an adjoint pair over one pair of springs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SpringTerms {
     pub pair: Integrals,

@@ -1,7 +1,7 @@
-//! What the width is worth at another ratio, from the ratios that were tried.
+//! Predicts the width at another ratio from the ratios tried.
 //!
-//! At the end of a contact the adjoint stress grows like 1/√r and the pressure falls like √r. A ratio ρ clips what is nearer
-//! than about 1/ρ, and what is clipped has an energy in proportion to that: D² = d² + c/ρ, where d is what the mesh leaves.
+//! At the end of a contact the adjoint stress grows like 1/√r and the pressure falls like √r. A ratio ρ clips the part that is nearer
+//! than about 1/ρ, and the energy of the clipped part is proportional to that distance: D² = d² + c/ρ, where d is due to the mesh.
 
 use super::end::width;
 

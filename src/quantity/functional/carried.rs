@@ -1,7 +1,7 @@
-//! What friction carries: forces along contacts, and the moments of all that a contact with friction exerts.
+//! Loads transmitted by friction: forces along contacts, and the moments of all tractions that a contact with friction exerts.
 //!
 //! With a displacement w̃ that moves the vertices of one side alone, the traction T on the first side has
-//! ∫_{ΓK} T·w̃ = ∫ τ:e(w̃) − F(w̃) − ∫ t j_n(w̃), the last integral over what of the normal traction is not asked for.
+//! ∫_{ΓK} T·w̃ = ∫ τ:e(w̃) − F(w̃) − ∫ t j_n(w̃), the last integral over the part of the normal traction that is not asked for.
 
 use super::supports::add_strains;
 use super::{Functional, Kind, NotBounded};
@@ -52,7 +52,7 @@ struct Motion<'a> {
     contact: usize,
     /// At the ends of pairs.
     along: &'a dyn Fn(&ContactPair, usize) -> [f64; 2],
-    /// Whether the normal traction is asked for too.
+    /// True if the normal traction is asked for too.
     normal: bool,
 }
 

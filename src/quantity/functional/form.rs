@@ -53,7 +53,7 @@ impl Form {
         Form::Invariant { components: Box::new(components), of: Invariants { invariant, across, offset } }
     }
 
-    /// What it is.
+    /// Its kind, for words and sizes.
     pub fn kind(&self) -> Kind {
         match self {
             Form::Linear(functional) => functional.kind,

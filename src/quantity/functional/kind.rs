@@ -1,8 +1,8 @@
-//! What a quantity is, for words and sizes.
+//! The kind of a quantity, for words and sizes.
 
 use crate::problem::{Problem, Sizes};
 
-/// What a quantity is, for the words of reports.
+/// The kind of a quantity, for the words of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Mean displacement.
@@ -18,7 +18,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether it is what contacts or supports carry.
+    /// True if it is a force or moment transmitted by contacts or supports.
     pub fn is_carried(self) -> bool {
         matches!(self, Kind::Force | Kind::Moment)
     }
@@ -34,7 +34,7 @@ impl Kind {
         }
     }
 
-    /// What such a quantity has of `sizes`; a moment has the largest arm.
+    /// The entry of `sizes` for such a quantity; a moment has the largest arm.
     pub fn size(self, problem: &Problem, sizes: &Sizes) -> f64 {
         match self {
             Kind::Displacement => sizes.displacement,

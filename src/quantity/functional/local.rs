@@ -16,7 +16,7 @@ pub enum Local {
 }
 
 impl Local {
-    /// Whether it changes with a displacement that has no strain.
+    /// True if it changes with a displacement that has no strain.
     pub fn is_of_place(&self) -> bool {
         match self {
             Local::Point(point) => point.is_displacement(),

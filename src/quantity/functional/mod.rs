@@ -41,7 +41,7 @@ use region::Cut;
 /// A quantity on a mesh.
 #[derive(Debug, Clone)]
 pub struct Functional {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// q, φ, and χ as its mean over triangles that are cut.
     pub load: Load,
@@ -55,15 +55,15 @@ pub struct Functional {
     pub local: Option<Box<Local>>,
     /// ∫ c(χ − Πχ):(χ − Πχ) for each of the shaped strains Πχ of the load.
     pub rests: Vec<f64>,
-    /// What the load leaves of the quantity on a displacement w is at most Σ b_T ‖e(w)‖_T: triangles with their b_T.
+    /// Bound Σ b_T ‖e(w)‖_T on the difference between quantity and load for a displacement w: triangles with their b_T.
     pub oscillation: Vec<(usize, f64)>,
     /// The part that is known.
     pub constant: f64,
     /// A displacement, linear on triangles, with jumps −φ, where there is one that meets the supports.
     pub lift: Option<Displacement>,
-    /// What the value per unit thickness cannot be beyond, whatever the solution.
+    /// Limits of the value per unit thickness, whatever the solution.
     pub within: [f64; 2],
-    /// What the value per unit thickness is multiplied by.
+    /// The factor from the value per unit thickness to the quantity.
     pub scale: f64,
     /// ‖σ‖² of a stress that such a quantity has where it is no matter of statics alone, in order of magnitude.
     pub natural: f64,
@@ -166,7 +166,7 @@ impl Functional {
         Cow::Owned(own)
     }
 
-    /// Whether it changes with a displacement that has no strain.
+    /// True if it changes with a displacement that has no strain.
     pub fn is_of_place(&self) -> bool {
         let load = &self.load;
         !load.tractions.is_empty()
@@ -174,7 +174,7 @@ impl Functional {
             || self.local.as_ref().is_some_and(|local| local.is_of_place())
     }
 
-    /// Whether nothing but the normal traction of contacts, and what is known, enters.
+    /// True if it depends on nothing but the normal traction of contacts and known terms.
     pub fn is_of_contact_alone(&self) -> bool {
         let load = &self.load;
         self.local.is_none()
@@ -224,10 +224,10 @@ impl Functional {
     }
 }
 
-/// What a force has that is not along the axis.
+/// Name, in messages, of a force with a component across the axis.
 const RADIAL: &str = "a force of a support that is not along the axis";
 
-/// Refuses what has no interval in bodies of revolution.
+/// Refuses targets that have no interval in bodies of revolution.
 fn refuse_in_revolved(target: &Target) -> Result<(), NotBounded> {
     let what = match target {
         Target::Displacement { .. } | Target::ContactForce { .. } | Target::Stress { .. } => return Ok(()),

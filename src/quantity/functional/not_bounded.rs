@@ -16,7 +16,7 @@ pub enum NotBounded {
         /// Where.
         y: f64,
     },
-    /// What a contact carries up to a place where something else carries too.
+    /// The force of a contact up to a place where another boundary condition transmits force too.
     #[error(
         "what friction carries up to ({x}, {y}), where {what}, is no bounded functional; ask for the force within a `window` that is zero \
          there"
@@ -26,7 +26,7 @@ pub enum NotBounded {
         x: f64,
         /// Where.
         y: f64,
-        /// What is there.
+        /// The other condition there.
         what: &'static str,
     },
     /// A region that leaves its body.
@@ -76,10 +76,10 @@ pub enum NotBounded {
         y: f64,
         /// Name of the body.
         body: String,
-        /// What is bounded, in the words of a scene.
+        /// A bounded quantity to ask for, in the words of a scene.
         instead: String,
     },
-    /// What has no interval in bodies of revolution.
+    /// A quantity that has no interval in bodies of revolution.
     #[error(
         "a body of revolution has no interval for {what}; ask for the force of a contact, the axial force of a support, or a mean displacement or \
          stress"

@@ -23,7 +23,7 @@ pub struct Piece {
 pub struct Cut {
     /// The triangle.
     pub triangle: usize,
-    /// What of it lies in the region; empty where that is all of it.
+    /// The part of it in the region; empty if that is all of it.
     pub pieces: Vec<Piece>,
     /// The part of its area that lies in the region.
     pub part: f64,
@@ -96,7 +96,7 @@ fn pieces(polygon: &[[f64; 2]], triangle: [[f64; 2]; 3], sub: usize) -> Vec<Piec
     fan.map(piece).filter(|piece| piece.area != 0.0).collect()
 }
 
-/// What of a polygon lies to the left of the line from `a` to `b`.
+/// The part of a polygon to the left of the line from `a` to `b`.
 fn clipped(points: &[[f64; 2]], a: [f64; 2], b: [f64; 2]) -> Vec<[f64; 2]> {
     let side = |p: [f64; 2]| cross(a, b, p);
     let mut out = Vec::with_capacity(points.len() + 2);

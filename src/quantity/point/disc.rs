@@ -144,7 +144,7 @@ impl Disc {
         [self.radius * angle.cos(), self.radius * angle.sin()]
     }
 
-    /// What of an outline lies to the left of the line from `a` to `b`.
+    /// The part of an outline to the left of the line from `a` to `b`.
     fn clipped(&self, outline: Vec<Piece>, a: [f64; 2], b: [f64; 2]) -> Vec<Piece> {
         let along = sub_of(b, a);
         let length = along[0].hypot(along[1]);

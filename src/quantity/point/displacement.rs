@@ -27,13 +27,13 @@ use crate::quantity::adjoint::constants::Constants;
 use crate::quantity::functional::Functional;
 use crate::quantity::functional::projection::projected;
 
-/// What rounding leaves of a difference of squares.
+/// Relative rounding error of a difference of squares.
 const ROUNDING: f64 = 1e-14;
 
-/// What a triangle has of the load.
+/// The share of a triangle in the load.
 #[derive(Debug, Clone, Copy, Default)]
 struct Share {
-    /// Whether g = (x − x0) G on it.
+    /// True if g = (x − x0) G on it.
     follows: bool,
     /// ρ̄.
     mean: f64,
@@ -82,7 +82,7 @@ impl Point {
         functional.oscillation.extend(oscillation);
     }
 
-    /// What a triangle has, and ‖ρ − ρ̄‖.
+    /// The share of a triangle, and ‖ρ − ρ̄‖.
     fn share(&self, corners: [[f64; 2]; 3], d: [f64; 2]) -> (Share, f64) {
         if self.disc.place(corners) == Place::Inside {
             return (Share { follows: true, ..Share::default() }, 0.0);

@@ -23,7 +23,7 @@ const ON_OUTLINE: f64 = 1e-9;
 /// The part of the distance from the outline that is the radius: rounding puts no part of the disc beyond it.
 const INSIDE: f64 = 1.0 - 1e-12;
 
-/// What is wanted at a point.
+/// The value that is wanted at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wanted {
     /// Σ factors · (σ_xx, σ_yy, σ_xy).
@@ -95,7 +95,7 @@ impl Point {
         Ok(Point { wanted, body, disc, kernel: Kernel::new(disc.radius, smoothness), triangles })
     }
 
-    /// Whether it is a displacement.
+    /// True if it is a displacement.
     pub fn is_displacement(&self) -> bool {
         matches!(self.wanted, Wanted::Displacement(_))
     }
@@ -181,7 +181,7 @@ impl Point {
     }
 }
 
-/// What can be asked for in the place of a value on the outline, in the words of a scene.
+/// An alternative to a value on the outline, in the words of a scene.
 fn instead(wanted: Wanted, corners: [[f64; 2]; 3], boundary: Option<String>) -> String {
     let middle = [0, 1].map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / 3.0);
     let point = |[x, y]: [f64; 2]| format!("[{x:.6}, {y:.6}]");

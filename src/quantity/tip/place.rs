@@ -36,7 +36,7 @@ pub enum NoTip {
         x: f64,
         /// As written.
         y: f64,
-        /// What is there instead.
+        /// The geometry found there instead.
         what: &'static str,
     },
     /// Too few triangles.
@@ -78,7 +78,7 @@ pub struct Place {
     pub at: [f64; 2],
     /// The direction of growth, and the one across it, into the body where that is half a model.
     pub axes: [[f64; 2]; 2],
-    /// Whether the body ends at a roller ahead of the tip.
+    /// True if the body ends at a roller ahead of the tip.
     pub half: bool,
     /// Triangles outside P with η at their corners, not all zero.
     pub triangles: Vec<(usize, [f64; 3])>,
@@ -88,7 +88,7 @@ pub struct Place {
     pub edges: Vec<(usize, f64)>,
 }
 
-/// What an edge of the outline is to a crack.
+/// The role of an edge of the outline for a crack.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     Face,
@@ -265,7 +265,7 @@ impl Place {
     }
 }
 
-/// Whether an edge is one side of a frictionless contact across which w of this mode does not jump.
+/// True if an edge is one side of a frictionless contact across which w of this mode does not jump.
 fn touches(problem: &Problem, e: usize, mode: Mode) -> bool {
     mode == Mode::II && matches!(problem.conditions[e], Condition::Contact { .. })
 }

@@ -6,7 +6,7 @@ use super::{PLAIN, Regime};
 use crate::problem::Problem;
 use crate::scene::Gap;
 
-/// What presses the blocks together, per length.
+/// Pressure that holds the blocks together, per length.
 const PRESSURE: f64 = 0.3;
 /// Push and bound where they are not swept: a half of the contact slides, about.
 const PUSH: f64 = 0.1;
@@ -30,7 +30,7 @@ fn held() -> Known {
     Known::forces(vec![[f64::NAN, 2.0 * PRESSURE]], 2.0 * PRESSURE)
 }
 
-/// The same blocks, pushed to the right, or seen in a mirror.
+/// The blocks of [`pushed`], pushed to the right, or mirrored.
 fn mirrored(sign: f64) -> Result<Problem, String> {
     let sketch = pushed(sign * PUSH, BOUND);
     if sign > 0.0 { sketch.problem() } else { sketch.moved(|[x, y]| [2.0 - x, y]).problem() }

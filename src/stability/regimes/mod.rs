@@ -17,9 +17,9 @@ use crate::problem::Problem;
 pub struct Regime {
     /// Name on the command line and in links.
     pub id: &'static str,
-    /// What it is.
+    /// A short description.
     pub title: &'static str,
-    /// What is swept.
+    /// The parameter that is swept.
     pub parameter: &'static str,
     /// Where such a failure was reported.
     pub reported: &'static str,
@@ -35,17 +35,17 @@ pub struct Regime {
     pub build: fn(f64) -> Result<Problem, String>,
     /// So many of the first values are promised to be correct, see [`super::PROMISING`].
     pub promised: usize,
-    /// What is known about its answer.
+    /// The known facts about its answer.
     pub known: fn(f64) -> Known,
     /// The guaranteed error may be at most this many times that at the first value.
     pub flat: Option<f64>,
-    /// Whether a reduced matrix has the methods of higher degree in this row.
+    /// True if a reduced matrix has the methods of higher degree in this row.
     pub degrees: bool,
-    /// Whether the value is a step length of the paper's iteration, relative to the largest that converges.
+    /// True if the value is a step length of the paper's iteration, relative to the largest that converges.
     pub is_step_length: bool,
 }
 
-/// What most regimes have in common.
+/// Common defaults of most regimes.
 const PLAIN: Regime = Regime {
     id: "",
     title: "",
@@ -65,7 +65,7 @@ const PLAIN: Regime = Regime {
 
 /// Where nothing better is known.
 const FINER: &str = "energy: bracket on a finer mesh, cut with the FEniCSx P2 energy; forces: statics";
-/// The same where another program stands in the place of FEniCSx: it is judged, and is no witness.
+/// As [`FINER`], with another program in the place of FEniCSx: it is judged, and is no witness.
 const FINER_ALONE: &str = "energy: bracket on a finer mesh; forces: statics";
 /// Where a closed solution is known.
 const CLOSED: &str = "closed solution: energy, forces and pressure";
@@ -74,7 +74,7 @@ impl Regime {
     /// The problem for a value.
     ///
     /// # Errors
-    /// What is wrong with its mesh, in words.
+    /// A description of the defects of its mesh.
     pub fn problem(&self, value: f64) -> Result<Problem, String> {
         (self.build)(value)
     }

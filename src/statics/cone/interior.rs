@@ -27,13 +27,13 @@ const DOUBT: f64 = 0.01;
 /// a hundred times smaller, and [`crate::statics::balance::RANK`] squared smaller still.
 const DEFINITE: f64 = 1e-11;
 
-/// Whether rows of length one see every motion, by far more than the tolerance of a rank; where not, elimination has to tell.
+/// True if rows of length one resist every motion, by far more than the tolerance of a rank; where not, elimination has to decide.
 pub(in crate::statics) fn see_every_motion(rows: &[Row], columns: usize) -> bool {
     let unit = rows.iter().map(|row| (row, 1.0));
     columns == 0 || normal(unit, columns, -DEFINITE).is_some()
 }
 
-/// What no forces on `rows` can balance of `load`; nothing where that was not found to `round_off`, relative to the load.
+/// The part of `load` that no forces on `rows` can balance; `None` if it was not found to `round_off`, relative to the load.
 pub(in crate::statics) fn projection(rows: &[Row], columns: usize, load: &[f64], round_off: f64) -> Option<Vec<f64>> {
     let size = load.iter().fold(0.0_f64, |m, v| m.hypot(*v));
     let unit: Vec<f64> = load.iter().map(|v| v / size).collect();
@@ -63,7 +63,7 @@ pub(in crate::statics) fn projection(rows: &[Row], columns: usize, load: &[f64],
     Some(rest.into_iter().map(|v| size * v).collect())
 }
 
-/// Whether `forces` and what they leave fulfil what characterises the projection: no row is broken, and none that carries force is left.
+/// True if `forces` and their `rest` satisfy the conditions of the projection: no row is violated, and every row with a force is tight.
 pub(in crate::statics) fn is_projection(rows: &[Row], forces: &[f64], rest: &[f64], round_off: f64) -> bool {
     rows.iter().zip(forces).all(|(row, force)| {
         let pull = dot(row, rest);
@@ -71,8 +71,8 @@ pub(in crate::statics) fn is_projection(rows: &[Row], forces: &[f64], rest: &[f6
     })
 }
 
-/// What is left of a load of size one beside the forces −`x`, where that is many times the largest error that it can have: the rest
-/// r of any forces μ that breaks no row is within √(2 Σ μ |g · r|) of the projection.
+/// The rest of a load of size one beside the forces −`x`, if it is many times the largest error that it can have: the rest
+/// r of any forces μ that violates no row is within √(2 Σ μ |g · r|) of the projection.
 fn certain(rows: &[Row], load: &[f64], x: &[f64], round_off: f64) -> Option<Vec<f64>> {
     let forces: Vec<f64> = x.iter().map(|x| (-x).max(0.0)).collect();
     let rest = left_of(load, rows, &forces);
@@ -103,7 +103,7 @@ fn products(rows: &[Row], columns: usize) -> Option<SparseForm> {
     Some(SparseForm::new(structure, values))
 }
 
-/// What the `forces` leave of `load`.
+/// The rest of `load` that the `forces` do not balance.
 pub(in crate::statics) fn left_of(load: &[f64], rows: &[Row], forces: &[f64]) -> Vec<f64> {
     let mut rest = load.to_vec();
     for (row, force) in rows.iter().zip(forces).filter(|(_, force)| **force != 0.0) {

@@ -133,7 +133,7 @@ impl<'a> SparseCone<'a> {
         (forces, rest)
     }
 
-    /// What is left of `load` beside all forces that rows can carry, see [`super::unbalanced`].
+    /// The part of `load` that no forces on the rows can balance, see [`super::unbalanced`].
     fn unbalanced_rest(&self, load: &[f64]) -> Result<Vec<f64>, Unsettled> {
         let size = load.iter().fold(0.0, |m: f64, v| m.hypot(*v));
         if size == 0.0 || self.rows.is_empty() {
@@ -145,7 +145,7 @@ impl<'a> SparseCone<'a> {
             .or_else(|active| self.one_by_one(active, load, size))
     }
 
-    /// Primal–dual steps of whole sets from the rows `active`. What the loads leave, or the set at which the steps came back
+    /// Primal–dual steps of whole sets from the rows `active`. The unbalanced part of `load`, or the set at which the steps came back
     /// to one that they had been at.
     fn block_steps(&self, mut active: Vec<usize>, load: &[f64], size: f64) -> Result<Vec<f64>, Vec<usize>> {
         let mut seen = HashSet::new();
@@ -174,7 +174,7 @@ impl<'a> SparseCone<'a> {
         (0..self.rows.len()).filter(|i| stays(*i)).collect()
     }
 
-    /// The same from the rows `active`: one row joins at a time, and rows whose force would turn negative leave.
+    /// The unbalanced part of `load`, from the rows `active`: one row joins at a time, and rows whose force would turn negative leave.
     fn one_by_one(&self, mut active: Vec<usize>, load: &[f64], size: f64) -> Result<Vec<f64>, Unsettled> {
         let mut forces = vec![0.0; active.len()];
         let mut refused = HashSet::new();

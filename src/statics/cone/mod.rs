@@ -34,10 +34,10 @@ pub(crate) fn unbalanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<D
     Ok(balanced(load, rows)?.0)
 }
 
-/// What is left of a load, and the forces that balance the rest: (row, force).
+/// The unbalanced part of a load, and the forces that balance the other part: (row, force).
 pub(crate) type Balanced = (DVector<f64>, Vec<(usize, f64)>);
 
-/// The same with the forces that balance the other part.
+/// As [`unbalanced`], with the forces that balance the other part.
 pub(crate) fn balanced(load: &DVector<f64>, rows: &[DVector<f64>]) -> Result<Balanced, Unsettled> {
     let size = load.norm();
     let mut now = Working { rows: Vec::new(), forces: Vec::new(), rest: load.clone() };

@@ -67,7 +67,7 @@ impl Triangular {
         free.map(vector).collect()
     }
 
-    /// What elimination leaves of `row` in the free columns: nothing exactly where it depends on the rows seen so far.
+    /// Norm of `row` in the free columns after elimination: zero if and only if it depends on the rows seen so far.
     pub fn remainder(&self, row: &Row) -> f64 {
         let mut rest: std::collections::BTreeMap<usize, f64> = row.iter().copied().collect();
         let mut left = 0.0_f64;

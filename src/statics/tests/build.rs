@@ -98,7 +98,7 @@ impl Build {
         self
     }
 
-    /// The same with one value.
+    /// Traction of one value along `line`.
     pub fn push(&mut self, name: &str, line: [Point; 2], value: Point) -> &mut Self {
         self.load(name, line, [value, value])
     }
@@ -275,7 +275,7 @@ pub fn transformed(mut problem: Problem, angle: f64, length: f64, force: f64, sh
     problem
 }
 
-/// The same problem with vertices, triangles and edges numbered backwards.
+/// A problem with vertices, triangles and edges numbered backwards.
 pub fn renumbered(mut problem: Problem) -> Problem {
     let (nv, nt, ne) = (problem.mesh.points.len(), problem.mesh.triangles.len(), problem.mesh.edges.len());
     let (vertex, triangle, edge) = (|v: usize| nv - 1 - v, |t: usize| nt - 1 - t, |e: usize| ne - 1 - e);

@@ -1,4 +1,4 @@
-//! The same question put to a linear program solver, with one row per vertex instead of per straight run.
+//! The verdict of a linear program solver, with one row per vertex instead of per straight run.
 
 use super::build::transformed;
 use super::freedom::work_of_vertices;

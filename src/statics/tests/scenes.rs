@@ -19,7 +19,7 @@ pub struct Case {
 }
 
 impl Gives {
-    /// Whether `kind` is this kind of motion.
+    /// True if `kind` is this kind of motion.
     pub fn is(&self, kind: MotionKind) -> bool {
         match self {
             Gives::Lifts(_) => matches!(kind, MotionKind::LiftsOff { centre: None }),

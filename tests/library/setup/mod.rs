@@ -10,7 +10,7 @@ use hypercircle::mesh::{Edge, Triangulation};
 use hypercircle::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
-/// What holds on a named side.
+/// The condition on a named side.
 #[derive(Clone, Copy)]
 pub enum Role {
     Clamped([f64; 2]),

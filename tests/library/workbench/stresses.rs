@@ -5,7 +5,7 @@ use hypercircle::load::BodyForce;
 use hypercircle::workbench::stress::SolverElement;
 use hypercircle::workbench::{Options, Report};
 
-/// What is done to the block of degree 1.
+/// A defect planted in the block of degree 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Defect {
     None,

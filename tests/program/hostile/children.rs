@@ -1,4 +1,4 @@
-//! What the program starts ends with it, in time, and cannot flood it.
+//! Processes that the program starts end with it, in time, and cannot flood it.
 
 use std::time::{Duration, Instant};
 

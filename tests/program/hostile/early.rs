@@ -1,4 +1,4 @@
-//! What cannot be used is refused before there is anything to solve, with the place and what to do.
+//! Unusable input is refused before there is anything to solve, with the place and the remedy.
 
 use std::os::unix::fs::FileTypeExt;
 use std::path::Path;

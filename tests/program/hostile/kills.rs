@@ -58,7 +58,7 @@ impl Trial {
         command.spawn().expect("the program starts")
     }
 
-    /// What a run takes that is left alone; its report is written.
+    /// The time of an undisturbed run; its report is written.
     fn whole(&self, which: usize) -> Duration {
         let since = Instant::now();
         let status = self.start(which).wait().expect("ends");

@@ -86,7 +86,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Whether `holds` becomes true within some seconds.
+/// True if `holds` becomes true within some seconds.
 pub fn soon(holds: impl Fn() -> bool) -> bool {
     let since = Instant::now();
     while since.elapsed() < Duration::from_secs(20) {
@@ -98,7 +98,7 @@ pub fn soon(holds: impl Fn() -> bool) -> bool {
     false
 }
 
-/// Whether a process is there and no zombie.
+/// True if a process exists and is no zombie.
 pub fn alive(process: &str) -> bool {
     let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.trim())).unwrap_or_default();
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))

@@ -1,4 +1,4 @@
-//! What a run has started and its temporary folder go with it, by any signal that can be waited for.
+//! Children of a run and its temporary folder end with it, by any signal that can be waited for.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -32,7 +32,7 @@ fn ring() {
     assert!(report.notes().contains("48 edges stand for a curve"), "{}", report.notes());
 }
 
-/// What the polygon leaves of the disc falls like h²: formulas are met within 0.1 %.
+/// The error of the polygon against the disc falls like h²: formulas are met within 0.1 %.
 #[test]
 fn rotor() {
     let report = sound("rotor");

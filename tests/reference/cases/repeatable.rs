@@ -1,4 +1,4 @@
-//! The same input gives the same bits, and a baseline notices when it does not.
+//! Equal input gives equal bits, and a baseline notices when it does not.
 
 use serde_json::Value;
 

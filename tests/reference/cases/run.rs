@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::command;
 pub use crate::command::{case, with_reference};
 
-/// What a run left behind.
+/// The results of a run.
 pub struct Run {
     pub code: Option<i32>,
     pub stdout: String,

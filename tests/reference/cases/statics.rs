@@ -127,7 +127,7 @@ fn wedges() {
     }
 }
 
-/// What is held against FEniCSx on the contact, where the direction is constant and where it turns: above all `reactions`, which
+/// Comparisons with FEniCSx on the contact, where the direction is constant and where it turns: above all `reactions`, which
 /// asks that each force at a vertex differ from the dual one by the work of the stresses to round-off.
 #[test]
 fn contact_of_every_degree() {

@@ -222,7 +222,7 @@ def null_space(rows):
 
 
 def general_null_space(rows):
-    """The same where rows tie nodes: axis-parallel rows alone, one unknown given by the others."""
+    """As `null_space`, where rows tie nodes: axis-parallel rows alone, one unknown given by the others."""
     n = rows.shape[1]
     value = {}
     for i in range(rows.shape[0]):

@@ -1,8 +1,8 @@
 //! Bugs planted in the displacement model and lies told about its results, and whether `verify` notices.
 //!
 //! `stand_in.py` takes the place of the interpreter and makes one thing wrong, a bug of `bugs.py` or a lie of `lies.py`.
-//! What was handed over is held against what the honest model hands over: only a fault that changes an energy, a force or
-//! a displacement can be noticed at all, and none has to be noticed that changes less than the guarantee leaves open.
+//! Its results are compared with those of the honest model: only a fault that changes an energy, a force or
+//! a displacement can be noticed at all, and one that changes less than the guarantee leaves open need not be noticed.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use super::trial::{Ended, Program, Way};
 /// A fault that can be planted.
 #[derive(Clone)]
 pub struct Kind {
-    /// Whether the model is wrong, or only what it reports.
+    /// True if the model is wrong, false if only its report is.
     pub in_model: bool,
     pub name: String,
 }
@@ -58,7 +58,7 @@ impl Effect {
     }
 }
 
-/// What came of a planted fault.
+/// The outcome of a planted fault.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fate {
     /// By the checks of those names, or by a refusal to use the result.
@@ -97,7 +97,7 @@ impl<'a> Soil<'a> {
     /// Verifies `scene` honestly; everything is written to `folder`.
     ///
     /// # Errors
-    /// What was said where the honest model does not agree.
+    /// The message of the honest model where it does not agree.
     pub fn new(binary: &'a Path, scene: &'a Path, folder: &'a Path) -> Result<Self, String> {
         let mut soil = Soil { binary, scene, folder, open: [0.0; 2] };
         let honest = soil.run("nothing", 0, None);

@@ -1,4 +1,4 @@
-//! What holds on the sides of a lattice of bodies.
+//! Conditions on the sides of a lattice of bodies.
 
 use super::frame::Frame;
 use super::layout::{Facing, Layout, Side};
@@ -17,7 +17,7 @@ pub enum Manner {
     Border,
 }
 
-/// What holds on a side.
+/// The condition on a side.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Condition {
     Free,
@@ -30,7 +30,7 @@ pub enum Condition {
 
 use Condition::{Clamped, Contact, Free, Loaded, Roller};
 
-/// Whether two sides are the two of one interface.
+/// True if two sides are the two of one interface.
 pub fn meet(layout: &Layout, one: &Side, other: &Side) -> bool {
     let [a, b] = layout.ends(one.pieces[0]);
     other.across == Some(one.body) && other.pieces.iter().any(|p| layout.ends(*p) == [b, a])

@@ -125,7 +125,7 @@ fn blocks_along_an_arc(random: &mut Random, frame: &Frame, drawing: &Drawing) ->
     (arc.conditions(toml, random, frame, drawing), true)
 }
 
-/// The same with facets: of the arc itself, or of one that is squeezed to the left, so that no four vertices lie on a circle
+/// Two blocks that meet along facets: of the arc itself, or of one that is squeezed to the left, so that no four vertices lie on a circle
 /// and refinement keeps the facets.
 fn blocks_along_facets(random: &mut Random, frame: &Frame, drawing: &Drawing) -> (Toml, bool) {
     let arc = Arc::random(random);

@@ -23,7 +23,7 @@ pub fn crowd(random: &mut Random) -> Made {
     complete(random, aside, frame, layout, Drawn { general, sheared: false, cells: None })
 }
 
-/// The same in a mesh file with quadrilaterals: rectangles, other parallelograms, distorted ones, or triangles beside them.
+/// Blocks in a mesh file with quadrilaterals: rectangles, other parallelograms, distorted ones, or triangles beside them.
 pub fn quadrilaterals(random: &mut Random) -> Made {
     let cells = random.pick(&[Cells::Quadrilaterals, Cells::Quadrilaterals, Cells::Distorted, Cells::Mixed]);
     let (general, sheared) = random.pick(&[(false, false), (true, false), (true, true)]);

@@ -227,7 +227,7 @@ impl Layout {
         sides
     }
 
-    /// Whether a chain stays a chain with one more piece.
+    /// True if a chain stays a chain with one more piece.
     fn lengthens(&self, side: &Side, piece: (usize, Facing)) -> bool {
         let [a, b] = self.ends(piece);
         let meets = |p: usize| side.pieces.iter().flat_map(|q| self.ends(*q)).filter(|q| *q == p).count();

@@ -7,7 +7,7 @@ pub fn keys(random: &mut Random, constants: (f64, f64), strain: f64, length: f64
     made(random, constants, (strain, length), true)
 }
 
-/// The same with moduli that are never a thousand times apart, for which no coarse mesh has a bracket.
+/// As [`keys`], with moduli that are never a thousand times apart, a ratio for which no coarse mesh has a bracket.
 pub fn moderate(random: &mut Random, constants: (f64, f64), strain: f64, length: f64) -> String {
     made(random, constants, (strain, length), false)
 }

@@ -76,7 +76,7 @@ fn body(toml: Toml, random: &mut Random, name: &str, [[a, b], [d, c]]: [[[f64; 2
     toml.matter(name, &keys).loaded(name, &force)
 }
 
-/// What a contact is made of beside its sides.
+/// The keys of a contact besides its sides.
 fn law(random: &mut Random) -> String {
     match random.below(3) {
         0 => String::new(),

@@ -31,10 +31,10 @@ pub struct Sample {
     pub text: String,
     /// The mesh file `seed-N.msh` beside it, if there is one.
     pub mesh: Option<String>,
-    /// What arithmetic alone can cost an energy: the energy of strains as large as the prescribed displacements, times
+    /// Largest error of an energy by arithmetic alone: the energy of strains as large as the prescribed displacements, times
     /// a little more than the machine epsilon.
     pub rounding: f64,
-    /// Whether refinement puts vertices on curves, so that a finer mesh is another problem.
+    /// True if refinement puts vertices on curves, so that a finer mesh is another problem.
     pub rounds: bool,
 }
 

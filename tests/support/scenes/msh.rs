@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use super::layout::{Layout, Side};
 
-/// What the squares of a cell of the lattice become.
+/// The cells that the squares of a cell of the lattice become.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cells {
     /// Two triangles each.

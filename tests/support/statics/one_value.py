@@ -75,7 +75,7 @@ class Scene:
             self.outer(own, edge, where)
 
     def outer(self, body, edge, where):
-        """What holds or loads a side at the outline."""
+        """Adds a support or load of a side at the outline."""
         r, at = self.random, (body, edge)
         p = r.random()
         if where == "bottom":

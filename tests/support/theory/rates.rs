@@ -24,7 +24,7 @@ pub struct Study {
     pub solution: String,
     /// The family of meshes.
     pub family: String,
-    /// What is measured.
+    /// The quantity that is measured.
     pub quantity: String,
     /// The rate that a theorem promises.
     pub promised: Option<f64>,
@@ -179,7 +179,7 @@ pub fn contact_end_of_degrees(sizes: &[usize]) -> Vec<Study> {
     DEGREES.map(of).into()
 }
 
-/// What is measured of a contact solution, with the rate a theorem promises if the contact pressure is in H².
+/// Quantities measured on a contact solution, with the rate that a theorem promises if the contact pressure is in H².
 const QUANTITIES: [(&str, Option<f64>); 7] = [
     ("L2 error of λ_h", Some(1.5)),
     ("L2 error of r_h τ⁰", Some(2.0)),

@@ -1,4 +1,4 @@
-//! What cannot be right about the answers to one scene.
+//! Contradictions in the answers to one scene.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use super::run::{Ended, Way};
 pub struct Fault {
     /// The kind, without names of this scene.
     pub kind: String,
-    /// What was found.
+    /// The finding in words.
     pub text: String,
 }
 
@@ -81,13 +81,13 @@ fn of_one(way: Way, ended: &Ended) -> Vec<Fault> {
     faults
 }
 
-/// Whether a run that did not arrive gives one of these reasons.
+/// True if a run that did not complete gives one of these reasons.
 fn says(ended: &Ended, reasons: &[&str]) -> bool {
     let message = ended.message();
     reasons.iter().any(|reason| message.contains(reason))
 }
 
-/// What is wrong with the bracket of a run that arrived.
+/// Faults in the bracket of a run that completed.
 fn bracketed(name: &str, ended: &Ended) -> Vec<Fault> {
     let found = match ended.bracket() {
         None => Fault::new(format!("{name}: no bracket"), String::new()),
@@ -150,7 +150,7 @@ fn contradictions(runs: &[&(Way, Ended)], rounding: f64) -> Vec<Fault> {
     faults
 }
 
-/// Whether the mesh as given could not express the pressure that balances the loads.
+/// True if the mesh as given could not express the pressure that balances the loads.
 fn was_divided(ended: &Ended) -> bool {
     let notes = ended.report.iter().filter_map(|report| report["notes"].as_array()).flatten();
     notes.filter_map(|note| note["text"].as_str()).any(|text| text.contains("divided at the ends of contact"))

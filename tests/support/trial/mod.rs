@@ -14,10 +14,10 @@ use super::scenes::Sample;
 /// The methods of the dual problem.
 pub const METHODS: [&str; 4] = ["condensed", "active-set", "clarabel", "uzawa"];
 
-/// What is refined on the way to a tolerance.
+/// The adaptive refinements on the way to a tolerance.
 pub const ADAPTIVE: [&str; 2] = ["h", "hp"];
 
-/// What became of a scene.
+/// The outcome of a scene.
 pub struct Trial {
     pub seed: u64,
     pub family: &'static str,

@@ -52,7 +52,7 @@ impl Way {
     }
 }
 
-/// What a run left behind.
+/// The results of a run.
 pub struct Ended {
     /// The exit code; −1 where it was stopped at the time limit, −N where signal N ended it.
     pub code: i32,

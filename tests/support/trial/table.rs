@@ -36,7 +36,7 @@ pub fn head(models: bool) -> String {
     )
 }
 
-/// What went wrong how often, with the seeds; and how often each verdict was given.
+/// Table of faults by kind with their counts and seeds, and of verdicts with their counts.
 pub fn groups(trials: &[Trial]) -> String {
     let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
     let mut kinds: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
