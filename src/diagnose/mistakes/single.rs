@@ -9,14 +9,16 @@ use crate::diagnose::words::number;
 const MEETING: f64 = 64.0;
 const SINGLE: f64 = f32::EPSILON as f64;
 
-/// What single precision leaves, where the displacements are kept in it and no node misses more.
+/// What single precision leaves, where the displacements are kept in it and no node misses more. Rounding counts for displacements as large
+/// as those of a solution at most: beyond, it would hide any mistake.
 pub fn finding(solution: &Solution<'_>) -> Option<Finding> {
     if solution.candidate.precision != SINGLE {
         return None;
     }
+    let part = if solution.largest > 0.0 { solution.reference / solution.largest } else { 1.0 };
     let most = solution.rest.iter().zip(&solution.forces.size).map(|(rest, size)| {
         let left = rest[0].hypot(rest[1]);
-        if left > 0.0 { left / (SINGLE * size) } else { 0.0 }
+        if left > 0.0 { left / (SINGLE * part * size) } else { 0.0 }
     });
     let most = most.fold(0.0, f64::max);
     let sentence = format!(

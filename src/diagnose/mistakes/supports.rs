@@ -16,7 +16,7 @@ const SPRING: f64 = 0.05;
 /// One finding for each support that is not met.
 pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
     let (mesh, scene) = (&solution.problem.mesh, &solution.problem.scene);
-    let enough = (SOLVER + solution.candidate.precision) * solution.largest;
+    let enough = (SOLVER + solution.candidate.precision) * solution.reference;
     let applied = solution.applied();
     let mut findings = Vec::new();
     for support in &scene.supports {
@@ -101,7 +101,7 @@ fn prescribed(solution: &Solution<'_>, nodes: &[usize]) -> Option<f64> {
     let sum = |i: usize| pairs.iter().map(|pair| pair[i][0] * pair[1][0] + pair[i][1] * pair[1][1]).sum::<f64>();
     let square = sum(1);
     let factor = sum(0) / square;
-    let met = |[u, w]: &[[f64; 2]; 2]| (u[0] - factor * w[0]).hypot(u[1] - factor * w[1]) <= SOLVER * solution.largest;
+    let met = |[u, w]: &[[f64; 2]; 2]| (u[0] - factor * w[0]).hypot(u[1] - factor * w[1]) <= SOLVER * solution.reference;
     (square > 0.0 && pairs.iter().all(met)).then_some(factor)
 }
 

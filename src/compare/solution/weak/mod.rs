@@ -122,7 +122,7 @@ impl Solution<'_> {
     pub fn limits(&self, interface: usize) -> Limits {
         let part = (NO_FORCE + MEETING * self.rounding / self.scale).min(OF_THE_RULE);
         let total = self.applied().max(self.carried(interface));
-        Limits { length: 2.0 * (SOLVER + self.candidate.precision) * self.largest, force: part * total, part }
+        Limits { length: 2.0 * (SOLVER + self.candidate.precision) * self.reference, force: part * total, part }
     }
 
     /// What of the forces of contact `interface` may not follow its law.

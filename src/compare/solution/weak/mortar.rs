@@ -167,7 +167,7 @@ fn inside(solution: &Solution<'_>, conditions: &Conditions, multiplier: Multipli
     // A mean is zero beside the values that it is one of.
     let carrying = conditions.forces.keys().filter(|site| solution.pressing[**site].abs() > limits.force);
     let depth = carrying.map(|site| solution.excess[*site].max(0.0)).fold(0.0, f64::max);
-    let digits = 4.0 * solution.candidate.precision * solution.largest;
+    let digits = 4.0 * solution.candidate.precision * solution.reference;
     let zero = limits.length.min(digits.max(ZERO * depth));
     let closed = |i: usize| conditions.means[i].abs() <= zero;
     let quiet = |site: &usize| solution.pressing[*site].abs() <= limits.force;

@@ -52,7 +52,7 @@ impl<'a> Along<'a> {
             interface: index,
             name: &solution.problem.interfaces[index].name,
             sites,
-            enough: 2.0 * (SOLVER + solution.candidate.precision) * solution.largest,
+            enough: 2.0 * (SOLVER + solution.candidate.precision) * solution.reference,
             least: (NO_FORCE + MEETING * solution.rounding / solution.scale) * total,
         }
     }
