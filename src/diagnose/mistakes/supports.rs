@@ -101,7 +101,8 @@ fn prescribed(solution: &Solution<'_>, nodes: &[usize]) -> Option<f64> {
     let sum = |i: usize| pairs.iter().map(|pair| pair[i][0] * pair[1][0] + pair[i][1] * pair[1][1]).sum::<f64>();
     let square = sum(1);
     let factor = sum(0) / square;
-    let met = |[u, w]: &[[f64; 2]; 2]| (u[0] - factor * w[0]).hypot(u[1] - factor * w[1]) <= SOLVER * solution.reference;
+    let met =
+        |[u, w]: &[[f64; 2]; 2]| (u[0] - factor * w[0]).hypot(u[1] - factor * w[1]) <= SOLVER * solution.reference;
     (square > 0.0 && pairs.iter().all(met)).then_some(factor)
 }
 
