@@ -1,4 +1,4 @@
-//! What the displacement model hands back: read, and where it is accepted, compared and reported.
+//! Results of the displacement model: read, and where they are accepted, compared and reported.
 
 use hypercircle::primal::Space;
 use hypercircle::primal::exchange::parse_solution;

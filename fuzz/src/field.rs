@@ -1,4 +1,4 @@
-//! What meshio hands over, as JSON: a displacement field for `certify`, or a mesh.
+//! Data that meshio hands over, as JSON: a displacement field for `certify`, or a mesh.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What is fuzzed: functions of bytes that have to end soon, take little memory and not panic.
+//! The targets of fuzzing: functions of bytes that have to end soon, take little memory and not panic.
 //!
 //! `fuzz_targets/` gives them to libFuzzer, `tests/library/fuzzed.rs` to `cargo test`. Each follows its input as far as a run
 //! of the program would: what is accepted is meshed, solved, compared and reported, as long as it is small.

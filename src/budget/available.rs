@@ -1,4 +1,4 @@
-//! What the system still has to give, as Linux tells it.
+//! Memory that the system still has to give, as Linux tells it.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -26,7 +26,7 @@ fn kilobytes(text: &str, key: &str) -> Option<u64> {
     line.split_whitespace().next()?.parse::<u64>().ok().map(|kilobytes| kilobytes.saturating_mul(1024))
 }
 
-/// What `ulimit -v` and `ulimit -d` leave.
+/// Bytes that `ulimit -v` and `ulimit -d` leave.
 fn address_space(limits: &str, status: &str) -> Option<u64> {
     let left = |limit: &str, used: &str| {
         let line = limits.lines().find_map(|line| line.strip_prefix(limit))?;
@@ -45,7 +45,7 @@ fn workspace() -> u64 {
     2 * 1024 * kilobytes
 }
 
-/// What the control groups of this process leave, those above its own too: version 2, and the memory controller of
+/// Bytes that the control groups of this process leave, those above its own too: version 2, and the memory controller of
 /// version 1.
 fn control_groups(own: &str, root: &Path) -> Option<u64> {
     let mut least = None;

@@ -6,7 +6,7 @@ const UNITS: [(&str, f64); 4] = [("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 
 /// `text` in bytes: a number, alone or with k, M, G or T (thousands) or Ki, Mi, Gi or Ti (1024), and a B if liked.
 ///
 /// # Errors
-/// What was found and what to write.
+/// Parses a size such as `4G`; the error has the finding and the remedy.
 pub fn parse(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());

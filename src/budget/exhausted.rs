@@ -8,7 +8,7 @@ use std::io::Write;
 const FAILED: i32 = 3;
 
 thread_local! {
-    /// Whether a failed allocation on this thread is handed back to whoever asked.
+    /// True if a failed allocation on this thread is handed back to whoever asked.
     static ASKED: Cell<bool> = const { Cell::new(false) };
 }
 

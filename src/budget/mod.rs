@@ -22,7 +22,7 @@ pub struct Budget {
     bytes: f64,
 }
 
-/// What does not fit, in bytes.
+/// An excess over the memory that may be used, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{} of memory would be needed where {} may be used", words(*.needed), words(*.allowed))]
 pub struct Excess {
@@ -51,7 +51,7 @@ impl Budget {
         self.bytes
     }
 
-    /// Whether the process may hold `needed` bytes in all.
+    /// Checks that the process may hold `needed` bytes in all.
     ///
     /// # Errors
     /// [`Excess`] with both figures.
@@ -59,7 +59,7 @@ impl Budget {
         if needed <= self.bytes { Ok(()) } else { Err(Excess { needed, allowed: self.bytes }) }
     }
 
-    /// Whether the process may take `more` bytes beside what it holds now.
+    /// Checks that the process may take `more` bytes beside what it holds now.
     ///
     /// # Errors
     /// [`Excess`] with both figures.

@@ -14,7 +14,7 @@ use crate::vector::norm;
 ///
 /// Remainders of traction are relative to the applied load, or to the largest stress in the triangles at the edge where that is
 /// larger: a body that rests on a millionth of its side has a million times its load there, and its rounding errors.
-/// What rounding of prescribed displacements leaves there ([`Scales::stress_round_off`]) is taken off first: where they
+/// Rounding of prescribed displacements ([`Scales::stress_round_off`]) is taken off first: where they
 /// cause no stress, remainders and stresses are both nothing else.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equilibrium {
@@ -63,7 +63,7 @@ struct Relative<'a> {
     scale: f64,
     /// The largest stress on each triangle.
     stressed: Vec<f64>,
-    /// What rounding of prescribed displacements leaves on each.
+    /// Rounding of prescribed displacements on each.
     rounding: Vec<f64>,
 }
 
@@ -107,7 +107,7 @@ impl Measured<'_> {
         self.stress.edge_traction(&self.problem.mesh, e, side, degree)
     }
 
-    /// What is left of equilibrium on an edge that is in no contact.
+    /// Measures the remainder on an edge that is in no contact.
     fn edge(&self, e: usize, found: &mut Equilibrium) {
         let degree = self.moments.of(e).len() - 1;
         let own = self.traction(e, 0, degree);
@@ -141,7 +141,7 @@ impl Measured<'_> {
         }
     }
 
-    /// What is left on a side of a layer, both of whose sides carry the same, and of a traction along which there are no springs.
+    /// Remainder on a side of a layer, both of whose sides carry the same, and of a traction along which there are no springs.
     fn on_springs(&self, pair: &BedPair, stiffness: [f64; 2], side: usize, own: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         if let (1, degree) = (side, own.len() - 1) {
             let first = self.traction(pair.edge, 0, degree).into_iter().rev();
@@ -157,7 +157,7 @@ impl Measured<'_> {
         own.iter().map(left).collect()
     }
 
-    /// What is left of t n̂ on both sides of a contact pair, with friction of t n̂ and what is along t̂, and what of t pulls or exceeds
+    /// Measures the remainder of t n̂ on both sides of a contact pair, with friction of t n̂ and the part along t̂, and the tension or excess of t over
     /// the bound of friction.
     fn pair(&self, pair: &ContactPair, found: &mut Equilibrium) {
         let Some(a) = pair.edges[0] else { return };
@@ -322,7 +322,7 @@ pub fn contact_traction(problem: &Problem, stress: &StressField, pair: &ContactP
     normal
 }
 
-/// The same with those of the traction along t̂, none where there is no friction.
+/// Coefficients of the tractions along n̂ and along t̂, the latter empty without friction.
 pub fn contact_tractions(problem: &Problem, stress: &StressField, pair: &ContactPair) -> [Vec<f64>; 2] {
     let Some(e) = pair.edges[0] else { return [Vec::new(), Vec::new()] };
     let degree = pair_degree(problem, stress, pair);

@@ -6,7 +6,7 @@
 use crate::element::Elements;
 use crate::problem::Problem;
 
-/// What the memory of a solve depends on. Numbers that no mesh has can be asked for, so they are real.
+/// The sizes that the memory of a solve depends on. Numbers that no mesh has can be asked for, so they are real.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
     /// Triangles.

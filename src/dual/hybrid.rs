@@ -1,4 +1,4 @@
-//! What every method on the hybrid form shares: ordering, held motions, stresses from moments, residuals on stresses.
+//! The parts that all methods on the hybrid form share: ordering, held motions, stresses from moments, residuals on stresses.
 
 use faer::sparse::SymbolicSparseColMatRef;
 use rayon::prelude::*;
@@ -52,7 +52,7 @@ pub fn structure(
     }
 }
 
-/// What a breakdown of the factorisation means on the mesh.
+/// Explains a breakdown of the factorisation in terms of the mesh.
 pub fn explain(problem: &Problem, unknowns: &Unknowns, breakdown: Breakdown) -> DualError {
     let reason = match breakdown {
         Breakdown::TooLarge(reason) => {
@@ -89,7 +89,7 @@ pub fn moments_of_ends(problem: &Problem, unknowns: &Unknowns, e: usize, k: usiz
     [0, 1].map(|end| length * side::product(unknowns.degree(e), k, 1, end))
 }
 
-/// What the unknowns held so far leave of a motion, and the unknown that is held for it.
+/// The part of a motion that the unknowns held so far leave free, and the unknown that is held for it.
 struct Pivot {
     unknown: usize,
     value: f64,
@@ -176,7 +176,7 @@ fn room<'a>(small: &'a mut [f64; SMALL], large: &'a mut Vec<f64>, len: usize) ->
     large
 }
 
-/// What the stresses with mode parameters `s` leave of the loads: f − Σ(T S + T̄) for every unknown.
+/// Residual of the loads for the stresses with mode parameters `s`: f − Σ(T S + T̄) for every unknown.
 ///
 /// On free unknowns this is the jump of traction across the edge, on closed jumps minus the normal traction.
 pub fn residual(problem: &Problem, system: &System, s: &[f64]) -> Vec<f64> {

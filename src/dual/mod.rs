@@ -65,7 +65,7 @@ pub struct DualSolution {
     pub accuracy: f64,
     /// Seconds by phase.
     pub seconds: Phases,
-    /// What the method wants the reader to know.
+    /// Notes of the method for the reader of a report.
     pub notes: Vec<String>,
     /// K and its factor for further loads, where they were asked for and the method has them.
     pub factorised: Option<Arc<Factorised>>,

@@ -23,7 +23,7 @@ const MOST_PATIENCE: usize = 25;
 /// From a residual to a correction of the unknowns.
 pub type Correction<'a> = dyn Fn(&[f64]) -> Result<Vec<f64>, DualError> + 'a;
 
-/// What is refined, and with what.
+/// A system of equations and the means to refine its solution.
 pub struct Refinement<'a> {
     /// The scene.
     pub problem: &'a Problem,
@@ -48,7 +48,7 @@ pub struct Refined {
     pub s: Vec<f64>,
     /// Residual of every unknown: on free ones a jump of traction, on jumps that are held minus the traction.
     pub r: Vec<f64>,
-    /// What resists the sliding of jumps, and is taken off their residuals; empty where nothing does.
+    /// Forces that resist the sliding of jumps, subtracted from their residuals; empty without friction.
     pub resistance: Vec<f64>,
 }
 
@@ -60,7 +60,7 @@ impl Refined {
         Refined { x, s, r, resistance: Vec::new() }
     }
 
-    /// The same where jumps slide against this resistance.
+    /// Adds this resistance to the sliding of jumps.
     pub fn resisted(mut self, system: &System, resistance: Vec<f64>) -> Self {
         let new = resistance.iter().chain(std::iter::repeat(&0.0));
         let old = self.resistance.iter().chain(std::iter::repeat(&0.0));

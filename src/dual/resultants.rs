@@ -1,4 +1,4 @@
-//! What each triangle by itself misses of equilibrium.
+//! Resultants that the tractions of each triangle by itself leave.
 //!
 //! The tractions on its sides and its body force must have neither a resultant nor a moment. In the basis of an element that
 //! is so to the last digits; where bases are shared by triangles that are congruent to most of their digits, or where numbers

@@ -1,4 +1,4 @@
-//! What the condensed method is measured against: faer's own factorisation of its matrix, with faer's own ordering.
+//! The baseline of the condensed method: faer's own factorisation of its matrix, with faer's own ordering.
 
 use std::time::Instant;
 

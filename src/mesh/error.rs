@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh, said so that its author knows where to look and what to do.
+//! Errors of meshes, each with the place and the remedy.
 
 use std::path::{Path, PathBuf};
 
@@ -12,9 +12,9 @@ pub enum MeshError {
     File {
         /// The mesh file.
         file: PathBuf,
-        /// What was found.
+        /// The finding.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
     /// A place inside the file does not follow its format.
@@ -24,9 +24,9 @@ pub enum MeshError {
         file: PathBuf,
         /// Section, and line or byte.
         place: String,
-        /// What was found.
+        /// The finding.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
     /// The cells do not form a triangulation of the bodies.
@@ -34,9 +34,9 @@ pub enum MeshError {
     Cells {
         /// The mesh file, or `[geometry]`.
         mesh: String,
-        /// What was found, with indices and coordinates.
+        /// The finding, with indices and coordinates.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
     /// A named boundary does not fit the scene.
@@ -46,9 +46,9 @@ pub enum MeshError {
         mesh: String,
         /// Name of the boundary.
         name: String,
-        /// What was found.
+        /// The finding.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
     /// The polygons of the scene do not describe bodies.
@@ -60,9 +60,9 @@ pub enum MeshError {
         polygon: usize,
         /// Body of the polygon.
         body: String,
-        /// What was found.
+        /// The finding.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
     /// The two sides of a contact or a bond do not coincide.
@@ -72,9 +72,9 @@ pub enum MeshError {
         mesh: String,
         /// Which: `contact 'first|second'`, `contact 'first|rigid'`, `bond 'first|second'`.
         contact: String,
-        /// What was found, with coordinates.
+        /// The finding, with coordinates.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: String,
     },
 }

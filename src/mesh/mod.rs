@@ -101,7 +101,7 @@ pub fn bonded(mesh: Triangulation, scene: &Scene) -> Result<Triangulation, MeshE
     Ok(sides::bonded::bond(mesh, scene)?.0)
 }
 
-/// What a reader or a mesher delivers: triangles and named segments, not yet checked.
+/// Result of a reader or a mesher: triangles and named segments, not yet checked.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RawMesh {
     /// Vertex coordinates.
@@ -114,7 +114,7 @@ pub struct RawMesh {
     pub shared: Vec<Shared>,
     /// The corners of the quadrilaterals of which some of the triangles are halves.
     pub quadrilaterals: Vec<[usize; 4]>,
-    /// What else the file groups.
+    /// Other sets of the file.
     pub sets: Sets,
 }
 
@@ -176,7 +176,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Whether only one triangle has this edge.
+    /// True if only one triangle has this edge.
     pub fn is_boundary(&self) -> bool {
         self.triangles[1].is_none()
     }

@@ -82,7 +82,7 @@ pub(crate) fn both(mut one: RawMesh, other: RawMesh) -> RawMesh {
     one
 }
 
-/// The same, its triangles in pairs the halves of quadrilaterals.
+/// Pairs the triangles of a grid as the halves of quadrilaterals.
 pub(crate) fn of_quadrilaterals(mut grid: RawMesh) -> RawMesh {
     let pairs = grid.triangles.chunks(2).filter_map(|pair| match pair {
         [([a, b, c], _), ([_, _, d], _)] => Some([*a, *b, *c, *d]),
@@ -125,7 +125,7 @@ pub(crate) fn smallest_angle(mesh: &Triangulation) -> f64 {
     (0..mesh.triangles.len()).map(angle).fold(f64::INFINITY, f64::min)
 }
 
-/// What every triangulation keeps: counter-clockwise cells, edges that agree with them, no loose vertex.
+/// Asserts the invariants of a triangulation: counter-clockwise cells, edges that agree with them, no loose vertex.
 pub(crate) fn assert_consistent(mesh: &Triangulation) {
     let mut met = vec![false; mesh.points.len()];
     for (t, corners) in mesh.triangles.iter().enumerate() {

@@ -26,7 +26,7 @@ pub struct Series {
 pub struct Sheet {
     /// Heading.
     pub title: String,
-    /// What x and y are.
+    /// Labels of x and y.
     pub labels: [String; 2],
     /// How x is placed; y is logarithmic.
     pub x: Scale,

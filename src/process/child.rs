@@ -58,7 +58,7 @@ pub fn supervise(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     supervise_unless(command, limit, &interrupt::unwanted().unwrap_or_default())
 }
 
-/// The same for a process that nobody waits for any more once `unwanted` is true: it is then ended as if its time were over.
+/// Runs a process that nobody waits for any more once `unwanted` is true: it is then ended as if its time were over.
 ///
 /// # Errors
 /// The process could not be started.

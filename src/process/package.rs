@@ -59,16 +59,16 @@ pub enum Failure {
     },
 }
 
-/// What every package imports.
+/// The package that all others import.
 const SHARED: Package = Package {
     name: "hypercircle_process",
     files: &[("__init__.py", include_str!("../../reference/hypercircle_process/__init__.py"))],
 };
 
-/// What a package returns when something that it imports is missing.
+/// Exit code of a package that lacks something it imports.
 const NOT_INSTALLED: i32 = 4;
 
-/// What Open MPI may do without where one process is all there is; what the user says of it goes first.
+/// Settings that relieve Open MPI where one process is all there is; those of the user go first.
 const ALONE: [(&str, &str); 2] = [("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_ess_singleton_isolated", "1")];
 
 impl Package {
@@ -149,7 +149,7 @@ impl Package {
         Ok(command)
     }
 
-    /// What the end of the process means.
+    /// Translates the end of the process.
     fn judge(&self, ended: Ended) -> Result<(), Failure> {
         let log = ended.text();
         match ended.outcome {

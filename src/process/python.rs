@@ -12,7 +12,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
-/// What every interpreter runs first.
+/// The statements that every interpreter runs first.
 const BEGIN: &str = include_str!("begin.py");
 
 /// A command that runs the Python statements `script` with `interpreter`, its current folder being `folder`, which holds

@@ -136,7 +136,7 @@ struct Remains {
     _lock: Option<File>,
 }
 
-/// What `folder` is, if no living process has it.
+/// The remains in `folder`, if no living process has it.
 fn dead(folder: &fs::DirEntry) -> Option<Remains> {
     let gone = || is_gone(&folder.file_name().to_string_lossy());
     match File::open(folder.path().join(LOCK)) {
@@ -157,7 +157,7 @@ fn dead(folder: &fs::DirEntry) -> Option<Remains> {
     }
 }
 
-/// Whether the process that a folder is named after is gone; not known without `/proc`.
+/// True if the process that a folder is named after is gone; not known without `/proc`.
 fn is_gone(name: &str) -> bool {
     let process =
         name.strip_prefix(PREFIX).and_then(|rest| rest.split_once('-')).and_then(|(id, _)| id.parse::<u32>().ok());

@@ -10,7 +10,7 @@ use signal_hook::low_level::emulate_default_handler;
 
 use super::{child, scratch};
 
-/// What to say when a signal ends this process.
+/// Message for a signal that ends this process.
 static LAST_WORDS: Mutex<Option<String>> = Mutex::new(None);
 
 /// Held while files change places, which is not to be left half done.

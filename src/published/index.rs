@@ -61,7 +61,7 @@ pub struct Value {
     pub source: String,
     /// How the number was checked against its source.
     pub checked: String,
-    /// What is known where it lies outside.
+    /// The explanation where it lies outside.
     pub finding: Option<String>,
     /// Why the quantity is not the one that was published, where nothing can be bounded at that place.
     pub elsewhere: Option<String>,

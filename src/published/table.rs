@@ -15,7 +15,7 @@ pub struct Row<'a> {
     pub value: &'a Value,
     /// The interval, its ends rounded outwards.
     pub interval: String,
-    /// What it says of the number.
+    /// Its verdict on the number.
     pub verdict: Verdict,
 }
 
@@ -52,7 +52,7 @@ pub fn listed(cases: &[Case]) -> Vec<String> {
     aligned(["case", "scene", "quantity", "published", "source"], rows.collect())
 }
 
-/// What came of a run: one line for each published number.
+/// The results of a run: one line for each published number.
 pub fn text(rows: &[Row<'_>]) -> Vec<String> {
     let cells = |row: &Row<'_>| {
         let Row { case, value, interval, .. } = row;
@@ -61,7 +61,7 @@ pub fn text(rows: &[Row<'_>]) -> Vec<String> {
     aligned(["case", "quantity", "published", "guaranteed within", "verdict"], rows.iter().map(cells).collect())
 }
 
-/// The same as a table of Markdown, with the sources.
+/// The results as a table of Markdown, with the sources.
 pub fn markdown(rows: &[Row<'_>]) -> String {
     let mut text = String::from(
         "| case | quantity | published | accuracy | guaranteed within | verdict | source, and how it was checked |\n|---|---|--:|---|---|---|---|\n",

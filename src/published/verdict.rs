@@ -1,4 +1,4 @@
-//! What a guaranteed interval says of a published number.
+//! Verdict of a guaranteed interval on a published number.
 
 use super::Value;
 use crate::quantity::outside;
@@ -38,7 +38,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the published number may be right; one that is not judged is no reason to doubt it.
+    /// True if the published number may be right; one that is not judged is no reason to doubt it.
     pub fn agrees(self) -> bool {
         matches!(self, Verdict::Inside | Verdict::Accurate | Verdict::Elsewhere)
     }

@@ -40,15 +40,15 @@ pub struct Loaded<'a> {
     problem: Cow<'a, Problem>,
     system: System,
     start: Start,
-    /// What all closed contact holds.
+    /// Solutions with all closed contact held.
     answers: Answers,
 }
 
-/// What all stresses that balance a load begin with.
+/// The common start of all stresses that balance a load.
 pub(in crate::dual) struct Start {
     /// Mode parameters without any displacement.
     pub s: Vec<f64>,
-    /// What [`Reduced::condense`](crate::dual::system::reduced::Reduced::condense) makes of their residual.
+    /// Their residual, condensed by [`Reduced::condense`](crate::dual::system::reduced::Reduced::condense).
     pub y: Vec<f64>,
     pub c: Vec<f64>,
     /// Jumps of closed contact.
@@ -82,7 +82,7 @@ impl From<Refined> for Answered {
 /// Which closed coefficients are at the floor, and the jumps of all.
 type Released = (Vec<bool>, Vec<f64>);
 
-/// What the normal traction s on Γ_K is held to.
+/// Bounds on the normal traction s on Γ_K.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds<'a> {
     /// Coefficients of contact that are closed; s is zero at the others.
@@ -100,7 +100,7 @@ impl Bounds<'_> {
     }
 }
 
-/// What closed coefficients do: those that are `released` have the traction of their floor, those that are `closed` their jump.
+/// State of the closed coefficients: those that are `released` have the traction of their floor, those that are `closed` their jump.
 struct Holding<'a> {
     released: &'a [bool],
     closed: Vec<bool>,
@@ -114,7 +114,7 @@ impl Holding<'_> {
     }
 }
 
-/// What a stress leaves of equilibrium.
+/// Remainder of the equilibrium of a stress.
 struct Left {
     /// The coefficients of s.
     traction: Vec<f64>,
@@ -253,7 +253,7 @@ impl<'a> Loaded<'a> {
         }
     }
 
-    /// What residuals leave of equilibrium.
+    /// The remainder of equilibrium, from residuals.
     fn left(&self, now: &Refined, held: &Holding<'_>) -> Left {
         let Loaded { responses: Responses { displaced, .. }, system, .. } = self;
         let first = system.unknowns.first_jump;

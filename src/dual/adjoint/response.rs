@@ -32,7 +32,7 @@ pub struct Factorised {
 }
 
 impl Factorised {
-    /// What a solve has at its end.
+    /// From a system and its condensed form at the end of a solve.
     pub(in crate::dual) fn of(system: System, reduced: Reduced) -> Self {
         Factorised { system, reduced }
     }
@@ -113,7 +113,7 @@ pub struct Response {
     pub moments: Arc<SideValues<[f64; 2]>>,
     /// The coefficients of s on every contact pair, one interface after the other.
     pub contact: SideValues<f64>,
-    /// What is left of equilibrium, as work on the displacement that was given, per unit thickness: Σ |remainder · moment|.
+    /// Remainder of equilibrium, as work on the displacement that was given, per unit thickness: Σ |remainder · moment|.
     pub remainder: f64,
 }
 

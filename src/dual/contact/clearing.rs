@@ -4,7 +4,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, Mat, MatRef, Par};
 
-/// What is left of a vector beside others, relative to its length, that is round-off.
+/// Remainders of a vector beside others are round-off below this part of its length.
 const DEPENDENT: f64 = 1e-10;
 
 /// (I − QQᵀ) S (I − QQᵀ) with an orthonormal basis Q of what the `motions` span; nothing where they all vanish.

@@ -1,4 +1,4 @@
-//! Whether the coefficients of contact pairs are in the state that stresses and jumps ask for.
+//! Checks that the coefficients of contact pairs are in the state that stresses and jumps ask for.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::problem::{ContactPair, Problem, Scales};
 /// that are round-off: a coefficient that grazes keeps its state.
 pub const GRAZING: f64 = 1e-12;
 
-/// What states are held against.
+/// The data that contact states are checked against.
 pub struct Ends<'a> {
     problem: &'a Problem,
     system: &'a System,

@@ -35,7 +35,7 @@ pub struct ContactEdge {
     /// 0 on the first side, 1 on the second.
     pub side: usize,
     pub(in crate::dual) degree: usize,
-    /// Whether the pair runs against the edge.
+    /// True if the pair runs against the edge.
     reversed: bool,
     axes: Axes,
 }

@@ -5,7 +5,7 @@
 //! too long for either. All are given to [`crate::optimise`] in units in which the diagonal is about one: what they give are then
 //! forces and not tractions, and ends can be compared with each other.
 //!
-//! What round-off is depends on the size of the terms of S j − c, not on that of their sum: a body that rests on a point
+//! Round-off is relative to the terms of S j − c, not to their sum: a body that rests on a point
 //! turns and shifts by much, and its contact forces are small differences.
 
 use faer::Mat;
@@ -142,12 +142,12 @@ impl<'a> Schur<'a> {
         unit.iter().map(|u| u * depth).collect()
     }
 
-    /// Whether a search that changes states one after the other is at hand.
+    /// True if a search that changes states one after the other is at hand.
     pub fn is_direct(&self) -> bool {
         self.form.is_direct()
     }
 
-    /// What the reader is told of the way to the state.
+    /// Notes on the way to the state, for the reader of a report.
     pub fn notes(&self, steps: usize) -> Vec<String> {
         if self.form.is_direct() {
             return Vec::new();

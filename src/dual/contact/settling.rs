@@ -26,7 +26,7 @@ const UNSETTLED: f64 = 1e-8;
 /// Part of what is allowed below which remainders on the unknowns need no measure on the stresses: the two differ by the shape of triangles.
 const CLEAR: f64 = 1e-3;
 
-/// What is settled, and with what.
+/// A contact state to be settled, and the means to do it.
 pub struct Settling<'a> {
     /// The scene.
     pub problem: &'a Problem,
@@ -36,7 +36,7 @@ pub struct Settling<'a> {
     pub reduced: &'a Reduced,
     /// The problem on Γ_K.
     pub contact: &'a Schur<'a>,
-    /// What contact states are held against.
+    /// The check of contact states.
     pub ends: Ends<'a>,
     /// Limit of refinements for one state.
     pub most_steps: usize,

@@ -28,7 +28,7 @@ pub fn power_of_two_near(value: f64) -> f64 {
     if s.is_normal() { s } else { 1.0 }
 }
 
-/// What is added to the diagonal, relative to each entry, where rounding leaves nothing of a pivot: as much as rounding
+/// Added to the diagonal, relative to each entry, where rounding leaves nothing of a pivot: as much as rounding
 /// takes at first …
 const LEAST_RAISED: f64 = 1e-14;
 /// … and ten times more until all pivots are positive, up to this.

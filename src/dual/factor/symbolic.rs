@@ -22,7 +22,7 @@ pub struct SymbolicFactor {
     pub(super) inner: Option<SymbolicCholesky<usize>>,
     pub(super) forward: Vec<usize>,
     pub(super) leading: usize,
-    /// What the unknowns from `leading` on are, where they are more than the jumps.
+    /// The unknowns from `leading` on, where they are more than the jumps.
     pub(super) interface: Option<Interface>,
 }
 

@@ -40,12 +40,12 @@ pub trait DualMethod: Sync {
         1e-9
     }
 
-    /// Whether each contact state on the way costs a linear solve, so that a first guess from a coarser mesh pays.
+    /// True if each contact state on the way costs a linear solve, so that a first guess from a coarser mesh pays.
     fn wants_guess(&self) -> bool {
         false
     }
 
-    /// Whether processes that find the solution can make the upper bound, too.
+    /// True if the processes that find the solution can make the upper bound, too.
     fn divides(&self) -> bool {
         false
     }
@@ -79,7 +79,7 @@ pub(in crate::dual) fn contact_alone(problem: &Problem, method: &'static str) ->
     Err(DualError::NotExpressible { method, what, remedy })
 }
 
-/// What a method hands back before it is measured.
+/// The result of a method before it is measured.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// λ_h.
@@ -94,7 +94,7 @@ pub struct Found {
     pub iterations: usize,
     /// Seconds by phase; `read` and `total` are the caller's.
     pub seconds: Phases,
-    /// What the reader should know.
+    /// Notes for the reader of a report.
     pub notes: Vec<String>,
     /// K and its factor for further loads, where [`Options::keep_factor`] asks for it and the method has one.
     pub factorised: Option<Arc<Factorised>>,
@@ -111,7 +111,7 @@ pub struct Options {
     pub threads: usize,
     /// First guess of the closed coefficients, from a similar problem.
     pub closed: Option<SideValues<bool>>,
-    /// Whether the factor is to be kept with the solution.
+    /// True if the factor is to be kept with the solution.
     pub keep_factor: bool,
     /// Memory that the process may hold.
     pub budget: Budget,
@@ -182,13 +182,13 @@ pub enum DualError {
          degenerate"
     )]
     Factorisation {
-        /// What the factorisation reported.
+        /// The report of the factorisation.
         reason: String,
     },
     /// The memory is not there, or may not be taken.
     #[error("{reason}")]
     TooLarge {
-        /// What does not fit, with both figures.
+        /// The part that does not fit, with both figures.
         reason: String,
     },
     /// The method has no words for something in the problem.
@@ -196,9 +196,9 @@ pub enum DualError {
     NotExpressible {
         /// Name of the method.
         method: &'static str,
-        /// What it has no words for, and where.
+        /// The part of the problem that the method cannot state, and where it is.
         what: String,
-        /// What to do.
+        /// Advice for the user.
         remedy: &'static str,
     },
     /// The contact state is not determined by the energy.
@@ -218,7 +218,7 @@ pub enum DualError {
         residual: f64,
         /// Residual asked.
         wanted: f64,
-        /// What to do.
+        /// Advice for the user.
         advice: String,
     },
     /// Programs that the method starts are missing.

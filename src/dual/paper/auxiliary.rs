@@ -25,13 +25,13 @@ pub struct Auxiliary {
     pub forces: Vec<[f64; 2]>,
     /// Parameters Ŝ of λ⁽²⁾.
     pub parameters: Vec<f64>,
-    /// What holds on Γ_K.
+    /// Choice of λ̄ on Γ_K.
     pub reaction: Reaction,
     /// T_n of λ̄ at the contact ends.
     pub normal_traction: Vec<f64>,
     /// D-rows of λ̄ minus their targets: zero but for the shear of Example 2 (and rounding).
     pub excess: Vec<f64>,
-    /// What should be known about the choice.
+    /// Notes on the choice, for the reader of a report.
     pub notes: Vec<String>,
 }
 

@@ -20,7 +20,7 @@ pub enum TractionShape {
     Slope,
 }
 
-/// What a constraint row says.
+/// The equation that a constraint row states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Meaning {
     /// (3.5) on an interior edge, for component 0 or 1 of the traction.
@@ -119,7 +119,7 @@ pub struct Constraints {
     pub d_meaning: Vec<Meaning>,
     /// Meaning of the rows of E.
     pub e_meaning: Vec<Meaning>,
-    /// What the rows of D must give on the whole stress λ: P on Γ_τ, else zero.
+    /// The right-hand side of the rows of D for the whole stress λ: P on Γ_τ, else zero.
     pub d_target: Vec<f64>,
     d_terms: Vec<Vec<Term>>,
     e_terms: Vec<Vec<Term>>,

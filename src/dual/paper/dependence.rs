@@ -26,7 +26,7 @@ pub struct Dependence {
 }
 
 impl Dependence {
-    /// Whether rows of E take part, so that no row of D is superfluous.
+    /// True if rows of E take part, so that no row of D is superfluous.
     pub fn involves_contact(&self) -> bool {
         let largest = |z: &[f64]| z.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         largest(&self.z_e) > STILL * largest(&self.z_d)

@@ -12,7 +12,7 @@ use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::subtriangle::Matrix;
 use crate::problem::{Problem, Scales};
 
-/// What is kept of a block once Q has been found.
+/// The parts of a block that are kept once Q has been found.
 #[derive(Debug, Clone)]
 pub struct CompensatedBlock {
     /// Q_1, 21 × 9.

@@ -3,7 +3,7 @@
 use crate::problem::{Condition, Problem};
 use crate::vector::cross;
 
-/// What λ̄ is chosen to be on Γ_K.
+/// Choice of λ̄ on Γ_K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reaction {
     /// Example 1, (2.2) and (2.3): T_n = g, T_t = 0 where rollers leave Ω'' a translation that Γ_K stops.
@@ -126,7 +126,7 @@ fn has(problem: &Problem, body: usize, is: impl Fn(&Condition) -> bool) -> bool 
     problem.conditions.iter().enumerate().any(|(e, c)| is(c) && of(e) == Some(body))
 }
 
-/// Whether an edge joins triangles of different bodies.
+/// True if an edge joins triangles of different bodies.
 fn bonded(problem: &Problem) -> bool {
     let mesh = &problem.mesh;
     mesh.edges.iter().any(|edge| matches!(edge.triangles, [Some(a), Some(b)] if mesh.body[a] != mesh.body[b]))

@@ -29,7 +29,7 @@ impl SparseRows {
         self.starts.len() - 1
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -148,7 +148,7 @@ fn expressible(problem: &Problem, options: &Options, method: &'static str) -> Re
     })
 }
 
-/// What the algorithm found out about the problem on the way.
+/// Notes on the problem that the algorithm came upon.
 fn notes(problem: &Problem, program: &Program) -> Vec<String> {
     let mut notes = program.auxiliary.notes.clone();
     let name = |bodies: &[usize]| {

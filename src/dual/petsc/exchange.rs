@@ -42,7 +42,7 @@ struct Header {
     linear_solver: LinearSolver,
 }
 
-/// What the ranks report.
+/// The report of the ranks.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Answer {
     format: String,
@@ -76,7 +76,7 @@ pub struct AnswerSeconds {
     pub refine: f64,
 }
 
-/// What comes back from the ranks.
+/// The report and the fields that come back from the ranks.
 #[derive(Debug)]
 pub struct Solution {
     /// The report.

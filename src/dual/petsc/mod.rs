@@ -46,7 +46,7 @@ const PACKAGE: Package = Package {
 
 /// Bytes that this process holds for each triangle: element matrices and stresses, then the bracket.
 const EACH: f64 = 9500.0;
-/// The same where ranks make the upper bound.
+/// Likewise where ranks make the upper bound.
 const EACH_DIVIDED: f64 = 5000.0;
 
 /// How PETSc solves with K.
@@ -63,7 +63,7 @@ pub enum LinearSolver {
 }
 
 impl LinearSolver {
-    /// Whether it is an iteration, and not a factorisation.
+    /// True if it is an iteration, and not a factorisation.
     fn iterates(self) -> bool {
         self != LinearSolver::Mumps
     }

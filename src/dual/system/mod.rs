@@ -72,7 +72,7 @@ impl System {
         Self::new_beside(problem, options, |_, _| ()).0
     }
 
-    /// The same, and the structure of the factor of K with its jumps last, which another thread works out meanwhile.
+    /// Builds the system, and on another thread the structure of the factor of K with its jumps last.
     pub fn structured(problem: &Problem, options: &Options) -> Structured {
         let (system, (structure, seconds_of_structure)) = Self::new_beside(problem, options, |unknowns, pattern| {
             let start = Instant::now();
@@ -358,7 +358,7 @@ wide! {
     }
 }
 
-/// The same for a length that the compiler knows.
+/// [`gram`] for a length that the compiler knows.
 #[inline(always)]
 fn gram_of<const M: usize>(tractions: &[f64], out: &mut [f64]) {
     let (rows, _) = out.as_chunks_mut::<M>();

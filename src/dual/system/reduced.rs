@@ -19,7 +19,7 @@ pub struct Reduced {
     pub(in crate::dual) factor: Factor,
     held: Vec<usize>,
     first_jump: usize,
-    /// What was added to the diagonal of each jump.
+    /// Added to the diagonal of each jump.
     pub(in crate::dual) shift: Vec<f64>,
 }
 
@@ -41,7 +41,7 @@ impl Reduced {
         Ok(Reduced { factor, held, first_jump, shift })
     }
 
-    /// What the factorisation broke down at, where replaced pivots helped it on.
+    /// The breakdown of the factorisation, where replaced pivots helped it on.
     pub fn breakdown(&self, problem: &Problem, system: &System) -> Option<DualError> {
         Some(explain(problem, &system.unknowns, Breakdown::NotPositive(self.factor.broken()?)))
     }

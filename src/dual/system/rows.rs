@@ -17,7 +17,7 @@ pub struct Sides {
     pub edges: [usize; 3],
     /// Their degrees.
     pub degrees: [usize; 3],
-    /// Whether the triangle runs along them the other way round.
+    /// True if the triangle runs along them the other way round.
     flipped: [bool; 3],
     /// Where the coefficients of each side begin, and the end of them all.
     pub start: [usize; 4],
@@ -39,7 +39,7 @@ impl Sides {
         self.start[3]
     }
 
-    /// Whether all sides have the degree of the triangle.
+    /// True if all sides have the degree of the triangle.
     pub fn are_even(&self) -> bool {
         self.degrees == [self.degree; 3]
     }

@@ -21,7 +21,7 @@ pub struct UnknownBlock {
     pub len: usize,
 }
 
-/// What the moments of one edge are made of.
+/// The unknowns that the moments of one edge are made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EdgeMoments {
     /// x and y of one moment after the other.
@@ -276,7 +276,7 @@ impl Unknowns {
         moments
     }
 
-    /// The same of a change: what supports give does not change.
+    /// Moments of a change of the unknowns: prescribed displacements do not change.
     pub fn moments_of_change(&self, x: &[f64]) -> SideValues<[f64; 2]> {
         let mut moments = self.moments(x);
         for (e, edge) in self.edges.iter().enumerate() {

@@ -63,7 +63,7 @@ impl FileCells {
         self.pairs.len()
     }
 
-    /// Whether all cells are triangles.
+    /// True if all cells are triangles.
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }
@@ -75,7 +75,7 @@ impl Quadrilateral {
         self.corners.map(|v| mesh.points[v])
     }
 
-    /// Whether all angles are below 180°, so that the square is mapped onto it one to one.
+    /// True if all angles are below 180°, so that the square is mapped onto it one to one.
     pub fn is_convex(&self, mesh: &Triangulation) -> bool {
         let p = self.points(mesh);
         (0..4).all(|i| {
@@ -84,7 +84,7 @@ impl Quadrilateral {
         })
     }
 
-    /// Whether opposite sides are parallel and of one length, to the digits of the coordinates.
+    /// True if opposite sides are parallel and of one length, to the digits of the coordinates.
     pub fn is_parallelogram(&self, mesh: &Triangulation) -> bool {
         let [a, b, c, d] = self.points(mesh);
         let size = [a, b, c, d].iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -125,7 +125,7 @@ impl Triangulation {
         })
     }
 
-    /// Whether every cell of the file is a quadrilateral.
+    /// True if every cell of the file is a quadrilateral.
     pub fn is_quadrilateral(&self) -> bool {
         !self.cells.is_empty() && 2 * self.cells.len() == self.triangles.len()
     }

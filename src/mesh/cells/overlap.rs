@@ -64,7 +64,7 @@ fn crossing(mesh: &Triangulation, scene: &Scene, boundary: &[usize]) -> Option<[
     None
 }
 
-/// Whether two segments cross, with the ends of each clearly on either side of the other: by more than `touch` times
+/// True if two segments cross, with the ends of each clearly on either side of the other: by more than `touch` times
 /// the length of the shorter one.
 pub(in crate::mesh) fn cross_over(one: [[f64; 2]; 2], other: [[f64; 2]; 2], touch: f64) -> bool {
     let [u, v] = [one, other].map(|[a, b]| minus(b, a));

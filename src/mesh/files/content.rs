@@ -1,4 +1,4 @@
-//! What a mesh file contains, whatever its format, and how it becomes a [`RawMesh`].
+//! Content of a mesh file in any format, and its conversion to a [`RawMesh`].
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
@@ -53,7 +53,7 @@ impl Kind {
         }
     }
 
-    /// Whether a cell of this shape may have so many nodes: its corners, those with mid-nodes, and the quadrilateral with
+    /// True if a cell of this shape may have so many nodes: its corners, those with mid-nodes, and the quadrilateral with
     /// one in its centre.
     pub fn takes(self, nodes: usize) -> bool {
         let (corners, sides) = (self.corners(), self.sides());
@@ -79,7 +79,7 @@ pub(in crate::mesh) struct Element {
 pub(in crate::mesh) struct Content {
     /// Name by dimension and physical tag.
     pub names: HashMap<(i32, i32), String>,
-    /// The same for the numbers that the file itself has, where `names` has others.
+    /// Names by the numbers that the file itself has, where `names` has others.
     pub numbers: Option<HashMap<(i32, i32), String>>,
     /// Physical tags by dimension and tag of an elementary entity (version 4).
     pub entities: HashMap<(i32, i32), Rc<[i32]>>,
@@ -271,7 +271,7 @@ fn cut(
     Ok(cells)
 }
 
-/// What was changed while cells were read.
+/// Numbers of cells that were changed while they were read.
 #[derive(Default)]
 struct Counts {
     quadrilaterals: usize,

@@ -37,7 +37,7 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
     }
 }
 
-/// Whether a `.msh` file is not Gmsh's: FreeFEM's begins with three counts, GiD's with `MESH`, GetFEM's with a comment, and Fluent's with a bracket.
+/// True if a `.msh` file is not Gmsh's: FreeFEM's begins with three counts, GiD's with `MESH`, GetFEM's with a comment, and Fluent's with a bracket.
 fn others(text: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&text[..text.len().min(4000)]);
     let first = head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();

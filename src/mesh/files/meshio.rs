@@ -8,10 +8,10 @@ use crate::process::{Outcome, Scratch, python, supervise};
 /// Exit code of a script whose interpreter has no meshio.
 const NO_MESHIO: i32 = 44;
 
-/// The same where meshio itself lacks a package for this format; the last line names it.
+/// Exit code where meshio itself lacks a package for this format; the last line names it.
 const NO_PACKAGE: i32 = 45;
 
-/// The same where a reader of this program finds that the file does not follow its format; the last line says how.
+/// Exit code where a reader of this program finds that the file does not follow its format; the last line says how.
 const NOT_ITS_FORMAT: i32 = 46;
 
 /// How long meshio may read one file where nobody says otherwise.
@@ -20,9 +20,9 @@ pub const PATIENCE: Duration = Duration::from_secs(120);
 /// Why a file could not be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Failure {
-    /// What was found.
+    /// The finding.
     pub what: String,
-    /// What to do.
+    /// Advice for the user.
     pub remedy: String,
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> 
     ))
 }
 
-/// What a script that failed said: its last line, and before it the one that meshio printed as an error or just before one,
+/// Reason of a script that failed: its last line, and before it the one that meshio printed as an error or just before one,
 /// which has the reason where the other only says that reading failed.
 fn reason<'a>(log: impl Iterator<Item = &'a str>) -> String {
     let lines: Vec<&str> = log.map(str::trim).filter(|line| !line.is_empty()).collect();

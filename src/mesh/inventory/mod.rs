@@ -33,7 +33,7 @@ pub struct Curve {
     pub length: f64,
 }
 
-/// What a mesh file holds.
+/// Contents of a mesh file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inventory {
     /// The file.
@@ -60,7 +60,7 @@ pub struct Inventory {
     pub entities: Vec<Curve>,
     /// The outline of the bodies, and the edges between two of them.
     pub outline: Vec<Piece>,
-    /// What reading the file changed.
+    /// Notes on changes made while the file was read.
     pub notes: Vec<Note>,
 }
 

@@ -54,9 +54,9 @@ pub struct Piece {
     pub edges: Vec<[usize; 2]>,
     /// Sum of their lengths.
     pub length: f64,
-    /// Whether another body has these edges too.
+    /// True if another body has these edges too.
     pub shared: bool,
-    /// Whether the file names all of its edges.
+    /// True if the file names all of its edges.
     pub named: bool,
     /// Number of other edges of the body that its box takes with it.
     pub others: usize,
@@ -160,7 +160,7 @@ fn chains(edges: &[[usize; 2]]) -> Vec<Vec<[usize; 2]>> {
     chains
 }
 
-/// Whether the second edge goes on where the first ends without a corner.
+/// True if the second edge goes on where the first ends without a corner.
 fn smooth(points: &[[f64; 2]], first: [usize; 2], second: [usize; 2]) -> bool {
     let along = |e: [usize; 2]| {
         let [p, q] = e.map(|v| points[v]);

@@ -9,7 +9,7 @@ use spade::{
 /// Smallest angle that refinement aims at inside a polygon, in degrees.
 const ANGLE: f64 = 27.0;
 
-/// The same without a size: what refinement cannot mend is a vertex at which many sharp angles meet.
+/// Smallest angle wanted without a size: refinement cannot mend a vertex at which many sharp angles meet.
 const COARSE_ANGLE: f64 = 20.0;
 
 /// Vertices inside per vertex of the outline that may be added without a size.
@@ -27,7 +27,7 @@ pub(super) struct Filled {
     pub points: Vec<[f64; 2]>,
     /// Vertex indices.
     pub triangles: Vec<[usize; 3]>,
-    /// Whether every triangle has the wanted size and angles, as far as the boundary permits.
+    /// True if every triangle has the wanted size and angles, as far as the boundary permits.
     pub complete: bool,
 }
 

@@ -69,7 +69,7 @@ fn length(piece: &Piece) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
-/// The same for a piece and its reverse.
+/// A key that a piece shares with its reverse.
 fn unordered(piece: &Piece) -> [[u64; 2]; 2] {
     let [a, b] = piece.ends.map(key);
     if a < b { [a, b] } else { [b, a] }

@@ -202,7 +202,7 @@ fn insert_touching(scene: &Scene, outlines: &mut [Vec<Piece>], close: f64) -> Re
     Ok(())
 }
 
-/// Whether `p` lies on the edge and apart from its ends.
+/// True if `p` lies on the edge and apart from its ends.
 fn on(p: [f64; 2], [a, b]: [[f64; 2]; 2], close: f64) -> bool {
     let length = distance([a, b]);
     let (d, w) = ([(b[0] - a[0]) / length, (b[1] - a[1]) / length], [p[0] - a[0], p[1] - a[1]]);

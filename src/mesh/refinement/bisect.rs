@@ -27,7 +27,7 @@ impl RefinementEdges {
     }
 }
 
-/// What [`bisect`] makes.
+/// Result of [`bisect`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bisected {
     /// The finer mesh; old vertices keep their index.

@@ -29,12 +29,12 @@ impl Uncut {
         Uncut { mesh, parent, vertex, origin }
     }
 
-    /// Whether triangle `t` of `after` is a part of its parent alone.
+    /// True if triangle `t` of `after` is a part of its parent alone.
     pub fn is_cut(&self, after: &Triangulation, t: usize) -> bool {
         after.triangles[t] != self.corners_after(self.parent[t])
     }
 
-    /// Whether any triangle of `after` is a part of another.
+    /// True if any triangle of `after` is a part of another.
     pub fn any_is_cut(&self, after: &Triangulation) -> bool {
         after.triangles.len() != self.mesh.triangles.len()
     }

@@ -40,7 +40,7 @@ pub struct Entity {
     pub cells: Cells,
 }
 
-/// What a file groups beside its named cells.
+/// Sets of a file beside its named cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sets {
     /// Kinds of cells with their numbers.

@@ -16,7 +16,7 @@ struct Side {
     vertices: [usize; 2],
     /// Index into the bodies of the scene.
     body: Option<usize>,
-    /// Whether another body has the edge too.
+    /// True if another body has the edge too.
     shared: bool,
 }
 
@@ -116,7 +116,7 @@ impl<'a> Outline<'a> {
             .collect())
     }
 
-    /// Whether `boundary` may have this edge: one between two bodies only where it names its own.
+    /// True if `boundary` may have this edge: one between two bodies only where it names its own.
     fn offered(&self, side: &Side, boundary: &Boundary) -> bool {
         boundary.body.map_or(!side.shared, |body| side.body == Some(body))
     }
@@ -200,7 +200,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// What to say of a boundary that chose no edge.
+    /// The error for a boundary that chose no edge.
     pub(super) fn nothing(&self, boundary: &Boundary) -> MeshError {
         let kind = match boundary.edges {
             Edges::Line(_) => "on this segment",

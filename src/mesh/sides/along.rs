@@ -141,7 +141,7 @@ pub(in crate::mesh) fn match_along(
     Ok(mesh)
 }
 
-/// The same edges as seen from the other side.
+/// The edges of a side as seen from the other side.
 pub(crate) fn turned(side: Vec<Facing>) -> Vec<Facing> {
     let turn =
         |f: Facing| Facing { edge: f.edge, vertices: [f.vertices[1], f.vertices[0]], span: [-f.span[1], -f.span[0]] };

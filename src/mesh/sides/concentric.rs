@@ -100,7 +100,7 @@ impl Concentric {
     }
 }
 
-/// Whether one side is hollow, the other one round, all along.
+/// True if one side is hollow and the other one round, all along.
 fn facing(mesh: &Triangulation, sides: &[Vec<usize>; 2], centre: [f64; 2]) -> bool {
     let outwards = |&e: &usize| {
         let (_, n) = mesh.edge_frame(e);

@@ -21,13 +21,13 @@ use crate::scene::{ContactSides, Joint, Note, Scene, counted};
 pub struct Glued {
     /// The mesh.
     pub mesh: Triangulation,
-    /// What was done to make sides match.
+    /// Notes on the changes that made sides match.
     pub notes: Vec<Note>,
     /// The mesh before; `None` where nothing was done to it.
     pub uncut: Option<Uncut>,
 }
 
-/// What is done to a mesh.
+/// Changes of a mesh.
 pub(in crate::mesh) struct Record {
     /// In words.
     pub notes: Vec<Note>,

@@ -190,7 +190,7 @@ impl<'a> Moves<'a> {
         }
     }
 
-    /// Whether all triangles keep most of their area when `v` moves.
+    /// True if all triangles keep most of their area when `v` moves.
     fn is_sound(&self, v: usize, to: [f64; 2]) -> bool {
         let keeps = |&t: &usize| {
             let moved = self.mesh.triangles[t].map(|w| if w == v { to } else { self.mesh.points[w] });

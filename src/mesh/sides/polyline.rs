@@ -22,7 +22,7 @@ pub(crate) fn point(key: Key) -> [f64; 2] {
 pub(crate) struct Link {
     /// Index of the edge in the argument of [`chain`].
     pub edge: usize,
-    /// Whether it is passed from its second end to its first.
+    /// True if it is passed from its second end to its first.
     pub reversed: bool,
     /// Arc length at its two ends, in the order in which they are passed.
     pub arc: [f64; 2],

@@ -43,7 +43,7 @@ pub(in crate::mesh) fn check(mesh: &Triangulation, scene: &Scene, notes: &mut Ve
     Ok(())
 }
 
-/// Whether `p` lies on the edge, away from its ends.
+/// True if `p` lies on the edge, away from its ends.
 fn inside(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> bool {
     let (d, w) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = d[0] * d[0] + d[1] * d[1];

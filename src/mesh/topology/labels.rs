@@ -200,7 +200,7 @@ fn owners(bodies: [usize; 2], scene: &Scene) -> String {
     }
 }
 
-/// Whether the first of two sides of an edge inside a body is that below it, or on its left where it is upright.
+/// True if the first of two sides of an edge inside a body is that below it, or on its left where it is upright.
 fn first_of_one(raw: &RawMesh, cells: &Cells, sides: [Side; 2]) -> bool {
     let corners = cells.triangles[sides[0].0];
     let [a, b] = [1, 2].map(|i| raw.points[corners[(sides[0].1 + i) % 3]]);

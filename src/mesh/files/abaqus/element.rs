@@ -1,8 +1,8 @@
-//! What the name of an Abaqus or CalculiX element says of its shape.
+//! Shapes of cells by the names of Abaqus and CalculiX elements.
 
 use super::Kind;
 
-/// What is done with elements of a type.
+/// Treatment of the elements of a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Family {
     /// A cell of the mesh, with so many nodes.

@@ -74,9 +74,9 @@ struct Reader {
     /// Of the part that is read, or of what stands outside all parts.
     scope: Part,
     parts: HashMap<String, Part>,
-    /// What instances have put together.
+    /// The instances put together so far.
     whole: Part,
-    /// Whether all cells of the deck are rigid.
+    /// True if all cells of the deck are rigid.
     all_rigid: bool,
     /// The part that is read.
     inside: Option<String>,

@@ -103,7 +103,7 @@ fn straight_quadratic_triangles_lose_their_mid_nodes() {
     assert!(notes[1].weakens_guarantee && notes[1].text.contains("1 curved side") && notes[1].text.contains("1.00e-2"));
 }
 
-/// The same binary file in the other byte order.
+/// A binary file turned into the other byte order.
 fn turned(bytes: &[u8]) -> Vec<u8> {
     // Only MSH 2.2 is simple enough to turn by its fixed layout: 4-byte numbers but for the coordinates.
     let find =
