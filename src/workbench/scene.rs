@@ -97,7 +97,8 @@ impl Exact {
         ((energy - self.lower).max(0.0) / self.strain).sqrt()
     }
 
-    /// Estimates the relative error in the energy norm from an energy on either side of the exact one: √(|𝓛(u_h) − 𝓛(u)| / 𝒮), which is no bound.
+    /// Relative error in the energy norm, estimated from an energy on either side of the exact one: √(|𝓛(u_h) − 𝓛(u)| / 𝒮), which is
+    /// no bound.
     pub fn apart(&self, energy: f64) -> f64 {
         ((energy - 0.5 * (self.lower + self.upper)).abs() / self.strain).sqrt()
     }
