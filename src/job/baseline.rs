@@ -8,12 +8,12 @@ use super::{Gathered, JobError};
 use crate::report::{BaselineRow, Stored};
 use crate::study::{Accepted, Baseline, Signature, today};
 
-/// What a baseline says about a job.
+/// Differences of a job from its baseline.
 #[derive(Debug, Default)]
 pub(super) struct Kept {
     /// Scenes that only the baseline has.
     pub not_in_job: Vec<String>,
-    /// What would bring it up to date.
+    /// Patch that would bring the baseline up to date.
     pub patch: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What a job found: `job.json`.
+//! Results of a job: `job.json`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -197,7 +197,7 @@ impl Job {
         order
     }
 
-    /// Whether two models were compared, so that they can agree; the checks of one alone can only pass.
+    /// True if two models were compared, so that they can agree; the checks of one alone can only pass.
     pub fn compares(&self) -> bool {
         self.command != "solve"
     }
@@ -254,7 +254,7 @@ pub struct Gathered {
     pub job: Job,
     /// The report of each scene that left one.
     pub reports: Vec<Option<Stored>>,
-    /// What would bring the baseline up to date, where it differs.
+    /// Patch that would bring the baseline up to date, where it differs.
     pub patch: Option<String>,
 }
 

@@ -9,7 +9,7 @@ use super::record::{End, Record};
 use super::{JobError, SCHEMA_VERSION};
 use crate::report::{BaselineRow, Change, Stored};
 
-/// What `out` has of the job `plan`. A scene without a record of this plan has not been run, and counts as failed.
+/// Gathers the results of the job `plan` from `out`. A scene without a record of this plan has not been run, and counts as failed.
 ///
 /// # Errors
 /// Its baseline cannot be read.
@@ -47,7 +47,7 @@ fn report_of(out: &Path, planned: &Planned, record: &Record) -> Option<Stored> {
     Stored::read(&out.join(&planned.name)).ok().filter(|report| report.run == record.run)
 }
 
-/// What is known of a scene that has ended.
+/// The entry of a scene that has ended.
 pub fn entry(out: &Path, planned: &Planned, record: &Record) -> Entry {
     entry_of(planned, record, report_of(out, planned, record).as_ref())
 }
@@ -144,7 +144,7 @@ fn without_report(record: &Record) -> (u8, SceneStatus, String) {
     }
 }
 
-/// What was found, from the last error that a run printed: the lines from its mark to its help, as one.
+/// Reason of the last error that a run printed: the lines from its mark to its help, joined into one.
 fn reason(said: &[String]) -> String {
     let start = said.iter().rposition(|line| line.trim_start().starts_with("x ")).unwrap_or(0);
     let words: Vec<&str> = said[start..]

@@ -5,7 +5,7 @@
 //! page of them. A job in one piece does these four one after the other; a job in parts leaves the last two to whoever has all
 //! parts, and one that was interrupted finds the records of what was finished.
 //!
-//! What lies in the folder of a scene is taken for this job's only if it names the run that the record names: each process
+//! Files in the folder of a scene count as this job's only if they name the run that the record names: each process
 //! is told its identifier.
 
 mod badge;
@@ -46,7 +46,7 @@ pub enum JobError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// A folder has no scene in it.
@@ -80,7 +80,7 @@ pub enum JobError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// The files of the page cannot be written.
@@ -94,7 +94,7 @@ pub enum JobError {
     Start {
         /// This program.
         program: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
 }

@@ -25,7 +25,7 @@ const TAKEN: [&str; 9] = [
 /// Top-level keys that only a scene has; a TOML file with keys, and none of these, is about something else.
 const OF_SCENES: [&str; 8] = ["model", "mesh", "geometry", "bodies", "supports", "tractions", "contacts", "quantities"];
 
-/// What a job does. The parts of a job that are run on several machines have the same plan.
+/// The work of a job. The parts of a job that are run on several machines have the same plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
@@ -35,7 +35,7 @@ pub struct Plan {
     pub command: String,
     /// Options that every scene is given, as the command line takes them.
     pub options: Vec<String>,
-    /// What all scenes have in common, in one number: command, options and baseline.
+    /// Hash of the settings that all scenes share: command, options and baseline.
     pub settings: String,
     /// The scenes.
     pub scenes: Vec<Planned>,
@@ -43,7 +43,7 @@ pub struct Plan {
     pub left_out: Vec<String>,
     /// The baseline, if there is one.
     pub baseline: Option<PathBuf>,
-    /// Whether the numbers that are found become the baseline.
+    /// True if the numbers that are found become the baseline.
     pub accept: bool,
 }
 
@@ -55,7 +55,7 @@ pub struct Planned {
     pub name: String,
     /// The scene file, as given.
     pub scene: PathBuf,
-    /// What is computed: the scene file, its mesh and what else belongs to it, in one number.
+    /// Hash of the input: the scene file, its mesh and all else that belongs to it.
     pub content: String,
     /// Options for this scene alone.
     pub options: Vec<String>,
@@ -100,7 +100,7 @@ pub fn scenes_of(arguments: &[PathBuf]) -> Result<(Vec<PathBuf>, Vec<PathBuf>), 
     }
 }
 
-/// Whether a file counts as a scene: all do but those that are TOML about something else. One that cannot be read, or is
+/// True if a file counts as a scene: all do but those that are TOML about something else. One that cannot be read, or is
 /// no TOML, is a scene with a mistake in it.
 fn may_be_scene(path: &Path) -> bool {
     if !path.is_file() {
@@ -170,7 +170,7 @@ impl Shard {
     /// The whole of it.
     pub const WHOLE: Shard = Shard { number: 1, of: 1 };
 
-    /// Whether scene number `index`, from 0, belongs to it.
+    /// True if scene number `index`, from 0, belongs to it.
     pub fn has(self, index: usize) -> bool {
         index % self.of == self.number - 1
     }

@@ -1,4 +1,4 @@
-//! What is kept of each scene that was run, one file a scene: so a job can go on where it was, and its parts be gathered.
+//! Records of the scenes that were run, one file a scene, so that a job can be resumed and its parts be gathered.
 
 use std::path::{Path, PathBuf};
 

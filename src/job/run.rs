@@ -34,11 +34,11 @@ pub struct Runner<'a> {
     pub memory: Option<u64>,
     /// Which of the scenes to run.
     pub shard: Shard,
-    /// Whether what was finished before stays.
+    /// True if results of finished scenes are kept.
     pub resume: bool,
 }
 
-/// What all scenes of a job have in common, in one number.
+/// Hash of the settings that all scenes of a job share.
 pub fn settings(command: &str, options: &[String], baseline: Option<&Path>) -> String {
     let mut parts = vec![command.to_string()];
     parts.extend(options.iter().cloned());
@@ -90,7 +90,7 @@ impl Runner<'_> {
         }
     }
 
-    /// Whether the present program has given an answer to the present scene, and its report is there.
+    /// True if the present program has given an answer to the present scene, and its report is there.
     fn is_finished(&self, plan: &Plan, scene: &Planned, program: &str) -> bool {
         let Some(record) = Record::read(self.out, plan, scene) else { return false };
         let answered = matches!(record.end, End::Exit(0 | 1 | 5)) && record.program == program;

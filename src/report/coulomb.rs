@@ -1,4 +1,4 @@
-//! What a report says of Coulomb friction.
+//! Coulomb friction in a report.
 
 use schemars::JsonSchema;
 use serde::Serialize;

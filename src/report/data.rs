@@ -76,7 +76,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether bounds and intervals hold for the scene as written; otherwise notes say what weakens them.
+    /// True if bounds and intervals hold for the scene as written; otherwise notes say what weakens them.
     pub fn is_guaranteed(&self) -> bool {
         !self.notes.iter().any(|note| note.weakens_guarantee)
     }
@@ -248,7 +248,7 @@ pub struct PrimalSummary {
 }
 
 impl PrimalSummary {
-    /// Whether the energy is that of a quadrature, on quadrilaterals that are no parallelograms.
+    /// True if the energy is that of a quadrature, on quadrilaterals that are no parallelograms.
     pub fn is_of_quadrature(&self) -> bool {
         self.cells == "quadrilaterals" && self.relative_error_bound.is_none()
     }
@@ -331,24 +331,24 @@ pub struct Map {
     pub key: String,
     /// Whose it is: a model, a quantity.
     pub title: String,
-    /// What it shows; maps of one kind share a scale.
+    /// The quantity shown; maps of one kind share a scale.
     pub kind: MapKind,
     /// One value per triangle.
     pub values: Vec<f64>,
 }
 
-/// What a map shows.
+/// The quantity that a map shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapKind {
-    /// What a claimed solution misses of equilibrium.
+    /// Residual of equilibrium of a claimed solution.
     Residual,
     /// How far two stresses are apart: the root of twice the density of the energy of their difference.
     Difference,
     /// Von Mises stress of the mean over each triangle.
     VonMises,
-    /// What each triangle adds to the gap between the lower bound and an upper one, relative to the whole.
+    /// Share of each triangle in the gap between the lower bound and an upper one, relative to the whole.
     GapShare,
-    /// What each triangle adds to the width of the interval of a quantity, relative to the whole.
+    /// Share of each triangle in the width of the interval of a quantity, relative to the whole.
     QuantityShare,
 }
 
@@ -368,7 +368,7 @@ impl MapKind {
         }
     }
 
-    /// What it shows, in a sentence.
+    /// Its meaning, in a sentence.
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Residual => {

@@ -27,7 +27,7 @@ pub enum GuaranteeLevel {
 }
 
 impl Guarantee {
-    /// What this program says itself: guaranteed, unless one of the notes weakens that.
+    /// The guarantee on this program's own word: guaranteed, unless one of the notes weakens that.
     pub fn of_notes(notes: &[Note]) -> Self {
         match notes.iter().find(|note| note.weakens_guarantee) {
             None => {

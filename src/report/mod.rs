@@ -1,4 +1,4 @@
-//! What a run leaves behind, all derived from one [`Dossier`].
+//! Files that a run leaves behind, all derived from one [`Dossier`].
 //!
 //! [`write()`] makes the files; each of them is also a function here, from data to text, that knows nothing of files.
 

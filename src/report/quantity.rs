@@ -11,7 +11,7 @@ use crate::quantity::outside;
 const A_POINT: f64 = 1e-9;
 /// Digits of a value that is known but for rounding.
 const DIGITS_OF_A_POINT: usize = 9;
-/// What stands for ends that are missing.
+/// Symbols for ends that are missing.
 const MISSING: [&str; 2] = ["−∞", "∞"];
 
 /// A quantity of the scene, with an interval that holds its exact value.
@@ -67,22 +67,22 @@ pub(crate) struct Held {
     pub value: Option<f64>,
     /// Why the field does not tell, or what its value is worth.
     pub reason: Option<String>,
-    /// Whether its distance from the interval is within what its own error allows, where that was checked.
+    /// True if its distance from the interval is within the allowance for its own error, where that was checked.
     pub allowed: Option<bool>,
 }
 
 impl QuantitySummary {
-    /// Whether both ends are there.
+    /// True if both ends are there.
     pub fn is_enclosed(&self) -> bool {
         self.lower.is_finite() && self.upper.is_finite()
     }
 
-    /// Whether anything is guaranteed.
+    /// True if anything is guaranteed.
     pub fn has_an_end(&self) -> bool {
         self.lower.is_finite() || self.upper.is_finite()
     }
 
-    /// Whether the ends differ by no more than rounding.
+    /// True if the ends differ by no more than rounding.
     pub fn is_point(&self) -> bool {
         self.is_enclosed() && self.upper - self.lower <= A_POINT * self.lower.abs().max(self.upper.abs())
     }

@@ -109,7 +109,7 @@ impl Sample {
     }
 }
 
-/// Whether `xml` can be read to its end with every element closed.
+/// Asserts that `xml` can be read to its end with every element closed.
 pub(crate) fn assert_well_formed(xml: &str) {
     let mut reader = quick_xml::Reader::from_str(xml);
     let mut depth = 0;

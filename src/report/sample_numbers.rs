@@ -193,7 +193,7 @@ fn checks(failed: bool, lower: f64, p2: f64) -> Vec<Check> {
     ]
 }
 
-/// What the two failing checks have in common.
+/// The common cause of the two failing checks.
 fn causes() -> Vec<Cause> {
     vec![Cause {
         name: "contact/left_face|right_face/in-part".to_string(),

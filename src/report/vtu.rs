@@ -254,7 +254,7 @@ fn cell_data(out: &mut Sheet, dossier: &Dossier, lattice: &Lattice) -> std::io::
     out.close("CellData")
 }
 
-/// What is linear on subtriangle `sub`, from its values at the corners of the triangle, with their mean at the centroid.
+/// Interpolates linearly on subtriangle `sub`, from values at the corners of the triangle, with their mean at the centroid.
 fn within(a: [[f64; 2]; 3], sub: usize, l: [f64; 3]) -> [f64; 2] {
     let centre = [0, 1].map(|c| (a[0][c] + a[1][c] + a[2][c]) / 3.0);
     let corners = [a[(sub + 1) % 3], a[(sub + 2) % 3], centre];

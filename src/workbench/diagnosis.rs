@@ -49,7 +49,7 @@ struct Trial {
     /// The simpler the smaller.
     rank: usize,
     cause: &'static str,
-    /// The same on all shapes for the same mistake.
+    /// Identical on all shapes for one and the same mistake.
     sentence: String,
     matrix: DMatrix<f64>,
 }
@@ -89,7 +89,7 @@ pub fn known(e: &DisplacementElement) -> Option<Reference> {
     Some(views.swap_remove(0).references.swap_remove(k))
 }
 
-/// What explains that K is not that of the reference; `None` where it is, or where there is none.
+/// Explains why K is not that of the reference; `None` where it is, or where there is no reference.
 pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
     let views = views(e).ok()?;
     if recognised(&views).is_some() {
@@ -156,7 +156,7 @@ fn explaining(view: &View, k: usize) -> Vec<(Trial, f64)> {
     trials(e, r).into_iter().filter_map(with_left).collect()
 }
 
-/// What comes nearest where nothing explains the difference, if it explains most of it.
+/// Names the nearest mistake where none explains the difference, if it explains most of it.
 fn nearest(view: &View, prefix: &str) -> Diagnosis {
     let (e, r) = (&view.element, &view.references[0]);
     let all = trials(e, r);
@@ -202,7 +202,7 @@ fn trials(e: &DisplacementElement, r: &Reference) -> Vec<Trial> {
     trials
 }
 
-/// The same mistake with a factor on top.
+/// Adds a fitted factor to a mistake; `None` where it has a factor of its own.
 fn with_factor(k: &DMatrix<f64>, trial: &Trial) -> Option<Trial> {
     let has_own = ["sign", "factor", "shear", "weights", "plane-stress-factor", "plane-strain-factor"];
     if has_own.contains(&trial.cause) {

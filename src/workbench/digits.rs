@@ -7,7 +7,7 @@ const MOST: usize = 8;
 /// Fewer are too few to tell a mistake from rounding.
 const LEAST: usize = 3;
 
-/// What rounding has left of the entries of a matrix, where it shows.
+/// Rounding of the entries of a matrix, where it shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rounded {
     /// So many significant decimal digits.
@@ -35,7 +35,7 @@ impl Rounded {
         }
     }
 
-    /// What the entries have, in words.
+    /// The digits of the entries, in words.
     pub fn words(self) -> String {
         match self {
             Rounded::Digits(digits) => format!("at most {digits} digits"),

@@ -1,4 +1,4 @@
-//! What a property came to: one finding, with a number, a sentence and where it helps a picture.
+//! Result of checking a property: one finding, with a number, a sentence and, where it helps, a picture.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -28,7 +28,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// Whether a property that the element claims is missing.
+    /// True if a property that the element claims is missing.
     pub fn is_missing(&self) -> bool {
         self.claim && self.passed == Some(false)
     }
@@ -55,7 +55,7 @@ impl Finding {
     }
 }
 
-/// What measuring a property gave.
+/// Result of measuring a property.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// See [`Finding::value`].
@@ -85,12 +85,12 @@ impl Measured {
         Measured { value: value as f64, allowed: 0.0, sentence: sentence.into(), picture: None }
     }
 
-    /// The same with a picture.
+    /// Sets the picture.
     pub fn drawn(self, picture: Option<String>) -> Self {
         Measured { picture, ..self }
     }
 
-    /// Whether the property holds: a number that is none does not pass.
+    /// True if the property holds; a NaN does not pass.
     pub fn passes(&self) -> bool {
         self.value <= self.allowed
     }
@@ -114,7 +114,7 @@ pub struct Property<S: ?Sized> {
     pub name: &'static str,
     /// See [`Finding::asks`].
     pub asks: &'static str,
-    /// Whether an element claims it unless it says otherwise.
+    /// True if an element claims it unless it says otherwise.
     pub usual: bool,
     /// Looks at the element.
     pub measure: fn(&S) -> Result<Measured, Fault>,

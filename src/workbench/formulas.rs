@@ -27,7 +27,7 @@ pub enum Family {
     Q8,
 }
 
-/// What may be done otherwise than right.
+/// The standard form of an element, alternatives to it, and mistakes in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Variant {
     /// As it must be.
@@ -108,7 +108,7 @@ impl Family {
     /// All of them.
     pub const ALL: [Family; 4] = [Family::P1, Family::P2, Family::Q4, Family::Q8];
 
-    /// What it is called.
+    /// Its name.
     pub fn words(self) -> &'static str {
         match self {
             Family::P1 => "linear triangle P1",
@@ -257,7 +257,7 @@ impl Family {
         Ok(points)
     }
 
-    /// The same by other slopes: those that make the Jacobian, and those that it carries to gradients.
+    /// The quadrature points by given slopes: those that make the Jacobian, and those that it carries to gradients.
     ///
     /// # Errors
     /// The Jacobian vanishes at a point.

@@ -1,4 +1,4 @@
-//! What an element is made of.
+//! Materials of elements.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -29,7 +29,7 @@ impl Material {
     /// The material, if there is such a one.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// A constant is out of range, or the kinematics are axisymmetric.
     pub fn new(kinematics: Kinematics, young: f64, poisson: f64, thickness: f64) -> Result<Self, String> {
         let above_zero = |x: f64| x > 0.0 && x.is_finite();
         if !above_zero(young) {
@@ -61,12 +61,12 @@ impl Material {
         Matrix3::from_columns(&columns)
     }
 
-    /// The same with another ν.
+    /// The material with another ν.
     pub fn with_poisson(self, poisson: f64) -> Self {
         Material { poisson, ..self }
     }
 
-    /// The same in the other plane state.
+    /// The material in the other plane state.
     pub fn in_other_kinematics(self) -> Self {
         let kinematics = match self.kinematics {
             Kinematics::PlaneStrain | Kinematics::Axisymmetric => Kinematics::PlaneStress,

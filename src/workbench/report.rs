@@ -23,7 +23,7 @@ const SCHEMA_VERSION: u32 = 1;
 /// The names of the files.
 pub const NAMES: [&str; 3] = ["report.json", "report.html", "junit.xml"];
 
-/// What an element claims otherwise than usual.
+/// Deviations of an element from the usual claims.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options {
     /// Properties that it does not claim.
@@ -39,7 +39,7 @@ impl Options {
     }
 }
 
-/// Whether a name is that of a property.
+/// True if a name is that of a property.
 pub fn is_property(name: &str) -> bool {
     let mut names = displacement::PROPERTIES.iter().map(|p| p.name).chain(stress::PROPERTIES.iter().map(|p| p.name));
     names.any(|known| known == name)

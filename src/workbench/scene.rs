@@ -63,8 +63,8 @@ pub fn solved(material: &Material, size: f64, element: &'static dyn EquilibriumE
     certify(problem(material, size)?, &Condensed::default(), &options).map_err(|e| Fault::Failed(e.to_string()))
 }
 
-/// What encloses the exact energy. Energies go with thickness over Young's modulus, so that a scene is solved once for each
-/// plane state and Poisson's ratio, however many elements are looked at.
+/// Encloses the exact energy. Energies scale with thickness over Young's modulus, so that a scene is solved once for each
+/// plane state and Poisson's ratio, however many elements are examined.
 ///
 /// # Errors
 /// The library cannot solve its own scene.
@@ -87,7 +87,7 @@ pub fn exact(material: &Material) -> Result<Exact, Fault> {
 }
 
 impl Exact {
-    /// The same of a scene with energies `factor` times as large.
+    /// The enclosure for a scene with energies `factor` times as large.
     fn scaled(self, factor: f64) -> Self {
         Exact { lower: factor * self.lower, upper: factor * self.upper, strain: factor * self.strain }
     }
@@ -97,7 +97,8 @@ impl Exact {
         ((energy - self.lower).max(0.0) / self.strain).sqrt()
     }
 
-    /// The same of an energy on either side of the exact one: √(|𝓛(u_h) − 𝓛(u)| / 𝒮), which is no bound.
+    /// Relative error in the energy norm, estimated from an energy on either side of the exact one: √(|𝓛(u_h) − 𝓛(u)| / 𝒮), which is
+    /// no bound.
     pub fn apart(&self, energy: f64) -> f64 {
         ((energy - 0.5 * (self.lower + self.upper)).abs() / self.strain).sqrt()
     }

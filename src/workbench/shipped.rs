@@ -7,7 +7,7 @@ use super::report::{Options, Report};
 use super::stress::{self, Composite, SolverElement, StressElement};
 use crate::element::block;
 
-/// What is under test.
+/// An element under test.
 pub enum Subject {
     /// A displacement element.
     Displacement(Box<DisplacementElement>),
@@ -29,7 +29,7 @@ impl Subject {
 pub struct Shipped {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     /// Properties that are usual and that it does not claim.
     pub lacks: &'static [&'static str],

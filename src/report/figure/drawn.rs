@@ -13,9 +13,9 @@ const POINTS: usize = 160;
 /// separates bodies is drawn as many times as wide as the displacements that close it.
 pub struct Drawn {
     pub scale: f64,
-    /// Whether bodies are where the drawing of the gaps puts them.
+    /// True if bodies are moved apart, so that gaps are drawn scaled.
     pub gaps_scaled: bool,
-    /// Whether a larger scale would let bodies overlap that do not.
+    /// True if a larger scale would show bodies overlapping that do not.
     pub held_back: bool,
     apart: Vec<[f64; 2]>,
 }
@@ -52,7 +52,7 @@ impl Drawn {
         [0, 1].map(|c| point[c] + apart[c] + self.scale * u[c])
     }
 
-    /// Whether sides in contact are drawn farther inside each other than they are.
+    /// True if sides in contact are drawn farther inside each other than they are.
     fn overlap(&self, problem: &Problem, field: &Displacement) -> bool {
         problem.interfaces.iter().any(|interface| self.deepest(problem, interface, field) > UNSEEN * size(problem))
     }

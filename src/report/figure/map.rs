@@ -27,7 +27,7 @@ pub struct Scale {
     pub from: f64,
     /// Value of the lightest colour.
     pub to: f64,
-    /// Whether equal ratios rather than equal differences look equal.
+    /// True if equal ratios rather than equal differences look equal.
     pub log: bool,
 }
 
@@ -60,7 +60,7 @@ impl Scale {
     }
 }
 
-/// Whether a map of this problem is drawn on a grid, each cell showing the largest value in it.
+/// True if a map of this problem is drawn on a grid, each cell showing the largest value in it.
 pub fn is_coarsened(problem: &Problem) -> bool {
     problem.mesh.triangles.len() > DRAWN_TRIANGLES
 }

@@ -46,7 +46,7 @@ pub struct Spot {
     pub at: [f64; 2],
     /// Names of the quantities there.
     pub names: Vec<String>,
-    /// Whether a check of one of them failed.
+    /// True if a check of one of them failed.
     pub off: bool,
 }
 

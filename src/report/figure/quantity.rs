@@ -16,7 +16,7 @@ const LABELS: f64 = 232.0;
 const NAME: usize = 17;
 /// A value so many widths away from the interval is an arrow at the edge.
 const FAR: f64 = 6.0;
-/// What an axis shows on either side of a point, relative to it.
+/// Range of an axis on either side of a point, relative to it.
 const AROUND: f64 = 0.05;
 
 /// One lane for the interval and one for each value, over an axis of the quantity's own; `None` where there is no number to

@@ -26,7 +26,7 @@ pub(crate) mod look {
     pub const BAND: &str = r##"class="band" fill="#0072b2" fill-opacity="0.22""##;
     /// For text that lies on lines: an edge in the colour of the paper.
     pub const HALO: &str = r##"paint-order="stroke" stroke="#f6f8fa" stroke-width="4" stroke-linejoin="round""##;
-    /// What contradicts.
+    /// Marks of a contradiction.
     pub const BAD: &str = r##"class="bad" fill="#cf222e""##;
     /// Fills of the bodies, in turn.
     pub const BODIES: [&str; 6] = [

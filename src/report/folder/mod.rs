@@ -172,8 +172,8 @@ impl Place {
         Ok(Place { dir, parent })
     }
 
-    /// Whether the folder is this program's alone: it holds nothing but `files` and leftovers, belongs to this user, and
-    /// this process does not stand in it.
+    /// True if the folder is this program's alone: it holds nothing but `files` and leftovers, belongs to this user, and
+    /// the working directory of this process is not in it.
     fn is_exchangeable(&self, files: &[NamedFile], passing: &[Passing]) -> bool {
         let went = |name: &OsStr| passing.iter().any(|own| name == own.name && own.is_in(&self.dir));
         let ours = |name: &OsStr| files.iter().any(|(own, _)| name == *own) || is_unfinished(name) || went(name);

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::report::ReportError;
 use crate::report::text::csv::TABLES;
 
-/// What stands before the identifier in the files that are no JSON, in their order in [`crate::report::NAMES`].
+/// Text before the identifier in the files that are not JSON, in their order in [`crate::report::NAMES`].
 const BEFORE: [(&str, &str); 4] = [
     ("report.html", "<meta name=\"run\" content=\""),
     ("junit.xml", "<property name=\"run\" value=\""),

@@ -49,7 +49,7 @@ pub struct Stored {
     /// How its numbers compare with a baseline.
     #[serde(default)]
     pub baseline: Vec<BaselineRow>,
-    /// What made the numbers.
+    /// Origin of the numbers.
     pub provenance: StoredProvenance,
 }
 
@@ -62,7 +62,7 @@ pub struct StoredEnergy {
     pub upper: Option<f64>,
     /// √(gap / 𝒮).
     pub relative_error_bound: Option<f64>,
-    /// Whether it holds for the scene as written.
+    /// True if it holds for the scene as written.
     pub guaranteed: bool,
 }
 
@@ -120,7 +120,7 @@ pub struct StoredQuantity {
     pub upper: Option<f64>,
 }
 
-/// What made the numbers.
+/// Origin of the numbers.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct StoredProvenance {
     /// Version of hypercircle.

@@ -57,7 +57,7 @@ fn one(report: &Report, number: usize, cause: &Cause) -> Markup {
     }
 }
 
-/// What came of a check, with its numbers.
+/// Outcome of a check, with its numbers.
 fn fact(report: &Report, check: &Check) -> Markup {
     html! {
         div.fact {

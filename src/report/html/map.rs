@@ -9,7 +9,7 @@ use crate::report::figure::mark::{Mark, spots};
 use crate::report::text::number::{clean, percent};
 use crate::report::{Dossier, Map, MapKind};
 
-/// What the map can show, in the order of the choice; the first is what it shows where no script runs.
+/// The maps to choose from, in the order of the choice; the first is shown where no script runs.
 fn ordered<'a>(dossier: &'a Dossier) -> Vec<&'a Map> {
     let triangles = dossier.problem.mesh.triangles.len();
     let best = dossier.report.stress.as_ref().map_or("", |stress| stress.against.as_str());

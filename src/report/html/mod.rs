@@ -45,7 +45,7 @@ pub fn page(dossier: &Dossier) -> String {
     document(&title, &[style::CSS], Some(&report.run), body)
 }
 
-/// What the words mean.
+/// Explains the words of the page.
 fn reading(report: &Report) -> Markup {
     html! {
         section #reading {

@@ -1,4 +1,4 @@
-//! What the scene was solved for: pictures on the first screen, a table among the numbers.
+//! Quantities that the scene was solved for: pictures on the first screen, a table among the numbers.
 
 use maud::{Markup, PreEscaped, html};
 

@@ -1,4 +1,4 @@
-//! What was computed: the scene in words and numbers.
+//! The computed scene, in words and numbers.
 
 use maud::{Markup, html};
 

@@ -29,7 +29,7 @@ pub(super) fn scroll(label: &str, table: Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
 }
 
-/// What is known of all solutions of Coulomb's law, of the bound that was used, and of how many there are.
+/// Statements on all solutions of Coulomb's law, on the bound that was used, and on the number of solutions.
 fn friction(coulomb: &CoulombSummary) -> Markup {
     html! { ul { @for statement in coulomb.statements.iter().chain(&coulomb.wedging) { li { (clean(statement)) } } } }
 }

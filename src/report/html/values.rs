@@ -21,10 +21,10 @@ const CELL: f64 = 4.0;
 /// Page coordinates are kept in steps of the width divided by this.
 const STEPS: f64 = 65_535.0;
 
-/// What the script has to know of the map.
+/// Data of the map that the script needs.
 #[derive(Debug, Serialize)]
 pub(super) struct Values {
-    /// Whether items are the cells of a grid rather than triangles.
+    /// True if items are the cells of a grid rather than triangles.
     cells: bool,
     /// Number of items.
     items: usize,

@@ -48,7 +48,7 @@ pub(super) fn leading(report: &Report) -> Option<(&str, &str)> {
     Some((sentence, rest.trim_start()))
 }
 
-/// What the verdict means, where the word alone does not say it.
+/// Gloss on the verdict, where the word alone does not explain it.
 fn gloss(report: &Report) -> &'static str {
     match report.status {
         Status::Agree if report.primal.is_empty() => ": the bounds are in order, no second model was run",
@@ -109,7 +109,7 @@ fn agreement(report: &Report) -> Markup {
     }
 }
 
-/// Whether the report is about a field that was handed in.
+/// True if the report is about a field that was handed in.
 fn of_field(report: &Report) -> bool {
     report.command == "certify" && !report.primal.is_empty()
 }

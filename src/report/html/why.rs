@@ -13,7 +13,7 @@ use crate::report::{DualSummary, Energy, GuaranteeLevel, Report};
 /// The name of the file.
 pub(crate) const NAME: &str = "why.html";
 
-/// What the file begins with; a file of somebody else's that has the name begins otherwise.
+/// First line of the file; a file of another origin with this name begins otherwise.
 pub(crate) const BEGINS: &str = "<!-- hypercircle: why this number is guaranteed -->\n";
 
 /// The page; `None` where there is no bracket to explain.

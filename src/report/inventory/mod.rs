@@ -1,4 +1,4 @@
-//! What a mesh file holds, as text for a terminal and as a page.
+//! Contents of a mesh file, as text for a terminal and as a page.
 
 mod page;
 

@@ -60,7 +60,7 @@ pub(crate) fn basis_word(basis: Basis) -> &'static str {
     }
 }
 
-/// What it means that a check failed.
+/// Explains the failure of a check.
 pub(crate) fn meaning(check: &Check) -> &'static str {
     match (check.difference, check.basis) {
         (None, _) => "Not made: what has not been compared counts as not passed.",
@@ -124,7 +124,7 @@ pub(crate) fn upper_from(name: &str) -> String {
     if name == "free" { "built from the dual solve".to_string() } else { super::number::clean(name) }
 }
 
-/// What the bracket says about the accuracy of the stresses, in one sentence.
+/// Accuracy of the stresses that follows from the bracket, in one sentence.
 pub(crate) fn accuracy(report: &Report) -> String {
     use super::number::percent;
     match &report.energy {

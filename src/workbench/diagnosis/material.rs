@@ -66,7 +66,7 @@ fn wrong_modulus(m: &Material) -> [(&'static str, f64, &'static str); 3] {
     }
 }
 
-/// What a factor may come from: several mistakes give the same matrix.
+/// Possible origins of a factor, in words: several mistakes give the same matrix.
 fn factor_words(e: &DisplacementElement, r: &Reference, factor: f64) -> String {
     let mut reasons = vec!["another Young's modulus or thickness".to_string()];
     // On [−1, 1]² as most programs have it; of a triangle det J is twice the area.

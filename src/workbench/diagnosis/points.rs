@@ -8,7 +8,7 @@ use crate::workbench::formulas::{Family, Point, Variant};
 
 /// How far a fitted weight may be from the one a mistake makes, where K has all its digits.
 const NEAR: f64 = 1e-4;
-/// The same at most, where it has few.
+/// Upper limit of this distance, where K has few digits.
 const NEAR_AT_MOST: f64 = 0.02;
 
 /// One point, det J, weights, shear at fewer points.

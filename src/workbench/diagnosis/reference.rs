@@ -1,4 +1,4 @@
-//! What a matrix is held against: the element of the textbooks on the same nodes, of the same material.
+//! References that a matrix is compared with: textbook elements on the same nodes, of the same material.
 
 use nalgebra::{DMatrix, Matrix3};
 
@@ -77,7 +77,7 @@ impl Reference {
         &self.matrix
     }
 
-    /// What it is called, with what is not as usual.
+    /// Its name, with the features that are not standard.
     pub fn words(&self) -> String {
         let family = self.family.words();
         match self.rule {
@@ -95,7 +95,7 @@ impl Reference {
         }
     }
 
-    /// Whether it is K = ∫ Bᵀ D B of conforming shape functions by enough points, so that its energies lie above the exact one.
+    /// True if it is K = ∫ Bᵀ D B of conforming shape functions by enough points, so that its energies lie above the exact one.
     pub fn is_conforming(&self) -> bool {
         match self.rule {
             Variant::Points(n) => self.family == Family::Q4 || n > 2,
@@ -104,7 +104,7 @@ impl Reference {
         }
     }
 
-    /// Whether it is the sum of Bᵀ D B over its points.
+    /// True if it is the sum of Bᵀ D B over its points.
     pub(super) fn is_isoparametric(&self) -> bool {
         matches!(self.rule, Variant::Right | Variant::Points(_))
     }
@@ -118,7 +118,7 @@ impl Reference {
         self.on(&self.nodes, hooke, variant)
     }
 
-    /// The same of other nodes, in the order of the family.
+    /// A variant of its matrix on other nodes, given in the order of the family.
     pub(super) fn on(
         &self,
         nodes: &[[f64; 2]],

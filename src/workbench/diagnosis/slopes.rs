@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::{Reference, Trial};
 use crate::workbench::formulas::{Family, Point, Variant};
 
-/// What became of one derivative along a local direction.
+/// A mistake in one derivative along a local direction.
 #[derive(Clone, Copy, PartialEq)]
 enum Wrong {
     Lost,

@@ -1,4 +1,4 @@
-//! What a matrix of one shape cannot tell: mistakes that leave it as it is.
+//! Mistakes that a matrix of one shape cannot reveal, since they leave it unchanged.
 
 use super::Reference;
 use crate::report::text::number::significant;

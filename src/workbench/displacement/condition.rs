@@ -13,7 +13,7 @@ pub const CONDITION: Property<DisplacementElement> = Property {
 };
 
 const ASPECTS: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 30.0, 100.0];
-/// What the condition may be at aspect a, relative to a⁴ times that of the regular shape.
+/// Largest condition number allowed at aspect a, relative to a⁴ times that of the regular shape.
 const GROWTH: f64 = 10.0;
 
 fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {

@@ -30,7 +30,7 @@ pub const RATE: Property<DisplacementElement> = Property {
 const SMOOTH: usize = 2;
 /// Unknowns beyond which a dense factor takes too long.
 const MOST_UNKNOWNS: usize = 700;
-/// What the rate may fall short of k: meshes are coarse.
+/// Largest shortfall of the rate from k that passes: meshes are coarse.
 const SHORT: f64 = 0.4;
 /// Of the energy, what rounding may take.
 const ROUNDING: f64 = 1e-9;
@@ -62,7 +62,7 @@ pub fn levels(e: &DisplacementElement, material: &Material) -> Result<Vec<Level>
     Ok(levels)
 }
 
-/// What encloses the exact energy, and the element on its meshes: made once, asked for by two properties.
+/// The enclosure of the exact energy, and the element solved on its meshes: computed once for the two properties that use it.
 fn solved(e: &DisplacementElement) -> Result<&(Exact, Vec<Level>), Fault> {
     if let Some(solved) = e.solved.get() {
         return Ok(solved);

@@ -1,4 +1,4 @@
-//! What is left of the flexibility as ν → ½.
+//! Flexibility that an element keeps as ν → ½.
 
 use super::DisplacementElement;
 use super::convergence::{Level, levels};

@@ -29,7 +29,7 @@ use super::material::Material;
 use super::outline::Outline;
 use super::scene::Exact;
 
-/// What is asked of a displacement element, in the order of a report: one file each, one line each.
+/// Properties checked on a displacement element, in the order of a report: one file each, one line each.
 pub const PROPERTIES: &[Property<DisplacementElement>] = &[
     symmetry::SYMMETRY,
     rigid::MOTIONS,
@@ -55,7 +55,7 @@ pub const PROPERTIES: &[Property<DisplacementElement>] = &[
 /// The name of the property that only conforming elements with exact integrals have.
 pub const BOUND: &str = convergence::BOUND.name;
 
-/// What a matrix may differ from one without rounding, where nothing else is said: relative to its largest entry.
+/// Default bound on the rounding of a matrix, relative to its largest entry.
 pub const PRECISION: f64 = 1e-9;
 
 /// The largest that may be said: entries of two digits tell no mistake from rounding.
@@ -99,13 +99,13 @@ pub type Formula = dyn Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String
 
 /// A displacement element under test.
 pub struct DisplacementElement {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its nodes.
     pub nodes: Vec<[f64; 2]>,
     /// Its boundary.
     pub outline: Outline,
-    /// What it is made of, where that is known.
+    /// Its material, where it is known.
     pub material: Option<Material>,
     /// K, two rows a node.
     pub matrix: DMatrix<f64>,
@@ -120,7 +120,7 @@ impl DisplacementElement {
     /// One matrix.
     ///
     /// # Errors
-    /// What is wrong with matrix or nodes, and what to do.
+    /// The matrix or the nodes are invalid; the message gives the reason.
     pub fn of_matrix(
         name: &str,
         matrix: &DMatrix<f64>,
@@ -145,7 +145,7 @@ impl DisplacementElement {
     /// A formula, with the nodes and the material to begin with.
     ///
     /// # Errors
-    /// As [`Self::of_matrix`], or what the formula says.
+    /// As [`Self::of_matrix`], or the error of the formula.
     pub fn of_formula(
         name: &str,
         nodes: Vec<[f64; 2]>,
@@ -166,17 +166,17 @@ impl DisplacementElement {
         })
     }
 
-    /// The same with entries that are exact to this part of the largest one.
+    /// Sets the precision of the entries, relative to the largest one.
     pub fn with_precision(self, precision: f64) -> Self {
         DisplacementElement { precision, ..self }
     }
 
-    /// Whether it can be looked at on other shapes.
+    /// True if it has a formula, so that it can be examined on other shapes.
     pub fn has_formula(&self) -> bool {
         self.formula.is_some()
     }
 
-    /// The same as a matrix alone.
+    /// The element with its matrix alone, without a formula.
     pub(super) fn matrix_only(&self) -> Self {
         DisplacementElement {
             name: self.name.clone(),
@@ -190,8 +190,8 @@ impl DisplacementElement {
         }
     }
 
-    /// What the formula gives on two shapes without symmetry, of another size and place, as matrices; nothing where there is no formula or it
-    /// fails there.
+    /// Elements with matrices of the formula on two shapes without symmetry, of another size and place; none without formula or material,
+    /// or where the formula fails.
     pub(super) fn elsewhere(&self) -> Vec<Self> {
         let (Ok(layout), Ok(material), Ok(_)) = (self.layout(), self.material(), self.formula()) else {
             return Vec::new();
@@ -206,7 +206,7 @@ impl DisplacementElement {
         [shapes::irregular(corners), shapes::lopsided(corners)].into_iter().filter_map(on).collect()
     }
 
-    /// Whether K is symmetric and right for rigid motions and constant strains; without a material, of the one that it shows.
+    /// True if K is symmetric and right for rigid motions and constant strains; without a material, for the one that K shows.
     pub(super) fn is_consistent(&self) -> bool {
         let is_symmetric = (&self.matrix - self.matrix.transpose()).amax() <= self.precision * self.size();
         is_symmetric
@@ -250,7 +250,7 @@ impl DisplacementElement {
         self.outline.weights(&self.nodes).ok_or_else(text)
     }
 
-    /// What counts as zero in a product of K with vectors of length one: relative to the largest entry of K.
+    /// Scale of the products of K with vectors of length one, to tell which are zero: the largest entry of K.
     fn size(&self) -> f64 {
         self.matrix.amax().max(f64::MIN_POSITIVE)
     }

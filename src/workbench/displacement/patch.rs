@@ -47,7 +47,7 @@ pub fn strains(nodes: &[[f64; 2]]) -> DMatrix<f64> {
     u
 }
 
-/// What K has for Hooke's law times thickness, told by constant strains.
+/// Hooke's law times thickness as K shows it under constant strains.
 pub fn hooke_seen(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline) -> Matrix3<f64> {
     let u = strains(nodes);
     let g = u.tr_mul(&(k * &u)) / outline.area;
@@ -68,7 +68,7 @@ fn forces_off(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, hooke: &M
     off / size.max(f64::MIN_POSITIVE)
 }
 
-/// Whether nodal forces of constant strains are those of the material, or of the one that K shows where none is given.
+/// True if nodal forces of constant strains are those of the material, or of the one that K shows where none is given.
 pub fn is_exact(e: &DisplacementElement) -> bool {
     let hooke = match e.material {
         Some(m) => m.hooke() * m.thickness,
@@ -82,7 +82,7 @@ fn energy_off(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, material:
     (hooke_seen(k, nodes, outline) - exact).amax() / exact.amax()
 }
 
-/// What the material is that K shows, where it is isotropic.
+/// Describes the material that K shows as Hooke's law times thickness; `None` if it is not isotropic.
 pub fn material_words(seen: &Matrix3<f64>) -> Option<String> {
     let (a, b, g) = (0.5 * (seen[(0, 0)] + seen[(1, 1)]), 0.5 * (seen[(0, 1)] + seen[(1, 0)]), seen[(2, 2)]);
     let isotropic = Matrix3::new(a, b, 0.0, b, a, 0.0, 0.0, 0.0, 0.5 * (a - b));

@@ -40,7 +40,7 @@ pub fn within(space: &DMatrix<f64>, span: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
     [inside.clone(), space - inside]
 }
 
-/// What rigid motion k is called.
+/// Name of rigid motion k.
 pub fn motion_words(k: usize) -> &'static str {
     ["a shift along x", "a shift along y", "a rotation"][k.min(2)]
 }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix4};
 
 use super::{Point, strains};
 
-/// What of the strain is volume change, the rest being left as it is.
+/// Part of the strain that is taken as volume change; the rest is left as it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Split {
     /// A third of the trace along x, y and z: the B-bar of Hughes, or mean dilatation.

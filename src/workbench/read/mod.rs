@@ -19,16 +19,16 @@ const LARGEST: u64 = 16 << 20;
 pub struct ReadError {
     /// The file.
     pub file: PathBuf,
-    /// What was found.
+    /// The finding.
     pub what: String,
-    /// What to do.
+    /// The remedy.
     pub remedy: String,
 }
 
 /// Numbers in rows and columns; text and single numbers as they are.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Array {
-    /// A matrix; a list is one column. Whether its numbers have single precision.
+    /// A matrix; a list is one column. True if its numbers have single precision.
     Numbers(DMatrix<f64>, bool),
     /// Text.
     Text(String),
@@ -49,7 +49,7 @@ impl Array {
     }
 }
 
-/// What goes wrong inside a file: what was found, and what to do.
+/// A fault inside a file: the finding and the remedy.
 type Fault = (String, &'static str);
 
 /// The arrays of a file by name. A file that holds one array calls it `K`.
@@ -74,7 +74,7 @@ pub fn arrays(file: &Path) -> Result<BTreeMap<String, Array>, ReadError> {
 /// The arrays in the content of a file whose name ends with `extension`.
 ///
 /// # Errors
-/// What was found, and what to do.
+/// The content cannot be read; the error is the finding and the remedy.
 pub fn parse(bytes: &[u8], extension: &str) -> Result<BTreeMap<String, Array>, (String, &'static str)> {
     let one = |array| BTreeMap::from([("K".to_string(), array)]);
     match extension {
@@ -88,7 +88,7 @@ pub fn parse(bytes: &[u8], extension: &str) -> Result<BTreeMap<String, Array>, (
 /// Points from a matrix of two columns.
 ///
 /// # Errors
-/// What is wrong with it.
+/// It has neither two columns nor a third one of zeros.
 pub fn points(matrix: &DMatrix<f64>) -> Result<Vec<[f64; 2]>, String> {
     let flat = matrix.ncols() == 3 && matrix.column(2).iter().all(|z| *z == 0.0);
     if matrix.ncols() != 2 && !flat {

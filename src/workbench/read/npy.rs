@@ -51,7 +51,7 @@ pub fn parse(bytes: &[u8]) -> Result<Array, Fault> {
     Ok(Array::Numbers(matrix, kind.ends_with("f4")))
 }
 
-/// What follows a key of the header, up to the next comma or brace.
+/// The text after a key of the header, up to the next comma or brace.
 fn entry<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let after = header.split_once(&format!("'{key}'"))?.1.trim_start().strip_prefix(':')?.trim_start();
     Some(after[..after.find([',', '}'])?].trim())

@@ -28,7 +28,7 @@ pub fn parse(bytes: &[u8]) -> Result<BTreeMap<String, Array>, Fault> {
     Ok(arrays)
 }
 
-/// What a deflated file may take at most: arrays have no more than a million numbers.
+/// Largest size of a deflated file in bytes, once unpacked: arrays have no more than a million numbers.
 const LARGEST: u64 = 9 << 20;
 
 /// The content of a file.

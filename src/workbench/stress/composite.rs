@@ -16,7 +16,7 @@ use crate::element::geometry::sub_corners;
 /// A space of linear stresses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Composite {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Three subtriangles in place of one triangle.
     pub is_split: bool,
@@ -84,7 +84,7 @@ impl StressElement for Composite {
 }
 
 impl Composite {
-    /// What has to vanish.
+    /// Residuals of continuity and equilibrium, which have to vanish.
     fn equations(&self, space: &Fields, field: &Nodal) -> DVector<f64> {
         let mut rows = Vec::new();
         if self.is_balanced {

@@ -108,7 +108,7 @@ impl Fields {
         }
     }
 
-    /// Whether every stress and traction is a finite number.
+    /// True if every stress and traction is a finite number.
     pub fn is_finite(&self) -> bool {
         self.all().all(|(field, tractions, _)| {
             field.values.as_flattened().iter().chain(tractions).all(|x| x.is_finite() && x.abs() < 1e100)

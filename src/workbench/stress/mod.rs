@@ -36,7 +36,7 @@ use crate::element::{self, EquilibriumElement};
 /// assert!(report.passed, "{}", report.verdict);
 /// ```
 pub trait StressElement {
-    /// What it is called.
+    /// Its name.
     fn name(&self) -> &str;
 
     /// Polynomial degree p of stresses and tractions.
@@ -72,7 +72,7 @@ impl StressElement for SolverElement {
     }
 }
 
-/// What is asked of an equilibrium element, in the order of a report: one file each, one line each.
+/// Properties checked on an equilibrium element, in the order of a report: one file each, one line each.
 pub const PROPERTIES: &[Property<dyn StressElement>] = &[
     dimension::DIMENSION,
     dimension::TRACTIONS,

@@ -1,4 +1,4 @@
-//! The same space as the block of that degree.
+//! Comparison of a space with the block of its degree.
 
 use nalgebra::DMatrix;
 
