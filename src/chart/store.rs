@@ -15,7 +15,7 @@ pub enum StoreError {
     Io {
         /// Which.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// A `chart.json` that cannot be continued.
@@ -23,7 +23,7 @@ pub enum StoreError {
     Content {
         /// Which.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// A figure could not be drawn.
