@@ -134,7 +134,7 @@ pub struct Judged {
     pub field: UpperBound,
     /// The energy of the field as delivered; for a solution with friction as its model integrates it.
     pub own: Potential,
-    /// How far it was from admissible.
+    /// The violation of supports and contact by the field as delivered.
     pub violation: Violation,
     /// The nearest admissible field; its energy is the upper bound.
     pub admissible: UpperBound,

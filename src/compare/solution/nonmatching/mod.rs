@@ -18,7 +18,7 @@ use crate::compare::Basis;
 use crate::compare::{Allowances, Check};
 use crate::problem::{Interface, Problem, Scales};
 
-/// Above so many coefficients of one contact the forces are not looked for.
+/// Largest number of coefficients of one contact for which its forces are computed.
 const MOST_ROWS: usize = 1500;
 
 /// The solution with its contact.
