@@ -1,4 +1,4 @@
-//! Where something is wrong: a node, and what it belongs to.
+//! Places of mistakes: a node, with the body, contact and boundary it belongs to.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -57,7 +57,7 @@ const MOST_TRIANGLES: usize = 400_000;
 /// The reference may take this many budgets.
 const REFERENCE_BUDGETS: f64 = 5.0;
 
-/// Why a chart was not finished.
+/// The reason why a chart was not finished.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
     /// The files.
@@ -91,7 +91,7 @@ pub struct Campaign<'a> {
     pub plan: &'a Plan,
     /// This program.
     pub program: &'a Path,
-    /// Where results go.
+    /// The folder for results.
     pub folder: &'a Path,
     /// The command that makes the chart again, for its readers.
     pub command: String,

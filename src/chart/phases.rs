@@ -1,4 +1,4 @@
-//! Where the seconds go: one bar a method.
+//! Time by phase: one bar for each method.
 
 use super::data::{Plot, Run, SceneChart};
 use crate::measure::Method;

@@ -7,7 +7,7 @@ use super::figure::{error_figure, error_figures};
 use super::{csv, markdown, page, phases};
 use crate::report::folder::replace;
 
-/// Why the files of a chart could not be read or written.
+/// The reason why the files of a chart could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// A file or folder.
