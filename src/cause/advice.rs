@@ -1,6 +1,6 @@
-//! What each kind of failure suggests, and what to try.
+//! Advice on each kind of failure: a likely reason, and a remedy to try.
 
-/// What sort of thing is wrong.
+/// The sort of mistake behind a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A contact is missing, incomplete or another one.
@@ -59,24 +59,24 @@ impl Kind {
         }
     }
 
-    /// Whether one place shows it better than another.
+    /// True if the mistake can be seen better at one place than at another.
     pub fn has_place(self) -> bool {
         !matches!(self, Kind::Thickness | Kind::Moved | Kind::Precision)
     }
 
-    /// Whether it is wrong at the place that is named, and not only seen best there.
+    /// True if the mistake itself is at the place that is named, and not only seen best there.
     pub fn is_local(self) -> bool {
         matches!(self, Kind::Contact | Kind::Support | Kind::Local | Kind::Load)
     }
 }
 
-/// Of a check that fails without any other.
+/// Advice for a check that fails without any other.
 pub const ALONE: [&str; 2] = [
     "Nothing else fails with it, so the models agree in the rest.",
     "Look at the picture of this check, and whether both models ask for the same thing.",
 ];
 
-/// What a kind suggests, and what to try; `name` is that of the finding.
+/// The likely reason for a failure of this kind, and a remedy to try; `name` is that of the finding.
 pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
     let last = name.rsplit('/').next().unwrap_or(name);
     match (kind, last) {

@@ -1,4 +1,4 @@
-//! Causes that lie in displacement fields: all of a field's failures have one.
+//! Causes that lie in displacement fields: all failures of one field share a cause.
 
 use super::advice::{self, Kind};
 use super::place::{self, Place};
@@ -7,22 +7,22 @@ use crate::compare::{Check, Comparison, Judged};
 use crate::diagnose::{Diagnosis, Finding};
 use crate::problem::Problem;
 
-/// What is wrong with one field.
+/// A mistake in one field, with the checks that it explains.
 struct Fault {
     /// Name of the field.
     field: String,
     kind: Kind,
     /// Name of the finding, or of the kind.
     name: String,
-    /// What is wrong, as the end of a sentence that begins with "In FIELD".
+    /// The mistake in words, as the end of a sentence that begins with "In FIELD".
     what: String,
-    /// What else is wrong with it.
+    /// Further mistakes in the field, each in words.
     more: Vec<String>,
     place: Option<Place>,
     checks: Vec<String>,
 }
 
-/// One cause for every kind of fault; fields with the same one share it. What it explains is removed from `failing`.
+/// One cause for every kind of fault, shared by the fields that have it. The checks it explains are removed from `failing`.
 pub fn causes(
     problem: &Problem,
     comparison: &Comparison,
@@ -51,14 +51,14 @@ pub fn causes(
     together(faults)
 }
 
-/// Whether a check asks about the field `who` alone.
+/// True if a check asks about the field `who` alone.
 fn is_of(check: &Check, who: &str) -> bool {
     check.name.strip_suffix(who).is_some_and(|rest| rest.ends_with('/'))
         || check.name.starts_with(&format!("certified/{who}/"))
         || check.name.starts_with("solution/")
 }
 
-/// Whether a check asks about the best field without its name.
+/// True if a check asks about the best field without naming it.
 fn is_of_best(check: &Check) -> bool {
     check.name.starts_with("contact/") || (check.name.starts_with("energy/p") && check.name.contains("-above-p"))
 }
@@ -126,7 +126,7 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     made(kind, if asked { "value" } else { "bound" }, first.trim_end_matches('.').to_string(), None)
 }
 
-/// Faults of one name as one cause, told with the place of the field of highest degree, the last.
+/// Merges faults of the same name into one cause, at the place found for the field of highest degree, the last.
 fn together(faults: Vec<Fault>) -> Vec<Cause> {
     let mut groups: Vec<Vec<Fault>> = Vec::new();
     for fault in faults {
@@ -167,7 +167,7 @@ fn together(faults: Vec<Fault>) -> Vec<Cause> {
     causes
 }
 
-/// Whether a sentence has coordinates of its own.
+/// True if a sentence already names a place.
 fn says_where(what: &str) -> bool {
     what.contains("at (") || what.contains("around (") || what.contains("corners") || what.contains("of the file")
 }

@@ -1,9 +1,9 @@
-//! What fails together, said as one thing: the cause, where it is, what it suggests and what to try.
+//! Groups checks that fail together under one cause, with its place, a likely reason and a remedy.
 //!
-//! A mistake rarely fails one check. A displacement model that misses a row of a contact is not admissible, has an energy
-//! below the bound, stresses too far from those in equilibrium, and other reactions. Read one by one such failures contradict each
-//! other; read together they have a field in common, and the one of them that asks most directly says what is wrong with it. Where
-//! a [`Diagnosis`] found the mistake, it is the cause.
+//! A mistake rarely fails one check only. A displacement model that lacks a row of a contact is not admissible, has an energy
+//! below the bound, stresses too far from those in equilibrium, and wrong reactions. Read one by one such failures contradict each
+//! other; read together they have a field in common, and the most direct of the checks says what is wrong with it. Where
+//! a [`Diagnosis`] found the mistake, that is the cause.
 
 mod advice;
 mod field;
@@ -36,9 +36,9 @@ pub struct Cause {
     pub checks: Vec<String>,
 }
 
-/// The causes of all checks that decide and did not pass: first what is wrong with this program's own solution, then
-/// with the displacement fields, then what is left. Every such check is in one of them. `refinement` is what to do where a
-/// run ended before its tolerance.
+/// The causes of all deciding checks that did not pass: first those in this program's own solution, then those in the
+/// displacement fields, then the rest. Every such check belongs to one cause. `refinement` is the remedy for a run that ended
+/// before it reached its tolerance.
 pub fn causes(
     problem: &Problem,
     comparison: &Comparison,
@@ -60,8 +60,8 @@ pub fn causes(
     causes
 }
 
-/// Gives the causes of failed checks the checks that could not be made of the same fields: what is wrong with a field stands in
-/// their way.
+/// Adds checks that could not be made to the causes of the failed checks on the same fields: the mistake in a field also
+/// prevents its other checks.
 fn with_causes(causes: &mut [Cause], missing: &mut Vec<&Check>) {
     let model = |name: &str| name.rsplit('/').next().map(str::to_owned);
     missing.retain(|check| {
@@ -84,7 +84,7 @@ fn names(checks: &[&Check]) -> Vec<String> {
     checks.iter().map(|check| check.name.clone()).collect()
 }
 
-/// Failures that no displacement field takes part in.
+/// The cause of failures that involve no displacement field.
 fn of_stresses(problem: &Problem, own: &[&Check]) -> Option<Cause> {
     let first = own.iter().find(|check| check.name == "dual/equilibrium").or(own.first())?;
     Some(Cause {
@@ -130,7 +130,7 @@ fn not_made(check: &Check) -> Cause {
     }
 }
 
-/// A failure that goes with no other.
+/// The cause of a failure that belongs to no other.
 fn alone(check: &Check, refinement: Option<&str>) -> Cause {
     let is_tolerance = check.name.ends_with("/tolerance");
     let [suggests, remedy] = match (check.basis, refinement.filter(|_| is_tolerance)) {

@@ -1,4 +1,4 @@
-//! Where something is wrong: a node, and what it belongs to.
+//! Places of mistakes: a node, with the body, contact and boundary it belongs to.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -70,7 +70,7 @@ fn short(x: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// Where `candidate` is deepest in contact `interface`, or in any where none is given: the place, the interface and the depth.
+/// The deepest penetration of `candidate` in contact `interface`, or in any contact if none is given: place, interface and depth.
 pub(super) fn deepest(
     problem: &Problem,
     candidate: &Candidate,
@@ -84,7 +84,7 @@ pub(super) fn deepest(
     Some((place, deepest.interface, deepest.excess(depth)))
 }
 
-/// Where most of equilibrium is missing.
+/// The place with the largest residual of equilibrium.
 pub(super) fn unbalanced(problem: &Problem, judged: &Judged) -> Option<Place> {
     worst_node(judged).map(|node| Place::of(problem, node, None))
 }
@@ -93,8 +93,8 @@ fn worst_node(judged: &Judged) -> Option<usize> {
     judged.balance.as_ref().and_then(|balance| balance.worst_node)
 }
 
-/// The place that a finding of the given name is about, where its name has one; otherwise where most of equilibrium is
-/// missing.
+/// The place that a finding is about, if its name tells one; otherwise the place with the largest residual of
+/// equilibrium.
 pub(super) fn of_finding(problem: &Problem, judged: &Judged, name: &str) -> Option<Place> {
     let interface = problem.interfaces.iter().position(|i| name.starts_with(&format!("contact/{}/", i.name)));
     if interface.is_some() {
@@ -108,7 +108,7 @@ pub(super) fn of_finding(problem: &Problem, judged: &Judged, name: &str) -> Opti
     node.map(|node| Place::of(problem, node, None))
 }
 
-/// The vertices of the boundary or body that the name of a finding has.
+/// The vertices of the boundary or body named in a finding.
 fn named(problem: &Problem, finding: &str) -> Vec<usize> {
     let mesh = &problem.mesh;
     let within = |kind: &str, name: &str| {

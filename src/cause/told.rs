@@ -1,8 +1,8 @@
-//! What came of a check, in a sentence: one that passed, one that failed and one that was not made are told differently.
+//! The outcome of a check in a sentence, with different wording for checks that passed, failed or were not made.
 
 use crate::compare::Check;
 
-/// What came of it in one word.
+/// The outcome of a check: passed, failed or not made.
 pub fn outcome(check: &Check) -> &'static str {
     match (check.passed, check.difference) {
         (true, _) => "passed",
@@ -11,7 +11,7 @@ pub fn outcome(check: &Check) -> &'static str {
     }
 }
 
-/// The sentence for what came of a check; one that passed is told by what it asks.
+/// The outcome of a check in a sentence; for a check that passed this is its reason.
 pub fn told(check: &Check) -> String {
     match outcome(check) {
         "passed" => check.why.clone(),
@@ -29,7 +29,8 @@ pub(super) fn number(x: Option<f64>) -> String {
     }
 }
 
-/// The family of a check, and the two parts of the rest: names of contacts, quantities and files may have slashes.
+/// Splits the name of a check into its family and the two parts of the rest; names of contacts, quantities and files may
+/// contain slashes.
 fn parts(name: &str) -> (&str, &str, &str) {
     let (first, rest) = name.split_once('/').unwrap_or((name, ""));
     let (rest, first) = match rest.strip_prefix("contact/").filter(|_| first == "solution") {

@@ -11,7 +11,7 @@ use crate::measure::{self, End, Ended, Limits, Machine, Measured, Method, Step};
 use crate::primal::SolverCommand;
 use crate::scene::Scene;
 
-/// What to run.
+/// The methods, levels and limits of the runs of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The methods.
@@ -28,7 +28,7 @@ pub struct Plan {
     pub threads: usize,
     /// Quantities that every run bounds too.
     pub quantities: Vec<String>,
-    /// Bytes that a run may take; four fifths of what is available then where it is missing.
+    /// Bytes that a run may take; if missing, four fifths of the memory available when it starts.
     pub memory: Option<u64>,
     /// A displacement solver to run in the place of FEniCSx.
     pub program: Option<SolverCommand>,
@@ -57,7 +57,7 @@ const MOST_TRIANGLES: usize = 400_000;
 /// The reference may take this many budgets.
 const REFERENCE_BUDGETS: f64 = 5.0;
 
-/// Why a chart was not finished.
+/// The reason why a chart was not finished.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
     /// The files.
@@ -71,7 +71,7 @@ pub enum CampaignError {
     Scene {
         /// Which.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
@@ -87,15 +87,15 @@ struct One<'a> {
 
 /// A chart in progress.
 pub struct Campaign<'a> {
-    /// What to run.
+    /// The runs to make.
     pub plan: &'a Plan,
     /// This program.
     pub program: &'a Path,
-    /// Where results go.
+    /// The folder for results.
     pub folder: &'a Path,
     /// The command that makes the chart again, for its readers.
     pub command: String,
-    /// Told what is being run.
+    /// Called with each step that begins.
     pub progress: &'a dyn Fn(Step),
 }
 
@@ -185,7 +185,7 @@ impl Campaign<'_> {
         (self.progress)(Step { what, ..*step });
     }
 
-    /// Whether a run was made, and bounded what every run is to bound.
+    /// True if a run was not skipped and bounded the quantities of the plan.
     fn is_of_the_plan(&self, run: &Run) -> bool {
         let of = |plot: &Plot| plot.quantities.iter().map(|q| &q.name).eq(&self.plan.quantities);
         !matches!(run.status, Status::Skipped(_)) && run.plot.as_ref().is_none_or(of)
@@ -254,7 +254,7 @@ impl Campaign<'_> {
         measure::run(self.program, &arguments, limits).map_err(CampaignError::Start)
     }
 
-    /// How the runs ended that say what errors are measured against, and what each of them was.
+    /// Runs that give the reference bracket, each with its description and how it ended.
     fn reference_runs(&self, scene: &Scene, step: &Step) -> Result<Vec<(String, Ended)>, CampaignError> {
         self.tell(format!("{}: the bracket to measure errors against", scene.name), step);
         let budget = REFERENCE_BUDGETS * self.plan.budget;
@@ -271,7 +271,7 @@ impl Campaign<'_> {
         Ok(runs)
     }
 
-    /// Imports and compilation of one degree with nothing compiled before, and with everything compiled.
+    /// Times of imports and form compilation of one degree, with an empty cache and with a full one.
     fn cold(&self, scene: &Scene, method: Method, step: &Step) -> Result<Option<Cold>, CampaignError> {
         self.tell(format!("{}: first use of {}", scene.name, method.name()), step);
         let Ok(cache) = crate::process::Scratch::new() else { return Ok(None) };

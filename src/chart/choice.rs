@@ -17,7 +17,7 @@ pub struct Choice<'a> {
     pub error: f64,
 }
 
-/// What errors are of.
+/// The value whose error is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of<'a> {
     /// The solution, in the energy norm.
@@ -26,7 +26,7 @@ pub enum Of<'a> {
     Quantity(&'a str),
 }
 
-/// What tables of fastest choices are about, with the heading of the wanted errors.
+/// Subjects of the tables of fastest choices, each with the heading of its column of wanted errors.
 pub(super) fn asked(scene: &SceneChart) -> Vec<(Of<'_>, String)> {
     let of_quantities = scene.quantities().into_iter().map(|name| (Of::Quantity(name), format!("wanted of {name}")));
     std::iter::once((Of::Energy, "wanted".to_string())).chain(of_quantities).collect()
@@ -76,7 +76,7 @@ pub fn slope(points: &[[f64; 2]]) -> Option<f64> {
 }
 
 impl SceneChart {
-    /// The error that a run guarantees, or its true one: of a quantity the largest that what all runs together guarantee allows.
+    /// The error that a run guarantees, or its true one: for a quantity the largest that the bounds of all runs together allow.
     pub fn error(&self, plot: &Plot, of: Of<'_>, guaranteed: bool) -> Option<f64> {
         match of {
             Of::Energy if guaranteed => plot.guaranteed,
@@ -89,7 +89,7 @@ impl SceneChart {
         }
     }
 
-    /// Least and most that the true error of a run can be, for all that the reference or all runs together leave open.
+    /// Smallest and largest true error of a run that the reference, or the bounds of all runs together, allow.
     pub fn errors(&self, plot: &Plot, of: Of<'_>) -> Option<[f64; 2]> {
         match of {
             Of::Energy => Some(self.reference.as_ref().ok()?.errors(plot.lower.or(plot.upper)?)),
@@ -101,7 +101,7 @@ impl SceneChart {
         }
     }
 
-    /// What all runs together guarantee of a quantity.
+    /// Interval of a quantity that all runs together guarantee.
     pub fn known(&self, name: &str) -> Option<[f64; 2]> {
         let asked = self.runs.iter().filter_map(|run| run.plot.as_ref()?.quantities.iter().find(|q| q.name == name));
         let ends = asked.filter_map(|asked| Some([asked.lower?, asked.upper?]));

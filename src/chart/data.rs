@@ -1,4 +1,4 @@
-//! What a chart knows: scenes, their reference brackets, and the runs.
+//! The data of a chart: scenes, their reference brackets, and the runs.
 
 use serde::{Deserialize, Serialize};
 
@@ -61,7 +61,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Half the width of the bracket, as a relative error: what true errors are uncertain by.
+    /// Half the width of the bracket, as a relative error: the uncertainty of true errors.
     pub fn resolution(&self) -> f64 {
         (0.5 * (self.upper - self.lower).max(0.0) / self.strain).sqrt()
     }
@@ -83,14 +83,14 @@ pub(super) fn distances([lower, upper]: [f64; 2], value: f64) -> [f64; 2] {
     [least, (lower - value).abs().max((upper - value).abs())]
 }
 
-/// What the first run of a degree pays for and no later one.
+/// Costs of the first run of a degree, which later runs do not have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cold {
     /// The method.
     pub method: Method,
     /// Seconds of form compilation with an empty cache.
     pub compile: f64,
-    /// The same when the forms are found compiled.
+    /// Seconds of form compilation when the cache has the compiled forms.
     pub compile_warm: f64,
     /// Seconds of Python imports.
     pub import: f64,
@@ -168,7 +168,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of values that are not empty; `None` without any.
+    /// Median and extremes of `values`; `None` if there are none.
     pub fn of(values: &[f64]) -> Option<Spread> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -178,14 +178,14 @@ impl Spread {
 }
 
 impl Run {
-    /// What it is called: the method, or the solver in the place of FEniCSx with its degree.
+    /// Displayed name: the method, or the solver used in place of FEniCSx with its degree.
     pub fn name(&self) -> String {
         self.method.name_with(self.solver.as_deref())
     }
 }
 
 impl SceneChart {
-    /// What the runs of a method are called.
+    /// Displayed name of the runs of a method.
     pub fn name_of(&self, method: Method) -> String {
         self.runs.iter().find(|run| run.method == method).map_or_else(|| method.name().to_string(), Run::name)
     }

@@ -6,7 +6,7 @@ use crate::measure::Method;
 use crate::plot::{PlotError, Scale, Series, Sheet, draw};
 use crate::report::text::number::significant;
 
-/// What an error costs.
+/// Cost that an error is plotted against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cost {
     /// Seconds of the whole process.
@@ -21,7 +21,7 @@ impl Cost {
     /// All of them, in the order of a page.
     pub const ALL: [Cost; 3] = [Cost::Whole, Cost::Solve, Cost::Unknowns];
 
-    /// Name of the file of the figure; quantities go by their number.
+    /// File name of the figure; quantities are numbered.
     pub(super) fn file(self, scene: &SceneChart, of: Of<'_>) -> String {
         let axis = match self {
             Cost::Whole => "whole",
@@ -70,7 +70,7 @@ pub(super) fn error_figures(scene: &SceneChart) -> Vec<(Cost, Of<'_>)> {
     of_energy.into_iter().chain(of_quantities).collect()
 }
 
-/// True errors below this are not told from zero, with the words for it where anything is known.
+/// Smallest true error that can be told from zero, with a note on it where a reference is known.
 fn resolution(scene: &SceneChart, of: Of<'_>) -> (f64, Option<(f64, String)>) {
     let (least, words) = match of {
         Of::Energy => (scene.reference.as_ref().ok().map(Reference::resolution), "half the reference bracket"),
@@ -87,7 +87,7 @@ fn resolution(scene: &SceneChart, of: Of<'_>) -> (f64, Option<(f64, String)>) {
 /// line of the bracket, and has no part in the slope.
 ///
 /// # Errors
-/// What the drawing library reported.
+/// [`PlotError`] of the drawing library.
 pub fn error_figure(scene: &SceneChart, axis: Cost, of: Of<'_>) -> Result<String, PlotError> {
     let mut series = Vec::new();
     let mut notes = Vec::new();

@@ -1,4 +1,4 @@
-//! Where the seconds go: one bar a method.
+//! Time by phase: one bar for each method.
 
 use super::data::{Plot, Run, SceneChart};
 use crate::measure::Method;
@@ -25,7 +25,7 @@ const ORDER: [&str; 12] = [
 /// methods at the run whose true error is nearest to that of the first of them.
 ///
 /// # Errors
-/// What the drawing library reported.
+/// [`PlotError`] of the drawing library.
 pub fn phase_figure(scene: &SceneChart) -> Result<String, PlotError> {
     let finest = |m: Method| scene.done(m).map(|(run, _)| run.level).max();
     let [adaptive, uniform] = [true, false].map(|wanted| Method::all().filter(move |m| m.is_adaptive() == wanted));

@@ -12,7 +12,7 @@ pub const REFERENCE_PRIMAL: usize = 1;
 /// The bracket from runs that are all independent of each other: the largest lower and the smallest upper bound.
 ///
 /// # Errors
-/// Why there is none.
+/// The reason why there is no bracket.
 pub fn from_runs(runs: &[(String, Ended)]) -> Result<Reference, String> {
     let mut lower: Option<(f64, f64, String)> = None;
     let mut upper: Option<(f64, String)> = None;

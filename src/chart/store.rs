@@ -7,7 +7,7 @@ use super::figure::{error_figure, error_figures};
 use super::{csv, markdown, page, phases};
 use crate::report::folder::replace;
 
-/// Why the files of a chart could not be read or written.
+/// The reason why the files of a chart could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// A file or folder.
@@ -15,7 +15,7 @@ pub enum StoreError {
     Io {
         /// Which.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// A `chart.json` that cannot be continued.
@@ -23,7 +23,7 @@ pub enum StoreError {
     Content {
         /// Which.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// A figure could not be drawn.

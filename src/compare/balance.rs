@@ -1,13 +1,14 @@
-//! Whether a displacement is the solution it claims to be: the minimiser of 𝓛 over the admissible fields of its space.
+//! Checks that a displacement is the solution it claims to be: the minimiser of 𝓛 over the admissible fields of its space.
 //!
-//! It is exactly when, for every basis function φ of the space, the stresses σ(u_h) balance the loads, the supports and
+//! This holds if and only if, for every basis function φ of the space, the stresses σ(u_h) balance the loads, the supports and
 //! contact forces that only push where contact is closed:
 //!
 //! ∫ σ(u_h):e(φ) − L(φ) + Σ_r R_r b_r(φ) ∈ forces of the supports,  R_r ≥ 0,  R_r = 0 where b_r(u_h) < g_r,
 //!
 //! with b_r the bounded coefficients of v_n' + v_n'': its values at the vertices of degree 1, its Bernstein coefficients
-//! of higher degrees. Friction has forces of its own there (`slides`). From degree 3 on the φ are Bernstein polynomials too. Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and what is left
-//! is what the solver left and what rounding of the displacements costs. A wrong modulus, load, thickness, support or
+//! of higher degrees. Friction adds forces of its own there (`slides`). From degree 3 on the φ are Bernstein polynomials too.
+//! Nothing of this is estimated: loads and stresses are polynomials and integrated exactly, and the remainder consists of the
+//! solver's residual and the rounding of the displacements. A wrong modulus, load, thickness, support or
 //! contact leaves far more, however small its effect on the energy is.
 
 mod higher;
@@ -31,42 +32,42 @@ use crate::vector::dot;
 
 /// A coefficient this close below its bound, relative to the largest displacement, is closed.
 const CLOSED: f64 = 1e-9;
-/// What each product of an entry of the stiffness with a displacement is rounded by: about twenty of them meet in a node.
+/// Relative rounding error of each product of a stiffness entry with a displacement: about twenty of them meet in a node.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// Directions that are shorter than this, once supports have taken their part, are held by supports.
+/// Directions shorter than this after projection onto the free directions of supports are held by supports.
 const HELD: f64 = 1e-9;
 
-/// How well a claimed solution is in equilibrium in its own space.
+/// Equilibrium of a claimed solution in its own space.
 #[derive(Debug, Clone)]
 pub struct Balance {
-    /// √Σ |r_i|²/K_ii over the nodes, r what neither supports nor contact can take.
+    /// √Σ |r_i|²/K_ii over the nodes, with r the force that neither supports nor contact can take.
     pub left: f64,
-    /// The same for the loads, plus √(2·½a(u,u)): what `left` is relative to.
+    /// This norm of the loads, plus √(2·½a(u,u)): the scale that `left` is relative to.
     pub scale: f64,
-    /// The same for the loads alone.
+    /// This norm of the loads alone.
     pub load: f64,
-    /// The same for all that supports and contacts have to carry.
+    /// This norm of the forces that supports and contacts have to carry.
     pub supported: f64,
-    /// The same for what rounding of the displacements can leave.
+    /// This norm of the residual that rounding of the displacements can leave.
     pub rounding: f64,
-    /// By how much rounding of the displacements can have moved an energy that is added up from nodal forces.
+    /// Possible error, by rounding of the displacements, of an energy summed from nodal forces.
     pub energy_rounding: f64,
-    /// The node with the largest remainder: where it is, and the force that is left.
+    /// The node with the largest remainder: its coordinates, and the force that is left.
     pub worst: Option<([f64; 2], [f64; 2])>,
     /// This node, or the one nearest to it: vertices, then edge midpoints.
     pub worst_node: Option<usize>,
-    /// Largest difference of a reported reaction, or resultant, from what the displacement asks for; one for each interface.
+    /// Largest error of a reported reaction, or resultant, against that required by the displacement; one for each interface.
     pub reactions: Vec<f64>,
-    /// What rounding can leave in a reaction, interface by interface.
+    /// Possible rounding error of a reaction, interface by interface.
     pub reaction_rounding: Vec<f64>,
-    /// Σ of the forces at the nodes of each interface, without their signs.
+    /// Σ of the magnitudes of the forces at the nodes of each interface.
     pub carried: Vec<f64>,
-    /// Σ of what the solver left of them.
+    /// Σ of the magnitudes of the remainders that the solver left at these nodes.
     pub unbalanced: Vec<f64>,
 }
 
 impl Balance {
-    /// What rounding of the displacements, and what their solver left, can do to a reaction of interface `index`.
+    /// Possible error of a reaction of interface `index` by rounding of the displacements and by the residual of their solver.
     pub fn reaction_tolerance(&self, index: usize) -> f64 {
         let of = |values: &[f64]| values.get(index).copied().unwrap_or(0.0);
         of(&self.reaction_rounding) + 4.0 * of(&self.unbalanced)
@@ -88,7 +89,7 @@ impl Balance {
         Self::of_forces(problem, candidate, strain, &forces)
     }
 
-    /// The same with the nodal forces of the candidate in its own space.
+    /// As [`Balance::new`], with the nodal forces of the candidate in its own space.
     ///
     /// # Errors
     /// As [`Balance::new`].
@@ -160,7 +161,7 @@ struct Solution<'a> {
     problem: &'a Problem,
     candidate: &'a Candidate,
     holds: &'a Holds,
-    /// Tangential jumps at vertices, and whether the law of one is coupled with others.
+    /// Tangential jumps at vertices, each with a flag that is true if its law is coupled with others.
     slides: Vec<(EndSlide, bool)>,
 }
 
@@ -174,7 +175,7 @@ impl Solution<'_> {
         CLOSED * self.candidate.largest()
     }
 
-    /// Takes the forces of the middle coefficients b1 = 2 j_mid − ½ (j_a + j_b) out of `rest`, at the midpoints and at
+    /// Removes the forces of the middle coefficients b1 = 2 j_mid − ½ (j_a + j_b) from `rest`, at the midpoints and at
     /// the vertices.
     fn take_middles(&self, rest: &mut [[f64; 2]]) {
         if self.candidate.degree != 2 {
@@ -218,7 +219,7 @@ impl Solution<'_> {
         }
     }
 
-    /// The same where the direction of contact turns and there are two middle coefficients.
+    /// As [`Self::take_middles`], for a pair whose direction of contact turns, with two middle coefficients.
     fn take_turning(&self, pair: &ContactPair, within: f64, rest: &mut [[f64; 2]]) {
         let vertices = self.problem.mesh.points.len();
         let [Some(own), other] = pair.edges.map(|e| e.map(|e| vertices + e)) else { return };
@@ -241,7 +242,7 @@ impl Solution<'_> {
         }
     }
 
-    /// Takes the forces of the vertex coefficients out of `rest`: the least remainder of each group of vertices that
+    /// Removes the forces of the vertex coefficients from `rest`, leaving the least remainder of each group of vertices that
     /// contacts tie together.
     fn take_vertices(&self, rest: &mut [[f64; 2]]) {
         let within = self.closed_within();
@@ -294,7 +295,7 @@ impl Solution<'_> {
         }
     }
 
-    /// The vertices of Γ_K, those that contacts tie to each other in one group.
+    /// The vertices of Γ_K in groups that contacts tie together.
     fn groups(&self) -> Vec<Group> {
         let ends = || self.problem.pairs().flat_map(End::of);
         let mut sets = DisjointSets::new(self.problem.mesh.points.len());

@@ -1,4 +1,4 @@
-//! A displacement field to be held against the dual solution.
+//! A displacement field to be compared with the dual solution.
 
 use std::collections::BTreeMap;
 
@@ -32,29 +32,29 @@ pub struct Candidate {
     pub vertex: Vec<[f64; 2]>,
     /// Value at each edge midpoint.
     pub middle: Vec<[f64; 2]>,
-    /// The whole of a displacement of degree 3 or more, which these values do not determine, or of one on quadrilaterals.
+    /// The full displacement for degree 3 or more, which these values do not determine, or on quadrilaterals.
     pub higher: Option<PlainDisplacement>,
-    /// Its quadrilaterals, on which it is no polynomial of the triangles; `higher` then stands for it there.
+    /// Quadrilaterals on which it is not a polynomial on each triangle; `higher` represents it there.
     pub cells: Vec<Cell>,
-    /// The displacement on the quadrilaterals of the mesh file that `higher` stands for.
+    /// The displacement on the quadrilaterals of the mesh file, which `higher` represents.
     pub on_quadrilaterals: Option<QuadrilateralSolution>,
     /// 𝓛(u_h) as the program reports it.
     pub reported: Option<f64>,
     /// ½a(u_h, u_h) as the program reports it.
     pub reported_strain: Option<f64>,
-    /// Whether it is meant to be the minimiser over its space, so that the identities of a solution hold.
+    /// True if it is meant to be the minimiser over its space, so that the identities of a solution hold.
     pub is_solution: bool,
     /// Contact reactions, interface by interface.
     pub reactions: Option<Vec<Reactions>>,
-    /// Nonlinear iterations, where the program tells them.
+    /// Nonlinear iterations, if the program reports them.
     pub iterations: Option<usize>,
-    /// Unknowns, where the program tells them.
+    /// Unknowns, if the program reports them.
     pub unknowns: Option<usize>,
     /// Seconds by phase.
     pub seconds: BTreeMap<String, f64>,
-    /// Rounding of its values relative to their size: that of the numbers of a file, or of the machine.
+    /// Relative rounding error of its values: that of the digits of a file, or of the machine.
     pub precision: f64,
-    /// Where its nodes are in the file that it comes from.
+    /// Numbers of its nodes in the file that it comes from.
     pub numbering: Option<Numbering>,
 }
 
@@ -82,12 +82,12 @@ impl Candidate {
         if self.on_quadrilaterals.is_some() { 'Q' } else { 'P' }
     }
 
-    /// Whether it is the polynomials on triangles that its maps and bounds are made of.
+    /// True if it is itself piecewise polynomial on the triangles, as its maps and bounds assume.
     pub fn is_polynomial(&self) -> bool {
         self.on_quadrilaterals.as_ref().is_none_or(|own| own.field.is_polynomial())
     }
 
-    /// What its model counts for ∫ τ̄ |j_t|.
+    /// The friction work ∫ τ̄ |j_t| as its model integrates it.
     fn friction_work(&self, problem: &Problem) -> f64 {
         let coefficients = self.higher.as_ref().filter(|_| self.degree > 2);
         let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
@@ -110,7 +110,7 @@ pub struct Reactions {
     /// R ≥ 0 conjugate to the inner Bernstein coefficients of each pair (degree k from 2 on): k − 1, or k where the direction
     /// of contact turns.
     pub edge: Option<Vec<Vec<f64>>>,
-    /// What friction puts on the first side, where it rubs.
+    /// Friction forces on the first side, if there is friction.
     pub friction: Option<FrictionForces>,
     /// Force on the first side.
     pub resultant: [f64; 2],
@@ -128,27 +128,27 @@ pub struct FrictionForces {
 /// A candidate after it was evaluated.
 #[derive(Debug, Clone)]
 pub struct Judged {
-    /// What was delivered.
+    /// The candidate as delivered.
     pub candidate: Candidate,
     /// The field as delivered, or the polynomials on triangles that have its values.
     pub field: UpperBound,
-    /// The energy of the field as delivered; of a solution with friction as its model counts it.
+    /// The energy of the field as delivered; for a solution with friction as its model integrates it.
     pub own: Potential,
-    /// How far it was from admissible.
+    /// The violation of supports and contact by the field as delivered.
     pub violation: Violation,
     /// The nearest admissible field; its energy is the upper bound.
     pub admissible: UpperBound,
-    /// How well it balances the loads in its own space, where it is meant to be a solution.
+    /// Equilibrium in its own space, if it is meant to be a solution.
     pub balance: Option<Balance>,
-    /// How many times as large as any solution can be the field is; 1 where it is not larger.
+    /// Ratio of the field to the largest size that a solution can have; 1 if it is not larger.
     pub larger: f64,
 }
 
-/// Solvers leave supports and contact to their own accuracy; a field within this of an admissible one is one.
+/// Solvers meet supports and contact to their own accuracy; a field this close to an admissible one counts as admissible.
 pub const ADMISSIBLE: f64 = 1e-9;
 
 impl Judged {
-    /// Evaluates a candidate; `extent` says how large a solution can be.
+    /// Evaluates a candidate; `extent` limits the size of a solution.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other or the contact.
@@ -188,7 +188,7 @@ impl Judged {
         Ok(Judged { admissible, balance: balance.transpose()?, larger, own, field, violation, candidate })
     }
 
-    /// Whether the field as delivered is admissible to the accuracy of a solver.
+    /// True if the field as delivered is admissible to the accuracy of a solver.
     pub fn is_admissible(&self) -> bool {
         self.violation.largest() <= ADMISSIBLE.min(PART * MISTAKE / self.larger)
     }

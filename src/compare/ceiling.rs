@@ -1,7 +1,7 @@
-//! How much a tolerance may be at most: its ceiling comes from the problem and never from the answer.
+//! Upper limits of tolerances: the ceiling comes from the problem and never from the answer.
 //!
-//! What rounding, or a solver that works relative to the size of its displacements, can leave is known, and a correct field leaves
-//! no more. It says nothing about a wrong field where the same tolerance would hide a mistake worth finding: a displacement far
+//! The error left by rounding, or by a solver that works relative to the size of its displacements, is known, and a correct field
+//! has no larger one. But the same tolerance could hide a mistake worth finding in a wrong field: a displacement far
 //! larger than its strains loses every digit of them. The check is then not made, and has not passed.
 
 use super::Check;
@@ -12,30 +12,30 @@ use crate::bounds::energy::initial_energy;
 use crate::dual::DualSolution;
 use crate::problem::{Problem, Scales};
 
-/// The mistake that a check has to be able to tell: this part of the modulus, the loads or the displacement.
+/// The mistake that a check has to detect: this fraction of the modulus, the loads or the displacement.
 pub(super) const MISTAKE: f64 = 0.05;
-/// Rounding may leave this part of what the mistake leaves.
+/// Rounding may leave this fraction of the residual that the mistake leaves.
 pub(super) const PART: f64 = 0.5;
-/// Of the largest displacement of the stress side, that of a correct field is at most so many times as large, but for motions that
-/// nothing holds.
+/// The largest displacement of a correct field is at most this multiple of that of the stress side, except for motions that
+/// nothing restrains.
 const LARGER: f64 = 2.0;
-/// Loads below this part of the forces at supports and contacts are not what the solution consists of.
+/// Loads below this fraction of the forces at supports and contacts do not determine the size of the solution.
 const BESIDE: f64 = 0.1;
-/// What rounding may leave in any case, relative to what the data of a problem stand for: where they strain nothing at all, everything
-/// is rounding.
+/// Error that rounding may leave in any case, relative to the scales of the data of a problem: where these cause no strain at all,
+/// everything is rounding.
 const OF_DATA: f64 = 1e-9;
 
-/// What the problem says of the size of its solution, whatever the field: from λ_h and the displacement that belongs to it.
+/// Limits on the size of the solution that do not depend on the field: from λ_h and the displacement that belongs to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Energy of the strains of λ_h, initial ones counted in.
+    /// Energy of the strains of λ_h, including initial strains.
     pub strain: f64,
-    /// Largest displacement of the admissible field made from λ_h; infinite where there is none.
+    /// Largest displacement of the admissible field made from λ_h; infinite if there is none.
     pub displacement: f64,
 }
 
 impl Extent {
-    /// From the two bounds of the stress side.
+    /// The extent from the two bounds of the stress side.
     pub fn of(problem: &Problem, bracket: &Bracket) -> Self {
         let displacement = bracket.free.as_ref().map_or(f64::INFINITY, |free| {
             let field = &free.displacement;
@@ -50,24 +50,24 @@ impl Extent {
         Extent { strain, displacement }
     }
 
-    /// `largest` displacement, or the largest that a correct field has where that is less.
+    /// The smaller of the displacement `largest` and the largest that a correct field can have.
     pub fn reference(&self, largest: f64) -> f64 {
         if self.displacement > 0.0 { largest.min(LARGER * self.displacement) } else { largest }
     }
 
-    /// How many times as large as any correct field one with the displacement `largest` is; 1 where it is not larger.
+    /// Ratio of a field with the displacement `largest` to the largest correct field; 1 if it is not larger.
     pub fn larger(&self, largest: f64) -> f64 {
         let reference = self.reference(largest);
         if reference > 0.0 { largest / reference } else { 1.0 }
     }
 
-    /// By what forces of a field of strain energy `strain` are to be multiplied so that they are those of a solution at most.
+    /// Factor that reduces the forces of a field of strain energy `strain` to at most those of a solution.
     pub fn of_forces(&self, strain: f64) -> f64 {
         if strain > self.strain { (self.strain.max(0.0) / strain).sqrt() } else { 1.0 }
     }
 
-    /// What rounding may leave of nodal forces: `load` and `supported` are the sizes of those of loads and of what supports and
-    /// contacts give to a field of strain energy `strain`.
+    /// Residual of nodal forces that rounding may leave: `load` is the size of the load forces, `supported` that of the support
+    /// and contact forces on a field of strain energy `strain`.
     pub fn rounding_of_forces(&self, load: f64, supported: f64, strain: f64) -> f64 {
         let supported = self.of_forces(strain) * supported;
         PART * MISTAKE * if load > BESIDE * supported { load } else { supported }
@@ -77,18 +77,18 @@ impl Extent {
 /// The ceilings of all tolerances of a comparison.
 #[derive(Debug, Clone, Copy)]
 pub struct Ceilings {
-    /// How large a solution can be.
+    /// Limits on the size of a solution.
     pub extent: Extent,
-    /// Of an energy.
+    /// Ceiling for an energy.
     pub energy: f64,
-    /// Of a force.
+    /// Ceiling for a force.
     pub force: f64,
-    /// Of a nodal force as the root of an energy, where data cause no stress.
+    /// Ceiling for nodal forces as the root of an energy, where data cause no stress.
     pub of_data: f64,
 }
 
 impl Ceilings {
-    /// Of `problem`, from its data and λ_h.
+    /// The ceilings of `problem`, from its data and λ_h.
     pub fn new(problem: &Problem, scales: &Scales, (dual, bracket): (&DualSolution, &Bracket)) -> Self {
         let contact = problem.interfaces.iter().enumerate().map(|(index, interface)| {
             let own = dual_pressure(dual, index);
@@ -117,17 +117,17 @@ impl Ceilings {
 /// A tolerance in two parts, in the units of a check.
 #[derive(Debug, Clone, Copy)]
 pub struct Allowance {
-    /// What a solver may leave of a field of the size that the problem allows.
+    /// Residual that a solver may leave in a field of the size that the problem allows.
     pub exact: f64,
-    /// What the size of the field adds: rounding of its values, and what its solver leaves.
+    /// Addition for the actual size of the field: rounding of its values, and the error of its solver.
     pub digits: f64,
-    /// What that may be where the check is to tell a mistake.
+    /// Largest addition with which the check still detects a mistake.
     pub ceiling: f64,
 }
 
 impl Allowance {
-    /// The check `made` with this tolerance. It is not made, which `told` gives the reason of, where the field may owe to
-    /// [`Self::digits`] alone that it passes and these could hide a mistake.
+    /// The check `made` with this tolerance. It is not made, for the reason given by `told`, if the field may pass owing to
+    /// [`Self::digits`] alone and these could hide a mistake.
     pub fn check(&self, made: impl Fn(f64) -> Check, told: impl FnOnce() -> String) -> Check {
         let exact = made(self.exact);
         if exact.passed {
@@ -141,13 +141,13 @@ impl Allowance {
         Check::not_made(&check.name, allowed, check.basis, format!("{} {}", check.why, told()))
     }
 
-    /// The same, where the reason is that the displacements are too large.
+    /// As [`Self::check`], with displacements that are too large as the reason.
     pub fn check_of_large(&self, made: impl Fn(f64) -> Check) -> Check {
         self.check(made, || TOO_LARGE.to_string())
     }
 }
 
-/// Why a check could not be made of a field whose displacements are large beside what they strain the bodies by.
+/// The reason why a check could not be made of a field whose displacements are large compared with its strains.
 pub(super) const TOO_LARGE: &str = "This could not be decided: the displacements are so large beside those that the loads and supports \
      ask for that rounding of them could hide 5 % of E; hold the motion that nothing holds, and solve again.";
 

@@ -48,12 +48,12 @@ pub enum Basis {
 }
 
 impl Check {
-    /// Whether it takes part in the verdict: what theory or the user says does, what this program chose does not.
+    /// True if the check takes part in the verdict: tolerances from theory or the user count, those this program chose do not.
     pub fn decides(&self) -> bool {
         self.basis != Basis::Chosen
     }
 
-    /// The same with `allowed` in place of the tolerance, as the user asks.
+    /// This check with the tolerance replaced by `allowed`, as the user asks.
     pub fn asked(mut self, allowed: f64) -> Self {
         let failed = self.decides() && !self.passed;
         self.allowed = allowed;

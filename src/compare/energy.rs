@@ -1,4 +1,4 @@
-//! Energy checks: the bracket, its order, and the identities a solution satisfies.
+//! Energy checks: the bracket, its order, and the identities that a solution satisfies.
 
 use super::balance::Balance;
 use super::candidate::{ADMISSIBLE, Candidate, Judged};
@@ -13,10 +13,10 @@ use crate::problem::{Problem, Scales};
 
 /// Round-off allowed in an identity between energies, relative to 𝒮(λ_h).
 const IDENTITY: f64 = 1e-9;
-/// What rounding to single precision can do to a penetration relative to the largest displacement: a coefficient of the
+/// Change of a penetration, relative to the largest displacement, by rounding to single precision: a coefficient of the
 /// jump is a combination of six rounded values with weights that add up to six.
 const SINGLE: f64 = 6.0 * f32::EPSILON as f64;
-/// What an iterative solver may leave in the identities of a minimiser, relative to 𝒮(λ_h).
+/// Error that an iterative solver may leave in the identities of a minimiser, relative to 𝒮(λ_h).
 const SOLVER: f64 = 1e-7;
 
 /// Checks on the dual solution and its own bracket.
@@ -147,17 +147,17 @@ pub fn primal_checks(
     checks
 }
 
-/// Whether the identity of energies is one of the field that is held: on quadrilaterals initial strains are integrated by another rule.
+/// True if the energy identity holds for the field as represented: on quadrilaterals initial strains are integrated by another rule.
 fn has_identity(problem: &Problem, judged: &Judged) -> bool {
     judged.candidate.is_polynomial() || problem.scene.bodies.iter().all(|body| body.initial.is_none())
 }
 
-/// What an energy may be off by: `exact` for a field of the size that the problem allows, and `all` for the field.
+/// Allowed error of an energy: `exact` for a field of the size that the problem allows, `all` for this field.
 fn of_energy(ceilings: &Ceilings, exact: f64, all: f64) -> Allowance {
     Allowance { exact, digits: (all - exact).max(0.0), ceiling: ceilings.energy }
 }
 
-/// What an admissible field may miss supports and penetrate by, relative to its largest displacement.
+/// Allowed violation of supports and contact by an admissible field, relative to its largest displacement.
 fn of_admissible(judged: &Judged) -> Allowance {
     let exact = ADMISSIBLE / judged.larger;
     let rounded = !judged.candidate.is_solution && judged.candidate.precision >= f64::from(f32::EPSILON);
@@ -165,7 +165,7 @@ fn of_admissible(judged: &Judged) -> Allowance {
     Allowance { exact, digits: all - exact, ceiling: PART * MISTAKE / judged.larger }
 }
 
-/// Which contact a field penetrates most, and at which node; nothing where no node penetrates.
+/// A sentence on the contact and node with the deepest penetration; empty if no node penetrates.
 fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     let Ok(holds) = holds(problem) else { return String::new() };
     let sites = Sites::new(problem, candidate.degree, &holds);
@@ -178,7 +178,7 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
     format!(" Contact {contact} is penetrated most, by {:.3e}, at {place}.", depth(site))
 }
 
-/// Whether a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
+/// True if a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
 fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
     judged.candidate.is_solution
         && judged.candidate.degree == 1
@@ -223,7 +223,7 @@ pub fn degree_order(
     ['P', 'Q'].into_iter().flat_map(of_letter).collect()
 }
 
-/// Whether a bracket can tell two models apart.
+/// Check that a bracket is narrow enough to tell two models apart.
 pub fn sharpness(bracket: &Bracket, best_upper: f64) -> Check {
     Check::at_most(
         "bracket/sharpness",
@@ -235,7 +235,7 @@ pub fn sharpness(bracket: &Bracket, best_upper: f64) -> Check {
     )
 }
 
-/// −Π(λ_h) ≤ 𝓛(v).
+/// Check of −Π(λ_h) ≤ 𝓛(v).
 pub fn order(who: &str, bracket: &Bracket, upper: f64) -> Check {
     let name = format!("energy/lower-below/{who}");
     Check::at_most(
@@ -296,7 +296,7 @@ fn in_its_own_space(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance
         .check_of_large(left)
 }
 
-/// Reported reactions against what the displacement asks for, the interface with the largest excess.
+/// Check of reported reactions against those in equilibrium with the displacement, on the interface with the largest excess.
 fn reactions(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance: &Balance) -> Check {
     let allowed = |i: usize| SOLVER * balance.carried[i] + balance.reaction_tolerance(i) + scales.round_off.force;
     let excess = |i: usize| balance.reactions[i] - allowed(i);
@@ -311,12 +311,12 @@ fn reactions(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance: &Bala
         .check_of_large(|allowed| Check::at_most(&name, value, 0.0, allowed, Basis::RoundOff, why))
 }
 
-/// What rounding of its displacements can have done to an energy of the displacement program.
+/// Possible error of an energy of the displacement program by rounding of its displacements.
 fn energy_rounding(scales: &Scales, judged: &Judged) -> f64 {
     judged.balance.as_ref().map_or(0.0, |balance| balance.energy_rounding) + scales.round_off.energy
 }
 
-/// A sentence where the displacement side has lost digits.
+/// A sentence for the case that the displacement side has lost digits, otherwise empty.
 fn lost_digits(rounding: f64, usual: f64) -> &'static str {
     if rounding > usual {
         "Most of the allowance is rounding of the displacements, which are large beside what they strain the bodies by, or \

@@ -34,13 +34,13 @@ use crate::bounds::{Bracket, UpperBound};
 use crate::dual::DualSolution;
 use crate::problem::{Problem, Scales};
 
-/// Everything a comparison finds.
+/// The results of a comparison.
 #[derive(Debug, Clone)]
 pub struct Comparison {
     /// The candidates, evaluated.
     pub judged: Vec<Judged>,
-    /// Which of them is the best: the lowest admissible energy among those that are admissible as delivered, or among
-    /// all where none is.
+    /// Index of the best candidate: the lowest admissible energy among those that are admissible as delivered, or among
+    /// all if none is.
     pub best: Option<usize>,
     /// Contact, interface by interface.
     pub contacts: Vec<ContactSummary>,
@@ -51,12 +51,12 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether every check that decides passed.
+    /// True if every deciding check passed.
     pub fn agrees(&self) -> bool {
         self.checks.iter().all(|c| c.passed || !c.decides())
     }
 
-    /// Holds the energies of the candidates against the lower bound of a finer mesh too, whose displacements theirs are.
+    /// Also compares the energies of the candidates with the lower bound of a finer mesh, on which their displacements are defined too.
     pub fn against_finer(&mut self, finer: &Bracket, allow: &Allowances) {
         let upper = self.upper(finer).map_or(f64::INFINITY, |(upper, _)| upper.upper());
         let sharper =

@@ -1,8 +1,8 @@
 //! Displacement solutions on the quadrilaterals of the mesh file.
 //!
 //! On parallelograms they are polynomials on the triangles, and everything that is asked of one on triangles is asked of them.
-//! On other quadrilaterals they are none: what is asked of the discrete solution is measured in its own Gauss rule, and what needs a
-//! field on triangles is that of the polynomial with the same values, which is an admissible displacement itself but another one.
+//! On other quadrilaterals they are not: checks of the discrete solution use its own Gauss rule, and results that need a
+//! field on triangles use the polynomial with the same values, which is an admissible displacement itself but another one.
 
 use super::forces::NodalForces;
 use crate::bounds::Potential;

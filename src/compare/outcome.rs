@@ -1,4 +1,4 @@
-//! What a comparison finds, as it stands in the report.
+//! Results of a comparison, as they stand in the report.
 
 use schemars::JsonSchema;
 use serde::Serialize;

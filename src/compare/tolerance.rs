@@ -1,6 +1,6 @@
 //! Tolerances that theory leaves open, and how the command line changes them.
 
-/// The tolerances this program chose, by the last part of the check name. What exceeds them is a remark.
+/// The tolerances this program chose, by the last part of the check name. A value that exceeds them is a remark only.
 pub const CHOSEN: [(&str, f64, &str); 8] = [
     ("sharpness", SHARP, "a bracket wider than this could not tell two models apart"),
     ("energy-error", 0.25, "a field whose stress may be wrong by more than this does not answer the question"),
@@ -64,7 +64,7 @@ const NAMES: [&str; 31] = [
 ];
 
 /// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end
-/// with their degree, as `FEniCSx P2` and `FEniCSx Q2` do, are also held against each other.
+/// with their degree, as `FEniCSx P2` and `FEniCSx Q2` do, are also compared with each other.
 pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
     let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
         values.iter().map(|value| template.replace(key, value)).collect()
@@ -82,8 +82,7 @@ pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
     all.chain(orders).collect()
 }
 
-/// The name of the check that holds the energies of two displacement solutions of degrees p < q, both P or both Q, against each
-/// other.
+/// The name of the check that compares the energies of two displacement solutions of degrees p < q, both P or both Q.
 pub fn name_of_order(letter: char, p: usize, q: usize) -> String {
     let letter = letter.to_ascii_lowercase();
     format!("energy/{letter}{p}-above-{letter}{q}")
@@ -96,12 +95,12 @@ pub struct Allowances {
 }
 
 impl Allowances {
-    /// From NAME=VALUE pairs; NAME is the whole name of a check or its last part.
+    /// Allowances from NAME=VALUE pairs; NAME is the whole name of a check or its last part.
     pub fn new(entries: Vec<(String, f64)>) -> Self {
         Allowances { entries }
     }
 
-    /// The same, over values that hold where the command line says nothing.
+    /// These allowances with `defaults` for the checks that the command line does not mention.
     pub fn after(mut self, defaults: impl IntoIterator<Item = (String, f64)>) -> Self {
         self.entries.splice(0..0, defaults);
         self
@@ -113,7 +112,7 @@ impl Allowances {
         self.entries.iter().rev().find(|(key, _)| key == name || key == last).map(|(_, value)| *value)
     }
 
-    /// Puts what was given in the place of the tolerances of `checks`; those then count, whatever they were before.
+    /// Replaces tolerances of `checks` by the values given; those checks then take part in the verdict, whatever their basis was.
     pub fn apply(&self, checks: &mut [super::Check]) {
         for check in checks {
             if let Some(allowed) = self.given(&check.name) {

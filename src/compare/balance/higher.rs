@@ -18,7 +18,7 @@ pub(super) fn nodes(problem: &Problem, k: usize) -> Nodes {
     Nodes::new(problem.mesh.points.len(), std::iter::repeat_n(k, problem.mesh.edges.len()))
 }
 
-/// Where a node of degree `k` is: a vertex, inside an edge, or inside a triangle.
+/// Coordinates of a node of degree `k`: at a vertex, inside an edge, or inside a triangle.
 pub(super) fn place(problem: &Problem, k: usize, node: usize) -> [f64; 2] {
     let mesh = &problem.mesh;
     let vertices = mesh.points.len();
@@ -35,7 +35,7 @@ pub(super) fn place(problem: &Problem, k: usize, node: usize) -> [f64; 2] {
     between(&mesh.corners((inside - (k - 1) * mesh.edges.len()) / plain::inner_len(k)), &at)
 }
 
-/// The vertex or edge, as vertices and then edges are counted, that a node of degree `k` is on or near.
+/// The vertex or edge (numbered vertices first, then edges) that a node of degree `k` is on or near.
 pub(super) fn near(problem: &Problem, k: usize, node: usize) -> usize {
     let mesh = &problem.mesh;
     let vertices = mesh.points.len();
@@ -81,7 +81,7 @@ impl Inside {
     }
 }
 
-/// The R of Σ R_r row_r that comes nearest to `load`.
+/// The coefficients R for which Σ R_r row_r is nearest to `load`.
 fn multipliers(rows: &[DVector<f64>], load: &DVector<f64>) -> Vec<f64> {
     if rows.is_empty() {
         return Vec::new();
@@ -92,9 +92,9 @@ fn multipliers(rows: &[DVector<f64>], load: &DVector<f64>) -> Vec<f64> {
 
 /// A reaction inside a pair.
 pub(super) struct Asked {
-    /// What the displacement asks for.
+    /// The reaction that balances the displacement's nodal forces.
     pub reaction: f64,
-    /// By how much a unit translation of the first side changes the row, along either axis.
+    /// Change of the row by a unit translation of the first side, along either axis.
     pub moved: [f64; 2],
 }
 
@@ -122,7 +122,7 @@ impl Solution<'_> {
         }
     }
 
-    /// The reactions inside a pair that the forces `left` on its first side ask for.
+    /// The reactions inside a pair that balance the forces `left` on its first side.
     pub(super) fn asked_inside(&self, pair: &ContactPair, k: usize, left: &[[f64; 2]]) -> Vec<Asked> {
         let mut inside = Inside::of(self.problem, pair, k);
         inside.nodes.truncate(inside.first);

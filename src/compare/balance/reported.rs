@@ -1,4 +1,4 @@
-//! Reported contact reactions against what the stresses of a displacement solution ask for.
+//! Reported contact reactions against those in equilibrium with the stresses of a displacement solution.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -11,9 +11,9 @@ use crate::compare::contact::slides::{Slide, inside};
 use crate::problem::{ContactPair, Interface};
 
 impl Solution<'_> {
-    /// By how much the reported reactions of an interface miss what the displacement asks for, at the vertices where only
-    /// this contact acts, and the reported resultant their sum. `rest` are the forces that supports leave at the vertices,
-    /// without those of the middle coefficients; `left` are all of them.
+    /// The largest error of the reported reactions of an interface, at the vertices where only this contact acts, and of the
+    /// reported resultant against their sum. `rest` are the forces that supports leave at the vertices, without those of the
+    /// middle coefficients; `left` are all of them.
     pub(super) fn misreported(
         &self,
         index: usize,
@@ -90,7 +90,7 @@ impl Solution<'_> {
         worst
     }
 
-    /// How an interface meets each vertex of its first side.
+    /// The [`Meeting`] of an interface with each vertex of its first side.
     fn meetings(&self, index: usize, interface: &Interface) -> HashMap<usize, Meeting> {
         let others = self.problem.interfaces.iter().enumerate().filter(|(other, _)| *other != index);
         let ends = others.flat_map(|(_, other)| &other.pairs).flat_map(End::of);
@@ -118,7 +118,7 @@ impl Solution<'_> {
         meetings
     }
 
-    /// The reaction at an end that no other contact meets: what balances both vertices best. Zero where supports hold them.
+    /// The reaction at an end that no other contact shares: the one that balances both vertices best. Zero where supports hold them.
     fn asked(&self, end: &End, rest: &[[f64; 2]]) -> f64 {
         let (mut pull, mut square) = (0.0, 0.0);
         for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
@@ -131,14 +131,14 @@ impl Solution<'_> {
     }
 }
 
-/// What friction is reported to put on the vertices of an interface, and by how much that misses what the displacement asks for.
+/// Reported friction forces on the vertices of an interface, and their largest error against those the displacement requires.
 struct Rubbed {
     at: HashMap<usize, [f64; 2]>,
     worst: f64,
 }
 
 impl Solution<'_> {
-    /// The forces of friction at vertices; those of a law that is coupled with others are added up and not compared.
+    /// The friction forces at vertices; where the friction law is coupled with others they are summed but not compared.
     fn rubbed(&self, index: usize, reported: &Reactions, rest: &[[f64; 2]]) -> Rubbed {
         let mut rubbed = Rubbed { at: HashMap::new(), worst: 0.0 };
         let Some(friction) = &reported.friction else { return rubbed };
@@ -155,7 +155,7 @@ impl Solution<'_> {
         rubbed
     }
 
-    /// The forces of friction inside a pair that those on the nodes of its first side ask for.
+    /// The friction forces inside a pair that balance the forces on the nodes of its first side.
     fn asked_of_friction(&self, pair: &ContactPair, left: &[[f64; 2]]) -> Vec<f64> {
         let degree = self.candidate.degree;
         let first = pair.edges[0].map_or(0..0, |e| {
@@ -172,7 +172,7 @@ impl Solution<'_> {
     }
 }
 
-/// The reactions of degree 2 inside a pair that the force `left` at the midpoint of its first side asks for.
+/// The reactions of degree 2 inside a pair that balance the force `left` at the midpoint of its first side.
 fn asked_in_the_middle(pair: &ContactPair, left: [f64; 2]) -> Vec<Asked> {
     let [m, n] = pair.direction.ends;
     if pair.direction.is_constant() {
@@ -183,8 +183,8 @@ fn asked_in_the_middle(pair: &ContactPair, left: [f64; 2]) -> Vec<Asked> {
     both.map(|(reaction, moved)| Asked { reaction, moved }).collect()
 }
 
-/// How an interface meets a vertex of its first side: in one direction, with no other contact there where it is `alone`,
-/// or in several.
+/// Directions of an interface at a vertex of its first side: one, with no other contact there if it is `alone`,
+/// or several.
 enum Meeting {
     One { end: End, alone: bool },
     Several,

@@ -10,9 +10,9 @@ use crate::compare::contact::slides::{EndSlide, inside};
 use crate::problem::{Interface, Problem};
 use crate::vector::cross;
 
-/// Directions whose cross product, or product, is smaller are parallel, or at right angles.
+/// Directions whose cross product, or dot product, is smaller are parallel, or at right angles.
 const ALIGNED: f64 = 1e-9;
-/// Sweeps in which forces of several directions are shared out.
+/// Sweeps of the coordinate descent that distributes forces over several directions.
 const SWEEPS: usize = 4000;
 
 impl<'a> Solution<'a> {
@@ -55,7 +55,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The force of friction that is reported for coefficient `i` inside pair `k` of interface `index`.
+    /// The reported friction force of coefficient `i` inside pair `k` of interface `index`.
     fn reported_inside(&self, index: usize, k: usize, i: usize) -> Option<f64> {
         let friction = self.candidate.reactions.as_ref()?.get(index)?.friction.as_ref()?;
         friction.edge.as_ref()?.get(k)?.get(i).copied()
@@ -78,7 +78,7 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// The unit rows of a group along which the sides stick, each with the most that friction carries there.
+    /// The unit rows of a group along which the sides stick, each with the largest friction force there.
     pub(super) fn sticking(&self, group: &Group, slot: &HashMap<usize, usize>) -> Vec<(DVector<f64>, f64)> {
         let within = self.closed_within();
         let own = self.slides.iter().filter(|(slide, _)| group.vertices.contains(&slide.first));
@@ -99,12 +99,12 @@ impl<'a> Solution<'a> {
         own.filter_map(row).collect()
     }
 
-    /// Whether what friction does at one place of a group depends on what it does at another, or on what presses there.
+    /// True if the friction force at one place of a group depends on that at another, or on the pressure there.
     pub(super) fn couples(&self, group: &Group) -> bool {
         self.slides.iter().any(|(slide, coupled)| *coupled && group.vertices.contains(&slide.first))
     }
 
-    /// j_t.
+    /// The tangential jump j_t.
     fn along(&self, slide: &EndSlide) -> f64 {
         dot(self.value(slide.first), slide.tangent) - slide.second.map_or(0.0, |s| dot(self.value(s), slide.tangent))
     }
@@ -113,8 +113,8 @@ impl<'a> Solution<'a> {
 /// The vertices at an end of a contact pair, and the direction of contact there.
 type PairEnd = (usize, Option<usize>, [f64; 2]);
 
-/// Which of the jumps do not follow the law of one tangent alone: several contacts, or several directions of one, meet there, or a
-/// support holds it askew.
+/// Tells for each jump if it does not follow the law of one tangent alone: several contacts, or several directions of one, meet
+/// there, or a support holds it at a skew angle.
 pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> Vec<bool> {
     let mut meeting: HashMap<usize, Vec<PairEnd>> = HashMap::new();
     for pair in problem.pairs() {
@@ -137,8 +137,8 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
     slides.iter().map(is_coupled).collect()
 }
 
-/// What is left of a load by forces ≥ 0 on the unit rows `pushing` and forces within their limits on those `sticking`, as little as
-/// can be: coordinate by coordinate, since rows of several contacts may say the same.
+/// The least remainder of a load after forces ≥ 0 on the unit rows `pushing` and forces within their limits on the rows `sticking`,
+/// found by coordinate descent, since rows of several contacts may be linearly dependent.
 pub(super) fn least(load: &DVector<f64>, pushing: &[DVector<f64>], sticking: &[(DVector<f64>, f64)]) -> DVector<f64> {
     let bounded = sticking.iter().map(|(row, limit)| (row, [-limit, *limit]));
     let rows: Vec<(&DVector<f64>, [f64; 2])> =

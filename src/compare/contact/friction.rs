@@ -1,4 +1,4 @@
-//! Friction along a contact in the dual solution: where it sticks and slides, and what its traction adds up to.
+//! Friction along a contact in the dual solution: zones of stick and slip, and the resultant of its traction.
 
 use serde::Serialize;
 
@@ -9,11 +9,11 @@ use crate::element::polynomial::side;
 use crate::problem::{ContactPair, Friction, Problem};
 use crate::vector::long::largest;
 
-/// Part of the bound from which a traction is at it.
+/// Fraction of the bound from which a traction counts as being at the bound.
 const AT_BOUND: f64 = 1.0 - 1e-6;
-/// Part of the largest stress nearby that rounding leaves of a traction.
+/// Rounding error of a traction, as a fraction of the largest stress nearby.
 const ROUNDING: f64 = 1e-11;
-/// Parts of a pair that are told apart.
+/// Parts of a pair whose states are distinguished.
 const PARTS: usize = 8;
 
 /// Friction on a contact.
@@ -78,7 +78,7 @@ pub enum FrictionState {
     Open,
 }
 
-/// What there is on a contact with friction: its summary, and the force and moment about the origin of what is tangential on the first
+/// Friction on a contact: its summary, and the force and moment about the origin of the tangential tractions on the first
 /// side, thickness included.
 pub struct OnContact {
     /// The summary.
@@ -87,7 +87,7 @@ pub struct OnContact {
     pub resultant: ([f64; 2], f64),
 }
 
-/// The friction of contact `index` with these `pressures`, where what is below `open` is none; `None` where it has none.
+/// The friction of contact `index` with these `pressures`, of which those below `open` count as zero; `None` without friction.
 pub fn on_contact(
     problem: &Problem,
     dual: &DualSolution,
@@ -154,7 +154,7 @@ pub fn on_contact(
     Some(OnContact { summary, resultant: (force, moment) })
 }
 
-/// Adds a stretch to what comes before it.
+/// Appends a stretch, merged with the one before it if both have the same state.
 fn add(zones: &mut Vec<FrictionZone>, [from, to]: [f64; 2], state: FrictionState) {
     match zones.last_mut() {
         Some(last) if last.state == state && (from - last.to).abs() <= 1e-12 * to.abs() => last.to = to,
@@ -162,7 +162,7 @@ fn add(zones: &mut Vec<FrictionZone>, [from, to]: [f64; 2], state: FrictionState
     }
 }
 
-/// What rounding leaves of a traction on a pair.
+/// Rounding error of a traction on a pair.
 fn rounding(problem: &Problem, dual: &DualSolution, pair: &ContactPair) -> f64 {
     let t = pair.edges[0].and_then(|e| problem.mesh.edges[e].triangles[0]);
     ROUNDING * t.map_or(0.0, |t| largest(dual.stress.block(t).as_flattened()))

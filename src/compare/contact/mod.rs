@@ -26,13 +26,13 @@ use pressure::{
 };
 use resultant::{forces, resultant_check};
 
-/// Pressures below this fraction of the largest count as none.
+/// Pressures below this fraction of the largest count as zero.
 const NO_PRESSURE: f64 = 1e-9;
-/// Pressures below this fraction of the stress that the loads can ask for count as none, however large the others are.
+/// Pressures below this fraction of the stress scale of the loads count as zero, however large the others are.
 const NO_STRESS: f64 = 1e-10;
 /// Largest pressures below this fraction of it are not compared.
 const SEEN: f64 = 1e-6;
-/// Reactions below this fraction of the largest are what a solver leaves of zero.
+/// Reactions below this fraction of the largest are solver residuals of zero.
 const NO_REACTION: f64 = 1e-7;
 /// A trace scatters around zero where the bodies are apart, by a few per cent of the largest pressure.
 const NO_TRACE: f64 = 0.05;
@@ -45,13 +45,13 @@ const REACTION: f64 = 1e-8;
 pub struct Sides<'a> {
     /// The scene on its mesh.
     pub problem: &'a Problem,
-    /// What is round-off.
+    /// Scales of round-off.
     pub scales: &'a Scales,
-    /// What tolerances may be at most.
+    /// Upper limits of the tolerances.
     pub ceilings: &'a Ceilings,
     /// λ_h.
     pub dual: &'a DualSolution,
-    /// Between the lower bound and the best upper one.
+    /// Gap between the lower bound and the best upper bound.
     pub gap: f64,
     /// The displacement solution to compare with.
     pub best: Option<&'a Judged>,
@@ -76,7 +76,7 @@ impl Sides<'_> {
         (summaries, checks)
     }
 
-    /// What the dual solution says of a contact with the pressure `own`.
+    /// Summary of a contact in the dual solution, with the pressure `own`.
     fn summary(&self, (index, interface): (usize, &Interface), own: &[Piece]) -> ContactSummary {
         let problem = self.problem;
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
@@ -197,12 +197,12 @@ impl Sides<'_> {
         self.scales.round_off.stress.max(NO_STRESS * self.scales.data.stress)
     }
 
-    /// The pressure below which an edge is open where that of its contact is nothing below `part`.
+    /// The pressure below which an edge is open, if pressures of its contact below `part` count as zero.
     fn open_below(&self, part: f64) -> f64 {
         part.max(self.no_pressure())
     }
 
-    /// What rounding and the accuracy of a solver leave in a single reaction, thickness included.
+    /// Error of a single reaction by rounding and the accuracy of a solver, thickness included.
     fn reaction_round_off(&self, best: &Judged, (index, interface): (usize, &Interface), own: &[Piece]) -> f64 {
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let largest = own.iter().flat_map(Piece::coefficients).fold(0.0_f64, |m, p| m.max(p.abs()));
@@ -211,7 +211,7 @@ impl Sides<'_> {
         REACTION * carried + of_displacements.unwrap_or(0.0) + self.scales.round_off.force
     }
 
-    /// `all` that a force of interface `index` may be off by, of which the displacements of `best` have their part.
+    /// Allowance for a force of interface `index` with the total error `all`, part of which is owing to the displacements of `best`.
     pub fn of_reaction(&self, best: &Judged, index: usize, all: f64) -> Allowance {
         let digits = best.balance.as_ref().map_or(0.0, |balance| balance.reaction_tolerance(index));
         Allowance { exact: all - digits, digits, ceiling: self.ceilings.force }
@@ -241,7 +241,7 @@ impl Sides<'_> {
             .check_of_large(|allowed| Check::at_most(&name, value, 0.0, allowed, Basis::RoundOff, why))
     }
 
-    /// Pressures averaged at each vertex of Γ_K, which differ only as far as the stresses next to it do.
+    /// Checks of pressures averaged at each vertex of Γ_K, whose difference is bounded by that of the stresses around it.
     fn bounded_pressure(
         &self,
         best: &Judged,
@@ -282,7 +282,7 @@ fn together((force, moment): ([f64; 2], f64), (other, more): ([f64; 2], f64)) ->
     ([force[0] + other[0], force[1] + other[1]], moment + more)
 }
 
-/// Pressures of a field that brings no reactions: theory does not limit their difference.
+/// Checks of pressures of a field without reactions: theory does not limit their difference.
 fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
     let name = |last: &str| format!("contact/{}/{last}", summary.name);
     let l2 = summary.pressure_l2_difference.map(|relative| {
@@ -308,7 +308,7 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
     l2.into_iter().chain([max]).collect()
 }
 
-/// The moment about the point (0, 0) of the file, from that about the point from which coordinates count.
+/// The moment about the point (0, 0) of the file, from the moment about the origin of the internal coordinates.
 fn about_zero(problem: &Problem, moment: f64, force: [f64; 2]) -> f64 {
     let [x, y] = problem.scene.origin;
     if [x, y] == [0.0; 2] || problem.section().is_revolved() { moment } else { moment + (x * force[1] - y * force[0]) }
@@ -318,8 +318,8 @@ fn is_elastic(interface: &Interface) -> bool {
     interface.pairs.iter().any(|pair| pair.stiffness.is_some())
 }
 
-/// The reactions of a solution on a contact, where they are all seen and can be compared: at the tip of a crack both sides end in
-/// one vertex, which holds itself, and those of elastic contact are springs'.
+/// The reactions of a solution on a contact, if all of them can be determined and compared: at the tip of a crack both sides end in
+/// one vertex, where the jump is zero, and the reactions of elastic contact are spring forces.
 fn reactions_on<'a>(judged: &'a Judged, (index, interface): (usize, &Interface)) -> Option<&'a Reactions> {
     let at_tip = |pair: &ContactPair| pair.second.is_some_and(|second| (0..2).any(|k| second[k] == pair.first[k]));
     let all = judged.candidate.reactions.as_ref()?;

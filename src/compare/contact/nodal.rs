@@ -1,18 +1,19 @@
 //! Contact pressure of both models, averaged with the same weights: the one comparison of pressures that has a bound.
 //!
 //! Let φ be the hat function of a vertex of Γ_K, n the direction of contact there, and w = φ n the displacement that moves
-//! this vertex alone. Where supports and other contacts let w pass, both models are in equilibrium with it:
+//! this vertex alone. Where supports and other contacts allow w, both models are in equilibrium with it:
 //!
 //! ∫ λ_h : e(w) = L(w) + ∫_{ΓK} t φ n·n̂,   ∫ σ(u_h) : e(w) = L(w) − R(φ),
 //!
-//! with R(φ) the work of the reactions on w; φ n·n̂ is φ where n̂ does not turn. The difference of the two pressures is therefore the work of the difference of
-//! the stresses in the triangles around the vertex, and no larger than its size:
+//! with R(φ) the work of the reactions on w; φ n·n̂ is φ where n̂ does not turn. The difference of the two pressures is therefore the
+//! work of the difference of the stresses in the triangles around the vertex, bounded by Cauchy–Schwarz:
 //!
 //! ∫ (−t) φ n·n̂ − R(φ) = −∫ (λ_h − σ(u_h)) : e(w),   |∫ (−t) φ n·n̂ − R(φ)| ≤ Σ_T ‖λ_h − σ(u_h)‖_T ‖e(w)‖_T.
 //!
 //! Of a solution on quadrilaterals φ is the function of degree 1 in each coordinate; the rest is the same on parallelograms.
 //!
-//! The equation holds to round-off for a correct solution, the inequality says what its two sides may amount to. Both hold for unbounded pressures too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
+//! The equation holds to round-off for a correct solution, the inequality bounds its two sides. Both hold for unbounded pressures
+//! too, as under the edge of a punch, where neither a maximum nor an L² norm converges.
 
 use std::collections::{HashMap, HashSet};
 
@@ -38,20 +39,20 @@ pub struct NodalPressure {
     pub dual: f64,
     /// R(φ) / ∫ φ of the displacement solution, per thickness.
     pub primal: f64,
-    /// −∫ (λ_h − σ(u_h)) : e(w) / ∫ φ, per thickness: what dual − primal has to be.
+    /// −∫ (λ_h − σ(u_h)) : e(w) / ∫ φ, per thickness: the exact value of dual − primal.
     pub explained: f64,
-    /// What it may be at most, from the size of λ_h − σ(u_h).
+    /// Upper bound of this difference, from the norm of λ_h − σ(u_h).
     pub allowed: f64,
 }
 
-/// How two nodal pressures compare over a whole interface.
+/// Comparison of two nodal pressures over a whole interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodalDifference {
     /// L² norm of the dual ones.
     pub norm: f64,
     /// L² norm of the differences.
     pub l2: f64,
-    /// L² norm of what is allowed.
+    /// L² norm of the allowed differences.
     pub l2_allowed: f64,
     /// Largest force that the stresses leave unexplained, per thickness.
     pub unexplained: f64,
@@ -155,7 +156,7 @@ pub fn difference(nodes: &[NodalPressure]) -> Option<NodalDifference> {
     })
 }
 
-/// The vertices of the first side at which w = φ n is admissible in both directions but for this contact, with n.
+/// The vertices of the first side at which w = φ n is admissible in both directions apart from this contact, with n.
 fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashMap<usize, [f64; 2]> {
     let mut normals: HashMap<usize, [f64; 2]> = HashMap::new();
     let mut held: HashSet<usize> = HashSet::new();
@@ -192,7 +193,7 @@ fn free_normals(problem: &Problem, index: usize, interface: &Interface) -> HashM
     normals
 }
 
-/// Cosines within this of 0 or 1 are.
+/// Cosines this close to 0 or 1 count as 0 or 1.
 const ALIGNED: f64 = 1e-9;
 
 /// ∫ (λ_h − σ(u_h)) : e(φ n) and Σ_T ‖λ_h − σ(u_h)‖_T ‖e(φ n)‖_T for the hat function of each vertex, per thickness.
@@ -228,7 +229,7 @@ fn works(
     sums
 }
 
-/// The same for the functions of degree 1 on quadrilaterals, which are parallelograms: all integrands are polynomials.
+/// As `works`, for the functions of degree 1 on quadrilaterals, which are parallelograms: all integrands are polynomials.
 fn works_on_quadrilaterals(
     problem: &Problem,
     dual: &DualSolution,

@@ -14,7 +14,7 @@ use crate::problem::{Interface, Problem};
 pub(in crate::compare) struct Peaks([(f64, [f64; 2]); 2]);
 
 impl Peaks {
-    /// Of the pressures of both models; `nodes` are the vertices that nothing else holds.
+    /// The peaks of the pressures of both models; `nodes` are the vertices that nothing else holds.
     pub fn new(problem: &Problem, interface: &Interface, nodes: &[NodalPressure], both: [&[Piece]; 2]) -> Self {
         let free: HashSet<usize> = nodes.iter().map(|node| node.vertex).collect();
         Peaks(both.map(|pieces| {

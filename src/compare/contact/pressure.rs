@@ -18,8 +18,8 @@ pub fn dual_pressure(dual: &DualSolution, interface: usize) -> Vec<Piece> {
     dual.contact_traction[interface].iter().map(pressure).collect()
 }
 
-/// Pressures from those times the weight of the section, which is all that a body of revolution has on its edges; between the points of the
-/// degree they are interpolated.
+/// Pressures from their products with the weight of the section, the only ones known on the edges of a body of revolution; interpolated
+/// between the points of the degree.
 pub fn unweighted(problem: &Problem, interface: &Interface, own: &[Piece]) -> Vec<Piece> {
     let section = problem.section();
     if !section.is_revolved() {
@@ -42,8 +42,8 @@ pub fn unweighted(problem: &Problem, interface: &Interface, own: &[Piece]) -> Ve
     interface.pairs.iter().zip(own).map(of_pair).collect()
 }
 
-/// The mean weight of the section beside vertex `v` of a pair, as the Bernstein polynomial of that vertex weighs it where there are `inner`
-/// more between.
+/// The mean weight of the section near vertex `v` of a pair, averaged with the Bernstein polynomial of that vertex, if there are `inner`
+/// more polynomials between the ends.
 fn around(problem: &Problem, pair: &ContactPair, v: usize, inner: usize) -> f64 {
     let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
     let degree = (inner + 1) as f64;
@@ -51,7 +51,7 @@ fn around(problem: &Problem, pair: &ContactPair, v: usize, inner: usize) -> f64 
     if a == b { a } else { ((degree + 1.0) * own + other) / (degree + 2.0) }
 }
 
-/// The same of the polynomials between.
+/// As [`around`], for the `inner` polynomials between the ends.
 fn around_between(problem: &Problem, pair: &ContactPair, inner: usize) -> Vec<f64> {
     let [a, b] = pair.first.map(|v| problem.section().weight(problem.mesh.points[v]));
     let degree = (inner + 1) as f64;
@@ -59,7 +59,7 @@ fn around_between(problem: &Problem, pair: &ContactPair, inner: usize) -> Vec<f6
     (1..=inner).map(|j| if a == b { a } else { at(j) }).collect()
 }
 
-/// Part of an edge that is as near to its end as pressures beside an axis are taken.
+/// Nearest distance from an axis at which pressures are evaluated, as a fraction of the edge.
 const ASIDE: f64 = 1e-6;
 
 /// Pressure from consistent reactions: each is spread over the part of Γ_K that its shape function covers.
@@ -150,7 +150,7 @@ pub fn trace_along(
 /// Parts of an edge on which the pressure of an elastic contact that ends there is drawn as linear.
 const PARTS: usize = 32;
 
-/// k times what a jump exceeds the gap by, from the coefficients of the opening.
+/// k times the excess of a jump over the gap, from the coefficients of the opening.
 fn spring_pressure(opening: &[f64], k: f64) -> Piece {
     let pressed: Vec<f64> = opening.iter().map(|open| -k * open).collect();
     if pressed.iter().all(|p| *p >= 0.0) {
@@ -162,13 +162,13 @@ fn spring_pressure(opening: &[f64], k: f64) -> Piece {
     Piece::broken((0..=PARTS).map(|i| side::value(&pressed, i as f64 / PARTS as f64).max(0.0)).collect())
 }
 
-/// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included; in a body of revolution of one
-/// that is times the distance from the axis.
+/// Resultant force and moment about the origin of a pressure, as it acts on the first side, thickness included; in a body of revolution
+/// the pressure is given times the distance from the axis.
 pub fn resultant(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
     resultant_of(problem, interface, pieces, |_| EdgeWeight::default())
 }
 
-/// The same of one that is not.
+/// As [`resultant`], for a pressure that is not multiplied by the distance from the axis.
 pub fn resultant_of_pressure(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> ([f64; 2], f64) {
     resultant_of(problem, interface, pieces, |pair| EdgeWeight::of_pair(problem.section(), &problem.mesh, pair))
 }
@@ -194,12 +194,12 @@ fn resultant_of(
     (without_radial(problem, force), if problem.section().is_revolved() { 0.0 } else { moment })
 }
 
-/// A force, of a body of revolution along its axis: around it radial forces and moments cancel.
+/// A force without its radial component on a body of revolution: around the axis radial forces and moments cancel.
 pub fn without_radial(problem: &Problem, force: [f64; 2]) -> [f64; 2] {
     if problem.section().is_revolved() { [0.0, force[1]] } else { force }
 }
 
-/// Moment about the origin of reactions as they act on the first side: of each, what it does on a rotation.
+/// Moment about the origin of reactions as they act on the first side: the work of each on a unit rotation.
 pub fn reaction_moment(problem: &Problem, interface: &Interface, reactions: &Reactions) -> f64 {
     let cross = |[x, y]: [f64; 2], n: [f64; 2]| x * n[1] - y * n[0];
     if problem.section().is_revolved() {
@@ -267,7 +267,7 @@ pub fn weighted_reactions(problem: &Problem, weights: &[Vec<f64>], reactions: &[
     found
 }
 
-/// Largest value and where it is.
+/// Largest value and its place.
 pub fn maximum(problem: &Problem, interface: &Interface, pieces: &[Piece]) -> (f64, [f64; 2]) {
     let mut best = (0.0, interface.pairs.first().map_or([0.0; 2], |p| problem.mesh.points[p.first[0]]));
     for (pair, p) in interface.pairs.iter().zip(pieces) {
@@ -290,7 +290,7 @@ pub fn l2(interface: &Interface, p: &[Piece], q: &[Piece]) -> (f64, f64) {
     (norm.sqrt(), difference.sqrt())
 }
 
-/// Whether no more than `threshold` of pressure is anywhere on a pair.
+/// True if the pressure is nowhere above `threshold` on a pair.
 fn is_open(piece: &Piece, threshold: f64) -> bool {
     piece.largest().0 <= threshold
 }
@@ -301,7 +301,7 @@ pub fn open_length(interface: &Interface, pieces: &[Piece], threshold: f64) -> f
     interface.pairs.iter().zip(pieces).filter(|(_, p)| open(p)).map(|(pair, _)| pair.length).sum()
 }
 
-/// Where two models disagree about contact.
+/// The extent to which two models disagree about contact.
 pub struct Disagreement {
     /// Length of the edges that only one of them calls open.
     pub length: f64,

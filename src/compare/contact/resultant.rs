@@ -59,7 +59,7 @@ pub fn resultant_check(
     sides.of_reaction(best, index, allowed).check_of_large(made)
 }
 
-/// Why no displacement moves the first side of a contact alone.
+/// The reason why no displacement moves the first side of a contact alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Meets {
     /// A support meets it.

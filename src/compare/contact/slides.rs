@@ -5,7 +5,7 @@
 //!
 //!   ∫ c e(u_h):e(φ) + Σ_r R_r b_r(φ) + Σ_i F_i d_i(φ) = ∫ F·φ + ∫ P·φ,  |F_i| ≤ c_i,  F_i = c_i sgn d_i(u_h) where d_i(u_h) ≠ 0.
 //!
-//! Where contacts along several directions meet in a vertex, its law couples them, and is not held to them one by one.
+//! Where contacts along several directions meet in a vertex, its law couples them and is not checked for each alone.
 
 use std::collections::BTreeMap;
 

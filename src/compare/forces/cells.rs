@@ -78,7 +78,7 @@ pub fn load(cell: &Quadrilateral, force: &BodyForce) -> Vec<[f64; 2]> {
     sums
 }
 
-/// Of every triangle the quadrilateral that it is a part of.
+/// For every triangle the quadrilateral that it is a part of.
 pub fn of_triangles(problem: &Problem, cells: &[Cell]) -> Vec<Option<usize>> {
     let mut of = vec![None; problem.mesh.triangles.len()];
     for (i, cell) in cells.iter().enumerate() {
@@ -95,7 +95,7 @@ impl Cell {
 }
 
 impl NodalForces {
-    /// Of a candidate of degree 1 or 2, on quadrilaterals by one of [`rules`].
+    /// Forces of a candidate of degree 1 or 2, on quadrilaterals by one of [`rules`].
     pub fn by_rule(problem: &Problem, candidate: &Candidate, points: Option<usize>) -> Self {
         match points {
             None => NodalForces::new(problem, candidate.degree, &candidate.vertex, &candidate.middle),
@@ -113,7 +113,7 @@ impl NodalForces {
         nodes.map(term).sum()
     }
 
-    /// Of a candidate with quadrilaterals, by a rule with so many points in each direction.
+    /// Forces of a candidate with quadrilaterals, by a rule with `points` points in each direction.
     pub fn of_cells(problem: &Problem, candidate: &Candidate, points: usize) -> Self {
         let of = of_triangles(problem, &candidate.cells);
         let whole = |t: usize| of[t].is_none();

@@ -16,7 +16,7 @@ struct Term {
 }
 
 impl NodalForces {
-    /// Of a displacement by its coefficients, numbered as its values are; exact, as all that is integrated are polynomials.
+    /// Forces of a displacement by its coefficients, numbered as its values are; exact, as all integrands are polynomials.
     pub fn of_coefficients(problem: &Problem, field: &PlainDisplacement) -> Self {
         let mesh = &problem.mesh;
         let (k, count) = (field.degree(), field.values().len());

@@ -1,4 +1,4 @@
-//! Forces at the nodes of a displacement model: what its stresses ask for, less what the loads give.
+//! Forces at the nodes of a displacement model: those of its stresses, less those of the loads.
 
 pub mod cells;
 pub(super) mod coefficients;
@@ -22,18 +22,18 @@ pub struct NodalForces {
     pub left: Vec<[f64; 2]>,
     /// ∫ F·φ + ∫ P·φ + ∫ cε0:e(φ).
     pub load: Vec<[f64; 2]>,
-    /// Σ_j |K_ij| |u_j| + |load|: what rounding errors of the values at the nodes are relative to.
+    /// Σ_j |K_ij| |u_j| + |load|: the scale of the errors by rounding of the values at the nodes.
     pub size: Vec<f64>,
     /// An upper estimate of the diagonal entry K_ii.
     pub stiffness: Vec<f64>,
     /// The triangle that contributes most to the stiffness, to name the body of a node.
     pub triangle: Vec<usize>,
-    /// ∫ k (j − g)₊ g of elastic contact: what its pressures do on its gaps.
+    /// ∫ k (j − g)₊ g of elastic contact: the work of its pressures on its gaps.
     pub on_gaps: f64,
 }
 
 impl NodalForces {
-    /// Of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
+    /// Forces of a continuous displacement of degree 1 or 2 with the given values at vertices and edge midpoints.
     pub fn new(problem: &Problem, degree: usize, vertex: &[[f64; 2]], middle: &[[f64; 2]]) -> Self {
         let mut forces = Self::on(problem, degree, vertex, middle, |_| true);
         let value = |node: usize| *vertex.get(node).unwrap_or_else(|| &middle[node - vertex.len()]);
@@ -43,7 +43,7 @@ impl NodalForces {
         forces
     }
 
-    /// None at so many nodes.
+    /// Zero forces at `count` nodes.
     pub(in crate::compare) fn zeros(count: usize) -> Self {
         NodalForces {
             left: vec![[0.0; 2]; count],
@@ -55,8 +55,8 @@ impl NodalForces {
         }
     }
 
-    /// Adds what the stress at one point of a cell, which counts `weight`, asks for at its nodes, whose functions have `gradients`
-    /// there and the values `u`; gives strain and stress.
+    /// Adds the nodal forces of the stress at one point of a cell, of weight `weight`, where the functions of its nodes have `gradients`
+    /// and the nodes the values `u`; returns strain and stress.
     pub(in crate::compare) fn add_stress(
         &mut self,
         (material, weight): (&Material, f64),
@@ -82,7 +82,7 @@ impl NodalForces {
         [e, s]
     }
 
-    /// Adds to the loads what cε0 at one point, which counts `weight`, does on nodes whose functions have `gradients` there.
+    /// Adds to the loads the forces of cε0 at one point, of weight `weight`, on nodes whose functions have `gradients` there.
     pub(in crate::compare) fn add_initial(
         &mut self,
         weight: f64,
@@ -152,7 +152,7 @@ impl NodalForces {
         forces
     }
 
-    /// Takes the loads from the forces of the stresses: what is left is missing in equilibrium.
+    /// Subtracts the loads from the forces of the stresses: the remainder is missing in equilibrium.
     pub(in crate::compare) fn take_loads(&mut self) {
         for (node, load) in self.load.iter().enumerate() {
             self.left[node][0] -= load[0];
@@ -189,7 +189,7 @@ impl NodalForces {
         self.stiffness.iter().enumerate().map(term).sum::<f64>().sqrt()
     }
 
-    /// What supports cannot take of `left`, whose nodes on vertices and edges are `nodes`.
+    /// The part of `left` that supports cannot take; `nodes` numbers its nodes on vertices and edges.
     pub fn unsupported(&self, holds: &Holds, nodes: &Nodes) -> Vec<[f64; 2]> {
         let all = holds.of_nodes(nodes).chain(std::iter::repeat(Hold::Free));
         self.left.iter().zip(all).map(|(f, hold)| hold.project(*f)).collect()

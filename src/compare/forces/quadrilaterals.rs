@@ -14,7 +14,7 @@ use crate::element::polynomial::quadrature::segment_rule;
 use crate::problem::Problem;
 
 impl NodalForces {
-    /// Of a displacement on quadrilaterals, with its energy, in the rule with `points` points in each direction.
+    /// Forces and energy of a displacement on quadrilaterals, by the rule with `points` points in each direction.
     pub fn on_quadrilaterals(problem: &Problem, field: &OnQuadrilaterals, points: usize) -> (Self, Potential) {
         let mesh = &problem.mesh;
         let (k, values) = (field.degree(), field.values());

@@ -24,7 +24,7 @@ impl Functions {
         }
     }
 
-    /// The same with what the points of an edge count.
+    /// As [`Self::product`], with the weight of the points of the edge.
     fn weighted(self, weight: EdgeWeight, degree: usize, i: usize, j: usize) -> f64 {
         if weight.radii().is_none() {
             return self.product(degree, i, j);
@@ -51,7 +51,7 @@ impl Functions {
         own.iter().zip(&gap).map(|(j, g)| j - g).collect()
     }
 
-    /// ∫ d₊ φ_i on an edge of length one whose points count `weight`, for all functions of degree `degree`.
+    /// ∫ d₊ φ_i on an edge of length one whose points have the weight `weight`, for all functions of degree `degree`.
     fn forces(self, weight: EdgeWeight, beyond: &[f64], degree: usize) -> Vec<f64> {
         let moments = positive::moments(beyond, degree, weight.ends());
         match (self, &moments[..]) {
@@ -62,7 +62,7 @@ impl Functions {
 }
 
 impl NodalForces {
-    /// Adds the forces of springs for the values `value` of nodes: vertices, then those inside each edge. Gives the energy of the
+    /// Adds the forces of springs for the values `value` of nodes: vertices, then those inside each edge. Returns the energy of the
     /// springs, thickness included.
     pub(in crate::compare) fn add_springs(
         &mut self,
@@ -119,14 +119,14 @@ impl NodalForces {
     }
 }
 
-/// Which part of the law of springs.
+/// A part of the law of springs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Part {
-    /// The forces that they have: of elastic contact where the jump exceeds the gap.
+    /// The actual forces: for elastic contact those where the jump exceeds the gap.
     Own,
-    /// Those that elastic contact would have beside, if it pulled where it is open.
+    /// The additional forces of elastic contact if it pulled where it is open.
     Pulling,
-    /// Those of elastic contact whose gap is this many times its own.
+    /// The forces of elastic contact whose gap is multiplied by this factor.
     WithGap(f64),
 }
 

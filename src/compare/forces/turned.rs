@@ -1,8 +1,8 @@
 //! Nodal forces of displacement models of bodies of revolution, by the rule that a program integrates with.
 //!
-//! Integrals of v_r/r are rational. A displacement model integrates them by a rule and minimises the energy that this rule gives: its
-//! identities hold with the same rule, and bounds with enclosed integrals, as of every field. FEniCSx is given the rule of this program; of
-//! other programs the one with which the equations hold best is taken for theirs.
+//! Integrands with v_r/r are rational. A displacement model integrates them by a rule and minimises the energy that this rule gives: its
+//! identities hold with the same rule, and bounds with enclosed integrals, as for every field. FEniCSx is given the rule of this program;
+//! for other programs the rule with which the equations hold best is assumed.
 
 use super::NodalForces;
 use super::cells;
@@ -17,23 +17,23 @@ use crate::element::polynomial::symmetric_rules::symmetric_rules;
 use crate::element::revolved::{NEAR, rule};
 use crate::problem::Problem;
 
-/// The degree to which polynomials are integrated by the rule that is as good as exact.
+/// The polynomial degree up to which the rule that is as good as exact integrates exactly.
 const EXACT: usize = 12;
 
-/// How a program integrates its equations.
+/// The rule by which a program integrates its equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rule {
-    /// On triangles the place in [`symmetric_rules`]; `None` for one that is as good as exact.
+    /// On triangles the index in [`symmetric_rules`]; `None` for a rule that is as good as exact.
     pub triangles: Option<usize>,
     /// On quadrilaterals the points in each direction.
     pub points: usize,
 }
 
 impl Rule {
-    /// That of FEniCSx beside this program.
+    /// The rule of FEniCSx as run by this program.
     pub const OWN: Self = Rule { triangles: Some(0), points: 3 };
 
-    /// Those that a program may have used for `candidate`.
+    /// The rules that a program may have used for `candidate`.
     pub fn all(candidate: &Candidate) -> Vec<Self> {
         let points: Vec<usize> = cells::rules(candidate).into_iter().flatten().collect();
         let [first, ..] = points[..] else {
@@ -52,7 +52,7 @@ fn has_triangles(candidate: &Candidate) -> bool {
     candidate.numbering.as_ref().is_none_or(|numbering| covered < numbering.triangles.len())
 }
 
-/// What a model has at one point of its rule.
+/// A displacement model at one point of its rule.
 pub struct At<'a> {
     /// The triangle, the first one of a quadrilateral.
     pub triangle: usize,
@@ -66,14 +66,14 @@ pub struct At<'a> {
     pub values: &'a [[f64; 2]],
     /// Distance from the axis.
     pub radius: f64,
-    /// Where it is.
+    /// Coordinates of the point.
     pub place: [f64; 2],
-    /// What the point counts, thickness and angle included, without the radius.
+    /// Weight of the point, thickness and angle included, without the radius.
     pub weight: f64,
 }
 
 impl At<'_> {
-    /// The strain (rr, zz, tt, rz), and the size of what is added up for it.
+    /// The strain (rr, zz, tt, rz), and the sum of the magnitudes of its terms.
     pub fn strain(&self) -> ([f64; 4], f64) {
         let (mut e, mut spread) = ([0.0; 4], 0.0);
         for ((value, d), u) in self.shapes.iter().zip(self.values) {
@@ -88,7 +88,7 @@ impl At<'_> {
         (e, spread)
     }
 
-    /// The same without the initial strain of a material.
+    /// As [`Self::strain`], without the initial strain of a material.
     pub fn elastic(&self, material: &Material) -> ([f64; 4], f64) {
         let (e, spread) = self.strain();
         if material.initial().is_none() {
@@ -98,7 +98,7 @@ impl At<'_> {
         ([0, 1, 2, 3].map(|c| e[c] - own[c]), spread + own.iter().map(|e| e.abs()).sum::<f64>())
     }
 
-    /// What a stress asks for at node `i` of the cell, times its weight.
+    /// The force of a stress at node `i` of the cell, per unit of weight.
     pub fn force(&self, i: usize, s: [f64; 4]) -> [f64; 2] {
         let (value, d) = self.shapes[i];
         [d[0] * s[0] + d[1] * s[3] + value / self.radius * s[2], d[0] * s[3] + d[1] * s[1]]
@@ -179,7 +179,7 @@ pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl
     }
 }
 
-/// How many nodes `candidate` has.
+/// Number of nodes of `candidate`.
 pub fn count(problem: &Problem, candidate: &Candidate) -> usize {
     problem.mesh.points.len() + if candidate.degree == 2 { problem.mesh.edges.len() } else { 0 }
 }

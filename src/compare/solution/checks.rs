@@ -7,11 +7,11 @@ use crate::compare::{Allowances, Basis, Check};
 use crate::problem::Scales;
 use crate::sets::DisjointSets;
 
-/// How many nodes with a large residual are named.
+/// Number of nodes with a large residual that are named.
 const NAMED: usize = 3;
 
 impl Solution<'_> {
-    /// All of them; `scales` says what counts as no force and no energy, `allow` what was asked for.
+    /// All checks; `scales` gives the forces and energies that count as zero, `allow` the tolerances asked for.
     pub fn checks(&self, scales: &Scales, allow: &Allowances) -> Vec<Check> {
         let mut checks =
             vec![self.residual_check(), self.supports_check(), self.reactions_check(scales), self.energy_check(scales)];
@@ -94,7 +94,7 @@ impl Solution<'_> {
         )
     }
 
-    /// `length` relative to the largest displacement, or to what the problem allows where the field is larger.
+    /// `length` relative to the largest displacement, or to the largest that the problem allows if the field is larger.
     pub(super) fn relative(&self, length: f64) -> f64 {
         if self.reference > 0.0 { length / self.reference } else { length }
     }

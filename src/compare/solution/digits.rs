@@ -1,15 +1,15 @@
-//! What the digits of a file can tell: an allowance for rounding has a ceiling that comes from the problem.
+//! Allowances for the digits of a file: the allowance for rounding has a ceiling that comes from the problem.
 //!
 //! A value that is kept to d digits is off by up to half a unit of the last one, and a displacement far larger than the strains
-//! loses them all. How much that may leave of a residual is known, and a correct field leaves no more. It says nothing about a
-//! wrong one where the same digits would hide a mistake worth finding: the check is then not made, and has not passed.
+//! loses them all. The residual that this may leave is known, and a correct field leaves no more. But the same digits could
+//! hide a mistake worth finding in a wrong field: the check is then not made, and has not passed.
 
 use super::{SOLVER, Solution};
 use crate::compare::Check;
 use crate::compare::ceiling::{Allowance, Extent, MISTAKE, PART};
 
 impl Solution<'_> {
-    /// Takes the size of the solution from `extent` where the field is larger.
+    /// Limits the scales to the size of a solution given by `extent`, if the field is larger.
     pub fn within(mut self, extent: Extent) -> Self {
         self.reference = extent.reference(self.largest);
         self.larger = extent.of_forces(self.strain);
@@ -19,24 +19,24 @@ impl Solution<'_> {
         self
     }
 
-    /// What checks of forces allow, relative to the scale of the residual.
+    /// Allowance of checks of forces, relative to the scale of the residual.
     pub(super) fn of_forces(&self) -> Allowance {
         Allowance { exact: SOLVER, digits: self.rounding / self.scale, ceiling: self.ceiling }
     }
 
-    /// What checks of displacements allow, relative to [`Self::reference`], where `values` rounded values make one.
+    /// Allowance of checks of displacements, relative to [`Self::reference`], if each is computed from `values` rounded values.
     pub(super) fn of_displacements(&self, values: f64) -> Allowance {
         let larger = if self.reference > 0.0 { self.largest / self.reference } else { 1.0 };
         Allowance { exact: SOLVER, digits: values * self.candidate.precision * larger, ceiling: PART * MISTAKE }
     }
 
-    /// The check `made` with `allowance`: it is not made where the field may owe to its digits alone that it passes, and they are
-    /// too few to tell a mistake.
+    /// The check `made` with `allowance`. It is not made if the field may pass owing to rounding of its digits alone, and they are
+    /// too few to detect a mistake.
     pub(super) fn with_digits(&self, allowance: Allowance, made: impl Fn(f64) -> Check) -> Check {
         allowance.check(made, || self.too_few(allowance))
     }
 
-    /// How many digits the check would need.
+    /// A sentence on the number of digits that the check would need.
     fn too_few(&self, allowance: Allowance) -> String {
         let has = self.candidate.precision;
         let digits = |precision: f64| (1.0 - (2.0 * precision).log10()).clamp(1.0, 99.0);

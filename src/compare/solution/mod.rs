@@ -1,10 +1,10 @@
-//! Whether a field that claims it is the discrete solution of a displacement method on this mesh.
+//! Checks that a field is the discrete solution of a displacement method on this mesh, as it claims.
 //!
 //! Its stresses then balance the loads on every basis function of its space, node by node, together with forces of the
-//! supports and forces along the contacts. Nothing of this asks how the other program solved: what is left of the nodal
-//! forces once supports and contacts, pushing or pulling, open or closed, have taken what they can is the *residual*; what
-//! contact then carries is held against complementarity by itself. A method may bound the jump at its nodes or in its Bernstein
-//! coefficients, which differ at the end of contact: what either of the two explains is explained.
+//! supports and forces along the contacts, whatever solver the other program used. The *residual* is the remainder of the nodal
+//! forces after supports and contacts, pushing or pulling, open or closed, have taken their parts; the contact forces are then
+//! checked for complementarity separately. A method may bound the jump at its nodes or in its Bernstein
+//! coefficients, which differ at the end of contact: either of the two is accepted.
 
 mod checks;
 mod digits;
@@ -28,19 +28,19 @@ use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};
 
-/// What a solver may leave in the equations that it solves, relative to what they balance.
+/// Residual that a solver may leave in its equations, relative to the forces they balance.
 pub const SOLVER: f64 = 1e-6;
 
-/// Where the nodes and triangles of a mesh are in the file that a field comes from.
+/// Numbers of the nodes and triangles of a mesh in the file that a field comes from.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Numbering {
-    /// Of vertices, then edge midpoints: the number of the point, from zero.
+    /// For vertices, then edge midpoints: the number of the point, from zero.
     pub nodes: Vec<Option<usize>>,
-    /// Of triangles: the number of the triangle, from zero.
+    /// For triangles: the number of the triangle, from zero.
     pub triangles: Vec<Option<usize>>,
-    /// Where a field comes in several files: of each the name and its first point and triangle.
+    /// If a field comes in several files: the name of each, and its first point and triangle.
     pub files: Vec<(String, [usize; 2])>,
-    /// Whether the file has the triangles of [`Problem::uncut`], from before contact cut some of them.
+    /// True if the file has the triangles of [`Problem::uncut`], from before contact cut some of them.
     pub uncut: bool,
 }
 
@@ -54,78 +54,78 @@ impl Numbering {
         }
     }
 
-    /// A node by its point.
+    /// The point of a node, as a message names it.
     pub fn point(&self, node: usize) -> Option<String> {
         Some(self.named("point", 0, self.nodes.get(node).copied().flatten()?))
     }
 
-    /// A triangle by its number.
+    /// A triangle, as a message names it.
     pub fn triangle(&self, t: usize) -> Option<String> {
         Some(self.named("triangle", 1, self.triangles.get(t).copied().flatten()?))
     }
 }
 
-/// A field with what it leaves of the equations of a discrete solution.
+/// A field with its residual in the equations of a discrete solution.
 #[derive(Debug, Clone)]
 pub struct Solution<'a> {
     /// Scene and mesh.
     pub problem: &'a Problem,
     /// The field.
     pub candidate: &'a Candidate,
-    /// Nodal forces: what stresses ask for, less the loads.
+    /// Nodal forces: those of the stresses, less the loads.
     pub forces: NodalForces,
-    /// Points in each direction of the rule on quadrilaterals, where there are such.
+    /// Points in each direction of the rule on quadrilaterals, if there are any.
     pub points: Option<usize>,
-    /// On a body of revolution the rule of all cells.
+    /// The rule of all cells, on a body of revolution.
     pub rule: Option<Rule>,
-    /// What supports and contacts cannot take of them, node by node.
+    /// The part of the nodal forces that supports and contacts cannot take, node by node.
     pub rest: Vec<[f64; 2]>,
-    /// What supports hold at vertices, then at edge midpoints.
+    /// Supports at vertices, then at edge midpoints.
     pub holds: Holds,
-    /// Where contact acts.
+    /// The places where contact acts.
     pub sites: Sites,
-    /// At each of [`Self::sites`] the force that presses the two sides together.
+    /// For each of [`Self::sites`]: the force that presses the two sides together.
     pub pressing: Vec<f64>,
-    /// At each of them (v' − v'')·n̂ − g.
+    /// For each of [`Self::sites`]: (v' − v'')·n̂ − g.
     pub excess: Vec<f64>,
-    /// At each of them the force of friction on the first side along t̂, zero without friction.
+    /// For each of [`Self::sites`]: the friction force on the first side along t̂, zero without friction.
     pub rubbing: Vec<f64>,
-    /// At each of them (v' − v'')·t̂, zero without friction.
+    /// For each of [`Self::sites`]: (v' − v'')·t̂, zero without friction.
     pub slip: Vec<f64>,
-    /// What the residual is relative to, as the root of an energy.
+    /// The scale of the residual, as the root of an energy.
     pub scale: f64,
-    /// Half of a(u, u).
+    /// The strain energy ½a(u, u).
     pub strain: f64,
     /// The largest component of the displacement.
     pub largest: f64,
-    /// What displacements are relative to: the largest one, or what the problem allows where the field is larger.
+    /// The scale of displacements: the largest one, or the largest that the problem allows if the field is larger.
     pub reference: f64,
-    /// What contact does on gaps beside what acts at [`Self::sites`].
+    /// Work of contact on gaps in addition to that of the forces at [`Self::sites`].
     on_gaps: f64,
-    /// What the rule of a method whose contact holds in the mean may leave of the energy identity.
+    /// Error in the energy identity that the rule of a method may leave if its contact holds in the mean.
     of_the_rule: f64,
-    /// By what forces of the field are multiplied so that they are those of a solution at most.
+    /// Factor that reduces the forces of the field to at most those of a solution.
     larger: f64,
-    /// What rounding may leave of the residual where checks of forces are to tell a mistake, relative to `scale`.
+    /// Largest part of the residual owing to rounding with which checks of forces still detect a mistake, relative to `scale`.
     ceiling: f64,
-    /// What the closed Bernstein coefficients, pushing alone, leave over: relative to `scale`.
+    /// The remainder after the closed Bernstein coefficients have taken forces that only push, relative to `scale`.
     pushed: f64,
-    /// What rounding of the displacements, to the digits that the file keeps, can leave of the residual.
+    /// Residual that can come from rounding of the displacements to the digits of the file.
     pub rounding: f64,
-    /// What supports leave of the nodal forces, contact forces among them.
+    /// Nodal forces that supports do not take, including contact forces.
     unsupported: Vec<[f64; 2]>,
     /// Material of every body.
     materials: Vec<Material>,
-    /// How every contact holds in the mean, where it does and not at the nodes.
+    /// For every contact that holds in the mean but not at the nodes: its law.
     pub weak: Vec<Option<Weak>>,
-    /// Whether contact is claimed to hold in the mean.
+    /// True if contact is claimed to hold in the mean.
     claims_weak: bool,
-    /// Forces at nodes that contact in the mean exerts beside pressures.
+    /// Forces that contact in the mean exerts at nodes in addition to pressures.
     beside: Vec<[f64; 2]>,
 }
 
 impl<'a> Solution<'a> {
-    /// Holds `candidate`, of strain energy `strain`, against the equations of a solution of its degree.
+    /// Inserts `candidate`, of strain energy `strain`, into the equations of a solution of its degree.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
@@ -142,7 +142,7 @@ impl<'a> Solution<'a> {
         best.map_or_else(|| made(None), Ok)
     }
 
-    /// The same by one of the rules that the program may have used on quadrilaterals.
+    /// As [`Self::new`], with one of the rules that the program may have used on quadrilaterals.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
@@ -165,7 +165,7 @@ impl<'a> Solution<'a> {
         Ok(solution)
     }
 
-    /// The same on a body of revolution, by one of the rules that the program may have used there.
+    /// As [`Self::new`] on a body of revolution, with one of the rules that the program may have used there.
     ///
     /// # Errors
     /// [`NoUpperBound`] where supports contradict each other.
@@ -233,12 +233,12 @@ impl<'a> Solution<'a> {
         all.min(if self.is_pushed() { self.pushed } else { f64::INFINITY })
     }
 
-    /// What may be left of it where every equation is solved.
+    /// The largest residual that is allowed if every equation is solved.
     pub fn allowed(&self) -> f64 {
         SOLVER + (self.rounding / self.scale).min(self.ceiling)
     }
 
-    /// Whether closed Bernstein coefficients that push explain all contact forces.
+    /// True if closed Bernstein coefficients that only push explain all contact forces.
     pub fn is_pushed(&self) -> bool {
         self.pushed <= self.allowed()
     }
@@ -256,7 +256,7 @@ impl<'a> Solution<'a> {
         x.hypot(y) / self.forces.stiffness[node].max(f64::MIN_POSITIVE).sqrt()
     }
 
-    /// The residual of every triangle for a map: of its nodes the largest |r_i|/√K_ii, relative to the scale of the whole.
+    /// The residual of every triangle for a map: the largest |r_i|/√K_ii of its nodes, relative to the scale of the whole field.
     pub fn by_triangle(&self) -> Vec<f64> {
         let mesh = &self.problem.mesh;
         let vertices = mesh.points.len();
@@ -268,13 +268,13 @@ impl<'a> Solution<'a> {
         (0..mesh.triangles.len()).map(largest).collect()
     }
 
-    /// The hold of a node.
+    /// The nodal support of a node.
     pub fn hold(&self, node: usize) -> Hold {
         let vertices = self.holds.vertices.len();
         if node < vertices { self.holds.vertices[node] } else { self.holds.middle(node - vertices) }
     }
 
-    /// Where a node is.
+    /// Coordinates of a node.
     pub fn place(&self, node: usize) -> [f64; 2] {
         place(self.problem, node)
     }
@@ -284,20 +284,20 @@ impl<'a> Solution<'a> {
         self.candidate.named(self.problem, node)
     }
 
-    /// Forces of supports on the nodes.
+    /// Force of the supports on a node.
     pub fn supported(&self, node: usize) -> [f64; 2] {
         let force = self.forces.left[node];
         let free = self.hold(node).project(force);
         [force[0] - free[0], force[1] - free[1]]
     }
 
-    /// Forces that press contact `interface` together, and the sum of all of them.
+    /// Sum of the magnitudes of the forces that act along contact `interface`.
     pub fn carried(&self, interface: usize) -> f64 {
         let sites = self.sites.list.iter().zip(&self.pressing);
         sites.filter(|(s, _)| s.interface == interface).map(|(_, f)| f.abs()).sum()
     }
 
-    /// What forces are relative to: the loads, and what supports carry, as far as a solution can ask for it.
+    /// The scale of forces: the larger of the loads and the support forces, the latter limited to those of a solution.
     pub fn applied(&self) -> f64 {
         let size = |f: [f64; 2]| f[0].hypot(f[1]);
         let loads: f64 = self.forces.load.iter().map(|f| size(*f)).sum();
@@ -317,7 +317,7 @@ impl Candidate {
     }
 }
 
-/// Where a node is: a vertex, or the midpoint of an edge.
+/// Coordinates of a node: a vertex, or the midpoint of an edge.
 pub fn place(problem: &Problem, node: usize) -> [f64; 2] {
     let mesh = &problem.mesh;
     match node.checked_sub(mesh.points.len()) {

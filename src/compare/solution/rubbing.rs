@@ -1,15 +1,15 @@
-//! The law of friction at the nodes of a field: a force along the contact that is no larger than its bound, and that against the slip.
+//! The law of friction at the nodes of a field: a force along the contact no larger than its bound, and equal to it against the slip.
 //!
-//! A method may ask for it at its nodes, in Bernstein coefficients, or under the integral of τ̄|j_t|: along an edge whose jump keeps its
-//! sign these are one in coefficients of its degree, and where the sign changes the integral may leave less. What one of them explains
-//! is explained.
+//! A method may impose it at its nodes, in Bernstein coefficients, or under the integral of τ̄|j_t|: along an edge whose jump keeps its
+//! sign these agree in coefficients of its degree, and where the sign changes the integral may ask for less. Each of them
+//! is accepted.
 
 use super::{SOLVER, Solution, Span};
 use crate::compare::Check;
 use crate::compare::contact::slides::limits;
 use crate::problem::ContactPair;
 
-/// What friction does at a place.
+/// Friction force and slip at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rubbed {
     /// Index into [`super::Sites::list`].
@@ -18,18 +18,18 @@ pub struct Rubbed {
     pub force: f64,
     /// (v' − v'')·t̂.
     pub slip: f64,
-    /// What friction carries at most.
+    /// Largest friction force.
     pub limit: f64,
-    /// By how much the force misses what the law asks for.
+    /// Error of the force in the law.
     pub miss: f64,
 }
 
-/// How a method asks for the law.
+/// The form in which a method imposes the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ask {
-    /// Of every node with its share of τ̄.
+    /// At every node with its share of τ̄.
     AtNodes,
-    /// Of Bernstein coefficients.
+    /// In Bernstein coefficients.
     InCoefficients,
 }
 
@@ -40,7 +40,7 @@ impl Solution<'_> {
         2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference
     }
 
-    /// What friction does along contact `interface`, in the way that comes nearest to the law; at places alone where nothing else shares
+    /// Friction along contact `interface` in the form that is nearest to the law; only at places where nothing else shares
     /// its force.
     pub fn rubbed(&self, interface: usize) -> Vec<Rubbed> {
         let asked = [Ask::AtNodes, Ask::InCoefficients].map(|ask| self.rubbed_as(interface, ask));
@@ -49,7 +49,7 @@ impl Solution<'_> {
         if missed(&nodes) <= missed(&coefficients) { nodes } else { coefficients }
     }
 
-    /// What friction does along contact `interface`, held to the law as one way of methods asks for it.
+    /// Friction along contact `interface`, compared with the law in the form `ask`.
     pub fn rubbed_as(&self, interface: usize, ask: Ask) -> Vec<Rubbed> {
         let (mut force, mut slip) = (self.rubbing.clone(), self.slip.clone());
         if ask == Ask::InCoefficients {
@@ -83,7 +83,7 @@ impl Solution<'_> {
         own.map(rubbed).collect()
     }
 
-    /// What friction carries at most at the places of a pair, thickness included.
+    /// Largest friction forces at the places of a pair, thickness included.
     pub fn shares(&self, span: &Span, pair: &ContactPair, ask: Ask) -> Vec<(usize, f64)> {
         let degree = if span.middle.is_some() { 2 } else { 1 };
         let mut shares = limits(self.problem, pair, degree);

@@ -10,9 +10,9 @@ use crate::sets::DisjointSets;
 use crate::statics::cone::balanced;
 use crate::vector::{cross, dot};
 
-/// Directions whose cross product is smaller are one.
+/// Directions whose cross product is smaller are parallel.
 const PARALLEL: f64 = 1e-9;
-/// Rows that are shorter than this, once supports and other rows have taken their part, say nothing new.
+/// Rows shorter than this after projection, by supports and other rows, are linearly dependent.
 const SPENT: f64 = 1e-9;
 
 /// Nodes that face each other, or one that faces a rigid obstacle.
@@ -30,14 +30,14 @@ pub struct Site {
     pub gap: f64,
     /// ∫φ ds of the node's shape function along the contact, ∫φ r ds of a body of revolution.
     pub weight: f64,
-    /// Where the direction turns along the edge, the other direction of a midpoint.
+    /// A second direction at a midpoint, if the direction turns along the edge.
     turned: Option<[f64; 2]>,
-    /// t̂, where friction resists sliding.
+    /// t̂, if friction resists sliding.
     pub tangent: Option<[f64; 2]>,
 }
 
 impl Site {
-    /// (v' − v'')·n̂ − g: a penetration where it is positive, an opening where it is negative.
+    /// (v' − v'')·n̂ − g: a penetration if positive, an opening if negative.
     pub fn excess(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
         self.jump(self.normal, value) - self.gap
     }
@@ -51,13 +51,13 @@ impl Site {
         dot(value(self.first), direction) - self.second.map_or(0.0, |s| dot(value(s), direction))
     }
 
-    /// The component of a pair of nodal forces along the contact, counted as pressing the two sides together.
+    /// The nodes of both sides, each with its sign in the jump.
     fn nodes(&self) -> impl Iterator<Item = (usize, f64)> {
         [(Some(self.first), 1.0), (self.second, -1.0)].into_iter().filter_map(|(node, sign)| Some((node?, sign)))
     }
 }
 
-/// All places, and which of them bound one edge.
+/// All places of contact, and those that belong to each edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sites {
     /// The places, interface by interface.
@@ -95,7 +95,7 @@ struct Group {
 }
 
 impl Sites {
-    /// Those of `problem` for nodes of the given degree; of degrees above 2, for those of degree 2.
+    /// The places of `problem` for nodes of the given degree; above degree 2, for nodes of degree 2.
     pub fn new(problem: &Problem, degree: usize, holds: &Holds) -> Self {
         let vertices = problem.mesh.points.len();
         let mut sites = Sites { list: Vec::new(), spans: Vec::new(), edges: Vec::new(), groups: Vec::new() };
@@ -163,7 +163,7 @@ impl Sites {
         sites
     }
 
-    /// Takes out of nodal forces whatever contact along its direction can exert, pushing or pulling, open or closed.
+    /// Removes from nodal forces all that contact along its direction can exert, pushing or pulling, open or closed.
     pub fn take(&self, forces: &mut [[f64; 2]]) {
         for group in &self.groups {
             let mut local = group.gather(forces);
@@ -177,12 +177,12 @@ impl Sites {
         }
     }
 
-    /// The force at each place that presses the two sides together, from what supports leave of the nodal forces.
+    /// The force at each place that presses the two sides together, from the nodal forces that supports do not take.
     pub fn pressing(&self, forces: &[[f64; 2]]) -> Vec<f64> {
         self.acting(forces).0
     }
 
-    /// The same, and the force of friction on the first side along t̂.
+    /// The pressing forces as in [`Self::pressing`], and the friction forces on the first side along t̂.
     pub fn acting(&self, forces: &[[f64; 2]]) -> (Vec<f64>, Vec<f64>) {
         let (mut pressing, mut rubbing) = (vec![0.0; self.list.len()], vec![0.0; self.list.len()]);
         for group in &self.groups {
@@ -215,7 +215,7 @@ impl Sites {
         (pressing, rubbing)
     }
 
-    /// Whether the force of friction at a place is its own: supports leave both sides free to slide, and no other place shares their nodes.
+    /// True if a place shares its friction force with nothing: supports leave both sides free to slide, and no other place has their nodes.
     pub fn rubs_alone(&self, site: usize) -> bool {
         let own = |group: &&Group| group.sites == [site];
         let group = self.groups.iter().find(own);
@@ -224,7 +224,7 @@ impl Sites {
         })
     }
 
-    /// Whether supports hold both sides of a place along the direction of contact, so that nothing shows its force.
+    /// True if supports hold both sides of a place along the direction of contact, so that its force cannot be determined.
     pub fn is_held(&self, site: usize) -> bool {
         let own = |group: &&Group| group.sites.binary_search(&site).is_ok();
         let row = self.groups.iter().find(own).and_then(|group| {
@@ -234,7 +234,7 @@ impl Sites {
         row.is_none_or(|length| length <= SPENT)
     }
 
-    /// Forces and gaps in Bernstein coefficients, in which every pressure ≥ 0 is a list of forces ≥ 0.
+    /// Forces and distances in Bernstein coefficients, in which every pressure ≥ 0 gives forces ≥ 0.
     pub fn in_coefficients(&self, pressing: &[f64], excess: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut forces, mut distances) = (pressing.to_vec(), excess.to_vec());
         for span in &self.spans {
@@ -249,8 +249,8 @@ impl Sites {
 }
 
 impl Group {
-    /// Shares forces out to places that press and rub, as long as any such forces make them; what is left is shared out to all that press,
-    /// either way.
+    /// Distributes forces over places that press and rub, as far as such forces can represent them; the remainder goes to the normal
+    /// forces of all places, with either sign.
     fn share(&self, local: &DVector<f64>, pressing: &mut [f64], rubbing: &mut [f64]) {
         let mut rows: Vec<(usize, f64, DVector<f64>)> = Vec::new();
         for (place, site) in self.sites.iter().enumerate() {

@@ -15,7 +15,7 @@ pub struct Row {
     /// The direction of contact with the weight of every node, those of the second side negative.
     pub terms: Vec<(usize, [f64; 2])>,
     pub gap: f64,
-    /// What its force works on beside the gap: the penetration of a method whose contact is no condition on the jump.
+    /// Distance on which its force does work in addition to the gap: the penetration, if the contact law is not a condition on the jump.
     pub overlap: f64,
 }
 
@@ -54,7 +54,8 @@ pub fn groups(rows: &[&Row], nodes: usize) -> Vec<Vec<usize>> {
     groups.into_values().collect()
 }
 
-/// Takes out of the nodal forces of `solution` what forces ≥ 0 on `rows` can balance; gives their work on the gaps, and their sum.
+/// Removes from the nodal forces of `solution` the part that forces ≥ 0 on `rows` can balance; returns their work on the gaps, and
+/// their sum.
 pub fn take(rows: &[&Row], solution: &mut Solution<'_>) -> [f64; 2] {
     let mut nodes: Vec<usize> = rows.iter().flat_map(|row| row.terms.iter().map(|(node, _)| *node)).collect();
     nodes.sort_unstable();

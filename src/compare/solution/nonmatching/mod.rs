@@ -1,10 +1,10 @@
 //! A claimed solution on the triangles of its own file, where contact sides have different vertices.
 //!
 //! Its test functions are those of the file. Whatever the method, mortar, node to segment or quadrature, contact is a pressure
-//! λ ≥ 0 along the direction of contact, the same on both sides: on the parts of edges between the vertices of either side, λ does on
-//! the jump what forces ≥ 0 do on its Bernstein coefficients there. What such forces cannot balance of the nodal forces is the residual;
-//! that they do no work on the opening is asked by the energy identity. Where contact is closed a method may decide at the nodes of
-//! one side, or in the mean with the functions of one side, plain or dual, or edge by edge: the least penetration among these counts.
+//! λ ≥ 0 along the direction of contact, the same on both sides: on the parts of edges between the vertices of either side, the work of
+//! λ on the jump is that of forces ≥ 0 on its Bernstein coefficients there. The part of the nodal forces that such forces cannot balance
+//! is the residual; the energy identity checks that they do no work on the opening. A method may decide if contact is closed at the nodes
+//! of one side, or in the mean with the functions of one side, plain or dual, or edge by edge: the least penetration among these counts.
 
 mod forces;
 mod penetration;
@@ -18,7 +18,7 @@ use crate::compare::Basis;
 use crate::compare::{Allowances, Check};
 use crate::problem::{Interface, Problem, Scales};
 
-/// Above so many coefficients of one contact the forces are not looked for.
+/// Largest number of coefficients of one contact for which its forces are computed.
 const MOST_ROWS: usize = 1500;
 
 /// The solution with its contact.
@@ -27,9 +27,9 @@ pub struct Nonmatching<'a> {
     pub solution: Solution<'a>,
     /// The problem whose sides were made to match.
     glued: &'a Problem,
-    /// Which contacts have more coefficients than can be decided.
+    /// The contacts with more coefficients than [`MOST_ROWS`].
     too_many: Vec<usize>,
-    /// Of every contact Nitsche's law, where its forces follow it.
+    /// For every contact: Nitsche's law, if its forces follow it.
     laws: Vec<Option<Weak>>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> Nonmatching<'a> {
         Nonmatching { solution, glued, too_many, laws }
     }
 
-    /// All checks; `scales` says what counts as no force and no energy, `allow` what was asked for.
+    /// All checks; `scales` gives the forces and energies that count as zero, `allow` the tolerances asked for.
     pub fn checks(&self, scales: &Scales, allow: &Allowances) -> Vec<Check> {
         let mut checks = self.solution.checks(scales, &Allowances::default());
         if let Some(first) = self.too_many.first() {
@@ -103,7 +103,7 @@ impl<'a> Nonmatching<'a> {
         checks
     }
 
-    /// Whether vertices of the other side were put beside edges that stand for a curve.
+    /// True if vertices of the other side were inserted away from straight edges that represent a curve.
     fn bends(&self, contact: &Interface) -> bool {
         let Some(uncut) = &self.glued.uncut else { return false };
         let mesh = &self.glued.mesh;
@@ -111,7 +111,7 @@ impl<'a> Nonmatching<'a> {
         contact.pairs.iter().any(|pair| !pair.direction.is_constant() && pair.edges.iter().flatten().any(is_cut))
     }
 
-    /// What is left at the triangles of `glued`: of each that of the triangle that it is a part of.
+    /// The residual on the triangles of `glued`: that of the triangle of the file that each is a part of.
     pub fn by_triangle(&self) -> Vec<f64> {
         let own = self.solution.by_triangle();
         match &self.glued.uncut {

@@ -1,4 +1,4 @@
-//! Where a method may ask that nothing penetrates, on sides that have different vertices.
+//! Ways in which a method may require that nothing penetrates, on sides that have different vertices.
 
 use std::collections::BTreeMap;
 

@@ -21,7 +21,7 @@ pub struct Space<'a> {
     degree: usize,
     /// Vertices of the file.
     pub vertices: usize,
-    /// Of every vertex of the mesh, a triangle at it.
+    /// For every vertex of the mesh, a triangle that has it.
     at: Vec<usize>,
 }
 

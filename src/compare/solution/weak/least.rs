@@ -10,7 +10,7 @@ pub struct Rows {
 
 /// Steps for every column, at most: edges alternate, and their matrix is as badly conditioned as there are many.
 const STEPS: usize = 8;
-/// Where to stop: the gradient has fallen by this factor.
+/// The iteration stops once the gradient has fallen by this factor.
 const FALLEN: f64 = 1e-15;
 
 impl Rows {

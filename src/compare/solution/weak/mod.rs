@@ -1,8 +1,8 @@
 //! Contact that holds in the mean and not at nodes.
 //!
-//! Mortar methods ask ∫ψ(j − g) ≤ 0 of every shape function ψ of their multiplier, Nitsche's method balances a penetration with the
-//! normal stress, an augmented Lagrangian with quadrature does the one or the other. A field of such a method penetrates at some
-//! nodes and opens at others, by no mistake. Which law its contact forces follow is told from them, without a word of the program.
+//! Mortar methods require ∫ψ(j − g) ≤ 0 for every shape function ψ of their multiplier, Nitsche's method balances a penetration with
+//! the normal stress, an augmented Lagrangian with quadrature does the one or the other. A field of such a method correctly penetrates
+//! at some nodes and opens at others. The law is recognised from the contact forces alone, without information from the program.
 
 mod least;
 mod mortar;
@@ -15,11 +15,11 @@ pub use stations::{Rows, Shape, Station};
 
 use super::{SOLVER, Solution};
 
-/// What the rule of another program may change where contact begins or ends inside an edge, relative to the forces of contact.
+/// Error by the quadrature rule of another program where contact begins or ends inside an edge, relative to the contact forces.
 pub const OF_THE_RULE: f64 = 0.02;
-/// Forces this small beside all others are none.
+/// Forces below this fraction of all others count as zero.
 const NO_FORCE: f64 = 1e-6;
-/// Rounded displacements that meet in the force of a node: all may be off the same way.
+/// Number of rounded displacements in the force of a node: all may be off in the same direction.
 const MEETING: f64 = 16.0;
 
 /// The law that contact forces follow.
@@ -27,41 +27,41 @@ const MEETING: f64 = 16.0;
 pub enum Law {
     /// Multipliers whose conditions are met.
     Mortar(Multiplier),
-    /// Multipliers whose conditions are met but where contact ends inside an edge.
+    /// Multipliers whose conditions are met except where contact ends inside an edge.
     Augmented(Multiplier),
     /// Nitsche's.
     Nitsche {
-        /// One of the symmetric method, zero of the incomplete one, minus one of the skew one.
+        /// One for the symmetric method, zero for the incomplete one, minus one for the skew one.
         theta: f64,
         /// (j − g)/γ is the pressure of a penetration.
         gamma: f64,
-        /// Whether γ is so many lengths of the mesh.
+        /// True if γ is a multiple of a length of the mesh.
         per_length: bool,
     },
 }
 
-/// How a contact holds in the mean.
+/// The law by which a contact holds in the mean, with its errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weak {
     /// The law.
     pub law: Law,
     /// The largest mean penetration over a shape function of the multiplier.
     pub penetration: f64,
-    /// Contact forces that do not follow the law, relative to all of this contact.
+    /// Contact forces that do not follow the law, relative to all forces of this contact.
     pub misfit: f64,
     /// Sum of the forces of the multiplier that pull.
     pub pulling: f64,
-    /// Forces at nodes that the law exerts beside pressures.
+    /// Forces that the law exerts at nodes in addition to pressures.
     pub(super) terms: Vec<(usize, [f64; 2])>,
 }
 
-/// What counts as nothing along one contact.
+/// Values that count as zero along one contact.
 pub struct Limits {
     /// A length.
     pub length: f64,
     /// A force.
     pub force: f64,
-    /// A part of the contact forces.
+    /// A fraction of the contact forces.
     pub part: f64,
 }
 
@@ -91,7 +91,7 @@ impl Weak {
 }
 
 impl Solution<'_> {
-    /// Whether contact `interface` penetrates at no node.
+    /// True if contact `interface` penetrates at no node.
     pub fn is_met(&self, interface: usize) -> bool {
         let limit = self.limits(interface).length;
         let own = self.sites.list.iter().zip(&self.excess).filter(|(site, _)| site.interface == interface);
@@ -118,26 +118,26 @@ impl Solution<'_> {
         self.weak = (0..self.problem.interfaces.len()).map(of).collect();
     }
 
-    /// What counts as nothing along contact `interface`.
+    /// Values that count as zero along contact `interface`.
     pub fn limits(&self, interface: usize) -> Limits {
         let part = (NO_FORCE + MEETING * self.rounding / self.scale).min(OF_THE_RULE);
         let total = self.applied().max(self.carried(interface));
         Limits { length: 2.0 * (SOLVER + self.candidate.precision) * self.reference, force: part * total, part }
     }
 
-    /// What of the forces of contact `interface` may not follow its law.
+    /// The fraction of the forces of contact `interface` that need not follow its law.
     pub(super) fn weak_part(&self, interface: usize) -> f64 {
         let part = self.limits(interface).part;
         if self.claims_weak { part.max(OF_THE_RULE) } else { part }
     }
 
-    /// What the rule of another program may change of contact that claims to hold in the mean, as a part of a penetration; nothing of
-    /// contact that does not.
+    /// Relative change of a penetration by the quadrature rule of another program, if contact is claimed to hold in the mean;
+    /// otherwise zero.
     pub(super) fn rule(&self) -> f64 {
         if self.claims_weak { OF_THE_RULE } else { 0.0 }
     }
 
-    /// Whether contact is closed or open node by node, or in its Bernstein coefficients.
+    /// True if contact is closed or open node by node, or in its Bernstein coefficients.
     fn is_nodal(&self, interface: usize, limits: &Limits) -> bool {
         let own: Vec<usize> =
             (0..self.sites.list.len()).filter(|s| self.sites.list[*s].interface == interface).collect();
@@ -149,8 +149,8 @@ impl Solution<'_> {
         own.is_empty() || met(&self.pressing, &self.excess) || met(&forces, &distances)
     }
 
-    /// Claims that contact holds in the mean over edges: its forces have to follow a law of such methods to what the rule by which
-    /// another program integrates them can change.
+    /// Claims that contact holds in the mean over edges: its forces have to follow a law of such methods up to the error of the
+    /// quadrature rule of another program.
     pub fn with_weak_contact(mut self, claimed: bool) -> Self {
         if claimed {
             self.claims_weak = true;
@@ -159,19 +159,19 @@ impl Solution<'_> {
         self
     }
 
-    /// The law of contact `interface` where the field follows it to the accuracy of a solver, or as nearly as it is claimed to.
+    /// The law of contact `interface`, if the field follows it to the accuracy of a solver, or as closely as is claimed.
     pub fn holds_weakly(&self, interface: usize) -> Option<&Weak> {
         let part = self.weak_part(interface);
         let carried = self.carried(interface);
         self.weak.get(interface)?.as_ref().filter(|weak| weak.misfit <= part && weak.pulling <= part * carried)
     }
 
-    /// The law that contact forces nearly follow, whether or not that is enough.
+    /// The law that contact forces nearly follow, whether or not that is close enough.
     pub fn nearly_weak(&self, interface: usize) -> Option<&Weak> {
         self.weak.get(interface)?.as_ref().filter(|weak| weak.misfit <= OF_THE_RULE)
     }
 
-    /// Takes what accepted laws exert beside pressures out of the residual.
+    /// Removes from the residual the forces that accepted laws exert in addition to pressures.
     pub(super) fn accept(&mut self) {
         let accepted: Vec<usize> = (0..self.weak.len()).filter(|i| self.holds_weakly(*i).is_some()).collect();
         let mut free = self.unsupported.clone();

@@ -1,7 +1,7 @@
 //! Multipliers along a contact: ∫ψ(j − g) ≤ 0 for each shape function ψ of theirs, and forces ∫λφ with a λ ≥ 0 of them.
 //!
-//! An augmented Lagrangian that is evaluated at quadrature points, ∫(λ − [λ + r(j − g)]₊)ψ = 0, asks the same of every ψ whose
-//! support is closed; where contact ends inside an edge it depends on the rule, and nothing is asked there.
+//! An augmented Lagrangian that is evaluated at quadrature points, ∫(λ − [λ + r(j − g)]₊)ψ = 0, imposes the same on every ψ whose
+//! support is closed; where contact ends inside an edge it depends on the rule, and nothing is required there.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::{Law, Limits, Weak};
 
 /// Exact for a quadratic jump and a quadratic multiplier, and for a parabola.
 const DEGREE: usize = 6;
-/// What contact may do on penetrations where it ends inside an edge, relative to the strain energy: three per cent of the stresses.
+/// Work that contact may do on penetrations where it ends inside an edge, relative to the strain energy: three per cent of the stresses.
 const AT_ENDS: f64 = 1e-3;
 
 /// A mean of penetrations that is smaller than this part of the largest of them is zero.
@@ -34,7 +34,7 @@ pub enum Multiplier {
 }
 
 impl Multiplier {
-    /// Those that go with displacements of a degree.
+    /// The multipliers used with displacements of a degree.
     pub fn of_degree(degree: usize) -> &'static [Multiplier] {
         match degree {
             1 => &[Multiplier::Hats, Multiplier::Edges, Multiplier::Dual],
@@ -58,7 +58,7 @@ impl Multiplier {
     }
 }
 
-/// The conditions that multipliers pose, with the forces that they can exert.
+/// The conditions that multipliers impose, with the forces that they can exert.
 struct Conditions {
     /// ∫ψ(j − g)/∫|ψ| for every ψ.
     means: Vec<f64>,

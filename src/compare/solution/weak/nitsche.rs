@@ -10,16 +10,16 @@ use super::stations::{Rows, Shape, Station};
 use super::{Law, Limits, Weak};
 use crate::vector::{distance, dot};
 
-/// Degrees of the rules that are tried; the first is the one by which all else is chosen.
+/// Degrees of the rules that are tried; the first is used to choose everything else.
 const RULES: [usize; 6] = [4, 0, 2, 6, 8, 24];
 /// Powers of ten of γE over a length, and the step between those that are tried.
 const POWERS: [f64; 3] = [-5.0, 1.0, 0.125];
 /// Steps of the golden section.
 const STEPS: usize = 60;
-/// A law whose forces miss those of the field by more, before its rule is known, is another one.
+/// Largest misfit of the forces with which a law is considered before its rule is known.
 const NEAR: f64 = 0.2;
 
-/// Penetrations and normal stresses each have to explain this many times what is left without them.
+/// The misfit without penetrations, or without normal stresses, has to be this many times as large.
 const MATTERS: f64 = 10.0;
 
 /// A quadrature point along a contact, on the nodes of the field.
@@ -30,7 +30,7 @@ pub struct Point {
     pub excess: f64,
     /// Lengths that γ may be proportional to: those of an edge and of an element of either side.
     pub lengths: [f64; 4],
-    /// Whether the edge carries a force.
+    /// True if the edge carries a force.
     pub carries: bool,
     /// Shape functions of the jump.
     pub jump: Rows,
@@ -38,9 +38,9 @@ pub struct Point {
     pub stress: [Rows; 2],
 }
 
-/// What all quadrature points give, on the nodes that take part.
+/// Data of all quadrature points along a contact, on the nodes involved.
 struct Terms {
-    /// Of every point: weight, excess, normal stress, length, and whether the edge carries a force.
+    /// For every point: weight, excess, normal stress, length, and a flag that is true if the edge carries a force.
     points: Vec<(f64, f64, f64, f64, bool)>,
     /// Shape functions of the jump and of the normal stress: (entry of the vectors, value).
     jumps: Vec<Vec<(usize, f64)>>,
@@ -59,17 +59,17 @@ struct Fit {
     misfit: f64,
 }
 
-/// How stations are weighed.
+/// A variant of the law: the length in γ, the shares of the two sides in the normal stress, and the pressure used.
 #[derive(Clone, Copy)]
 struct Variant {
-    /// Which of [`Point::lengths`], or none.
+    /// Index into [`Point::lengths`], if γ is proportional to a length.
     size: Option<usize>,
     shares: [f64; 2],
     signed: bool,
     shape: Shape,
 }
 
-/// Nitsche's law nearest to the forces along a contact, which `points` gives by the degree of a rule and the shape of the gap.
+/// Nitsche's law nearest to the forces along a contact; `points` gives its points for the degree of a rule and the shape of the gap.
 pub fn nitsche(
     solution: &Solution<'_>,
     limits: &Limits,
@@ -107,7 +107,7 @@ pub fn nitsche(
     weak(solution, terms, variant, fit)
 }
 
-/// The lengths worth a try: those of the second side where they are others than those of the first.
+/// The lengths to try: those of the second side only if they differ from those of the first.
 fn sizes(points: &[Point]) -> impl Iterator<Item = Option<usize>> {
     let differ = |size: usize| points.iter().any(|point| point.lengths[size] != point.lengths[size - 2]);
     let second = [2, 3].into_iter().filter(|size| differ(*size)).map(Some).collect::<Vec<_>>();
@@ -179,7 +179,7 @@ impl Terms {
         terms
     }
 
-    /// What supports leave of nodal forces, each over √K_ii.
+    /// Nodal forces that supports do not take, each over √K_ii.
     fn weighed(&self, solution: &Solution<'_>, forces: &[f64]) -> Vec<f64> {
         let of = |(i, node): (usize, &usize)| {
             let free = solution.hold(*node).project([forces[2 * i], forces[2 * i + 1]]);
@@ -221,8 +221,8 @@ impl Terms {
         Fit { power, theta, misfit: (rest / sum(&self.wanted, &self.wanted)).sqrt() }
     }
 
-    /// What is left without penetrations, where the pressure is the normal stress whatever the sides do, or without normal stresses,
-    /// which is a penalty; the smaller of the two.
+    /// The smaller misfit of two simpler laws: without penetrations, where the pressure is the normal stress whatever the sides do, and
+    /// without normal stresses, which is a penalty.
     fn misfit_of_less(&self, solution: &Solution<'_>) -> f64 {
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let all = sum(&self.wanted, &self.wanted);

@@ -18,7 +18,7 @@ pub struct Station {
     pub excess: f64,
 }
 
-/// Which gap other programs may have meant.
+/// The shape of the gap that another program may have used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Linear between the vertices of the mesh.
@@ -27,7 +27,7 @@ pub enum Shape {
     Curve,
 }
 
-/// A number that is linear in the displacements of nodes: the node, and what both of its components are multiplied by.
+/// A linear form in the displacements of nodes: each node with the coefficients of its two components.
 pub type Rows = Vec<(usize, [f64; 2])>;
 
 /// Shape functions of an edge at `s`: its ends and, of degree 2, its middle.
@@ -39,7 +39,7 @@ pub fn shapes(degree: usize, s: f64) -> [f64; 3] {
 }
 
 impl Solution<'_> {
-    /// Whether the gap of contact `interface` is a curve between the vertices.
+    /// True if the gap of contact `interface` is a curve between the vertices.
     pub fn is_curved(&self, interface: usize) -> bool {
         self.stations(interface, 4, Shape::Curve)
             .iter()
