@@ -61,16 +61,18 @@ impl Verdict {
         cone: impl Fn(&[Part], Points) -> Box<dyn Cone + 'a>,
     ) -> Result<Self, StaticsError> {
         let undecided = |_: cone::Unsettled| StaticsError::Undecided { bodies: words::all_names(group) };
-        let mut load = group.load(loads);
+        let given = group.load(loads);
         let total = group.magnitude(loads);
         let tolerance = total * round_off(group);
 
         let rollers = group.rollers(problem);
         let rubs = group.runs.iter().any(|run| run.friction > 0.0);
-        let given = load.clone();
-        if rubs {
-            load -= friction::relieved(group, &rollers, &load, total);
-        }
+        // What friction leaves of a load; its forces are found anew for each, and for where contacts push.
+        let left = |load: &DVector<f64>, points: Points| match rubs {
+            true => load - friction::relieved(group, &rollers, points, load, total),
+            false => load.clone(),
+        };
+        let load = left(&given, Points::Ends);
         let question = Question::new(group, &rollers, &load, total);
         if let Some(known) = before.iter().find(|known| !rubs && known.answers(&question)) {
             let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &load, tolerance).map_err(undecided)?;
@@ -84,7 +86,7 @@ impl Verdict {
         let size = both.norm().hypot(one.norm());
         if size > tolerance {
             // A pure translation says more than a mixed motion on which the loads do hardly more work.
-            let mut no_rotation = rollers;
+            let mut no_rotation = rollers.clone();
             no_rotation.extend((0..group.members.len()).map(|m| (m, Vector3::z())));
             let translations = cone(&no_rotation, Points::Ends).unbalanced(&load).map_err(undecided)?;
             let work_free = both.norm() <= tolerance;
@@ -106,8 +108,9 @@ impl Verdict {
             return Ok(Verdict { held: allowed.held(), driven, one_way: None, beyond_mesh: None, lasting: None });
         }
 
-        let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &load, tolerance).map_err(undecided)?;
-        let one_way = borderline(&*allowed, &load, total).map_err(undecided)?;
+        let reached = left(&given, Points::Reach);
+        let beyond_mesh = beyond_mesh(&*cone(&rollers, Points::Reach), &reached, tolerance).map_err(undecided)?;
+        let one_way = borderline(&*allowed, |load| left(load, Points::Ends), &given, total).map_err(undecided)?;
         let one_way = one_way.map(|motion| allowed.without_sliding(motion));
         let held = allowed.held();
         // On another mesh friction has another sum, and so has what it leaves of the loads.
@@ -153,14 +156,19 @@ pub(super) trait Cone {
 
 /// A motion of the cone, not allowed both ways, that sees no work of a balanced `load`. There is one exactly when the
 /// load is balanced on the edge of what the contacts can balance: when it cannot be prolonged a little from an inner
-/// point, the sum of all contact forces.
-fn borderline(cone: &dyn Cone, load: &DVector<f64>, total: f64) -> Result<Option<DVector<f64>>, cone::Unsettled> {
+/// point, the sum of all contact forces. Friction takes its part of the prolonged load, and `left` is the rest.
+fn borderline(
+    cone: &dyn Cone,
+    left: impl Fn(&DVector<f64>) -> DVector<f64>,
+    load: &DVector<f64>,
+    total: f64,
+) -> Result<Option<DVector<f64>>, cone::Unsettled> {
     let (count, sum) = cone.rows();
     if count == 0 {
         return Ok(None);
     }
     let step = if total > 0.0 { 1e-7 * total } else { 1.0 };
-    let [_, one] = cone.unbalanced(&(load - sum * (step / count as f64)))?;
+    let [_, one] = cone.unbalanced(&left(&(load - sum * (step / count as f64))))?;
     Ok((one.norm() > 1e-4 * step).then_some(one))
 }
 

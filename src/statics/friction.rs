@@ -16,8 +16,14 @@ use crate::optimise::{Law, Program, solve};
 /// Forces of this many times the loads are as good as any: levers make no more of them.
 const MOST: f64 = 1e6;
 
-/// The forces of friction that leave least of a `load`, as a load, where `vanishing` rows do not move.
-pub(super) fn relieved(group: &Group, vanishing: &[Part], load: &DVector<f64>, total: f64) -> DVector<f64> {
+/// The forces of friction that leave least of a `load`, as a load, where `vanishing` rows do not move and contacts push at these `points`.
+pub(super) fn relieved(
+    group: &Group,
+    vanishing: &[Part],
+    points: Points,
+    load: &DVector<f64>,
+    total: f64,
+) -> DVector<f64> {
     let supports = group.span(vanishing);
     let left = |row: &DVector<f64>| supports.residual(row);
     let rubbing = group.runs.iter().filter(|run| run.friction > 0.0);
@@ -25,8 +31,7 @@ pub(super) fn relieved(group: &Group, vanishing: &[Part], load: &DVector<f64>, t
         .map(|run| (group.dense(&group.slip(run, run.ends[0])), run.friction.min(MOST * total)))
         .filter(|(row, most)| left(row).norm() > RANK && *most > 0.0)
         .collect();
-    let jumps =
-        group.runs.iter().flat_map(|run| Points::Ends.of(run).map(|point| group.dense(&group.jump(run, point))));
+    let jumps = group.runs.iter().flat_map(|run| points.of(run).map(|point| group.dense(&group.jump(run, point))));
     let jumps: Vec<DVector<f64>> = jumps.map(|row| left(&row)).filter(|row| row.norm() > RANK).collect();
     let none = DVector::zeros(group.dimension());
     if slips.is_empty() || load.amax() == 0.0 {

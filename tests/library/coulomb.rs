@@ -68,6 +68,19 @@ fn a_wedge_in_a_groove_presses_as_statics_says() {
     }
 }
 
+/// A given bound, however large, moves no load to the borderline of equilibrium: nothing but a lift is allowed, and the loads work against it.
+#[test]
+fn a_wedge_that_sticks_is_not_on_the_borderline() {
+    for bound in ["1e-9", "1e-3", "1.0", "1e6", "1e12"] {
+        let text = wedge(20.0, 0.2, 0.01).0.replace("coefficient = 0.2", &format!("bound = {bound}"));
+        let given = problem(&text);
+        let triangles = given.mesh.triangles.len();
+        let found = certify_divided(given, &Condensed::default(), &Options::default()).expect("a solution");
+        assert_eq!(found.statics.notes, Vec::<String>::new(), "{bound}");
+        assert_eq!(found.problem.mesh.triangles.len(), triangles, "{bound}");
+    }
+}
+
 #[test]
 fn faces_wedge_from_the_angle_of_friction_on() {
     for angle in [5.0, 20.0, 40.0] {
