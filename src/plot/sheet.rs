@@ -38,11 +38,23 @@ pub struct Sheet {
     pub level: Option<(f64, String)>,
     /// Lines below the legend.
     pub notes: Vec<String>,
-    /// Width and height in pixels.
+    /// Width and least height in pixels; the height grows with the legend.
     pub size: [u32; 2],
 }
 
+impl Sheet {
+    /// The height in pixels that holds the whole legend.
+    fn height(&self, front: bool, level: bool) -> u32 {
+        let rows = self.series.len() + usize::from(front) + usize::from(level);
+        self.size[1].max((TOP + ROW * rows as i32 + NOTE * self.notes.len() as i32).unsigned_abs())
+    }
+}
+
 const LEGEND: u32 = 260;
+/// The first row of a legend, and the distances of rows and of notes, in pixels.
+const TOP: i32 = 44;
+const ROW: i32 = 22;
+const NOTE: i32 = 18;
 const FONT: &str = "sans-serif";
 const GREY: RGBColor = RGBColor(105, 105, 105);
 
@@ -61,9 +73,10 @@ pub fn draw(sheet: &Sheet) -> Result<String, PlotError> {
     let most = sheet.series.iter().flat_map(|s| &s.open).filter_map(|[_, most]| y.position(*most));
     let x_axis = sheet.x.axis(all().map(|p| p.0));
     let y_axis = y.axis(all().map(|p| p.1).chain(level.map(|l| l.0)).chain(most));
+    let height = sheet.height(!front.is_empty(), level.is_some());
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (sheet.size[0], sheet.size[1])).into_drawing_area();
+        let root = SVGBackend::with_string(&mut svg, (sheet.size[0], height)).into_drawing_area();
         root.fill(&WHITE)?;
         let (left, right) = root.split_horizontally(sheet.size[0].saturating_sub(LEGEND));
         let mut chart = ChartBuilder::on(&left)
@@ -139,8 +152,7 @@ fn outline(ink: Ink) -> PathElement<(i32, i32)> {
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 fn legend(area: &Area<'_>, sheet: &Sheet, front: bool, level: Option<&str>) -> Result<(), PlotError> {
-    const ROW: i32 = 22;
-    let mut row = 44;
+    let mut row = TOP;
     let text = |s: &str, at: (i32, i32)| Text::new(s.to_string(), at, (FONT, 13).into_font().color(&BLACK));
     for series in &sheet.series {
         let ink = Ink::of(series.ink);
@@ -182,7 +194,7 @@ fn legend(area: &Area<'_>, sheet: &Sheet, front: bool, level: Option<&str>) -> R
     }
     for note in &sheet.notes {
         area.draw(&text(note, (4, row)))?;
-        row += ROW - 4;
+        row += NOTE;
     }
     Ok(())
 }
@@ -209,6 +221,20 @@ mod tests {
             notes: Vec::new(),
             size: [800, 400],
         }
+    }
+
+    #[test]
+    fn a_long_legend_makes_the_figure_higher() {
+        let mut many = sheet(vec![[1.0, 1.0], [2.0, 0.5]]);
+        many.series = std::iter::repeat_n(many.series[0].clone(), 30).collect();
+        many.notes = vec!["below all of it".to_string()];
+        let svg = draw(&many).expect("a figure");
+        let number = |from: &str| {
+            let rest = svg.rsplit_once(from).expect("an attribute").1;
+            rest[..rest.find('"').expect("its end")].parse::<i32>().expect("a number")
+        };
+        assert!(svg.contains("height=\"722\""), "{}", &svg[..200]);
+        assert!(number(" y=\"") < 722 - 12, "{}", number(" y=\""));
     }
 
     #[test]
