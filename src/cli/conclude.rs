@@ -12,7 +12,7 @@ use crate::problem::Note;
 use crate::report::{self, BaselineRow, Dossier, Report, Status};
 use crate::study::{Answer, Certified, Fields, Findings, Sharpened, assemble};
 
-/// What a command tells beside the dual run and its comparison.
+/// Parts of a report that a command adds to the dual run and its comparison.
 #[derive(Default)]
 pub struct Particulars {
     /// A sharper bracket, where that of the run could not tell two models apart.
@@ -25,9 +25,9 @@ pub struct Particulars {
     pub notes: Vec<Note>,
     /// Its phases.
     pub seconds: Vec<(&'static str, f64)>,
-    /// What else took part, with versions.
+    /// Other programs and files that took part, with versions or checksums.
     pub components: Vec<(String, String)>,
-    /// What explains that a field is not the discrete solution it claims to be.
+    /// Explanations why a field is not the discrete solution it claims to be.
     pub diagnosis: Vec<Diagnosis>,
     /// Its residual, triangle by triangle, where a field is handed in as the discrete solution of its mesh.
     pub residual: Option<Vec<f64>>,
@@ -35,7 +35,7 @@ pub struct Particulars {
     pub failure: Option<String>,
     /// Its numbers beside those of the baseline.
     pub baseline: Vec<BaselineRow>,
-    /// Whether a proof of the bracket is to travel with the report.
+    /// True if a proof of the bracket is to travel with the report.
     pub is_to_prove: bool,
 }
 
@@ -57,7 +57,7 @@ impl Session {
         })
     }
 
-    /// What `of` makes of the dossier of a run with its comparison.
+    /// Applies `of` to the dossier of a run with its comparison.
     pub fn with_dossier<T>(
         &self,
         run: &DualRun,

@@ -76,9 +76,9 @@ pub enum Command {
 /// How this program was started; nothing is known where a program of someone else's calls the library.
 static STARTED: OnceLock<Started> = OnceLock::new();
 
-/// What was started, and how.
+/// The program that was started, and its command line.
 pub struct Started {
-    /// What can be started to be this program once more, where that is known.
+    /// The executable that starts this program once more, where that is known.
     pub program: Option<PathBuf>,
     /// The file with its code: the same, or the library that it calls.
     pub code: Option<PathBuf>,
@@ -86,12 +86,12 @@ pub struct Started {
     pub words: Vec<OsString>,
 }
 
-/// What this process can start to be this program once more.
+/// The executable with which this process can start this program once more.
 fn program() -> Option<PathBuf> {
     STARTED.get()?.program.clone()
 }
 
-/// The same for a command that cannot do without, with the file of its code.
+/// As [`program`], for a command that cannot do without, with the file of its code.
 fn this_program() -> Result<(PathBuf, PathBuf), CliError> {
     let found = STARTED.get().and_then(|started| started.program.clone().zip(started.code.clone()));
     found.ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! What the solving commands share: from the scene file to a bracket, and from a dossier to files and a verdict.
+//! Steps that the solving commands share: from the scene file to a bracket, and from a dossier to files and a verdict.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -35,7 +35,7 @@ pub struct Session {
     pub start: Instant,
     /// Name of the command.
     pub command: &'static str,
-    /// Whether nothing is to be said but errors.
+    /// True if only errors are to be printed.
     pub(super) quiet: bool,
     /// Identifier of the run, where the job that it is part of gave it one.
     pub(super) run: Option<String>,
@@ -52,7 +52,7 @@ pub struct DualRun {
     pub history: Vec<HistoryRow>,
     /// Why refinement stopped before the tolerance was reached.
     pub stopped: Option<String>,
-    /// What to do about that.
+    /// The remedy for that.
     pub advice: Option<&'static str>,
     /// The scene of the other ends of ranges of the data, solved.
     pub other_end: Option<OtherEnd>,
@@ -204,7 +204,7 @@ impl Session {
         study::answers(certified, &self.options(solve), |_| true)
     }
 
-    /// The same where the stress side was `sharpened` after it was solved: the interval of the mesh as given, and that of the
+    /// As [`Self::answers`], where the stress side was `sharpened` after it was solved: the interval of the mesh as given, and that of the
     /// finer one, hold the same value.
     pub fn sharpest_answers(&self, run: &DualRun, sharpened: Option<&Sharpened>, solve: &SolveOptions) -> Vec<Answer> {
         let own = self.answers(&run.certified, solve);
@@ -245,7 +245,7 @@ impl Session {
         Ok(problem)
     }
 
-    /// What is solved on.
+    /// The problem to be solved: `given` with its mesh refined uniformly.
     fn refined(&self, given: &Problem, solve: &SolveOptions) -> Result<Problem, CliError> {
         let problem = given.refine_uniform(solve.refine as usize).map_err(|e| self.unreadable(&e))?;
         let triangles = problem.mesh.triangles.len();

@@ -1,10 +1,10 @@
-//! What makes a set of constants no material.
+//! Checks that elastic constants are those of a material.
 
 use super::matrix::cholesky;
 use super::{Anisotropic, Elasticity, Matrix, MatrixKind, Orthotropic};
 
-/// How far entries that mirror each other may be apart, relative to the geometric mean of their diagonal entries: what printing with
-/// six digits leaves.
+/// Tolerance on asymmetry and on entries that must vanish, relative to the geometric mean of the diagonal entries concerned: the error
+/// of printing with six digits.
 const SYMMETRIC: f64 = 1e-5;
 
 /// Why constants are refused.
@@ -16,7 +16,7 @@ pub struct Flaw {
     pub found: f64,
     /// The rule.
     pub rule: &'static str,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 

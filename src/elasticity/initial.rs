@@ -2,7 +2,7 @@
 
 use super::{Elasticity, Plane, Revolution};
 
-/// What a body has without any load: e = a σ + ε0 with ε0 = α ΔT − a σ0.
+/// Initial state of a body without any load: e = a σ + ε0 with ε0 = α ΔT − a σ0.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Initial {
     /// Thermal expansion along axes 1, 2 and 3 of the body.
@@ -15,7 +15,7 @@ pub struct Initial {
     pub stress: [f64; 4],
 }
 
-/// An initial strain in the plane, affine in x, and what it leaves of σ_33.
+/// An initial strain in the plane, affine in x, and the σ_33 that it causes where there is no stress in the plane.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct InitialStrain {
     /// ε0 (xx, yy, xy) at the origin, with the tensor component in the last place.
@@ -33,7 +33,7 @@ pub struct InitialStrain {
 }
 
 impl Initial {
-    /// Whether there is any.
+    /// True if the body has no initial strain or stress.
     pub fn is_none(&self) -> bool {
         let warm = self.temperature != 0.0 || self.gradient != [0.0; 2];
         self.stress == [0.0; 4] && !(warm && self.expansion != [0.0; 3])
@@ -55,7 +55,7 @@ impl Initial {
         self.temperature + (self.gradient[0] * x + self.gradient[1] * y)
     }
 
-    /// The same with coordinates counted from `point`.
+    /// Counts coordinates from `point`.
     #[must_use]
     pub fn about(self, point: [f64; 2]) -> Self {
         Initial { temperature: self.temperature_at(point), ..self }
@@ -73,12 +73,12 @@ impl InitialStrain {
         hoop_gradient: [0.0; 2],
     };
 
-    /// Whether there is none in the plane, nor around an axis.
+    /// True if there is no strain in the plane, nor around an axis.
     pub fn is_none(&self) -> bool {
         self.value == [0.0; 3] && self.hoop == 0.0 && self.is_constant()
     }
 
-    /// Whether it is the same everywhere.
+    /// True if the strain is uniform.
     pub fn is_constant(&self) -> bool {
         self.gradient == [[0.0; 2]; 3] && self.hoop_gradient == [0.0; 2]
     }
@@ -117,7 +117,7 @@ impl InitialStrain {
 }
 
 impl Elasticity {
-    /// The initial strain in plane strain or plane stress. In plane strain what is held back across the plane is counted in.
+    /// The initial strain in plane strain or plane stress. In plane strain it includes the effect of the restrained transverse strain.
     pub fn initial_strain(&self, strain: bool, initial: &Initial) -> InitialStrain {
         if initial.is_none() {
             return InitialStrain::NONE;
@@ -160,7 +160,7 @@ impl Elasticity {
         }
     }
 
-    /// Trace, difference and shear of the strain of a unit of temperature, and σ_33 that is left of it.
+    /// Trace, difference and shear of the strain of a unit of temperature, and the remaining σ_33.
     fn of_unit_temperature(&self, plane: &Plane, initial: &Initial) -> [[f64; 3]; 2] {
         let [first, second, third] = initial.expansion;
         let [c, s] = self.double_angle();
@@ -170,7 +170,7 @@ impl Elasticity {
     }
 }
 
-/// Trace, difference and shear of −a σ0, and σ_33 that is left of it.
+/// Trace, difference and shear of −a σ0, and the remaining σ_33.
 fn of_stress(plane: &Plane, strain: bool, [xx, yy, xy, zz]: [f64; 4]) -> [[f64; 3]; 2] {
     let own = [0.5 * (xx + yy), 0.5 * (xx - yy), xy];
     let root = plane.factor.map(|row| row[0] * own[0] + row[1] * own[1] + row[2] * own[2]);

@@ -4,8 +4,8 @@
 //! γ = 2 ε_12; the shears 23 and 13 have no part in a plane problem. Axis 3 is out of the plane: the hoop direction of a body of
 //! revolution.
 //!
-//! What a plane problem needs is a factor, a = RᵀR. It is worked out in [`Twofold`] precision, and the pressure is its first unknown:
-//! a body that is nearly incompressible has a small first row, and no difference of large numbers in place of it.
+//! A plane problem needs a factor, a = RᵀR. It is worked out in [`Twofold`] precision, and the pressure is its first unknown:
+//! a nearly incompressible body has a small first row, and no difference of large numbers in place of it.
 
 mod check;
 mod initial;
@@ -26,7 +26,7 @@ use self::twofold::Twofold;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "it is copied, and a body has one")]
 pub enum Elasticity {
-    /// The same in all directions.
+    /// Equal in all directions.
     Isotropic {
         /// Young's modulus E > 0.
         young: f64,
@@ -55,7 +55,7 @@ pub struct Orthotropic {
 /// A matrix and its axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropic {
-    /// What the matrix turns into what.
+    /// Stiffness or compliance.
     pub kind: MatrixKind,
     /// The matrix.
     pub matrix: Matrix,
@@ -63,7 +63,7 @@ pub struct Anisotropic {
     pub angle: f64,
 }
 
-/// What a matrix of elastic constants stands for.
+/// The map between strains and stresses that a matrix of elastic constants stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MatrixKind {
     /// Strains to stresses.
@@ -106,7 +106,7 @@ impl Elasticity {
         }
     }
 
-    /// The same material turned by `degrees`, anticlockwise.
+    /// Turns the material by `degrees`, anticlockwise.
     #[must_use]
     pub fn turned(mut self, degrees: f64) -> Self {
         if let Elasticity::Orthotropic(Orthotropic { angle, .. }) | Elasticity::Anisotropic(Anisotropic { angle, .. }) =
@@ -117,7 +117,7 @@ impl Elasticity {
         self
     }
 
-    /// The same with moduli multiplied by `factor`.
+    /// Multiplies the moduli by `factor`.
     #[must_use]
     pub fn stiffened(mut self, factor: f64) -> Self {
         match &mut self {
@@ -145,7 +145,7 @@ impl Elasticity {
         }
     }
 
-    /// Whether the matrix is one for plane stress alone.
+    /// True if the matrix is one for plane stress alone.
     pub fn is_plane_stress_only(&self) -> bool {
         matches!(self, Elasticity::Anisotropic(Anisotropic { matrix: Matrix::Three(_), .. }))
     }
@@ -162,8 +162,8 @@ impl Elasticity {
         [mean + turned, mean - turned, c * xy - s * half]
     }
 
-    /// Compliances of the strains (11, 22, 33, 12) in the axes of the material. Of a matrix for plane stress alone, what concerns axis 3
-    /// is zero.
+    /// Compliances of the strains (11, 22, 33, 12) in the axes of the material. For a matrix of plane stress alone, the entries of axis 3
+    /// are zero.
     fn compliance(&self) -> Result<Square<4>, usize> {
         match *self {
             Elasticity::Isotropic { young, poisson } => {

@@ -13,11 +13,11 @@ const NEAR: f64 = 16.0;
 const COARSE: f64 = 1e-11;
 
 impl Scene {
-    /// The same scene with coordinates counted from a point in the middle of `points`, in each direction in which they lie
-    /// far from zero, and that point. `points` themselves are to be moved by it.
+    /// Counts coordinates from a point in the middle of `points`, in each direction in which they lie far from zero. Returns the
+    /// scene and that point, by which the caller has to move `points` themselves.
     ///
-    /// P(x) = value + gradient · x of a traction, and the same of a body force and a clamped boundary, becomes the same function of the new coordinates; regions and points of
-    /// quantities move along.
+    /// A traction P(x) = value + gradient · x is rewritten in the new coordinates, as are body forces and clamped boundaries; regions and
+    /// points of quantities move along.
     pub(crate) fn about_middle<'a>(mut self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
         let [x, y] = [0, 1].map(|c| range(points.clone().map(|p| p[c])));
         let size = (x[1] - x[0]).max(y[1] - y[0]);

@@ -78,7 +78,7 @@ impl Kinematics {
         }
     }
 
-    /// What integrals over the figure are multiplied by where no thickness is given: the whole turn for a body of revolution.
+    /// Factor of integrals over the figure where no thickness is given: the whole turn for a body of revolution.
     pub fn measure(self) -> f64 {
         if self == Kinematics::Axisymmetric { std::f64::consts::TAU } else { 1.0 }
     }
@@ -127,9 +127,9 @@ pub struct Arc {
 pub struct Body {
     /// Its name, equal to the physical surface or `geometry.polygons.body`.
     pub name: String,
-    /// What it is made of.
+    /// Its material.
     pub elasticity: Elasticity,
-    /// What strains and stresses it has without load.
+    /// Its strains and stresses without load.
     pub initial: Initial,
     /// Body force F (force per volume).
     pub body_force: BodyForce,
@@ -152,7 +152,7 @@ impl Body {
 pub struct Support {
     /// Name of the boundary.
     pub on: String,
-    /// What is held.
+    /// The kind of support.
     pub kind: SupportKind,
 }
 
@@ -193,7 +193,7 @@ pub struct Traction {
     pub on: String,
     /// The load.
     pub load: Load,
-    /// What it has beyond an affine one.
+    /// Its terms beyond an affine load.
     pub terms: Vec<Term>,
 }
 
@@ -292,7 +292,7 @@ impl Contact {
 /// Initial gap along the first side.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gap {
-    /// The same everywhere.
+    /// Uniform along the side.
     Constant(f64),
     /// Piecewise linear: (s, g) with s ascending, s being the arc length from the end of the first side that comes
     /// first in (x, y) order; all around a body anticlockwise, from its first vertex in that order. Constant beyond the
@@ -300,7 +300,7 @@ pub enum Gap {
     Table(Vec<[f64; 2]>),
     /// The distance of a circle that touches at an arc length; from where it turns away by 45° on, that of its tangent.
     Circle(Touching),
-    /// The same with a parabola.
+    /// As [`Gap::Circle`], with a parabola.
     Parabola(Touching),
 }
 

@@ -129,7 +129,7 @@ fn options(case: &Case, args: &Args, file: &Path) -> Result<super::solve::Args, 
     options_of(words).map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))
 }
 
-/// What came of all of it.
+/// The overall result in one sentence.
 fn sentence(rows: &[Row<'_>], disagreeing: usize) -> String {
     let judged = rows.iter().filter(|row| row.verdict != Verdict::Elsewhere).count();
     let numbers = counted(judged, "published number");

@@ -363,7 +363,7 @@ fn refuse_refinement(solve: &SolveOptions) -> Result<(), CliError> {
     ))
 }
 
-/// What was done to fields that are not admissible.
+/// Notes on the repair of fields that are not admissible.
 fn repairs(comparison: &Comparison) -> Vec<Note> {
     let inadmissible = comparison.judged.iter().filter(|j| !j.is_admissible());
     inadmissible

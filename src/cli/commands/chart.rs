@@ -206,7 +206,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     Ok(Exit::Agree)
 }
 
-/// What an adaptive run was told to refine, and to reach.
+/// Refinement and tolerances that an adaptive run was given.
 fn tolerances(scene: &SceneChart, method: Method, tolerance: f64) -> String {
     let adapt = match method {
         Method::Adaptive(adapt) => adapt.to_possible_value().map(|value| format!("--adapt {}", value.get_name())),

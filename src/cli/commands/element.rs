@@ -13,7 +13,7 @@ use crate::scene::Kinematics;
 use crate::workbench::read::{self, Array};
 use crate::workbench::{self, DisplacementElement, Material, Order, Report, SHIPPED, Shipped, Subject};
 
-/// What single precision leaves of a matrix.
+/// Relative accuracy of a matrix in single precision.
 const SINGLE: f64 = 1e-5;
 
 /// Options of `element`.
@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     Ok(if report.passed { Exit::Agree } else { Exit::Disagree })
 }
 
-/// What was found, a line each; then what was not made, a line for each reason.
+/// Lists the findings, a line each; then the checks that were not made, a line for each reason.
 fn told(report: &Report) -> Vec<String> {
     let made = report.findings.iter().filter(|f| f.passed.is_some());
     let mut lines: Vec<String> = made.map(|f| f.in_words()).collect();

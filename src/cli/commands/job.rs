@@ -60,13 +60,13 @@ pub struct JobOptions {
 }
 
 impl JobOptions {
-    /// Whether `scenes` are a job, and not one scene.
+    /// True if `scenes` are a job, and not one scene.
     fn are_job(&self, scenes: &[PathBuf]) -> bool {
         self.part.is_none()
             && (scenes.len() > 1 || self.resume || self.shard.is_some() || scenes.iter().any(|path| path.is_dir()))
     }
 
-    /// Whether this is one scene of a job.
+    /// True if this is one scene of a job.
     pub fn is_part(&self) -> bool {
         self.part.is_some()
     }
@@ -90,11 +90,11 @@ pub struct Order<'a> {
     pub judge: Option<&'a JudgeOptions>,
     /// Where results go.
     pub run: &'a RunOptions,
-    /// What a scene has of its own.
+    /// Returns the options, files and fields of a scene.
     pub own: &'a dyn Fn(&Path) -> Result<Own, CliError>,
 }
 
-/// What belongs to one scene of a job.
+/// Options, files and fields of one scene of a job.
 pub struct Own {
     /// Options.
     pub options: Vec<String>,
@@ -214,7 +214,7 @@ pub fn conclude(out: &Path, plan: &Plan, signature: Option<&Signature>, quiet: b
     Ok(Exit::of(exit))
 }
 
-/// What is wrong with each scene, the worst first.
+/// Complaints about the scenes, the worst first.
 fn complaints(gathered: &Gathered) -> Vec<ci::Complaint> {
     let job = &gathered.job;
     let bad = job.worst_first().into_iter().filter(|i| job.scenes[*i].exit != 0);

@@ -84,7 +84,7 @@ fn names() -> String {
     REGIMES.iter().copied().flatten().map(|r| r.id).collect::<Vec<_>>().join(", ")
 }
 
-/// What `--help` says of `--regime`.
+/// Help text of `--regime`.
 fn regimes() -> String {
     format!("Only these regimes; may be repeated. One of {}", names())
 }

@@ -143,7 +143,7 @@ pub struct Verified {
     pub run: DualRun,
     /// The checks.
     pub comparison: Comparison,
-    /// What else the report has.
+    /// Further parts of the report.
     pub particulars: Particulars,
     /// Why the displacement model gave no answer.
     pub failure: Option<PrimalError>,

@@ -1,4 +1,4 @@
-//! What commands and options do with friction.
+//! Restrictions of commands and options for friction.
 
 use crate::cli::{CliError, Exit};
 use crate::problem::{follows_coulomb, rubs};

@@ -19,7 +19,7 @@ impl JudgeOptions {
     /// comparison of `fields` makes; `None` where they name themselves later.
     ///
     /// # Errors
-    /// What is at fault.
+    /// Names the baseline or the tolerance at fault.
     pub fn refuse_early(&self, scene: &Scene, fields: Option<Vec<String>>, job: &JobOptions) -> Result<(), CliError> {
         match &self.baseline {
             Some(file) if self.accept && !job.is_part() => Baseline::refuse(file).map_err(refused)?,
@@ -41,7 +41,7 @@ impl JudgeOptions {
     /// compared on each.
     ///
     /// # Errors
-    /// What is at fault.
+    /// Names the tolerance at fault.
     pub fn refuse_foreign(&self, scenes: &[(Scene, Vec<String>)]) -> Result<(), CliError> {
         let of_scene = |(scene, fields): &(Scene, Vec<String>)| {
             let contacts: Vec<String> = scene.contacts.iter().map(Contact::name).collect();

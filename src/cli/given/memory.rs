@@ -1,10 +1,10 @@
-//! What a run takes of memory, refused in time and with figures.
+//! Memory that a run needs, refused in time and with figures.
 
 use crate::budget::{Budget, Excess};
 use crate::cli::{CliError, Exit};
 use crate::scene::Scene;
 
-/// What to do about a mesh that does not fit.
+/// Remedy for a mesh that does not fit.
 pub const COARSER: &str =
     "choose a coarser mesh, refine where it is needed with --tolerance, or allow more with --max-memory";
 

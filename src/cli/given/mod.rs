@@ -16,7 +16,7 @@ use std::ffi::OsString;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 
-/// What the command line said about one command.
+/// Options that the command line gives to one command.
 #[derive(Debug, Default)]
 pub struct Given {
     options: Vec<(String, OsString)>,

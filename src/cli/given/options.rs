@@ -96,7 +96,7 @@ pub struct MemoryOptions {
 }
 
 impl SolveOptions {
-    /// Whether the mesh is refined adaptively.
+    /// True if the mesh is refined adaptively.
     pub fn is_adaptive(&self) -> bool {
         self.tolerance.is_some() || !self.tolerance_of.is_empty()
     }
@@ -107,7 +107,7 @@ impl SolveOptions {
         self.tolerance_of.iter().map(wanted).collect()
     }
 
-    /// What is refined towards the tolerance.
+    /// The kind of refinement towards the tolerance.
     pub fn adapt(&self) -> Adapt {
         let linear = self.method == Solver::Uzawa && self.engine.engine.is_none();
         self.adapt.unwrap_or(if linear { Adapt::H } else { Adapt::Hp })
@@ -115,7 +115,7 @@ impl SolveOptions {
 }
 
 impl MemoryOptions {
-    /// What was asked for, or what is available now to a run with so many threads.
+    /// The memory that was asked for, or else that is available to a run with so many threads.
     pub fn budget(&self, threads: usize) -> Budget {
         self.max_memory.map_or_else(|| Budget::of_available(threads), Budget::of)
     }

@@ -15,14 +15,14 @@ pub struct Row {
     value: f64,
 }
 
-/// What the columns may be called.
+/// Names that the columns may have.
 const COLUMNS: [&str; 6] = ["name", "body", "x", "y", "quantity", "value"];
 
-/// What a table has to look like.
+/// The required shape of a table, in words.
 pub const SHAPE: &str = "write a header `name,value`, or `x,y,quantity,value` (and `body` where the scene has several), then one line for each \
                          value; quantities are xx, yy, xy, von-mises, largest-principal, smallest-principal, ux and uy";
 
-/// Whether a file of this text is such a table: its first line has a column for values.
+/// True if a file of this text is such a table: its first line has a column for values.
 pub fn is_table(text: &str) -> bool {
     text.lines().next().is_some_and(|line| {
         let columns = cells(line, separator(line));

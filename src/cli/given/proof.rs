@@ -20,7 +20,7 @@ const CHECKER: &str = "hypercircle-check";
 /// How long it may take.
 const LIMIT: Duration = Duration::from_secs(600);
 
-/// What the checker says of a proof: its name and version, or what failed; `None` where it is not installed.
+/// Runs the checker on a proof. Returns its name and version, or the cause of failure; `None` where it is not installed.
 fn checked(proof: &[u8], begins: impl FnOnce()) -> Option<Result<String, String>> {
     let program = python::find(Path::new(CHECKER))?;
     begins();

@@ -1,10 +1,10 @@
-//! What commands and options do with bodies of revolution.
+//! Restrictions of commands and options for bodies of revolution.
 
 use crate::cli::{CliError, Exit};
 use crate::problem::Problem;
 use crate::scene::{Kinematics, Scene};
 
-/// Refuses displacement models that there are none of for bodies of revolution.
+/// Refuses displacement models that do not exist for bodies of revolution.
 ///
 /// # Errors
 /// Names what was asked for.

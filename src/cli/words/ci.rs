@@ -1,4 +1,4 @@
-//! What a run tells the service that runs it: GitHub's page of a step, and its marks beside the lines of files.
+//! Messages of a run to the service that runs it: GitHub's page of a step, and its marks beside the lines of files.
 
 use std::env;
 use std::fs::OpenOptions;
@@ -15,7 +15,7 @@ const MOST: u64 = 1 << 20;
 /// Marks that GitHub shows of a step.
 const MARKS: usize = 10;
 
-/// Whether anything has been marked.
+/// True once anything has been marked.
 static MARKED: AtomicBool = AtomicBool::new(false);
 
 /// One thing that is wrong with a file.

@@ -18,9 +18,9 @@ pub enum CliError {
     /// The command, for an answer that ends with `exit`.
     #[error("{}", shown(message))]
     Stopped {
-        /// What was found, with the file it concerns.
+        /// The finding, with the file it concerns.
         message: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
         /// One of the codes from 2 on.
         exit: Exit,

@@ -1,4 +1,4 @@
-//! What the process's exit code says.
+//! Meaning of the process's exit code.
 
 use std::process::ExitCode;
 

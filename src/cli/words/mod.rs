@@ -1,4 +1,4 @@
-//! What people and services are told: text, progress, errors, exit codes.
+//! Output for people and services: text, progress, errors, exit codes.
 
 pub mod ci;
 pub mod error;

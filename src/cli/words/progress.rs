@@ -16,7 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// something happens, and services that end what is silent do not end it.
 const SILENCE: Duration = Duration::from_secs(30);
 
-/// What a run is doing: on a terminal shown after two seconds, elsewhere in a line every half minute.
+/// Display of the phase of a run: on a terminal shown after two seconds, elsewhere in a line every half minute.
 pub struct Progress {
     bar: ProgressBar,
     quiet: bool,

@@ -1,4 +1,4 @@
-//! What a scene is made of before it is checked, and the text it would be in a file.
+//! Parts of a scene before it is checked, and the text it would be in a file.
 //!
 //! A scene made by a program passes the same checks as one that is read: it is written as TOML and parsed. Messages point into
 //! that text.
@@ -47,7 +47,7 @@ pub struct Draft {
     pub contacts: Vec<Contact>,
     /// Boundaries that are glued to each other.
     pub bonds: Vec<Bond>,
-    /// What the scene is solved for, in the order of the file.
+    /// Quantities that the scene is solved for, in the order of the file.
     pub quantities: Vec<Quantity>,
     /// Numbers that are known between two ends alone; bodies and contacts have those with the lowest energy.
     pub ranges: Vec<DataRange>,
@@ -99,7 +99,7 @@ impl Scene {
         Scene::new(draft)
     }
 
-    /// The same without the size of [`MeshSource::Geometry`].
+    /// A copy without the size of [`MeshSource::Geometry`].
     pub fn coarsest(&self) -> Self {
         let mut draft = self.draft.clone();
         if let MeshSource::Geometry { size, .. } = &mut draft.mesh {

@@ -35,7 +35,7 @@ pub(crate) struct Joint<'a> {
     pub sides: &'a [String; 2],
     /// The direction along which they are matched; `None` where they coincide.
     pub direction: Option<[f64; 2]>,
-    /// Whether the sides may be those of a contact across a distance, along normals that turn.
+    /// True if the sides may be those of a contact across a distance, along normals that turn.
     pub turns: bool,
 }
 
@@ -46,12 +46,12 @@ impl Joint<'_> {
         format!("{kind} {first}|{second}")
     }
 
-    /// Whether its sides are those of a bond.
+    /// True if its sides are those of a bond.
     pub fn is_bond(&self) -> bool {
         self.kind == "bond"
     }
 
-    /// The same with the name quoted, as errors have it.
+    /// As [`Self::name`], with the name quoted for errors.
     pub fn quoted(&self) -> String {
         let Joint { kind, sides: [first, second], .. } = self;
         format!("{kind} '{first}|{second}'")

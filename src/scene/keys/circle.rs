@@ -21,7 +21,7 @@ impl Circle {
         (!straight && radius.is_finite()).then_some(Circle { centre: [a[0] + centre[0], a[1] + centre[1]], radius })
     }
 
-    /// Whether a point is no farther from the circle than `part` of its radius.
+    /// True if a point is no farther from the circle than `part` of its radius.
     pub fn holds(&self, p: [f64; 2], part: f64) -> bool {
         (self.distance(p) - self.radius).abs() <= part * self.radius
     }

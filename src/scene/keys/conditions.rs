@@ -22,7 +22,7 @@ use crate::scene::{
 
 const NAME_A_BOUNDARY: &str = "name the boundary that is meant; an edge without a name cannot carry a condition";
 
-/// What holds on the boundaries.
+/// Conditions on the boundaries.
 pub(in crate::scene) struct Conditions {
     pub supports: Vec<Support>,
     pub tractions: Vec<Traction>,

@@ -9,7 +9,7 @@ use crate::scene::reading::source::Source;
 /// The bound of the tangential traction of a contact (Tresca): it sticks below, and slides against it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FrictionBound {
-    /// The same everywhere.
+    /// Uniform along the side.
     Constant(f64),
     /// Piecewise linear: (s, bound) with s ascending, s being the arc length along the first side as in [`crate::scene::Gap::Table`].
     /// Constant beyond the first and the last entry.
@@ -33,7 +33,7 @@ impl FrictionBound {
         }
     }
 
-    /// Whether nothing resists sliding anywhere.
+    /// True if nothing resists sliding anywhere.
     pub fn is_none(&self) -> bool {
         match self {
             FrictionBound::Constant(bound) => *bound == 0.0,

@@ -1,4 +1,4 @@
-//! What a body is made of: `young` and `poisson`, `orthotropic`, `stiffness` or `compliance`.
+//! Material of a body: `young` and `poisson`, `orthotropic`, `stiffness` or `compliance`.
 
 use super::range::{RawNumber, ends, no_range};
 use crate::elasticity::{Anisotropic, Elasticity, Initial, Matrix, MatrixKind, Orthotropic};
@@ -111,7 +111,7 @@ fn isotropic(
     Ok(Elasticity::Isotropic { young, poisson })
 }
 
-/// What the body whose table is `label` has without load.
+/// Initial state, without load, of the body whose table is `label`.
 pub(in crate::scene) fn initial(
     raw: &RawBody,
     label: &str,

@@ -25,7 +25,7 @@ pub enum Shape {
         centre: [f64; 2],
         /// Its radius.
         radius: f64,
-        /// Whether the body lies inside.
+        /// True if the body lies inside.
         inside: bool,
     },
 }
@@ -54,7 +54,7 @@ impl Obstacle {
         Some((direction, distance + self.moved[0] * direction[0] + self.moved[1] * direction[1]))
     }
 
-    /// Whether the direction of contact is the same everywhere.
+    /// True if the direction of contact is the same everywhere.
     pub fn is_straight(&self) -> bool {
         matches!(self.shape, Shape::Line(_))
     }

@@ -1,4 +1,4 @@
-//! Whether a list of corners bounds a region: the geometry behind the messages about polygons.
+//! Test that a list of corners bounds a region: the geometry behind the messages about polygons.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -36,7 +36,7 @@ impl Defect {
         }
     }
 
-    /// What is wrong, as the rest of a sentence about the polygon; `edge` is what an edge is called.
+    /// Describes the defect, as the rest of a sentence about the polygon; `edge` names an edge.
     pub fn problem(&self, points: &[[f64; 2]], edge: impl Fn(usize) -> String) -> String {
         let corner = |i: usize| format!("[{:?}, {:?}]", points[i][0], points[i][1]);
         match *self {
@@ -56,7 +56,7 @@ impl Defect {
         }
     }
 
-    /// What to do about it.
+    /// The remedy for the defect.
     pub fn remedy(&self, points: &[[f64; 2]]) -> &'static str {
         match *self {
             Defect::TooFew => "add the missing corners",
@@ -127,7 +127,7 @@ fn spike(points: &[[f64; 2]], i: usize) -> bool {
     side(before, corner, after) == 0 && dot > 0.0
 }
 
-/// Whether the closed segments share a point.
+/// True if the closed segments share a point.
 fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let in_box =
         |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (0..2).all(|k| p[k].min(q[k]) <= r[k] && r[k] <= p[k].max(q[k]));

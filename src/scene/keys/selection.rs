@@ -63,7 +63,7 @@ pub enum Edges {
 }
 
 impl Edges {
-    /// The same with coordinates counted from `origin`.
+    /// Counts coordinates from `origin`.
     pub(in crate::scene) fn shift(&mut self, origin: [f64; 2]) {
         let moved = |p: &mut [f64; 2]| *p = [p[0] - origin[0], p[1] - origin[1]];
         match self {

@@ -13,7 +13,7 @@ use crate::scene::reading::source::Source;
 use crate::scene::reading::text::acts;
 use crate::scene::{Body, BoundaryUse, Kinematics};
 
-/// What quantities may name.
+/// Parts of the scene that quantities may name.
 pub(super) struct Named<'a> {
     pub kinematics: Kinematics,
     pub bodies: &'a [Body],

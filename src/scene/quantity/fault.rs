@@ -2,7 +2,7 @@
 
 use crate::scene::reading::nearest::{list, suggestion};
 
-/// What is wrong with a table of `[[quantities]]`.
+/// Faults of a table of `[[quantities]]`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum QuantityFault {
     /// Not exactly one of the keys that say what is wanted.
@@ -44,7 +44,7 @@ pub enum QuantityFault {
         found: String,
         /// `contact or support`, …
         kinds: &'static str,
-        /// What has a name.
+        /// Names that exist.
         known: Vec<String>,
     },
     /// A name that several things have.
@@ -66,9 +66,9 @@ pub enum QuantityFault {
         table: String,
         /// As written.
         found: String,
-        /// What holds for a window.
+        /// The rule that the window breaks.
         rule: &'static str,
-        /// What to write.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A polygon that bounds no region.
@@ -76,9 +76,9 @@ pub enum QuantityFault {
     Region {
         /// The table.
         table: String,
-        /// What is wrong with it.
+        /// The defect of the polygon.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
 }
@@ -95,7 +95,7 @@ fn kinds(table: &str, found: &[&str]) -> String {
 }
 
 impl QuantityFault {
-    /// What to do, as one clause.
+    /// The remedy, as one clause.
     pub fn remedy(&self) -> String {
         match self {
             QuantityFault::Kinds { found, .. } if found.is_empty() => {

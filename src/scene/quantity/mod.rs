@@ -20,11 +20,11 @@ use super::{Kinematics, Scene};
 pub struct Quantity {
     /// Its name, unlike that of every other quantity; without `=` and control characters.
     pub name: String,
-    /// What it is.
+    /// Its definition.
     pub target: Target,
 }
 
-/// What a quantity is.
+/// Definition of a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Target {
     /// Mean displacement along a direction.
@@ -54,7 +54,7 @@ pub enum Target {
     },
     /// The moment, counter-clockwise, of the forces that a contact exerts on its first side, or a support on the bodies.
     Moment {
-        /// What exerts them.
+        /// The contact or support that exerts them.
         of: Holder,
         /// The point the moment is taken about, counted from [`Draft::origin`](super::Draft::origin).
         about: [f64; 2],
@@ -107,7 +107,7 @@ impl Mode {
     }
 }
 
-/// What is wanted at a point.
+/// The value wanted at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PointValue {
     /// The displacement along a unit vector.
@@ -165,7 +165,7 @@ pub enum Extent {
     Body(usize),
 }
 
-/// What exerts forces on bodies.
+/// A contact or support, which exerts forces on bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holder {
     /// Index into [`Draft::contacts`](super::Draft::contacts).

@@ -45,7 +45,7 @@ impl Context<'_> {
         }
     }
 
-    /// Whether the force of a contact is that of its friction.
+    /// True if the force of a contact is that of its friction.
     pub(super) fn is_tangential(&self, contact: usize) -> Result<bool, SceneError> {
         let Some(word) = &self.raw.component else { return Ok(false) };
         if word.value != TANGENTIAL {
@@ -158,7 +158,7 @@ impl Context<'_> {
 }
 
 impl Conditions {
-    /// Whether one of them is on the boundary of this name.
+    /// True if one of them is on the boundary of this name.
     pub(super) fn have(&self, name: &str) -> bool {
         self.owner(name).is_some()
             || self.tractions.iter().any(|traction| traction.on == name)

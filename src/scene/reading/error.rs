@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file, said so that the reader can put it right.
+//! Errors of a scene file, worded so that the reader can put them right.
 //!
 //! Every error carries three things: the place (file, line, column, where the text could be read), the fault (what was
 //! found) and the remedy (what to do). [`SceneError`]'s `Display` is all three in one line; as a
@@ -29,7 +29,7 @@ pub enum SceneError {
     File {
         /// The path as given.
         path: PathBuf,
-        /// What was wrong with it.
+        /// The fault of the file.
         fault: FileFault,
     },
     /// The text was read, and something in it is wrong.
@@ -37,7 +37,7 @@ pub enum SceneError {
     Content(Box<Located>),
 }
 
-/// What is wrong with the scene file as a file.
+/// Faults of the scene file as a file.
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
     /// Nothing there, or no permission, or the device failed.
@@ -63,7 +63,7 @@ pub enum FileFault {
 }
 
 impl FileFault {
-    /// What to do.
+    /// The remedy.
     pub fn remedy(&self) -> &'static str {
         match self {
             FileFault::Unreadable(_) => "check the path and its permissions",
@@ -82,7 +82,7 @@ impl FileFault {
 pub struct Located {
     /// Where.
     pub place: Place,
-    /// What.
+    /// The fault.
     pub fault: Fault,
     /// A second place that belongs to the fault, with the words to write there.
     pub related: Option<(Range<usize>, String)>,
@@ -132,7 +132,7 @@ impl Place {
         self.before().rsplit('\n').next().unwrap_or_default().chars().count() + 1
     }
 
-    /// Whether some line is too long to be drawn.
+    /// True if some line is too long to be drawn.
     fn has_long_lines(&self) -> bool {
         self.source.inner().lines().any(|line| line.len() > LONGEST_LINE)
     }
@@ -207,7 +207,7 @@ impl SceneError {
         self
     }
 
-    /// What was found, without place and remedy.
+    /// The fault, without place and remedy.
     pub fn found(&self) -> String {
         match self {
             SceneError::File { path, fault } => format!("{}: {fault}", path.display()),
@@ -215,7 +215,7 @@ impl SceneError {
         }
     }
 
-    /// What to do about it.
+    /// The remedy for the fault.
     pub fn remedy(&self) -> String {
         match self {
             SceneError::File { fault, .. } => fault.remedy().to_owned(),

@@ -7,7 +7,7 @@ use crate::scene::quantity::QuantityFault;
 const POINT_LOADS: [&str; 6] = ["point", "force", "node", "nodes", "vertex", "at"];
 const POINT_TABLES: [&str; 6] = ["forces", "point_loads", "loads", "nodal_forces", "cload", "point_forces"];
 
-/// What is wrong inside a scene file.
+/// Faults inside a scene file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// No key at all.
@@ -36,7 +36,7 @@ pub enum Fault {
         key: String,
         /// Where it belongs.
         table: String,
-        /// What to write.
+        /// The remedy.
         remedy: String,
     },
     /// A value of another type.
@@ -46,9 +46,9 @@ pub enum Fault {
         key: String,
         /// Its table.
         table: String,
-        /// What stands there.
+        /// The value found there, in words.
         found: String,
-        /// What has to stand there.
+        /// The value expected there, in words.
         expected: String,
     },
     /// A word out of a fixed list was expected.
@@ -72,9 +72,9 @@ pub enum Fault {
         table: String,
         /// As written.
         found: String,
-        /// What holds for this number.
+        /// The rule that the number breaks.
         rule: &'static str,
-        /// What to write.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A point, vector or matrix of another size.
@@ -88,7 +88,7 @@ pub enum Fault {
         found: String,
         /// `2`, …
         expected: String,
-        /// What to write.
+        /// The remedy.
         remedy: &'static str,
     },
     /// Two keys that exclude each other, or neither of them.
@@ -110,9 +110,9 @@ pub enum Fault {
         key: &'static str,
         /// Its table.
         table: String,
-        /// What it clashes with.
+        /// The key, table or value it clashes with.
         other: &'static str,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
     /// An empty file, body or boundary name.
@@ -122,7 +122,7 @@ pub enum Fault {
         key: String,
         /// Its table.
         table: String,
-        /// What has to stand there.
+        /// The remedy.
         remedy: &'static str,
     },
     /// No body at all.
@@ -163,19 +163,19 @@ pub enum Fault {
         polygon: usize,
         /// Its body.
         body: String,
-        /// What is wrong with it.
+        /// The defect of the polygon.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
-    /// An arc that is none.
+    /// An invalid arc.
     #[error("an arc of {table} {problem}")]
     Arc {
         /// Its polygon.
         table: String,
-        /// What is wrong with it.
+        /// The defect of the arc.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A condition on a boundary that no edge has.
@@ -213,7 +213,7 @@ pub enum Fault {
     GapOrder {
         /// Row, from 1.
         row: usize,
-        /// What is given by rows.
+        /// The key whose value is given by rows.
         key: &'static str,
         /// The contact.
         table: String,
@@ -222,13 +222,13 @@ pub enum Fault {
         /// `the same as` or `less than`.
         relation: &'static str,
     },
-    /// A quantity that is none.
+    /// An invalid quantity.
     #[error(transparent)]
     Quantity(#[from] QuantityFault),
 }
 
 impl Fault {
-    /// What to do, as one clause.
+    /// The remedy, as one clause.
     pub fn remedy(&self) -> String {
         match self {
             Fault::Empty => "a scene needs at least [model], [bodies.NAME] and [mesh] or [geometry]".into(),

@@ -34,7 +34,7 @@ pub(in crate::scene) fn parse(text: &str, path: &Path) -> Result<RawScene, Scene
     }
 }
 
-/// What a span of the file is called.
+/// Names of a span of the file.
 struct Named {
     /// `[bodies.left]`, `[[supports]] number 2`, `the scene`.
     table: String,
@@ -42,7 +42,7 @@ struct Named {
     key: String,
     /// Where the span is the table itself: the table that it stands in, and its key there.
     own: Option<(String, String)>,
-    /// Whether the table is the whole document.
+    /// True if the table is the whole document.
     root: bool,
 }
 

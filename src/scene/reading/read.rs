@@ -12,7 +12,7 @@ use super::error::{FileFault, SceneError};
 use super::{parse, validate};
 use crate::scene::{ContactSides, Extent, MAX_BYTES, Scene, Target};
 
-/// What a boundary is named for; the index counts from 0 in the list of the scene.
+/// The condition that names a boundary; the index counts from 0 in the list of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundaryUse {
     /// `supports[i]`.

@@ -1,4 +1,4 @@
-//! What a tool answers: short words for people, and data for programs.
+//! Answer of a tool: short words for people, and data for programs.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -16,7 +16,7 @@ const MOST_WORDS: usize = 6000;
 /// The answer to a call.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// Whether it is none, because something is wrong with what was asked, or with the run.
+    /// True if there is no answer, because the request or the run is at fault.
     pub is_error: bool,
     /// In words.
     pub words: String,
@@ -94,7 +94,7 @@ impl Answer {
         Answer { is_error: false, words: shortened(lines(report).join("\n")), data: Value::Object(data) }
     }
 
-    /// What was found on an element.
+    /// The findings on an element.
     pub fn of_element(report: &workbench::Report) -> Self {
         let mut data = serde_json::to_value(report).unwrap_or_default();
         if let Some(data) = data.as_object_mut() {

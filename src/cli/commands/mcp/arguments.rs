@@ -1,4 +1,4 @@
-//! What each tool takes.
+//! Arguments of each tool.
 
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@ use crate::scene::{MeshSource, Scene};
 
 /// Formats of meshes that are one file each, and are read and not run.
 const MESHES: [&str; 11] = ["msh", "inp", "vtu", "vtk", "unv", "frd", "bdf", "nas", "fem", "mesh", "su2"];
-/// The same for displacements.
+/// Formats of displacements that are one file each, and are read and not run.
 const FIELDS: [&str; 5] = ["vtu", "vtk", "frd", "unv", "msh"];
 
 /// Refuses a scene with a mesh file that lies outside.
@@ -58,7 +58,7 @@ fn inside(file: &Path, formats: &[&str]) -> Result<(), CliError> {
     }
 }
 
-/// Whether the text may lead to other files: a deck of Abaqus has a keyword for that.
+/// True if the text may lead to other files: a deck of Abaqus has a keyword for that.
 fn includes(text: &[u8]) -> bool {
     const WORD: &[u8] = b"INCLUDE";
     let text = String::from_utf8_lossy(text);

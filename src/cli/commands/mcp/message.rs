@@ -2,23 +2,23 @@
 
 use serde_json::{Map, Value, json};
 
-/// What a line is.
+/// The message in a line.
 #[derive(Debug, PartialEq)]
 pub enum Message {
     /// Something that is answered.
     Request {
         /// A text or a whole number.
         id: Value,
-        /// What is asked for.
+        /// The method called.
         method: String,
-        /// With what.
+        /// Its parameters.
         params: Map<String, Value>,
     },
     /// Something that is not.
     Notification {
-        /// What happened.
+        /// The event.
         method: String,
-        /// To what.
+        /// Its parameters.
         params: Map<String, Value>,
     },
     /// An answer to a question that this program never asks.
@@ -30,7 +30,7 @@ pub enum Message {
 pub struct Refusal {
     /// Its number.
     pub code: i64,
-    /// What was found, and what to do.
+    /// The finding and its remedy.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! What an agent may read to write a scene: the schema of its keys, and a commented example.
+//! Resources that an agent may read to write a scene: the schema of its keys, and a commented example.
 
 use serde_json::{Value, json};
 

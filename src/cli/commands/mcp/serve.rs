@@ -23,7 +23,7 @@ const PULSE: Duration = Duration::from_secs(5);
 /// Versions of the protocol, the newest first. That of March 2025 has batches, which none before or after it has.
 const VERSIONS: [&str; 3] = ["2025-11-25", "2025-06-18", "2024-11-05"];
 
-/// What answers a call of a tool with its arguments, unless it becomes unwanted meanwhile.
+/// Function that answers a call of a tool with its arguments, unless it becomes unwanted meanwhile.
 type Run<'a> = dyn Fn(&str, Value, &AtomicBool) -> Answer + Sync + 'a;
 
 struct Waiting {
@@ -47,7 +47,7 @@ struct Server<W> {
     output: Mutex<W>,
     queue: Mutex<Queue>,
     changed: Condvar,
-    /// Whether nobody reads the answers any more.
+    /// True if nobody reads the answers any more.
     is_deaf: AtomicBool,
 }
 

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::arguments::{Certify, Diagnose, Element, Solve, Verify};
 
-/// What an agent reads before it calls any of them.
+/// Instructions that an agent reads before it calls any tool.
 pub const INSTRUCTIONS: &str = "\
 hypercircle bounds the exact answer of plane and axisymmetric elastic contact problems from both sides, with a guarantee, and says what is wrong with \
 finite-element results. Every answer has a status (agree, disagree, undecided, infeasible), a verdict in one sentence, and numbers; the exact energy lies \
@@ -85,7 +85,7 @@ const TOOLS: [Tool; 5] = [
     },
 ];
 
-/// Whether there is a tool of that name.
+/// True if there is a tool of that name.
 pub fn is_tool(name: &str) -> bool {
     TOOLS.iter().any(|tool| tool.name == name)
 }
