@@ -3,13 +3,15 @@
 use std::fmt;
 use std::io::{IsTerminal, Write};
 
+use crate::cli::Exit;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, MietteHandler, MietteHandlerOpts, ReportHandler};
 
 /// Columns of a report that no terminal limits; lines are not wrapped there, so that they can be searched.
 const UNLIMITED: usize = 10_000;
 
-/// Words of the standard library where the system refuses a thread or what one starts with.
-const NO_THREAD: [&str; 2] = ["failed to spawn thread", "failed to allocate an alternative stack"];
+/// Words of the standard library where the system refuses a thread, and those of a thread that it refuses what it starts with.
+const NO_THREAD: &str = "failed to spawn thread";
+const NO_STACK: &str = "failed to allocate an alternative stack";
 
 /// Draws the error on stderr.
 pub fn error(error: &dyn Diagnostic) {
@@ -58,11 +60,15 @@ pub fn install_panic_message() {
         let payload = panic.payload();
         let text = payload.downcast_ref::<&str>().copied();
         let what = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
-        if NO_THREAD.iter().any(|refusal| what.contains(refusal)) {
+        if [NO_THREAD, NO_STACK].iter().any(|refusal| what.contains(refusal)) {
             let _ = writeln!(
                 std::io::stderr(),
                 "  x a thread could not be started ({what})\n  help: allow more threads or memory (ulimit -u, ulimit -v)"
             );
+            if what.contains(NO_STACK) {
+                // Such a thread has not begun, others would wait for it, and there may be no memory to unwind it.
+                std::process::exit(Exit::Failed as i32);
+            }
             return;
         }
         let version = env!("CARGO_PKG_VERSION");
